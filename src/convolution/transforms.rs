@@ -1,0 +1,212 @@
+//! The one-dimensional transforms along rows and columns, their lengths and working memory.
+
+use std::sync::Arc;
+
+use num_complex::Complex;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::{Fft, FftPlanner};
+
+use super::size::fast_size;
+use crate::{Boundary, Grid};
+
+/// Plans of all transforms of a grid, zero-padded unless it is periodic.
+#[derive(Clone)]
+pub(super) struct Transforms {
+    nx: usize,
+    ny: usize,
+    row_forward: Arc<dyn RealToComplex<f64>>,
+    row_inverse: Arc<dyn ComplexToReal<f64>>,
+    column_forward: Arc<dyn Fft<f64>>,
+    column_inverse: Arc<dyn Fft<f64>>,
+}
+
+/// Working memory of the transforms, one for each thread.
+#[derive(Clone)]
+pub(super) struct Workspace {
+    /// One padded row.
+    row: Vec<f64>,
+    /// One padded column.
+    column: Vec<Complex<f64>>,
+    /// Its spectrum.
+    spectrum: Vec<Complex<f64>>,
+    /// What the plans ask for.
+    fft: Vec<Complex<f64>>,
+}
+
+impl Transforms {
+    pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
+        let (nx, ny) = grid.shape();
+        let (px, py) = match boundary {
+            // A real transform of even length is a complex one of half that length.
+            Boundary::Free => (2 * fast_size(nx), fast_size(2 * ny - 1)),
+            // The period is the grid's, however slow a length that is.
+            Boundary::Periodic => (nx, ny),
+        };
+        let mut real = RealFftPlanner::new();
+        let mut complex = FftPlanner::new();
+        Self {
+            nx,
+            ny,
+            row_forward: real.plan_fft_forward(px),
+            row_inverse: real.plan_fft_inverse(px),
+            column_forward: complex.plan_fft_forward(py),
+            column_inverse: complex.plan_fft_inverse(py),
+        }
+    }
+
+    /// Lengths of the padded rows and columns.
+    pub(super) fn padded(&self) -> (usize, usize) {
+        (self.row_forward.len(), self.column_forward.len())
+    }
+
+    /// Length of the spectrum of a row, which is the number of columns.
+    pub(super) fn columns(&self) -> usize {
+        self.row_forward.complex_len()
+    }
+
+    pub(super) fn workspace(&self) -> Workspace {
+        let (px, py) = self.padded();
+        let fft = [
+            self.row_forward.get_scratch_len(),
+            self.row_inverse.get_scratch_len(),
+            self.column_forward.get_outofplace_scratch_len(),
+            self.column_inverse.get_outofplace_scratch_len(),
+        ];
+        Workspace {
+            row: vec![0.0; px],
+            column: vec![Complex::default(); py],
+            spectrum: vec![Complex::default(); py],
+            fft: vec![Complex::default(); fft.into_iter().max().unwrap_or(0)],
+        }
+    }
+
+    /// Spectrum of a row of nx values, padded with zeros where there is padding.
+    pub(super) fn forward_row(
+        &self,
+        values: &[f64],
+        spectrum: &mut [Complex<f64>],
+        work: &mut Workspace,
+    ) {
+        if values.iter().all(|&value| value == 0.0) {
+            spectrum.fill(Complex::default());
+            return;
+        }
+        let (inside, padding) = work.row.split_at_mut(self.nx);
+        inside.copy_from_slice(values);
+        padding.fill(0.0);
+        self.forward_padded_row(spectrum, work);
+    }
+
+    /// Spectrum of one row of a kernel, given its value at an offset along x.
+    pub(super) fn forward_kernel_row(
+        &self,
+        value: impl Fn(isize) -> f64,
+        spectrum: &mut [Complex<f64>],
+        work: &mut Workspace,
+    ) {
+        work.row.fill(0.0);
+        let (positive, negative) = work.row.split_at_mut(self.nx);
+        for (place, di) in positive.iter_mut().zip(0..) {
+            *place = value(di);
+        }
+        for (place, di) in negative.iter_mut().rev().zip(1..self.nx as isize) {
+            *place = value(-di);
+        }
+        self.forward_padded_row(spectrum, work);
+    }
+
+    fn forward_padded_row(&self, spectrum: &mut [Complex<f64>], work: &mut Workspace) {
+        let done = self
+            .row_forward
+            .process_with_scratch(&mut work.row, spectrum, &mut work.fft);
+        // Lengths are all it could complain of, and they come from the plan.
+        debug_assert!(done.is_ok(), "{done:?}");
+    }
+
+    /// The nx values of a row, given its spectrum, which is destroyed.
+    pub(super) fn inverse_row(
+        &self,
+        spectrum: &mut [Complex<f64>],
+        values: &mut [f64],
+        work: &mut Workspace,
+    ) {
+        // Real up to rounding since the row is real; the transform insists on exactly. An odd
+        // length has no Nyquist frequency at the end.
+        spectrum[0].im = 0.0;
+        if work.row.len().is_multiple_of(2) {
+            spectrum[self.columns() - 1].im = 0.0;
+        }
+        let done = self
+            .row_inverse
+            .process_with_scratch(spectrum, &mut work.row, &mut work.fft);
+        // Those imaginary parts and lengths are all it could complain of.
+        debug_assert!(done.is_ok(), "{done:?}");
+        values.copy_from_slice(&work.row[..self.nx]);
+    }
+
+    /// Multiplies the spectrum of a column of ny entries, padded with zeros where there is padding,
+    /// by `symbol`.
+    pub(super) fn filter_column(
+        &self,
+        entries: &mut [Complex<f64>],
+        symbol: &[f64],
+        work: &mut Workspace,
+    ) {
+        let (inside, padding) = work.column.split_at_mut(self.ny);
+        inside.copy_from_slice(entries);
+        padding.fill(Complex::default());
+        self.column_forward.process_outofplace_with_scratch(
+            &mut work.column,
+            &mut work.spectrum,
+            &mut work.fft,
+        );
+        for (value, &factor) in work.spectrum.iter_mut().zip(symbol) {
+            *value *= factor;
+        }
+        self.column_inverse.process_outofplace_with_scratch(
+            &mut work.spectrum,
+            &mut work.column,
+            &mut work.fft,
+        );
+        entries.copy_from_slice(&work.column[..self.ny]);
+    }
+
+    /// One column of the symbol, given the spectra of kernel rows dj = 0, 1, …, ny − 1 there.
+    ///
+    /// Reciprocity, C(−di, −dj) = C(di, dj), makes the spectrum of row −dj the conjugate of that of
+    /// row dj, and the symbol real. Without padding row −dj is row ny − dj, which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
+    pub(super) fn symbol_column(
+        &self,
+        entries: &[Complex<f64>],
+        symbol: &mut [f64],
+        work: &mut Workspace,
+    ) {
+        let (inside, padding) = work.column.split_at_mut(self.ny);
+        inside.copy_from_slice(entries);
+        inside[0].im = 0.0;
+        padding.fill(Complex::default());
+        for (opposite, entry) in padding.iter_mut().rev().zip(&entries[1..]) {
+            *opposite = entry.conj();
+        }
+        self.column_forward.process_outofplace_with_scratch(
+            &mut work.column,
+            &mut work.spectrum,
+            &mut work.fft,
+        );
+        let (px, py) = self.padded();
+        let normalisation = 1.0 / (px as f64 * py as f64);
+        for (value, spectrum) in symbol.iter_mut().zip(&work.spectrum) {
+            *value = spectrum.re * normalisation;
+        }
+    }
+}
+
+impl Workspace {
+    /// Bytes held.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&self.row[..])
+            + size_of_val(&self.column[..])
+            + size_of_val(&self.spectrum[..])
+            + size_of_val(&self.fft[..])
+    }
+}

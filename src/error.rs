@@ -1,0 +1,297 @@
+//! Every way in which this crate can refuse an input or fail to answer.
+
+use thiserror::Error;
+
+/// What went wrong, with the numbers that say so.
+///
+/// Nodes are given by their grid indices `(ix, iy)`; quantities carry the units of the input.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A grid needs at least one node in each direction.
+    #[error("a grid of {nx} x {ny} nodes is empty")]
+    EmptyGrid {
+        /// Nodes along x.
+        nx: usize,
+        /// Nodes along y.
+        ny: usize,
+    },
+
+    /// The grid is larger than any this crate can index.
+    #[error("a grid of {nx} x {ny} nodes is too large: at most {max_side} nodes a side")]
+    GridTooLarge {
+        /// Nodes along x.
+        nx: usize,
+        /// Nodes along y.
+        ny: usize,
+        /// Greatest number of nodes along either side.
+        max_side: usize,
+    },
+
+    /// A quantity that must be positive and finite is not.
+    #[error("{quantity} must be positive and finite, but is {value}")]
+    NotPositive {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+    },
+
+    /// A quantity lies outside its admissible range.
+    #[error("{quantity} must be {expected}, but is {value}")]
+    OutOfRange {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+        /// The admissible range, in words.
+        expected: &'static str,
+    },
+
+    /// A height is NaN or infinite.
+    #[error("the height at node ({ix}, {iy}) is {value}, which is not finite")]
+    HeightNotFinite {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// The height.
+        value: f64,
+    },
+
+    /// A short cut-off wavelength has less than two nodes on the grid.
+    #[error(
+        "the short cut-off wavelength {wavelength} is shorter than {shortest}, \
+         two cells of the grid"
+    )]
+    CutoffBelowGrid {
+        /// The short cut-off wavelength.
+        wavelength: f64,
+        /// Shortest wavelength that has two nodes along x and along y.
+        shortest: f64,
+    },
+
+    /// No wave that is periodic on the grid lies between the cut-offs of a spectrum.
+    #[error("no wave of this grid has a wavelength between {shortest} and {longest}")]
+    NoWaves {
+        /// Short cut-off wavelength.
+        shortest: f64,
+        /// Long cut-off wavelength, infinite if there is none.
+        longest: f64,
+    },
+
+    /// A pressure or another field given by the caller is NaN or infinite.
+    #[error("the {field} at node ({ix}, {iy}) is {value}, which is not finite")]
+    FieldNotFinite {
+        /// Which field.
+        field: &'static str,
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// The value.
+        value: f64,
+    },
+
+    /// Two fields that belong together have different numbers of nodes.
+    #[error(
+        "expected {} x {} nodes, but found {} x {}",
+        expected.0, expected.1, found.0, found.1
+    )]
+    GridMismatch {
+        /// Nodes along x and y that were expected.
+        expected: (usize, usize),
+        /// Nodes along x and y that were found.
+        found: (usize, usize),
+    },
+
+    /// A buffer has the wrong length.
+    #[error("expected {expected} values, but found {found}")]
+    LengthMismatch {
+        /// Expected number of values.
+        expected: usize,
+        /// Number of values found.
+        found: usize,
+    },
+
+    /// A node index lies outside the grid.
+    #[error("node {node} lies outside a grid of {nodes} nodes")]
+    NodeOutOfGrid {
+        /// The node index.
+        node: usize,
+        /// Number of nodes in the grid.
+        nodes: usize,
+    },
+
+    /// An influence coefficient is NaN or infinite.
+    #[error("the influence coefficient at offset ({di}, {dj}) is {value}, which is not finite")]
+    KernelNotFinite {
+        /// Offset along x in cells.
+        di: isize,
+        /// Offset along y in cells.
+        dj: isize,
+        /// The coefficient.
+        value: f64,
+    },
+
+    /// Maxwell-Betti reciprocity is broken: C(d) differs from C(-d).
+    #[error(
+        "the influence coefficients at offset ({di}, {dj}) and at its opposite differ: \
+         {value} and {opposite}"
+    )]
+    KernelNotSymmetric {
+        /// Offset along x in cells.
+        di: isize,
+        /// Offset along y in cells.
+        dj: isize,
+        /// The coefficient there.
+        value: f64,
+        /// The coefficient at (-di, -dj).
+        opposite: f64,
+    },
+
+    /// A kernel that says it is periodic does not repeat with the grid.
+    #[error(
+        "the kernel is said to be periodic, but the influence coefficients at offset ({di}, {dj}) \
+         and one period further, at ({image_di}, {image_dj}), differ: {value} and {repeated}"
+    )]
+    KernelNotPeriodic {
+        /// Offset along x in cells.
+        di: isize,
+        /// Offset along y in cells.
+        dj: isize,
+        /// The coefficient there.
+        value: f64,
+        /// Offset along x one period further.
+        image_di: isize,
+        /// Offset along y one period further.
+        image_dj: isize,
+        /// The coefficient there.
+        repeated: f64,
+    },
+
+    /// The kernel is not positive definite on the contact: no elastic body answers like this.
+    #[error(
+        "the kernel is not positive definite: at approach {approach} node ({ix}, {iy}) would give \
+         the pivot {pivot}"
+    )]
+    NotPositiveDefinite {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// Approach at which the node would have joined.
+        approach: f64,
+        /// The pivot (a Schur complement), which must be positive.
+        pivot: f64,
+    },
+
+    /// A quantity of a state over- or underflows: the units of the input are too far apart.
+    #[error(
+        "state {step} is not finite: heights, cells and modulus are too far apart for double \
+         precision; choose other units"
+    )]
+    NotFinite {
+        /// Number of contact nodes of the state.
+        step: usize,
+    },
+
+    /// A state was asked for that the path has not reached.
+    #[error("state {step} was asked for, but the path has reached {present}")]
+    StateNotReached {
+        /// Number of contact nodes of the state.
+        step: usize,
+        /// Number of contact nodes at present.
+        present: usize,
+    },
+
+    /// The influence matrix of the contact set could not be factored.
+    #[error("the influence matrix of {nodes} contact nodes is not numerically positive definite")]
+    FactorizationFailed {
+        /// Number of contact nodes.
+        nodes: usize,
+    },
+
+    /// The kernel breaks monotonicity: a node in contact would leave it, or one out of contact
+    /// overlaps, although the approach only grows.
+    #[error(
+        "the kernel breaks the monotone growth of contact: at approach {approach} the {quantity} \
+         of node ({ix}, {iy}) is {value}"
+    )]
+    NotMonotone {
+        /// What has the wrong sign.
+        quantity: &'static str,
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// Approach at which it was noticed.
+        approach: f64,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// A periodic kernel where only a free half-space can be solved for so far.
+    #[error("the fixed-load solver takes a free half-space, but the kernel is periodic")]
+    PeriodicNotSupported,
+
+    /// The memory budget would be exceeded by going on.
+    #[error(
+        "{needed} bytes are needed, but the memory budget is {budget} bytes, \
+         which is enough for {nodes_that_fit} nodes in contact"
+    )]
+    MemoryBudget {
+        /// Bytes needed to go on.
+        needed: usize,
+        /// Bytes allowed.
+        budget: usize,
+        /// Contact nodes for which the budget is enough.
+        nodes_that_fit: usize,
+    },
+
+    /// An updater written outside this crate, or inside, returned something malformed.
+    #[error("the updater returned {found} values for {quantity}, but {expected} were expected")]
+    UpdaterMismatch {
+        /// What was returned.
+        quantity: &'static str,
+        /// Expected number of values.
+        expected: usize,
+        /// Number of values found.
+        found: usize,
+    },
+
+    /// An iteration did not reach its tolerance.
+    #[error(
+        "no convergence: relative residual {residual} after {iterations} iterations, tolerance {tolerance}"
+    )]
+    NoConvergence {
+        /// Smallest relative residual reached.
+        residual: f64,
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+
+    /// A file could not be read or written.
+    #[error("input or output failed")]
+    Io(#[from] std::io::Error),
+
+    /// A `.npy` file holds something that is not a height map.
+    #[error("not a height map: {reason}")]
+    BadNpy {
+        /// What was found, and what would have been accepted.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// `Ok(value)` if `value` is positive and finite, the typed error otherwise.
+    pub(crate) fn require_positive(quantity: &'static str, value: f64) -> Result<f64, Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(Self::NotPositive { quantity, value })
+        }
+    }
+}

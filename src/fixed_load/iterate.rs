@@ -1,0 +1,82 @@
+//! Approximate solutions: what they are, how good they are, and when they are good enough.
+
+use crate::iterative::ContactSet;
+
+/// An approximate solution on one grid: pressure ≥ 0, with the target's sum if it is one.
+#[derive(Debug, Clone)]
+pub(super) struct Iterate {
+    pub(super) pressure: Vec<f64>,
+    /// Initial gap plus displacement, G = g + C p.
+    pub(super) closure: Vec<f64>,
+    pub(super) approach: f64,
+    pub(super) contact: ContactSet,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Criteria {
+    /// Relative to the approach, or to `length` if that is smaller.
+    pub(super) tolerance: f64,
+    pub(super) length: f64,
+    pub(super) max_iterations: usize,
+    /// Whether to compute the displacement afresh at the end, and to go on if it disagrees.
+    pub(super) verify: bool,
+}
+
+impl Criteria {
+    /// The unit of length of the tolerance.
+    pub(super) fn scale(&self, approach: f64) -> f64 {
+        // NaN stays NaN.
+        if self.length < approach {
+            self.length
+        } else {
+            approach
+        }
+    }
+}
+
+/// What a solve took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Effort {
+    pub(super) iterations: usize,
+    pub(super) rounds: usize,
+}
+
+impl Iterate {
+    pub(super) fn new(nodes: usize) -> Self {
+        Self {
+            pressure: vec![0.0; nodes],
+            closure: vec![0.0; nodes],
+            approach: 0.0,
+            contact: ContactSet::new(nodes),
+        }
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        2 * size_of_val(&self.pressure[..]) + size_of_val(self.contact.places())
+    }
+}
+
+/// The worst errors of an iterate, as lengths.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Errors {
+    /// |gap| in the contact set.
+    pub(super) residual: f64,
+    /// Overlap outside it.
+    pub(super) overlap: f64,
+    /// Tension inside it, times C(0, 0).
+    pub(super) tension: f64,
+}
+
+impl Errors {
+    /// What is wrong with the set itself.
+    pub(super) fn in_set(&self) -> f64 {
+        self.overlap.max(self.tension)
+    }
+
+    /// All of it.
+    pub(super) fn worst(&self) -> f64 {
+        self.residual.max(self.in_set())
+    }
+}

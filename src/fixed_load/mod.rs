@@ -1,0 +1,48 @@
+//! One load, or one approach, without the path to it.
+//!
+//! The contact of a rigid rough surface with an elastic half-space under the load W minimises the
+//! energy
+//!
+//! $$ \tfrac12\\, p^T C p + g^T p \qquad\text{over}\qquad p \ge 0, \quad \Delta A \sum p = W, $$
+//!
+//! with the initial gap g ≥ 0 and the influence matrix C. Its multiplier is the approach δ: at the
+//! solution $g + C p = \delta$ in contact and $\ge \delta$ elsewhere. [`FixedLoadSolver`] finds it
+//! in O(grid) memory and a few convolutions, to any tolerance that double precision carries, from a
+//! single node to full contact.
+//!
+//! # Method
+//!
+//! * **Active set, inexact inside.** On the set I of nodes with pressure or overlap, the equations
+//!   $C_{II}\\, p = \delta - g$ are solved with $\sum p$ fixed by projected conjugate gradients,
+//!   one convolution a step, only until what is left is smaller than the worst error in I itself.
+//! * **Preconditioner**: a sparse inverse Cholesky factor of $C_{II}$.
+//! * **Release**: nodes with tension are set free, their neighbours corrected by the
+//!   preconditioner alone, and the step is accepted only if the energy falls.
+//! * **Nested grids**: the start comes from a grid of half as many nodes a side, recursively, with
+//!   the Galerkin kernel (pressures uniform on blocks of 2 × 2), which any kernel has.
+//!
+//! # References
+//!
+//! * I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206: conjugate gradients with a growing and
+//!   shrinking contact.
+//! * E. A. H. Vollebregt, J. Optim. Theory Appl. 162 (2014) 931: preconditioning, bounds.
+//! * F. Schäfer, M. Katzfuss and H. Owhadi, SIAM J. Sci. Comput. 43 (2021) A2019: the sparse
+//!   inverse Cholesky factor.
+//! * J. Allwood, J. Tribol. 127 (2005) 10: a survey of solvers with active sets.
+
+mod active_set;
+mod builder;
+mod descent;
+mod hierarchy;
+mod iterate;
+mod level;
+mod release;
+mod solution;
+mod solver;
+mod sweep;
+mod tangent;
+
+pub use builder::FixedLoadBuilder;
+pub use solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
+pub use solver::FixedLoadSolver;
+pub use sweep::LoadSweep;

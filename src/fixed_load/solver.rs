@@ -1,0 +1,260 @@
+//! The solver.
+
+use nalgebra::DMatrix;
+
+use super::hierarchy::{coarse_target, prolong};
+use super::iterate::{Criteria, Effort};
+use super::level::{Level, Target};
+use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
+use super::sweep::LoadSweep;
+use crate::iterative::{dot, sum, sum_over};
+use crate::{Error, Grid, InfluenceKernel, Surface};
+
+/// Tolerance on the coarser grids, whose solutions are but starts, relative to the approach ...
+const COARSE_TOLERANCE: f64 = 1e-2;
+/// ... or to so many rms heights: long waves that are wrong by more are costly on the finest grid.
+const COARSE_RMS_HEIGHTS: f64 = 10.0;
+
+/// Solves for contact under a given load or approach: see the [module](super).
+#[derive(Debug, Clone)]
+pub struct FixedLoadSolver<S, K> {
+    pub(super) surface: S,
+    pub(super) kernel: K,
+    pub(super) grid: Grid,
+    pub(super) tolerance: f64,
+    pub(super) max_iterations: usize,
+    pub(super) stiffness: bool,
+    pub(super) rms_height: f64,
+    /// Finest first.
+    pub(super) levels: Vec<Level>,
+}
+
+impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
+    /// The surface.
+    pub fn surface(&self) -> &S {
+        &self.surface
+    }
+
+    /// The kernel.
+    pub fn kernel(&self) -> &K {
+        &self.kernel
+    }
+
+    /// The grid of both.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Bytes held at present, on all grids.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.levels.iter().map(Level::bytes).sum()
+    }
+
+    /// Contact under the load `load` \[N\].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for the load; [`Error::NoConvergence`] with the best residual;
+    /// [`Error::FactorizationFailed`] if the kernel is not positive definite on the contact.
+    pub fn solve(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
+        let load = Error::require_positive("load", load)?;
+        let target = Target::Sum(load / self.grid.cell_area());
+        self.start_cold(target, 0)?;
+        self.finish(target, Some(load), None)
+    }
+
+    /// Contact under the load `load` \[N\], from a solution for another load.
+    ///
+    /// The start is the pressure that follows from the exact tangent,
+    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$: it saves the coarser grids and, for a
+    /// small change of load, some iterations. Without a stiffness the pressure is scaled.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] if the solution lives on another grid, and those of [`Self::solve`].
+    pub fn solve_from(
+        &mut self,
+        solution: &FixedLoadSolution,
+        load: f64,
+    ) -> Result<FixedLoadSolution, Error> {
+        let load = Error::require_positive("load", load)?;
+        self.grid.check_shape(solution.pressure.shape())?;
+        let target = load / self.grid.cell_area();
+        let start = &mut self.levels[0].iterate.pressure;
+        start.copy_from_slice(solution.pressure.as_slice());
+        let mut rate = None;
+        if solution.state.contact_stiffness > 0.0 {
+            self.grid.check_shape(solution.pressure_rate.shape())?;
+            let change = (load - solution.state.load) / solution.state.contact_stiffness;
+            for (start, rate) in start.iter_mut().zip(&solution.pressure_rate) {
+                *start = (*start + change * rate).max(0.0);
+            }
+            rate = Some(solution.pressure_rate.as_slice());
+        }
+        let total = sum(start);
+        for value in start {
+            *value *= target / total;
+        }
+        self.finish(Target::Sum(target), Some(load), rate)
+    }
+
+    /// Contact under each of `loads` \[N\] in turn, every solution the start of the next: see
+    /// [`Self::solve_from`].
+    pub fn sweep<I>(&mut self, loads: I) -> LoadSweep<'_, S, K, I::IntoIter>
+    where
+        I: IntoIterator<Item = f64>,
+    {
+        LoadSweep::new(self, loads.into_iter())
+    }
+
+    /// Contact at the approach `approach` \[m\] from first touch.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for the approach, and those of [`Self::solve`].
+    pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
+        let target = Target::Approach(Error::require_positive("approach", approach)?);
+        self.start_cold(target, 0)?;
+        self.finish(target, None, None)
+    }
+
+    /// Fills the start of `level` from the grids coarser than it.
+    fn start_cold(&mut self, target: Target, level: usize) -> Result<(), Error> {
+        let grid = self.levels[level].grid;
+        if level + 1 < self.levels.len() {
+            let coarse_grid = self.levels[level + 1].grid;
+            let coarse_target = coarse_target(target, &grid, &coarse_grid);
+            self.start_cold(coarse_target, level + 1)?;
+            let criteria = Criteria {
+                tolerance: COARSE_TOLERANCE.max(self.tolerance),
+                length: if self.rms_height > 0.0 {
+                    COARSE_RMS_HEIGHTS * self.rms_height
+                } else {
+                    f64::INFINITY
+                },
+                max_iterations: self.max_iterations,
+                verify: false,
+            };
+            // A start that is not quite what was asked for is a start.
+            match self.levels[level + 1].solve(coarse_target, criteria) {
+                Ok(_) | Err(Error::NoConvergence { .. }) => {}
+                Err(error) => return Err(error),
+            }
+            let (fine, coarse) = self.levels.split_at_mut(level + 1);
+            prolong(
+                &coarse_grid,
+                &coarse[0].iterate.pressure,
+                &grid,
+                &mut fine[level].iterate.pressure,
+            );
+        } else {
+            let start = if let Target::Sum(_) = target {
+                1.0
+            } else {
+                0.0
+            };
+            self.levels[level].iterate.pressure.fill(start);
+        }
+        if let Target::Sum(target) = target {
+            let pressure = &mut self.levels[level].iterate.pressure;
+            let factor = target / sum(pressure);
+            for value in pressure {
+                *value *= factor;
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves on the finest grid from the start there.
+    fn finish(
+        &mut self,
+        target: Target,
+        load: Option<f64>,
+        rate_start: Option<&[f64]>,
+    ) -> Result<FixedLoadSolution, Error> {
+        let criteria = Criteria {
+            tolerance: self.tolerance,
+            length: f64::INFINITY,
+            max_iterations: self.max_iterations,
+            verify: true,
+        };
+        let effort = self.levels[0].solve(target, criteria)?;
+        let mut solution = self.solution(effort, load);
+        if self.stiffness {
+            self.tangent(&mut solution, rate_start)?;
+        }
+        Ok(solution)
+    }
+
+    /// Puts everything together but the stiffnesses.
+    fn solution(&mut self, effort: Effort, load_asked: Option<f64>) -> FixedLoadSolution {
+        let (nx, ny) = self.grid.shape();
+        let nodes = self.grid.nodes();
+        let fine = &mut self.levels[0];
+        let pressure = DMatrix::from_column_slice(nx, ny, &fine.iterate.pressure);
+        let approach = fine.iterate.approach;
+        let closure = &fine.iterate.closure;
+        let gap = DMatrix::from_iterator(nx, ny, closure.iter().map(|c| c - approach));
+        let displacement =
+            DMatrix::from_iterator(nx, ny, closure.iter().zip(&fine.gap).map(|(c, g)| c - g));
+        let is_contact = pressure.map(|p| p > 0.0);
+
+        let (p, gaps) = (pressure.as_slice(), gap.as_slice());
+        // Nodes in contact have no gap but the tolerance: left out, full contact is exact.
+        let outside = |node: usize, value: f64| if p[node] > 0.0 { 0.0 } else { value };
+        let mean_gap = sum_over(nodes, |node| outside(node, gaps[node])) / nodes as f64;
+        let cell_area = self.grid.cell_area();
+        let total = sum(p);
+        let load = load_asked.unwrap_or(cell_area * total);
+        let contact_nodes = p.iter().filter(|p| **p > 0.0).count();
+        let least_gap = gaps
+            .iter()
+            .zip(p)
+            .filter(|(_, p)| **p == 0.0)
+            .fold(f64::INFINITY, |least, (gap, _)| least.min(*gap));
+        let greatest_contact_gap = gaps
+            .iter()
+            .zip(p)
+            .filter(|(_, p)| **p > 0.0)
+            .fold(0.0_f64, |most, (gap, _)| most.max(gap.abs()));
+        let certificate = FixedLoadCertificate {
+            complementarity: sum_over(nodes, |node| p[node] * gaps[node].abs())
+                / (total * approach),
+            least_gap: least_gap / approach,
+            greatest_contact_gap: greatest_contact_gap / approach,
+            load_error: (cell_area * total - load) / load,
+        };
+        let state = FixedLoadState {
+            contact_nodes,
+            approach,
+            load,
+            contact_area: contact_nodes as f64 * cell_area,
+            contact_area_fraction: contact_nodes as f64 / nodes as f64,
+            mean_gap,
+            contact_stiffness: f64::NAN,
+            interfacial_stiffness: f64::NAN,
+            energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
+            max_pressure: pressure.max(),
+        };
+        let convolutions = self.levels[0].operator.take_convolutions();
+        let coarse = self.levels[1..].iter_mut().map(|level| {
+            level.operator.take_convolutions() as f64 * level.grid.nodes() as f64 / nodes as f64
+        });
+        let coarse_convolutions = coarse.sum();
+        FixedLoadSolution {
+            state,
+            pressure,
+            gap,
+            displacement,
+            contact: is_contact,
+            pressure_rate: DMatrix::zeros(0, 0),
+            certificate,
+            iterations: effort.iterations,
+            stiffness_iterations: 0,
+            convolutions,
+            coarse_convolutions,
+        }
+    }
+}

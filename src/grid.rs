@@ -1,0 +1,169 @@
+//! The rectangular grid of nodes, and the numbering of its nodes.
+
+use crate::Error;
+
+/// An nx × ny grid of nodes, each at the centre of a cell of dx × dy.
+///
+/// Node (ix, iy) sits at x = (ix + ½) dx, y = (iy + ½) dy; the nominal area is (nx dx) × (ny dy),
+/// so the spacing is side / nodes, without an end point. Its index is `ix + nx * iy`, which is
+/// also the place of element `[(ix, iy)]` in the storage of a nalgebra `DMatrix` with nx rows:
+/// x runs along the rows of every field of this crate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    nx: usize,
+    ny: usize,
+    dx: f64,
+    dy: f64,
+}
+
+impl Grid {
+    /// Greatest number of nodes along a side.
+    pub const MAX_SIDE: usize = 1 << 15;
+
+    /// A grid of `nx` × `ny` nodes with cells of `dx` × `dy` metres.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::EmptyGrid`], [`Error::GridTooLarge`] beyond [`Grid::MAX_SIDE`] nodes a side, and
+    /// [`Error::NotPositive`] for a cell that is not.
+    pub fn new(nx: usize, ny: usize, dx: f64, dy: f64) -> Result<Self, Error> {
+        if nx == 0 || ny == 0 {
+            return Err(Error::EmptyGrid { nx, ny });
+        }
+        if nx > Self::MAX_SIDE || ny > Self::MAX_SIDE {
+            return Err(Error::GridTooLarge {
+                nx,
+                ny,
+                max_side: Self::MAX_SIDE,
+            });
+        }
+        let dx = Error::require_positive("cell size dx", dx)?;
+        let dy = Error::require_positive("cell size dy", dy)?;
+        let grid = Self { nx, ny, dx, dy };
+        // What is derived from the cell must not overflow or vanish either.
+        let (lx, ly) = grid.sides();
+        Error::require_positive("side lx", lx)?;
+        Error::require_positive("side ly", ly)?;
+        Error::require_positive("cell area", grid.cell_area())?;
+        Error::require_positive("nominal area", grid.nominal_area())?;
+        Ok(grid)
+    }
+
+    /// A grid of `nx` × `ny` nodes over a rectangle of `lx` × `ly` metres.
+    ///
+    /// # Errors
+    ///
+    /// As [`Grid::new`].
+    pub fn with_sides(nx: usize, ny: usize, lx: f64, ly: f64) -> Result<Self, Error> {
+        if nx == 0 || ny == 0 {
+            return Err(Error::EmptyGrid { nx, ny });
+        }
+        let lx = Error::require_positive("side lx", lx)?;
+        let ly = Error::require_positive("side ly", ly)?;
+        Self::new(nx, ny, lx / nx as f64, ly / ny as f64)
+    }
+
+    /// A square of side `side` metres with `n` × `n` nodes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Grid::new`].
+    pub fn square(n: usize, side: f64) -> Result<Self, Error> {
+        Self::with_sides(n, n, side, side)
+    }
+
+    /// Nodes along x.
+    #[must_use]
+    pub fn nx(&self) -> usize {
+        self.nx
+    }
+
+    /// Nodes along y.
+    #[must_use]
+    pub fn ny(&self) -> usize {
+        self.ny
+    }
+
+    /// Cell size along x \[m\].
+    #[must_use]
+    pub fn dx(&self) -> f64 {
+        self.dx
+    }
+
+    /// Cell size along y \[m\].
+    #[must_use]
+    pub fn dy(&self) -> f64 {
+        self.dy
+    }
+
+    /// Number of nodes along x and y, the shape of every field on this grid.
+    #[must_use]
+    pub fn shape(&self) -> (usize, usize) {
+        (self.nx, self.ny)
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.nx * self.ny
+    }
+
+    /// Sides of the nominal rectangle \[m\].
+    #[must_use]
+    pub fn sides(&self) -> (f64, f64) {
+        (self.nx as f64 * self.dx, self.ny as f64 * self.dy)
+    }
+
+    /// Area of a cell, ΔA = dx dy \[m²\].
+    #[must_use]
+    pub fn cell_area(&self) -> f64 {
+        self.dx * self.dy
+    }
+
+    /// Nominal contact area A₀ \[m²\].
+    #[must_use]
+    pub fn nominal_area(&self) -> f64 {
+        self.nodes() as f64 * self.cell_area()
+    }
+
+    /// Centre of the nominal rectangle \[m\].
+    #[must_use]
+    pub fn center(&self) -> (f64, f64) {
+        let (lx, ly) = self.sides();
+        (0.5 * lx, 0.5 * ly)
+    }
+
+    /// Position of node (ix, iy) \[m\].
+    #[must_use]
+    pub fn position(&self, ix: usize, iy: usize) -> (f64, f64) {
+        ((ix as f64 + 0.5) * self.dx, (iy as f64 + 0.5) * self.dy)
+    }
+
+    /// Index of node (ix, iy): its place in the storage of a field.
+    #[must_use]
+    pub fn index(&self, ix: usize, iy: usize) -> usize {
+        ix + self.nx * iy
+    }
+
+    /// The pair (ix, iy) of a node index.
+    #[must_use]
+    pub fn coordinates(&self, node: usize) -> (usize, usize) {
+        (node % self.nx, node / self.nx)
+    }
+
+    /// `Ok` if a field of the given shape lives on this grid.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] otherwise.
+    pub fn check_shape(&self, found: (usize, usize)) -> Result<(), Error> {
+        if found == self.shape() {
+            Ok(())
+        } else {
+            Err(Error::GridMismatch {
+                expected: self.shape(),
+                found,
+            })
+        }
+    }
+}

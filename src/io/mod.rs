@@ -1,0 +1,7 @@
+//! Files.
+
+#[cfg(feature = "npy")]
+mod npy;
+
+#[cfg(feature = "npy")]
+pub use npy::{read_npy, write_npy};

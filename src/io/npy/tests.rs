@@ -1,0 +1,244 @@
+use std::fs;
+use std::path::PathBuf;
+
+use nalgebra::dmatrix;
+use npyz::WriterBuilder;
+use proptest::prelude::*;
+
+use super::*;
+use crate::surface::HeightMap;
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+/// A version 1.0 file, written by hand.
+fn file(header: &str, data: &[u8]) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+fn parse(bytes: &[u8]) -> Result<DMatrix<f64>, Error> {
+    read(bytes, bytes.len() as u64)
+}
+
+fn is_bad(result: Result<DMatrix<f64>, Error>) -> bool {
+    matches!(result, Err(Error::BadNpy { .. }))
+}
+
+#[test]
+fn every_type_and_order_gives_the_same_matrix() -> TestResult {
+    let expected = dmatrix![1.0, 2.0, 3.0; 4.0, 5.0, -0.5];
+    let c_order = [1.0_f32, 2.0, 3.0, 4.0, 5.0, -0.5];
+    let fortran_order = [1.0_f32, 4.0, 2.0, 5.0, 3.0, -0.5];
+    for (order, values) in [("False", c_order), ("True", fortran_order)] {
+        let doubles = values.map(f64::from);
+        for (descr, data) in [
+            ("<f4", values.map(f32::to_le_bytes).concat()),
+            (">f4", values.map(f32::to_be_bytes).concat()),
+            ("<f8", doubles.map(f64::to_le_bytes).concat()),
+            (">f8", doubles.map(f64::to_be_bytes).concat()),
+        ] {
+            let header =
+                format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': (2, 3), }}\n");
+            assert_eq!(parse(&file(&header, &data))?, expected, "{header}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn files_written_by_npyz_are_read() -> TestResult {
+    let values: Vec<f64> = (0..35).map(|k| f64::from(k).sqrt()).collect();
+    for order in [npyz::Order::C, npyz::Order::Fortran] {
+        for descr in ["<f8", ">f8", "<f4", ">f4"] {
+            let mut bytes = Vec::new();
+            let scalar = npyz::DType::new_scalar(descr.parse()?);
+            if descr.ends_with('8') {
+                let mut writer = npyz::WriteOptions::new()
+                    .dtype(scalar)
+                    .shape(&[5, 7])
+                    .order(order)
+                    .writer(&mut bytes)
+                    .begin_nd()?;
+                writer.extend(values.iter().copied())?;
+                writer.finish()?;
+            } else {
+                let mut writer = npyz::WriteOptions::new()
+                    .dtype(scalar)
+                    .shape(&[5, 7])
+                    .order(order)
+                    .writer(&mut bytes)
+                    .begin_nd()?;
+                writer.extend(values.iter().map(|v| *v as f32))?;
+                writer.finish()?;
+            }
+            let matrix = parse(&bytes)?;
+            for ix in 0..5 {
+                for iy in 0..7 {
+                    let k = match order {
+                        npyz::Order::C => 7 * ix + iy,
+                        npyz::Order::Fortran => ix + 5 * iy,
+                    };
+                    let expected = if descr.ends_with('8') {
+                        values[k]
+                    } else {
+                        f64::from(values[k] as f32)
+                    };
+                    assert_eq!(matrix[(ix, iy)], expected);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_file_written_by_numpy_is_read() -> TestResult {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/selfaffine_48.npy");
+    let map = HeightMap::from_npy(&path)?;
+    assert_eq!(map.shape(), (48, 48));
+    let bytes = fs::read(path)?;
+    // A header of 128 bytes, then rows of 48 doubles.
+    assert_eq!(bytes.len(), 128 + 48 * 48 * 8);
+    for (ix, iy) in [(0, 0), (0, 1), (1, 0), (5, 31), (31, 5), (47, 47)] {
+        let at = 128 + 8 * (48 * ix + iy);
+        let expected = f64::from_le_bytes(bytes[at..at + 8].try_into()?);
+        assert_eq!(map.matrix()[(ix, iy)].to_bits(), expected.to_bits());
+    }
+    Ok(())
+}
+
+#[test]
+fn what_is_written_is_read_back() -> TestResult {
+    let path = std::env::temp_dir().join(format!("asperity-npy-{}.npy", std::process::id()));
+    let matrix = DMatrix::from_fn(7, 5, |ix, iy| (ix as f64).exp() - 0.1 * iy as f64);
+    write_npy(&path, &matrix)?;
+    let back = read_npy(&path);
+    let bytes = fs::read(&path);
+    fs::remove_file(&path)?;
+    assert_eq!(back?, matrix);
+    let bytes = bytes?;
+    assert!(bytes.starts_with(b"\x93NUMPY\x01\x00"));
+    // The second element of the file is [0, 1], as in C order.
+    let data = &bytes[bytes.len() - 7 * 5 * 8..];
+    assert_eq!(data[8..16], matrix[(0, 1)].to_le_bytes());
+    let header = String::from_utf8_lossy(&bytes[10..bytes.len() - data.len()]).into_owned();
+    assert!(
+        header.contains("'<f8'") && header.contains("(7, 5"),
+        "{header}"
+    );
+    assert!(matches!(read_npy(&path), Err(Error::Io(_))));
+    assert!(matches!(
+        read_npy(std::env::temp_dir()),
+        Err(Error::Io(_) | Error::BadNpy { .. })
+    ));
+    Ok(())
+}
+
+#[test]
+fn heights_that_are_not_finite_are_refused() -> TestResult {
+    let path = std::env::temp_dir().join(format!("asperity-nan-{}.npy", std::process::id()));
+    write_npy(&path, &dmatrix![0.0, 1.0; f64::NAN, 2.0])?;
+    let map = HeightMap::from_npy(&path);
+    fs::remove_file(&path)?;
+    assert!(matches!(
+        map,
+        Err(Error::HeightNotFinite { ix: 1, iy: 0, .. })
+    ));
+    Ok(())
+}
+
+#[test]
+fn a_file_of_another_length_than_it_says_is_refused() -> TestResult {
+    let mut whole = Vec::new();
+    write(&mut whole, &DMatrix::from_element(4, 3, 1.0))?;
+    assert!(parse(&whole).is_ok());
+    for length in 0..whole.len() {
+        assert!(is_bad(parse(&whole[..length])), "{length} bytes");
+    }
+    whole.push(0);
+    assert!(is_bad(parse(&whole)));
+    Ok(())
+}
+
+#[test]
+fn a_file_that_shrinks_while_it_is_read_is_refused() -> TestResult {
+    let mut whole = Vec::new();
+    write(&mut whole, &DMatrix::from_element(4, 3, 1.0))?;
+    for length in 0..whole.len() {
+        let result = read(&whole[..length], whole.len() as u64);
+        assert!(matches!(result, Err(Error::Io(_))), "{length} bytes");
+    }
+    Ok(())
+}
+
+#[test]
+fn absurd_sizes_are_refused_before_allocating() {
+    let with_shape = |shape: &str| {
+        let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
+        parse(&file(&header, &[0; 64]))
+    };
+    assert!(is_bad(with_shape("(32768, 32768)")));
+    for shape in [
+        "(32769, 1)",
+        "(4294967296, 4294967296)",
+        "(18446744073709551616, 18446744073709551616)",
+        "(1, 99999999999999999999999999999999999999999999)",
+    ] {
+        assert!(
+            matches!(with_shape(shape), Err(Error::GridTooLarge { .. })),
+            "{shape}"
+        );
+    }
+    for shape in ["(0, 0)", "(0, 8)", "(8, 0)", "(0, 18446744073709551616)"] {
+        assert!(
+            matches!(with_shape(shape), Err(Error::EmptyGrid { .. })),
+            "{shape}"
+        );
+    }
+    for shape in ["()", "(8,)", "(2, 2, 2)"] {
+        assert!(is_bad(with_shape(shape)), "{shape}");
+    }
+}
+
+#[test]
+fn absurd_headers_are_refused() {
+    // Four gigabytes of header in a short file.
+    assert!(is_bad(parse(b"\x93NUMPY\x02\x00\xff\xff\xff\xff{'descr'")));
+    // A header that is there, but longer than that of any matrix; brackets nested in it.
+    let mut long = b"\x93NUMPY\x03\x00".to_vec();
+    long.extend(200_000_u32.to_le_bytes());
+    long.resize(12 + 200_000, b'(');
+    assert!(is_bad(parse(&long)));
+    assert!(is_bad(parse(&file(&"(".repeat(65_000), &[]))));
+    assert!(is_bad(parse(&file(&"{'shape':(1,".repeat(5_000), &[]))));
+    // Not text, another version, another format.
+    assert!(is_bad(parse(b"\x93NUMPY\x01\x00\x02\x00\xff\xfe")));
+    assert!(is_bad(parse(b"\x93NUMPY\x09\x00\x02\x00{}")));
+    assert!(is_bad(parse(b"PK\x03\x04 is a zip archive")));
+}
+
+proptest! {
+    /// Whatever one byte of a file is changed to, there is an answer and no panic.
+    #[test]
+    fn a_changed_byte_is_harmless(place in 0_usize..200, byte in any::<u8>()) {
+        let mut bytes = file(
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }\n",
+            &[0; 96],
+        );
+        let place = place % bytes.len();
+        bytes[place] = byte;
+        if let Ok(matrix) = parse(&bytes) {
+            prop_assert!(matrix.shape() == (3, 4) || matrix.shape() == (4, 3));
+        }
+    }
+
+    /// Nor is any garbage, with or without a valid beginning.
+    #[test]
+    fn garbage_is_harmless(text in "[{}()\\[\\]':, a-zL0-9<>]{0,200}", data in any::<Vec<u8>>()) {
+        prop_assert!(parse(&file(&text, &data)).is_err());
+        prop_assert!(parse(&data).is_err());
+    }
+}

@@ -1,0 +1,105 @@
+//! Sums and updates of long vectors in chunks of a fixed size, so that results are the same bit
+//! for bit whatever the number of threads.
+
+use std::ops::Range;
+
+use crate::parallel::{for_each_chunk, vectorized};
+
+/// Values a thread takes at a time: 64 KiB of two vectors.
+const CHUNK: usize = 4096;
+
+/// Reduces `0..length` chunk by chunk, and the chunks in their order.
+fn reduce<T: Copy + Send>(
+    length: usize,
+    start: T,
+    part: impl Fn(Range<usize>) -> T + Sync + Send,
+    join: impl Fn(T, T) -> T,
+) -> T {
+    if length <= CHUNK {
+        return join(start, part(0..length));
+    }
+    let mut parts = vec![start; length.div_ceil(CHUNK)];
+    for_each_chunk(&mut parts, 1, |chunk, value| {
+        let first = chunk * CHUNK;
+        value[0] = part(first..length.min(first + CHUNK));
+    });
+    parts.into_iter().fold(start, join)
+}
+
+/// Σ value(i) for i below `length`.
+pub(crate) fn sum_over(length: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    let part = |range: Range<usize>| {
+        let mut total = 0.0;
+        vectorized(|| total = lanes(range, &value));
+        total
+    };
+    reduce(length, 0.0, part, |a, b| a + b)
+}
+
+/// A sum in eight interleaved parts, which a vector unit can do at once.
+#[inline(always)]
+fn lanes(range: Range<usize>, value: &impl Fn(usize) -> f64) -> f64 {
+    const LANES: usize = 8;
+    let mut totals = [0.0; LANES];
+    let mut i = range.start;
+    while i + LANES <= range.end {
+        for (lane, total) in totals.iter_mut().enumerate() {
+            *total += value(i + lane);
+        }
+        i += LANES;
+    }
+    let rest: f64 = (i..range.end).map(value).sum();
+    totals.into_iter().sum::<f64>() + rest
+}
+
+/// Greatest value(i) for i below `length`, and `start` if none exceeds it. NaN wins.
+pub(crate) fn greatest(
+    length: usize,
+    start: f64,
+    value: impl Fn(usize) -> f64 + Sync + Send,
+) -> f64 {
+    let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+    let part = |range: Range<usize>| range.map(&value).fold(start, larger);
+    reduce(length, start, part, larger)
+}
+
+/// Σ aᵢ.
+pub(crate) fn sum(a: &[f64]) -> f64 {
+    sum_over(a.len(), |i| a[i])
+}
+
+/// Σ aᵢ bᵢ.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let b = &b[..a.len()];
+    sum_over(a.len(), |i| a[i] * b[i])
+}
+
+/// y ← y + factor x.
+pub(crate) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
+    for_each_chunk(y, CHUNK, |chunk, y| {
+        let x = &x[chunk * CHUNK..][..y.len()];
+        for (y, x) in y.iter_mut().zip(x) {
+            *y += factor * x;
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_integers_are_exact() {
+        for length in [0_usize, 1, 7, 8, 4096, 4097, 20_000] {
+            let exact = (length * length.saturating_sub(1) / 2) as f64;
+            assert_eq!(sum_over(length, |i| i as f64), exact);
+            let last = length.saturating_sub(1) as f64;
+            assert_eq!(greatest(length, 0.0, |i| i as f64), last);
+        }
+    }
+
+    #[test]
+    fn greatest_passes_nan_on() {
+        assert!(greatest(3, 0.0, |i| [1.0, f64::NAN, 2.0][i]).is_nan());
+    }
+}

@@ -1,0 +1,156 @@
+//! What the periodic kernels share: symbol, coefficients and gauge.
+
+use super::even::Even;
+use crate::{Error, Grid};
+
+/// Gauge of a kernel over the least one: near enough for windows to be long, and far enough for
+/// rounding in the least one, which is a difference of numbers up to N³ times as large.
+const ABOVE_LEAST: f64 = 1.02;
+
+/// A periodic kernel whose symbol is even along x and along y.
+#[derive(Debug, Clone)]
+pub(super) struct Periodic {
+    grid: Grid,
+    e_star: f64,
+    /// Ĉ(k) \[m/Pa\], zero at k = 0.
+    symbol: Even,
+    /// C⁽⁰⁾(r) \[m/Pa\], the inverse transform of the symbol.
+    coefficients: Even,
+    gauge: f64,
+}
+
+impl Periodic {
+    /// A kernel of symbol `unit` × D / E*, in the gauge `unit_gauge` × D / E*, with D the long side
+    /// of a cell; symbol and gauge come from the grid with cells in units of D.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for `e_star`, or if C(0, 0) over- or underflows.
+    pub(super) fn new(
+        grid: Grid,
+        e_star: f64,
+        unit: &Even,
+        unit_gauge: f64,
+    ) -> Result<Self, Error> {
+        let e_star = Error::require_positive("composite modulus", e_star)?;
+        let scale = grid.dx().max(grid.dy()) / e_star;
+        let coefficients = unit.inverse_transform().map(|value| value * scale);
+        let gauge = unit_gauge * scale;
+        Error::require_positive(
+            "influence coefficient C(0, 0)",
+            coefficients.at(0, 0) + gauge,
+        )?;
+        Ok(Self {
+            grid,
+            e_star,
+            symbol: unit.map(|value| value * scale),
+            coefficients,
+            gauge,
+        })
+    }
+
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    pub(super) fn e_star(&self) -> f64 {
+        self.e_star
+    }
+
+    pub(super) fn symbol(&self, kx: isize, ky: isize) -> f64 {
+        self.symbol.at(kx, ky)
+    }
+
+    pub(super) fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        self.coefficients.at(di, dj) + self.gauge
+    }
+
+    pub(super) fn gauge(&self) -> f64 {
+        self.gauge
+    }
+
+    pub(super) fn set_gauge(&mut self, gauge: f64) -> Result<(), Error> {
+        if gauge >= 0.0 && gauge.is_finite() {
+            self.gauge = gauge;
+            Ok(())
+        } else {
+            Err(Error::OutOfRange {
+                quantity: "gauge of a periodic kernel",
+                value: gauge,
+                expected: "finite and not negative",
+            })
+        }
+    }
+
+    /// s* of this kernel.
+    pub(super) fn least_gauge(&self) -> Option<f64> {
+        least_gauge(&self.grid, &self.symbol)
+    }
+}
+
+/// The least gauge s* in which the kernel's matrix is an inverse M-matrix, if there is any.
+///
+/// With A the pseudo-inverse of the matrix of `symbol`, $C\_s^{-1} = A + 1 / (s M^2)$ everywhere.
+/// Its elements off the diagonal are not positive if all those of A are negative and
+/// $s \ge s^\* = 1 / (M^2 \min\_{\mathbf r \ne 0} (-A(\mathbf r)))$; its row sums are 1 / (s M).
+pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
+    let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
+    let inverse = inverse.inverse_transform();
+    let greatest = inverse.values()[1..]
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    // With a single node nothing is off the diagonal: minus infinity, and any gauge will do.
+    let nodes = grid.nodes() as f64;
+    (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
+}
+
+/// The gauge for a path, from the least one and the shape of the grid, in units of D / E*.
+///
+/// Without a least gauge, or with any gauge being enough, it is 4/5 of the long side of the grid
+/// over (E* M), which is of the size that least gauges have.
+pub(super) fn path_gauge(grid: &Grid, least: Option<f64>) -> f64 {
+    match least {
+        Some(least) if least > 0.0 => ABOVE_LEAST * least,
+        _ => {
+            let (lx, ly) = grid.sides();
+            0.8 * lx.max(ly) / grid.nodes() as f64
+        }
+    }
+}
+
+/// The grid with lengths in units of the long side of its cells.
+pub(super) fn in_long_sides(grid: &Grid) -> Result<Grid, Error> {
+    let long = grid.dx().max(grid.dy());
+    Grid::new(grid.nx(), grid.ny(), grid.dx() / long, grid.dy() / long)
+}
+
+/// Wave number of mode k of n on cells of `spacing`, for 0 ≤ k ≤ n / 2.
+pub(super) fn wave_number(k: usize, n: usize, spacing: f64) -> f64 {
+    std::f64::consts::TAU * (k as f64 / n as f64) / spacing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_node_takes_any_gauge() -> Result<(), Error> {
+        let grid = Grid::new(1, 1, 2.0, 1.0)?;
+        let symbol = Even::from_fn((1, 1), |_, _| 0.0);
+        assert_eq!(least_gauge(&grid, &symbol), Some(0.0));
+        assert_eq!(path_gauge(&grid, Some(0.0)), 1.6);
+        Ok(())
+    }
+
+    #[test]
+    fn two_nodes_by_hand() -> Result<(), Error> {
+        // Ĉ = (0, c): A = (1, −1) / (2 c), and C_s⁻¹ off the diagonal is −1 / (2 c) + 1 / (4 s).
+        let grid = Grid::new(2, 1, 1.0, 1.0)?;
+        let symbol = Even::from_fn((2, 1), |k, _| 3.0 * k as f64);
+        let least = least_gauge(&grid, &symbol).unwrap_or(f64::NAN);
+        // A few roundings of numbers near 1.
+        assert!((least - 1.5).abs() < 1e-15, "{least}");
+        Ok(())
+    }
+}

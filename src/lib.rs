@@ -1,0 +1,32 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # The picture
+//!
+//! Contact area, approach, mean gap and both stiffnesses against load, as the main job draws them:
+//!
+#![doc = "<style>.docblock svg { max-width: 100%; height: auto; }</style>\n"]
+#![doc = include_str!("../docs/images/loading_curve.svg")]
+
+pub mod convolution;
+mod elasticity;
+mod error;
+pub mod fixed_load;
+mod grid;
+mod initial_gap;
+pub mod io;
+mod iterative;
+pub mod kernel;
+pub mod loading;
+mod memory;
+mod parallel;
+pub mod reference;
+pub mod surface;
+pub mod updater;
+
+pub use elasticity::{composite_modulus, plane_strain_modulus};
+pub use error::Error;
+pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
+pub use grid::Grid;
+pub use kernel::{Boundary, Boussinesq, InfluenceKernel, PeriodicBoussinesq, Spectral};
+pub use loading::{ContactRule, ContactState, LoadingSolver};
+pub use surface::{HeightMap, SelfAffine, Surface};

@@ -1,0 +1,35 @@
+//! How many nodes to watch at a time.
+
+use crate::updater::WindowCost;
+
+/// Nanoseconds for one product in matrix-vector form, in cache: the events inside a window.
+const EVENT_PRODUCT: f64 = 0.15;
+/// Fraction of the watched nodes that touch before the horizon.
+const YIELD: f64 = 0.85;
+/// Watched nodes that are always worth it.
+const FEWEST: f64 = 16.0;
+/// Watched nodes whose columns cost little however few nodes are in contact.
+const NEGLIGIBLE: f64 = 320.0;
+
+/// The number of watched nodes that makes an event cheapest with `contact` nodes in contact on a
+/// grid of `nodes`, by a model of the work of a window.
+pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -> usize {
+    let n = contact as f64;
+    let refresh = cost.convolution * nodes as f64 + cost.solve * n * n;
+    let per_event = |k: f64| {
+        let events = YIELD * k;
+        let schur = cost.schur * k * k * n;
+        let inside = EVENT_PRODUCT * k * events * events / 2.0;
+        (refresh + schur + inside) / events
+    };
+    let most = (cost.most_watched * n).max(NEGLIGIBLE);
+    let mut best = FEWEST;
+    let mut k = best;
+    while k <= most {
+        if per_event(k) < per_event(best) {
+            best = k;
+        }
+        k *= 1.25;
+    }
+    best as usize
+}

@@ -1,0 +1,97 @@
+//! One state of contact.
+
+/// The state of contact at one instant of loading.
+///
+/// State n of a path is the instant at which the n-th node touches: its own pressure is still zero.
+/// Stiffnesses are exact derivatives *on further loading*, with node n already in contact.
+/// Quantities carry the units of the input; SI is given here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ContactState {
+    /// Number of nodes in contact, n.
+    pub step: usize,
+    /// The node that touched last, (ix, iy).
+    pub node: (usize, usize),
+    /// Normal approach δ from first touch \[m\]; of the mean planes if the half-space is periodic.
+    pub approach: f64,
+    /// Normal load $W = \Delta A \sum p$ \[N\].
+    pub load: f64,
+    /// Contact area $n\, \Delta A$ \[m²\].
+    pub contact_area: f64,
+    /// Contact area over nominal area, between 0 and 1.
+    pub contact_area_fraction: f64,
+    /// Gap averaged over the nominal area \[m\].
+    pub mean_gap: f64,
+    /// Normal contact stiffness $K = dW/d\delta$ \[N/m\]. With the approach of the mean planes, that
+    /// of a periodic half-space is its interfacial stiffness.
+    pub contact_stiffness: f64,
+    /// Interfacial stiffness $K_i = -dW/d\bar g$ \[N/m\]: infinite in full contact, where the mean
+    /// gap cannot change.
+    pub interfacial_stiffness: f64,
+    /// Elastic energy $U = \int W\, d\delta$ \[J\].
+    pub energy: f64,
+}
+
+impl ContactState {
+    /// Load over nominal area \[Pa\].
+    #[must_use]
+    pub fn mean_pressure(&self) -> f64 {
+        self.load * self.contact_area_fraction / self.contact_area
+    }
+
+    /// Whether all quantities are finite, stiffnesses but for full contact.
+    pub(super) fn is_finite(&self) -> bool {
+        let quantities = [
+            self.approach,
+            self.load,
+            self.contact_area,
+            self.mean_gap,
+            self.energy,
+        ];
+        let full = self.contact_area_fraction == 1.0;
+        quantities.iter().all(|quantity| quantity.is_finite())
+            && (self.interfacial_stiffness.is_finite() || full)
+            && !self.interfacial_stiffness.is_nan()
+    }
+
+    /// The state at another approach with the same nodes in contact, by the exact linear relations
+    /// of the interval between two events:
+    /// $W = W_n + K (\delta - \delta_n)$, $\bar g = \bar g_n - (K / K_i)(\delta - \delta_n)$.
+    ///
+    /// It is a state of the path only if `approach` lies between this state's and the next one's.
+    #[must_use]
+    pub fn at_approach(&self, approach: f64) -> Self {
+        if approach == self.approach {
+            return *self;
+        }
+        let change = self.contact_stiffness * (approach - self.approach);
+        Self {
+            approach,
+            ..self.at_load(self.load + change)
+        }
+    }
+
+    /// The state at another load with the same nodes in contact; see [`Self::at_approach`].
+    #[must_use]
+    pub fn at_load(&self, load: f64) -> Self {
+        let change = load - self.load;
+        let advance = change / self.contact_stiffness;
+        Self {
+            approach: self.approach + advance,
+            load,
+            mean_gap: self.mean_gap - change / self.interfacial_stiffness,
+            energy: self.energy + 0.5 * (self.load + load) * advance,
+            ..*self
+        }
+    }
+
+    /// The state at another mean gap with the same nodes in contact; see [`Self::at_approach`].
+    #[must_use]
+    pub fn at_mean_gap(&self, mean_gap: f64) -> Self {
+        let change = (self.mean_gap - mean_gap) * self.interfacial_stiffness;
+        Self {
+            mean_gap,
+            ..self.at_load(self.load + change)
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Loops over independent chunks: on rayon's threads with feature `rayon`, one after the other
+//! without it. What a chunk computes does not depend on which, so results are the same bit for bit.
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// Calls `work` for each item.
+pub(crate) fn for_each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
+    #[cfg(feature = "rayon")]
+    items.par_iter_mut().with_max_len(1).for_each(work);
+    #[cfg(not(feature = "rayon"))]
+    items.iter_mut().for_each(work);
+}
+
+/// Calls `work(i, chunk i)` for chunks of `size` values.
+pub(crate) fn for_each_chunk<T: Send>(
+    values: &mut [T],
+    size: usize,
+    work: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    #[cfg(feature = "rayon")]
+    values
+        .par_chunks_mut(size)
+        .enumerate()
+        .for_each(|(i, chunk)| work(i, chunk));
+    #[cfg(not(feature = "rayon"))]
+    for (i, chunk) in values.chunks_mut(size).enumerate() {
+        work(i, chunk);
+    }
+}
+
+/// Calls `work(index, block, scratch)` for every block of `length` elements of `data`.
+///
+/// The blocks are divided into as many parts as there are `scratch`es; with a single one everything
+/// happens in the calling thread. Which thread takes which part does not touch the result.
+pub(crate) fn for_each_block<T, S, F>(data: &mut [T], length: usize, scratch: &mut [S], work: F)
+where
+    T: Send,
+    S: Send,
+    F: Fn(usize, &mut [T], &mut S) + Send + Sync,
+{
+    let blocks_a_part = data.len().div_ceil(length).div_ceil(scratch.len());
+    let work_on_part = |(part, (data, scratch)): (usize, (&mut [T], &mut S))| {
+        for (block, data) in data.chunks_mut(length).enumerate() {
+            work(part * blocks_a_part + block, data, scratch);
+        }
+    };
+    let part_length = blocks_a_part * length;
+    #[cfg(feature = "rayon")]
+    if scratch.len() > 1 {
+        data.par_chunks_mut(part_length)
+            .zip(scratch)
+            .enumerate()
+            .for_each(work_on_part);
+        return;
+    }
+    data.chunks_mut(part_length)
+        .zip(scratch)
+        .enumerate()
+        .for_each(work_on_part);
+}
+
+/// Runs `work`, which must be inlined, compiled for the widest vectors this processor has. Without
+/// fused multiply-add, which Rust never introduces by itself, results do not depend on which.
+#[inline(always)]
+pub(crate) fn vectorized(work: impl FnOnce()) {
+    pulp::Arch::new().dispatch(work);
+}

@@ -1,0 +1,172 @@
+//! How the contact area of a rough surface grows with the load.
+
+use super::positive_part;
+use crate::Error;
+
+/// Laws of contact area against load for a randomly rough surface of large nominal area.
+///
+/// With the root-mean-square gradient $h' = \sqrt{\langle |\nabla h|^2 \rangle}$ of the surface (Sdq; of both
+/// directions together, $\sqrt2$ times that of a profile) every one of them is a function of
+/// $\bar p / E^\ast h'$ alone, and at light load a straight line of slope $\kappa$:
+/// $$\frac{A}{A_0} = \kappa \frac{\bar p}{E^\ast h'}$$
+/// The theories are for surfaces without an edge, Gaussian and isotropic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AreaLoadLaw {
+    rms_gradient: f64,
+    e_star: f64,
+}
+
+impl AreaLoadLaw {
+    /// $\kappa = \sqrt{2\pi}$ of the asperity theory of Bush, Gibson & Thomas, Wear 35 (1975) 87.
+    pub const BUSH_GIBSON_THOMAS: f64 = 2.506_628_274_631_000_7;
+
+    /// $\kappa = \sqrt{8/\pi}$ of Persson's theory at light load, J. Chem. Phys. 115 (2001) 3840.
+    pub const PERSSON: f64 = 1.595_769_121_605_731;
+
+    /// $\kappa = 2$: finite-element results of Hyun, Pei, Molinari & Robbins, Phys. Rev. E 70 (2004)
+    /// 026117, rounded as in Zhang, Zhang & Jin, Friction 8 (2020) 970.
+    pub const HYUN: f64 = 2.0;
+
+    /// The laws for a surface of root-mean-square gradient `rms_gradient` on a half-space of modulus
+    /// `e_star` \[Pa\].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for either.
+    pub fn new(rms_gradient: f64, e_star: f64) -> Result<Self, Error> {
+        Ok(Self {
+            rms_gradient: Error::require_positive("root-mean-square gradient", rms_gradient)?,
+            e_star: Error::require_positive("plane-strain modulus", e_star)?,
+        })
+    }
+
+    /// Root-mean-square gradient.
+    #[must_use]
+    pub fn rms_gradient(&self) -> f64 {
+        self.rms_gradient
+    }
+
+    /// Plane-strain modulus \[Pa\].
+    #[must_use]
+    pub fn e_star(&self) -> f64 {
+        self.e_star
+    }
+
+    /// p̄/E*h′, not negative.
+    fn reduced(&self, mean_pressure: f64) -> f64 {
+        positive_part(mean_pressure) / (self.e_star * self.rms_gradient)
+    }
+
+    /// Contact area over nominal area, $\kappa \bar p / E^\ast h'$, but at most 1.
+    ///
+    /// `kappa` is one of the constants of this type or a number of the caller's. The line is meant
+    /// for light loads, $A/A_0$ up to about 0.1.
+    #[must_use]
+    pub fn proportional(&self, kappa: f64, mean_pressure: f64) -> f64 {
+        let fraction = positive_part(kappa) * self.reduced(mean_pressure);
+        if fraction > 1.0 { 1.0 } else { fraction }
+    }
+
+    /// Contact area over nominal area at any load, Persson's
+    /// $\operatorname{erf}(\sqrt2 \bar p / E^\ast h')$.
+    ///
+    /// Persson, J. Chem. Phys. 115 (2001) 3840, in the form of Manners & Greenwood, Wear 261 (2006) 600.
+    #[must_use]
+    pub fn persson(&self, mean_pressure: f64) -> f64 {
+        libm::erf(std::f64::consts::SQRT_2 * self.reduced(mean_pressure))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadrature::integrate;
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::PI;
+
+    fn law() -> Result<AreaLoadLaw, Error> {
+        AreaLoadLaw::new(0.2, 50e9)
+    }
+
+    /// In Persson's theory the pressure has a Gaussian density of variance V = (E* h′)²/4 about the
+    /// mean, less its mirror image about zero: its integral over p > 0 is the area.
+    #[test]
+    fn perssons_area_is_that_of_his_pressure_distribution() -> Result<(), Error> {
+        let law = law()?;
+        let deviation = 0.5 * law.e_star() * law.rms_gradient();
+        for mean in [1e7, 1e9, 2e10] {
+            let density = |p: f64| {
+                let gauss = |z: f64| (-0.5 * z * z).exp() / ((2.0 * PI).sqrt() * deviation);
+                gauss((p - mean) / deviation) - gauss((p + mean) / deviation)
+            };
+            let far = mean + 12.0 * deviation;
+            // Accuracy of the quadrature where the two densities almost cancel.
+            assert_relative_eq!(
+                integrate(density, 0.0, far),
+                law.persson(mean),
+                max_relative = 1e-11
+            );
+            // The first moment of that density is the load.
+            let load = integrate(|p| p * density(p), 0.0, far);
+            assert_relative_eq!(load, mean, max_relative = 1e-11);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn perssons_curve_starts_along_his_line_and_ends_at_one() -> Result<(), Error> {
+        let law = law()?;
+        // erf x departs from its tangent by x²/3, here 7e-13.
+        let light = 1e4;
+        let line = law.proportional(AreaLoadLaw::PERSSON, light);
+        assert_relative_eq!(law.persson(light), line, max_relative = 1e-12);
+        for mean in [1e8, 1e9, 1e10] {
+            assert!(law.persson(mean) < law.proportional(AreaLoadLaw::PERSSON, mean));
+        }
+        assert_eq!(law.persson(1e12), 1.0);
+        assert_eq!(law.proportional(AreaLoadLaw::HYUN, 1e12), 1.0);
+        Ok(())
+    }
+
+    #[test]
+    fn slopes_are_what_their_formulas_say() {
+        // The constants are rounded once, the roots of a rounded π twice.
+        assert_relative_eq!(
+            AreaLoadLaw::BUSH_GIBSON_THOMAS,
+            (2.0 * PI).sqrt(),
+            max_relative = 4e-16
+        );
+        assert_relative_eq!(
+            AreaLoadLaw::PERSSON,
+            (8.0 / PI).sqrt(),
+            max_relative = 4e-16
+        );
+        // The asperity theory gives π/2 times the area of Persson's.
+        assert_relative_eq!(
+            AreaLoadLaw::BUSH_GIBSON_THOMAS / AreaLoadLaw::PERSSON,
+            0.5 * PI,
+            max_relative = 1e-15
+        );
+    }
+
+    #[test]
+    fn no_load_no_contact() -> Result<(), Error> {
+        let law = law()?;
+        for mean in [0.0, -1.0] {
+            assert_eq!(law.persson(mean), 0.0);
+            assert_eq!(law.proportional(AreaLoadLaw::HYUN, mean), 0.0);
+        }
+        assert!(law.persson(f64::NAN).is_nan());
+        Ok(())
+    }
+
+    #[test]
+    fn impossible_surfaces_are_refused() {
+        for (gradient, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {
+            assert!(matches!(
+                AreaLoadLaw::new(gradient, e_star),
+                Err(Error::NotPositive { .. })
+            ));
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Closed-form solutions of smooth contacts, and the laws rough ones are compared with.
+//!
+//! They share no code with the solver, so that each can check the other. Conventions:
+//!
+//! * A rigid shape is pressed by the *approach* $\delta$ \[m\], measured from first touch, into an
+//!   elastic half-space of plane-strain modulus $E^\ast = E/(1-\nu^2)$ \[Pa\]
+//!   (see [`plane_strain_modulus`](crate::plane_strain_modulus)).
+//! * Pressure is positive in compression; the displacement $u$ of the surface is positive into the
+//!   half-space. With the shape's initial gap $g$ at first touch, the gap is $g + u - \delta \ge 0$.
+//! * The energy is the elastic energy stored, $U = \int_0^\delta W \mathrm{d}\delta$ \[J\].
+//! * Outside the contact the pressure is zero. A negative approach, load or mean pressure means no
+//!   contact and counts as zero; NaN in gives NaN out.
+//!
+//! | Contact | |
+//! |---|---|
+//! | sphere, elliptic paraboloid, cylinder | [`HertzSphere`], [`HertzEllipse`], [`HertzLine`] |
+//! | cone | [`Cone`] |
+//! | flat punches | [`CircularPunch`], [`SQUARE_PUNCH_STIFFNESS`] |
+//! | wavy surfaces | [`Westergaard`], [`DoubleWave`] |
+//! | area of rough contacts | [`AreaLoadLaw`] |
+//! | electrical and thermal contact conductance | [`contact_conductance`] |
+
+mod area_load;
+mod conductance;
+mod cone;
+mod double_wave;
+mod elliptic;
+mod hertz_ellipse;
+mod hertz_line;
+mod hertz_sphere;
+mod punch;
+#[cfg(test)]
+mod quadrature;
+mod westergaard;
+
+pub use area_load::AreaLoadLaw;
+pub use conductance::contact_conductance;
+pub use cone::Cone;
+pub use double_wave::DoubleWave;
+pub use hertz_ellipse::HertzEllipse;
+pub use hertz_line::HertzLine;
+pub use hertz_sphere::HertzSphere;
+pub use punch::{CircularPunch, SQUARE_PUNCH_STIFFNESS};
+pub use westergaard::Westergaard;
+
+/// Zero for a negative value. Unlike `f64::max`, it lets NaN through.
+fn positive_part(value: f64) -> f64 {
+    if value < 0.0 { 0.0 } else { value }
+}

@@ -1,0 +1,66 @@
+//! What touches: heights of the rigid rough surface.
+//!
+//! * [`HeightMap`]: heights given node by node, measured or computed elsewhere.
+//! * [`SelfAffine`]: random surfaces with a prescribed power spectrum.
+//! * [`Paraboloid`], [`EllipticParaboloid`], [`Cylinder`], [`Cone`], [`FlatPunch`], [`Wave`],
+//!   [`BiWave`]: shapes whose contact has a closed-form solution.
+//! * [`Sum`]: the composite roughness of two surfaces.
+//!
+//! Only differences of height matter for contact. Heights are positive towards the half-space: the
+//! highest node touches first.
+
+mod fft;
+mod height_map;
+mod placement;
+mod self_affine;
+mod shapes;
+mod spectrum;
+mod sum;
+mod synthesis;
+mod turns;
+mod waves;
+
+pub use height_map::HeightMap;
+pub use placement::Axis;
+pub use self_affine::{Amplitude, SelfAffine};
+pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
+pub use spectrum::Spectrum;
+pub use sum::Sum;
+pub use waves::{BiWave, Wave};
+
+use nalgebra::DMatrix;
+
+use crate::{Error, Grid};
+
+/// A rough surface: heights \[m\] on the nodes of any grid, positive towards the half-space.
+pub trait Surface {
+    /// Heights on `grid`, as an nx × ny matrix: element `[(ix, iy)]` belongs to node (ix, iy).
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the surface from being represented on this grid.
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error>;
+
+    /// The composite roughness h₁ + h₂ of this surface and another.
+    fn plus<B: Surface>(self, other: B) -> Sum<Self, B>
+    where
+        Self: Sized,
+    {
+        Sum {
+            first: self,
+            second: other,
+        }
+    }
+}
+
+impl<S: Surface + ?Sized> Surface for &S {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        (**self).heights(grid)
+    }
+}
+
+impl<S: Surface + ?Sized> Surface for Box<S> {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        (**self).heights(grid)
+    }
+}

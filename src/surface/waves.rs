@@ -1,0 +1,202 @@
+//! Cosine waves, whose periodic contact has been solved by Westergaard and by Johnson, Greenwood
+//! and Higginson.
+
+use nalgebra::DMatrix;
+
+use super::placement::{Axis, Placement};
+use super::shapes::placed;
+use super::turns;
+use crate::{Error, Grid, Surface};
+
+/// A one-dimensional wave.
+///
+/// $$ z = D \cos \frac{2\pi x}{\lambda} $$
+///
+/// along x, or the same along y; the distance is measured from a crest, which runs through the
+/// centre of the grid unless moved by [`centered_at`](Self::centered_at). Westergaard's contact,
+/// eq. (21) of the paper, where the amplitude is called Δ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    amplitude: f64,
+    wavelength: f64,
+    direction: Axis,
+    placement: Placement,
+}
+
+impl Wave {
+    /// A wave of amplitude `amplitude` = D \[m\], half its peak-to-valley height, and wavelength
+    /// `wavelength` = λ \[m\] whose heights vary along `direction`.
+    ///
+    /// Nothing ties the wavelength to the grid: for a periodic half-space choose one that fits
+    /// into the side a whole number of times.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for a parameter that is not positive and finite.
+    pub fn new(amplitude: f64, wavelength: f64, direction: Axis) -> Result<Self, Error> {
+        Ok(Self {
+            amplitude: Error::require_positive("amplitude", amplitude)?,
+            wavelength: Error::require_positive("wavelength", wavelength)?,
+            direction,
+            placement: Placement::default(),
+        })
+    }
+
+    /// Amplitude D \[m\].
+    #[must_use]
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// Wavelength λ \[m\].
+    #[must_use]
+    pub fn wavelength(&self) -> f64 {
+        self.wavelength
+    }
+
+    /// Direction along which the heights vary.
+    #[must_use]
+    pub fn direction(&self) -> Axis {
+        self.direction
+    }
+}
+
+placed!(Wave, "a point of a crest");
+
+impl Surface for Wave {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        self.placement.heights(grid, |x, y| {
+            let along = match self.direction {
+                Axis::X => x,
+                Axis::Y => y,
+            };
+            self.amplitude * turns::cos(along / self.wavelength)
+        })
+    }
+}
+
+/// A two-dimensional wave.
+///
+/// $$ z = D \cos \frac{2\pi x}{\lambda_x} \cos \frac{2\pi y}{\lambda_y} $$
+///
+/// with x and y measured from a peak, which is in the centre of the grid unless moved by
+/// [`centered_at`](Self::centered_at). There are two peaks a cell of λ_x × λ_y. With equal
+/// wavelengths, the contact of Johnson, Greenwood and Higginson.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BiWave {
+    amplitude: f64,
+    wavelength_x: f64,
+    wavelength_y: f64,
+    placement: Placement,
+}
+
+impl BiWave {
+    /// A wave of amplitude `amplitude` = D \[m\], half its peak-to-valley height, and wavelengths
+    /// `wavelength_x` and `wavelength_y` \[m\].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for a parameter that is not positive and finite.
+    pub fn new(amplitude: f64, wavelength_x: f64, wavelength_y: f64) -> Result<Self, Error> {
+        Ok(Self {
+            amplitude: Error::require_positive("amplitude", amplitude)?,
+            wavelength_x: Error::require_positive("wavelength along x", wavelength_x)?,
+            wavelength_y: Error::require_positive("wavelength along y", wavelength_y)?,
+            placement: Placement::default(),
+        })
+    }
+
+    /// Amplitude D \[m\].
+    #[must_use]
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    /// Wavelengths λ_x and λ_y \[m\].
+    #[must_use]
+    pub fn wavelengths(&self) -> (f64, f64) {
+        (self.wavelength_x, self.wavelength_y)
+    }
+}
+
+placed!(BiWave, "a peak");
+
+impl Surface for BiWave {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        self.placement.heights(grid, |x, y| {
+            let product = turns::cos(x / self.wavelength_x) * turns::cos(y / self.wavelength_y);
+            self.amplitude * product
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn waves_follow_their_equations() -> Result<(), Error> {
+        let grid = Grid::with_sides(40, 30, 1e-2, 2e-2)?;
+        let (cx, cy) = (1.3e-3, -2e-3);
+        let (d, lx, ly) = (3e-6, 2.7e-3, 5.1e-3);
+        let along_x = Wave::new(d, lx, Axis::X)?
+            .centered_at(cx, cy)?
+            .heights(&grid)?;
+        let along_y = Wave::new(d, ly, Axis::Y)?
+            .centered_at(cx, cy)?
+            .heights(&grid)?;
+        let both = BiWave::new(d, lx, ly)?
+            .centered_at(cx, cy)?
+            .heights(&grid)?;
+        for ix in 0..40 {
+            for iy in 0..30 {
+                let (x, y) = grid.position(ix, iy);
+                let wave_x = (TAU * (x - cx) / lx).cos();
+                let wave_y = (TAU * (y - cy) / ly).cos();
+                // Angles up to 30 rounded a few times each: some 1e-14 of the amplitude.
+                let close = |z: f64, expected: f64| assert!((z - expected).abs() < 3e-14 * d);
+                close(along_x[(ix, iy)], d * wave_x);
+                close(along_y[(ix, iy)], d * wave_y);
+                close(both[(ix, iy)], d * wave_x * wave_y);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn waves_are_symmetric_bit_for_bit() -> Result<(), Error> {
+        for n in [1, 2, 31, 64] {
+            let grid = Grid::square(n, 1.1e-2)?;
+            let heights = BiWave::new(1e-6, 1.1e-2 / 3.0, 1.1e-2 / 3.0)?.heights(&grid)?;
+            assert_eq!(heights, heights.transpose());
+            let profile = Wave::new(1e-6, 1.1e-2, Axis::X)?.heights(&grid)?;
+            for ix in 0..n {
+                for iy in 0..n {
+                    let z = heights[(ix, iy)].to_bits();
+                    assert_eq!(z, heights[(n - 1 - ix, iy)].to_bits());
+                    assert_eq!(z, heights[(ix, n - 1 - iy)].to_bits());
+                    let z = profile[(ix, iy)].to_bits();
+                    assert_eq!(z, profile[(n - 1 - ix, iy)].to_bits());
+                    assert_eq!(z, profile[(ix, 0)].to_bits());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn bad_parameters_are_refused() {
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            for error in [
+                Wave::new(bad, 1.0, Axis::X).err(),
+                Wave::new(1.0, bad, Axis::Y).err(),
+                BiWave::new(bad, 1.0, 1.0).err(),
+                BiWave::new(1.0, bad, 1.0).err(),
+                BiWave::new(1.0, 1.0, bad).err(),
+            ] {
+                assert!(matches!(error, Some(Error::NotPositive { .. })));
+            }
+        }
+    }
+}

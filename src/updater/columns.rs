@@ -1,0 +1,310 @@
+//! Right-hand sides under forward substitution.
+
+use std::ops::Range;
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+
+use super::panels::{Panels, ROWS};
+use super::precision::Precision;
+use super::touched::Touched;
+use crate::parallel;
+
+/// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
+/// that there are several to share among threads.
+const WIDTH: usize = 64;
+
+/// The forward-substituted columns $F = L^{-1}C_{IP}$ of the watched nodes P, which grow with the
+/// factor L.
+///
+/// The columns come in blocks, of which the first holds those that were watched before. A block is
+/// stored row by row: then products with L run at full speed without repacking L.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Columns<T> {
+    rows: usize,
+    blocks: Vec<Block<T>>,
+}
+
+/// Some neighbouring columns, row by row.
+#[derive(Debug, Clone, Default)]
+struct Block<T> {
+    width: usize,
+    values: Vec<T>,
+}
+
+impl<T: Precision> Block<T> {
+    fn zeros(rows: usize, width: usize) -> Self {
+        Self {
+            width,
+            values: vec![T::default(); rows * width],
+        }
+    }
+
+    /// Some rows of the columns `columns`.
+    fn view(&self, rows: Range<usize>, columns: Range<usize>) -> MatRef<'_, T> {
+        view(
+            &self.values[rows.start * self.width..],
+            self.width,
+            rows.len(),
+            columns,
+        )
+    }
+
+    fn get(&self, row: usize, column: usize) -> T {
+        self.values[row * self.width + column]
+    }
+}
+
+/// The first rows of some columns of a block.
+fn view<T>(values: &[T], width: usize, rows: usize, columns: Range<usize>) -> MatRef<'_, T> {
+    if rows == 0 {
+        return MatRef::from_row_major_slice(&[], rows, columns.len());
+    }
+    let start = &values[columns.start..];
+    MatRef::from_row_major_slice_with_stride(start, rows, columns.len(), width)
+}
+
+impl<T: Precision> Columns<T> {
+    /// Bytes that the columns of `watched` nodes take.
+    pub(super) fn bytes(rows: usize, watched: usize) -> usize {
+        rows.saturating_mul(watched).saturating_mul(size_of::<T>())
+    }
+
+    /// Keeps, of the columns that were watched before, those at `kept` (ascending), and makes room
+    /// for `new` more.
+    pub(super) fn watch(&mut self, kept: &[usize], new: usize) {
+        let rows = self.rows;
+        let old = self.blocks.first().map_or(0, |block| block.width);
+        self.blocks.truncate(1);
+        if kept.is_empty() {
+            self.blocks.clear();
+        } else if let Some(block) = self.blocks.first_mut().filter(|_| kept.len() < old) {
+            let mut to = 0;
+            for row in 0..rows {
+                for &position in kept {
+                    block.values[to] = block.values[row * old + position];
+                    to += 1;
+                }
+            }
+            block.values.truncate(to);
+            block.width = kept.len();
+        }
+        // An even number of blocks of equal width, so that two threads end together.
+        let blocks = 2 * new.div_ceil(2 * WIDTH);
+        let width = new.div_ceil(blocks.max(1)).next_multiple_of(8);
+        let mut left = new;
+        while left > 0 {
+            let width = width.min(left);
+            self.blocks.push(Block::zeros(rows, width));
+            left -= width;
+        }
+    }
+
+    /// Fills the columns from `first` on (the beginning of a block) with right-hand sides and solves
+    /// $L F = B$ for them. `fill(row, c, values)` writes a row of the right-hand sides from
+    /// column `c` on.
+    ///
+    /// Blocks are independent, so that the result does not depend on how many threads share them.
+    pub(super) fn forward_substitute(
+        &mut self,
+        factor: &Panels<T>,
+        first: usize,
+        fill: impl Fn(usize, usize, &mut [f64]) + Sync,
+    ) {
+        let mut starts = Vec::with_capacity(self.blocks.len());
+        let mut position = 0;
+        for block in &mut self.blocks {
+            starts.push((position, block));
+            position += starts.last().map_or(0, |(_, block)| block.width);
+        }
+        let new = starts.partition_point(|(start, _)| *start < first);
+        parallel::for_each(&mut starts[new..], |(start, block)| {
+            let width = block.width;
+            let mut buffer = vec![0.0; ROWS * width];
+            for p in 0..factor.len() {
+                let rows = p * ROWS..p * ROWS + factor.rows_in(p);
+                let here = &mut buffer[..rows.len() * width];
+                for (row, values) in rows.clone().zip(here.chunks_mut(width)) {
+                    fill(row, *start, values);
+                }
+                let mut target = MatMut::from_row_major_slice_mut(here, rows.len(), width);
+                let above = block.view(0..rows.start, 0..width);
+                T::subtract_product(target.as_mut(), 1.0, factor.left(p), above);
+                T::solve_lower(factor.diagonal(p), target);
+                let values = &mut block.values[rows.start * width..rows.end * width];
+                for (value, solved) in values.iter_mut().zip(here) {
+                    *value = T::of(*solved);
+                }
+            }
+        });
+    }
+
+    /// S −= scale Fᵀ F (lower triangle, column by column).
+    pub(super) fn subtract_gram(&self, scale: f64, mut matrix: &mut [f64]) {
+        let tiles = self.tiles();
+        let size = tiles
+            .last()
+            .map_or(0, |(start, _, columns)| start + columns.len());
+        let mut tasks = Vec::with_capacity(tiles.len());
+        for first in 0..tiles.len() {
+            let (s, rest) = matrix.split_at_mut(tiles[first].2.len() * size);
+            matrix = rest;
+            tasks.push((&tiles[first..], s));
+        }
+        parallel::for_each(&mut tasks, |(tiles, s)| {
+            let (_, block, columns) = &tiles[0];
+            let here = block.view(0..self.rows, columns.clone());
+            for (start, block, rows) in *tiles {
+                let below = block.view(0..self.rows, rows.clone()).transpose();
+                let (height, width) = (rows.len(), columns.len());
+                let s = &mut s[*start..];
+                let s = MatMut::from_column_major_slice_with_stride_mut(s, height, width, size);
+                T::subtract_product(s, scale, below, here);
+            }
+        });
+    }
+
+    /// R −= Fᵀ X for X given row by row.
+    pub(super) fn subtract_products<const N: usize>(&self, x: &[[T; N]], mut r: &mut [[T; N]]) {
+        let x = MatRef::from_row_major_slice(x.as_flattened(), self.rows, N);
+        let tiles = self.tiles();
+        let mut tasks = Vec::with_capacity(tiles.len());
+        for (_, block, columns) in &tiles {
+            let (here, rest) = r.split_at_mut(columns.len());
+            r = rest;
+            tasks.push((block, columns.clone(), here));
+        }
+        parallel::for_each(&mut tasks, |(block, columns, r)| {
+            let f = block.view(0..self.rows, columns.clone()).transpose();
+            let r = MatMut::from_row_major_slice_mut(r.as_flattened_mut(), columns.len(), N);
+            matmul(r, Accum::Add, f, x, T::of(-1.0), Par::Seq);
+        });
+    }
+
+    /// Ranges of at most [`WIDTH`] columns of one block: (first position, block, its columns).
+    fn tiles(&self) -> Vec<(usize, &Block<T>, Range<usize>)> {
+        let mut tiles = Vec::new();
+        let mut position = 0;
+        for block in &self.blocks {
+            for start in (0..block.width).step_by(WIDTH) {
+                let end = (start + WIDTH).min(block.width);
+                tiles.push((position + start, block, start..end));
+            }
+            position += block.width;
+        }
+        tiles
+    }
+
+    /// The block of a position, and the column in it.
+    fn locate(&self, mut position: usize) -> Option<(&Block<T>, usize)> {
+        for block in &self.blocks {
+            if position < block.width {
+                return Some((block, position));
+            }
+            position -= block.width;
+        }
+        None
+    }
+
+    /// Appends to the factor the rows of the nodes that touched, and their rows of R to the columns
+    /// of those that did not (at `untouched`, ascending). R is divided by `scale`.
+    pub(super) fn commit(
+        &mut self,
+        factor: &mut Panels<T>,
+        touched: &Touched,
+        untouched: &[usize],
+        scale: f64,
+    ) {
+        let before = self.rows;
+        factor.push_rows(touched.len());
+        let window = |position, event| T::of(touched.factor(position, event) / scale);
+        let located = |positions: &[usize]| -> Vec<_> {
+            positions
+                .iter()
+                .filter_map(|&position| Some((position, self.locate(position)?)))
+                .collect()
+        };
+
+        let columns = located(touched.positions());
+        let mut events: Vec<_> = columns.iter().zip(factor.rows_mut(before)).collect();
+        parallel::for_each_chunk(&mut events, EVENTS, |chunk, events| {
+            // A few rows of F at a time: they stay in cache while all rows of L take from them.
+            for start in (0..before).step_by(CACHED_ROWS) {
+                let rows = start..(start + CACHED_ROWS).min(before);
+                for ((_, (block, column)), target) in &mut *events {
+                    for (row, target) in rows.clone().zip(&mut target[rows.clone()]) {
+                        *target = block.get(row, *column);
+                    }
+                }
+            }
+            for (i, ((position, _), target)) in events.iter_mut().enumerate() {
+                let count = chunk * EVENTS + i + 1;
+                for (event, target) in target[before..before + count].iter_mut().enumerate() {
+                    *target = window(*position, event);
+                }
+            }
+        });
+
+        let columns = located(untouched);
+        let mut values = Vec::with_capacity((before + touched.len()) * untouched.len());
+        for row in 0..before {
+            values.extend(
+                columns
+                    .iter()
+                    .map(|(_, (block, column))| block.get(row, *column)),
+            );
+        }
+        for event in 0..touched.len() {
+            values.extend(untouched.iter().map(|&position| window(position, event)));
+        }
+        self.blocks = vec![Block {
+            width: untouched.len(),
+            values,
+        }];
+        self.rows = before + touched.len();
+    }
+
+    /// target −= column of `position` × values, for each (position, values).
+    pub(super) fn subtract<const N: usize>(
+        &self,
+        terms: &[(usize, [T; N])],
+        target: [&mut [T]; N],
+    ) {
+        let rows = target.iter().map(|x| x.len()).min().unwrap_or_default();
+        if terms.is_empty() || rows == 0 {
+            return;
+        }
+        let watched = self.blocks.iter().map(|block| block.width).sum();
+        let mut factors = vec![[T::default(); N]; watched];
+        for (position, values) in terms {
+            factors[*position] = *values;
+        }
+        let mut products = vec![[T::default(); N]; rows];
+        parallel::for_each_chunk(&mut products, ROWS, |chunk, products| {
+            let rows = chunk * ROWS..chunk * ROWS + products.len();
+            let mut factors = &factors[..];
+            for block in &self.blocks {
+                let (here, rest) = factors.split_at(block.width);
+                factors = rest;
+                matmul(
+                    MatMut::from_row_major_slice_mut(products.as_flattened_mut(), rows.len(), N),
+                    Accum::Add,
+                    block.view(rows.clone(), 0..block.width),
+                    MatRef::from_row_major_slice(here.as_flattened(), block.width, N),
+                    T::of(1.0),
+                    Par::Seq,
+                );
+            }
+        });
+        for (i, target) in target.into_iter().enumerate() {
+            for (target, product) in target.iter_mut().zip(&products) {
+                *target -= product[i];
+            }
+        }
+    }
+}
+
+/// Rows of the columns that are spread over the rows of the factor at a time.
+const CACHED_ROWS: usize = 32;
+/// Rows of the factor that one thread fills at a time.
+const EVENTS: usize = 32;

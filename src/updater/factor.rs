@@ -1,0 +1,150 @@
+//! A growing Cholesky factor with the columns of the watched nodes.
+
+use std::time::{Duration, Instant};
+
+use super::columns::Columns;
+use super::panels::Panels;
+use super::precision::Precision;
+use super::{Schur, System, Touched};
+use crate::Error;
+
+/// Where a Cholesky updater spent its time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct CholeskyTimings {
+    /// Forward substitution of the columns of newly watched nodes: n²/2 products each.
+    pub forward: Duration,
+    /// Schur complement of the watched nodes.
+    pub schur: Duration,
+    /// Rows that become part of the factor.
+    pub commit: Duration,
+    /// Solutions on the contact set.
+    pub solve: Duration,
+}
+
+/// The factor $C_{II} = L L^T$ and the columns $F = L^{-1} C_{IP}$ of the watched nodes P, both
+/// divided by `scale`.
+#[derive(Debug, Clone)]
+pub(super) struct Factor<T> {
+    pub(super) panels: Panels<T>,
+    pub(super) columns: Columns<T>,
+    /// Places of the contact nodes in the table of coefficients.
+    places: Vec<usize>,
+    watched: Vec<usize>,
+    pub(super) scale: f64,
+    pub(super) timings: CholeskyTimings,
+}
+
+impl<T: Precision> Factor<T> {
+    pub(super) fn new() -> Self {
+        Self {
+            panels: Panels::default(),
+            columns: Columns::default(),
+            places: Vec::new(),
+            watched: Vec::new(),
+            scale: 1.0,
+            timings: CholeskyTimings::default(),
+        }
+    }
+
+    /// Number of nodes in contact.
+    pub(super) fn len(&self) -> usize {
+        self.panels.rows()
+    }
+
+    /// Makes `nodes` the watched ones and writes their Schur complement to `schur`.
+    ///
+    /// Nodes that were watched before are recognised if they come first and in the same order; only
+    /// the others cost a forward substitution.
+    pub(super) fn eliminate(
+        &mut self,
+        system: &System,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        system.check_nodes(nodes)?;
+        let start = Instant::now();
+        let kept = self.watch(nodes);
+        let table = system.table();
+        let places: Vec<usize> = nodes.iter().map(|&node| table.place(node)).collect();
+        let contact = &self.places;
+        let square = self.scale * self.scale;
+        let unit = 1.0 / square;
+        self.columns
+            .forward_substitute(&self.panels, kept, |row, first, values| {
+                table.fill_column(contact[row], &places[first..], values);
+                if unit != 1.0 {
+                    values.iter_mut().for_each(|value| *value *= unit);
+                }
+            });
+        let forward_done = Instant::now();
+        self.timings.forward += forward_done - start;
+
+        schur.resize(nodes.len());
+        let matrix = schur.as_mut_slice();
+        for (column, &place) in matrix.chunks_mut(nodes.len().max(1)).zip(&places) {
+            table.fill_column(place, &places, column);
+        }
+        self.columns.subtract_gram(square, matrix);
+        self.timings.schur += forward_done.elapsed();
+        Ok(())
+    }
+
+    /// Makes `nodes` the watched ones; returns how many of them, at the beginning, were before.
+    fn watch(&mut self, nodes: &[usize]) -> usize {
+        let mut earlier = self.watched.iter().enumerate();
+        let kept: Vec<usize> = nodes
+            .iter()
+            .map_while(|node| earlier.find(|(_, watched)| *watched == node))
+            .map(|(position, _)| position)
+            .collect();
+        self.columns.watch(&kept, nodes.len() - kept.len());
+        self.watched.clear();
+        self.watched.extend_from_slice(nodes);
+        kept.len()
+    }
+
+    /// Adds the watched nodes that touched.
+    pub(super) fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
+        if touched.watched() != self.watched.len() {
+            return Err(Error::LengthMismatch {
+                expected: self.watched.len(),
+                found: touched.watched(),
+            });
+        }
+        system.check_nodes(touched.nodes())?;
+        let start = Instant::now();
+        let mut untouched: Vec<usize> = (0..self.watched.len()).collect();
+        untouched.retain(|position| !touched.has_touched(*position));
+        self.columns
+            .commit(&mut self.panels, touched, &untouched, self.scale);
+        self.watched = untouched
+            .iter()
+            .map(|&position| self.watched[position])
+            .collect();
+        let table = system.table();
+        self.places
+            .extend(touched.nodes().iter().map(|&node| table.place(node)));
+        self.timings.commit += start.elapsed();
+        Ok(())
+    }
+
+    /// Bytes held with `contact` nodes in contact and `watched` watched.
+    pub(super) fn bytes(contact: usize, watched: usize) -> usize {
+        Panels::<T>::bytes(contact)
+            .saturating_add(Columns::<T>::bytes(contact, watched))
+            .saturating_add(contact.saturating_mul(size_of::<usize>()))
+    }
+
+    /// `Ok` if the first `count` nodes of the committed ones and those of `touched` exist.
+    pub(super) fn check_count(&self, touched: &Touched, count: usize) -> Result<(), Error> {
+        let expected = self.len() + touched.len();
+        if count > expected {
+            return Err(Error::LengthMismatch {
+                expected,
+                found: count,
+            });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,131 @@
+//! The number types a factor can be stored in.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, DivAssign, Mul, SubAssign};
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+
+/// Products of single precision that are summed in it before the sum goes to double precision: few
+/// enough to lose no more than storing the factors does, enough for GEMM at full speed.
+const DEPTH: usize = 1024;
+
+/// A number type of the factor: `f64`, or `f32` for half the memory and twice the speed.
+pub(super) trait Precision:
+    faer::traits::RealField
+    + Copy
+    + Default
+    + Debug
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + AddAssign
+    + Mul<Output = Self>
+    + SubAssign
+    + DivAssign
+    + 'static
+{
+    /// The nearest number of this type.
+    fn of(value: f64) -> Self;
+
+    /// The number as `f64`.
+    fn widen(self) -> f64;
+
+    /// target −= scale A B.
+    fn subtract_product(
+        target: MatMut<'_, f64>,
+        scale: f64,
+        a: MatRef<'_, Self>,
+        b: MatRef<'_, Self>,
+    );
+
+    /// target ← L⁻¹ target.
+    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>);
+}
+
+impl Precision for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn widen(self) -> f64 {
+        self
+    }
+
+    fn subtract_product(
+        target: MatMut<'_, f64>,
+        scale: f64,
+        a: MatRef<'_, Self>,
+        b: MatRef<'_, Self>,
+    ) {
+        matmul(target, Accum::Add, a, b, -scale, Par::Seq);
+    }
+
+    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>) {
+        solve_lower_triangular_in_place(l, target, Par::Seq);
+    }
+}
+
+impl Precision for f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn widen(self) -> f64 {
+        f64::from(self)
+    }
+
+    fn subtract_product(
+        mut target: MatMut<'_, f64>,
+        scale: f64,
+        a: MatRef<'_, Self>,
+        b: MatRef<'_, Self>,
+    ) {
+        let (rows, columns) = (target.nrows(), target.ncols());
+        // In the order of the target, so that neither factor is repacked.
+        let by_rows = target.col_stride() == 1;
+        let mut product = if by_rows {
+            Mat::<Self>::zeros(columns, rows)
+        } else {
+            Mat::<Self>::zeros(rows, columns)
+        };
+        for start in (0..a.ncols()).step_by(DEPTH) {
+            let depth = DEPTH.min(a.ncols() - start);
+            let (a, b) = (a.subcols(start, depth), b.subrows(start, depth));
+            let sum = if by_rows {
+                product.as_mut().transpose_mut()
+            } else {
+                product.as_mut()
+            };
+            matmul(sum, Accum::Replace, a, b, 1.0, Par::Seq);
+            let (target, sum) = if by_rows {
+                (target.as_mut().transpose_mut(), product.as_ref())
+            } else {
+                (target.as_mut(), product.as_ref())
+            };
+            for (target, sum) in target.col_iter_mut().zip(sum.col_iter()) {
+                let columns = target.try_as_col_major_mut().zip(sum.try_as_col_major());
+                let Some((target, sum)) = columns else {
+                    continue;
+                };
+                for (target, sum) in target.as_slice_mut().iter_mut().zip(sum.as_slice()) {
+                    *target -= scale * sum.widen();
+                }
+            }
+        }
+    }
+
+    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>) {
+        let mut wide = Mat::<f64>::zeros(l.ncols(), l.nrows());
+        for (wide, row) in wide.as_mut().col_iter_mut().zip(l.transpose().col_iter()) {
+            if let Some((wide, row)) = wide.try_as_col_major_mut().zip(row.try_as_col_major()) {
+                for (wide, value) in wide.as_slice_mut().iter_mut().zip(row.as_slice()) {
+                    *wide = value.widen();
+                }
+            }
+        }
+        solve_lower_triangular_in_place(wide.transpose(), target, Par::Seq);
+    }
+}

@@ -1,0 +1,68 @@
+//! The Schur complement of the watched nodes.
+
+use nalgebra::{DMatrixView, DMatrixViewMut};
+
+use super::System;
+
+/// What remains of the system for the watched nodes once the contact set is eliminated:
+/// the Schur complement S (k × k, lower triangle) and the reduced right-hand sides R, three for each
+/// watched node.
+///
+/// The three are $r_1$, $r_2$ (gap $= r_1 - \delta\, r_2$) and the reduced row sum.
+#[derive(Debug, Clone, Default)]
+pub struct Schur {
+    size: usize,
+    matrix: Vec<f64>,
+    rhs: Vec<[f64; System::RHS]>,
+}
+
+impl Schur {
+    /// Number of watched nodes k.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Prepares for k watched nodes. What was there before is lost; what is there is unspecified.
+    pub fn resize(&mut self, size: usize) {
+        self.size = size;
+        self.matrix.resize(size * size, 0.0);
+        self.rhs.resize(size, [0.0; System::RHS]);
+    }
+
+    /// The Schur complement S, of which only the lower triangle means anything.
+    #[must_use]
+    pub fn matrix(&self) -> DMatrixView<'_, f64> {
+        DMatrixView::from_slice(&self.matrix, self.size, self.size)
+    }
+
+    /// The Schur complement S to write to.
+    pub fn matrix_mut(&mut self) -> DMatrixViewMut<'_, f64> {
+        DMatrixViewMut::from_slice(&mut self.matrix, self.size, self.size)
+    }
+
+    /// The reduced right-hand sides R, by watched node.
+    #[must_use]
+    pub fn rhs(&self) -> &[[f64; System::RHS]] {
+        &self.rhs
+    }
+
+    /// The reduced right-hand sides R to write to.
+    pub fn rhs_mut(&mut self) -> &mut [[f64; System::RHS]] {
+        &mut self.rhs
+    }
+
+    /// The columns of S as stored.
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
+        &mut self.matrix
+    }
+
+    /// Column `j` of S, made whole from the lower triangle.
+    pub(crate) fn copy_column(&self, j: usize, column: &mut [f64]) {
+        let k = self.size;
+        for (i, value) in column.iter_mut().enumerate().take(j) {
+            *value = self.matrix[j + k * i];
+        }
+        column[j..k].copy_from_slice(&self.matrix[j + k * j..k * (j + 1)]);
+    }
+}

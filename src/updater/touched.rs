@@ -1,0 +1,223 @@
+//! The nodes of the window that touched, and the Cholesky factor of their Schur complement.
+
+use super::{Schur, System};
+use crate::Error;
+use crate::parallel::vectorized;
+
+/// The nodes of the present window that touched, in that order, with the partial Cholesky factor
+/// of the Schur complement S of the watched nodes, pivots in the same order.
+///
+/// With the watched nodes i and the events t, $S = R R^T$ on the nodes that touched;
+/// [`factor`](Self::factor)`(i, t)` is $R_{it}$. Appended to the forward-substituted columns
+/// $F = L^{-1} C_{IP}$, row i of R completes the row of node i in the factor of the grown contact
+/// set if the node touched, and its forward-substituted column if it did not. This is eqs. (15)-(16)
+/// of the paper, for a block of nodes.
+#[derive(Debug, Clone, Default)]
+pub struct Touched {
+    watched: usize,
+    nodes: Vec<usize>,
+    positions: Vec<usize>,
+    /// R, `watched` rows, one column for each event.
+    factor: Vec<f64>,
+    /// The reduced right-hand sides at the moment of each event, divided by its pivot's root.
+    rhs: Vec<[f64; System::RHS]>,
+}
+
+impl Touched {
+    /// Number of nodes that touched.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether no watched node has touched yet.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Node indices, in the order in which they touched.
+    #[must_use]
+    pub fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    /// Their places among the watched nodes.
+    #[must_use]
+    pub fn positions(&self) -> &[usize] {
+        &self.positions
+    }
+
+    /// The first `count` of the committed nodes and, after them, those that touched.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::LengthMismatch`] if there are fewer.
+    pub(crate) fn sequence(&self, committed: &[usize], count: usize) -> Result<Vec<usize>, Error> {
+        let expected = committed.len() + self.len();
+        if count > expected {
+            return Err(Error::LengthMismatch {
+                expected,
+                found: count,
+            });
+        }
+        let nodes = committed.iter().chain(&self.nodes);
+        Ok(nodes.copied().take(count).collect())
+    }
+
+    /// Whether the watched node at `position` touched.
+    pub(crate) fn has_touched(&self, position: usize) -> bool {
+        self.positions.contains(&position)
+    }
+
+    /// Number of watched nodes.
+    #[must_use]
+    pub fn watched(&self) -> usize {
+        self.watched
+    }
+
+    /// $R_{it}$ for the watched node i and event t, 0 where there is none. For a node that touched
+    /// at event τ only t ≤ τ means anything.
+    #[must_use]
+    pub fn factor(&self, position: usize, event: usize) -> f64 {
+        if position >= self.watched {
+            return 0.0;
+        }
+        let index = event
+            .checked_mul(self.watched)
+            .and_then(|k| k.checked_add(position));
+        index
+            .and_then(|k| self.factor.get(k))
+            .copied()
+            .unwrap_or(0.0)
+    }
+
+    /// The entries that event t adds to $L^{-1} B$, for each right-hand side.
+    #[must_use]
+    pub fn rhs(&self, event: usize) -> Option<[f64; System::RHS]> {
+        self.rhs.get(event).copied()
+    }
+
+    /// Forgets all events and prepares for a window of `watched` nodes.
+    pub(crate) fn reset(&mut self, watched: usize) {
+        self.watched = watched;
+        self.nodes.clear();
+        self.positions.clear();
+        self.factor.clear();
+        self.rhs.clear();
+        // So that no event ever allocates.
+        self.nodes.reserve(watched);
+        self.positions.reserve(watched);
+        self.rhs.reserve(watched);
+        self.factor.reserve(watched * watched);
+    }
+
+    /// Eliminates the node at `position`: appends its column of R, left-looking.
+    ///
+    /// `reduced` are the right-hand sides of the node at this moment. Returns the entries that the
+    /// event adds to $L^{-1} B$.
+    ///
+    /// # Errors
+    ///
+    /// The pivot, if it is not positive; then nothing has changed.
+    pub(crate) fn push(
+        &mut self,
+        schur: &Schur,
+        node: usize,
+        position: usize,
+        reduced: [f64; System::RHS],
+    ) -> Result<[f64; System::RHS], f64> {
+        let k = self.watched;
+        let start = self.factor.len();
+        self.factor.resize(start + k, 0.0);
+        let (earlier, column) = self.factor.split_at_mut(start);
+        schur.copy_column(position, column);
+        vectorized(|| subtract_products(earlier, column, position));
+        let pivot = column[position];
+        if pivot.is_nan() || pivot <= 0.0 {
+            self.factor.truncate(start);
+            return Err(pivot);
+        }
+        let root = pivot.sqrt();
+        for value in &mut *column {
+            *value /= root;
+        }
+        column[position] = root;
+        self.nodes.push(node);
+        self.positions.push(position);
+        let entries = reduced.map(|value| value / root);
+        self.rhs.push(entries);
+        Ok(entries)
+    }
+
+    /// Forgets all but the first events.
+    pub(crate) fn truncate(&mut self, events: usize) {
+        self.nodes.truncate(events);
+        self.positions.truncate(events);
+        self.rhs.truncate(events);
+        self.factor.truncate(events * self.watched);
+    }
+
+    /// $x \leftarrow R_{tt}^{-1} x$ on the first events.
+    pub(crate) fn solve<const N: usize>(&self, x: &mut [[f64; N]]) {
+        for t in 0..x.len() {
+            let position = self.positions[t];
+            let (earlier, rest) = x.split_at_mut(t);
+            for (s, earlier) in earlier.iter().enumerate() {
+                let factor = self.factor(position, s);
+                for (value, earlier) in rest[0].iter_mut().zip(earlier) {
+                    *value -= factor * earlier;
+                }
+            }
+            rest[0] = rest[0].map(|value| value / self.factor(position, t));
+        }
+    }
+
+    /// $x \leftarrow R_{tt}^{-T} x$ on the first events.
+    pub(crate) fn solve_transposed<const N: usize>(&self, x: &mut [[f64; N]]) {
+        for t in (0..x.len()).rev() {
+            let column = self.column(t);
+            let (earlier, later) = x.split_at_mut(t + 1);
+            let here = &mut earlier[t];
+            for (&position, later) in self.positions[t + 1..].iter().zip(later) {
+                for (value, later) in here.iter_mut().zip(later) {
+                    *value -= column[position] * *later;
+                }
+            }
+            *here = here.map(|value| value / column[self.positions[t]]);
+        }
+    }
+
+    /// Column of R of the last event, empty if there is none.
+    pub(crate) fn last_column(&self) -> &[f64] {
+        &self.factor[self.factor.len().saturating_sub(self.watched)..]
+    }
+
+    /// Column of event t of R.
+    pub(crate) fn column(&self, event: usize) -> &[f64] {
+        &self.factor[event * self.watched..(event + 1) * self.watched]
+    }
+}
+
+/// column −= Σ_t R_t R[row, t], four events at a time: `column` then passes the cache a quarter as
+/// often, and the sum keeps a fixed order.
+#[inline(always)]
+fn subtract_products(events: &[f64], column: &mut [f64], row: usize) {
+    let k = column.len();
+    let mut blocks = events.chunks_exact(4 * k);
+    for block in &mut blocks {
+        let (c0, rest) = block.split_at(k);
+        let (c1, rest) = rest.split_at(k);
+        let (c2, c3) = rest.split_at(k);
+        let (a0, a1, a2, a3) = (c0[row], c1[row], c2[row], c3[row]);
+        for ((((value, x0), x1), x2), x3) in column.iter_mut().zip(c0).zip(c1).zip(c2).zip(c3) {
+            *value -= (a0 * x0 + a1 * x1) + (a2 * x2 + a3 * x3);
+        }
+    }
+    for event in blocks.remainder().chunks_exact(k) {
+        let a = event[row];
+        for (value, x) in column.iter_mut().zip(event) {
+            *value -= a * x;
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Bad input: a typed error that names what is wrong, never a panic.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use asperity::loading::{LoadingBuilder, LoadingSolver};
+use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
+use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, System, Touched};
+use asperity::{Boundary, Boussinesq, ContactState, Error, Grid, InfluenceKernel, Surface};
+use nalgebra::DMatrix;
+
+const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+/// A surface that returns what it is told, whatever the grid.
+#[derive(Debug)]
+struct Told(DMatrix<f64>);
+
+impl Surface for Told {
+    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        Ok(self.0.clone())
+    }
+}
+
+/// A surface that cannot be sampled.
+#[derive(Debug)]
+struct Refuses;
+
+impl Surface for Refuses {
+    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        Err(Error::LengthMismatch {
+            expected: 1,
+            found: 2,
+        })
+    }
+}
+
+/// A kernel from a function.
+#[derive(Debug)]
+struct Kernel(Grid, fn(isize, isize) -> f64);
+
+impl InfluenceKernel for Kernel {
+    fn grid(&self) -> Grid {
+        self.0
+    }
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        self.1(di, dj)
+    }
+}
+
+fn half_space(n: usize) -> Boussinesq {
+    Boussinesq::new(Grid::square(n, 1.0).unwrap(), 1.0).unwrap()
+}
+
+fn sphere(n: usize) -> LoadingBuilder<Paraboloid, Boussinesq> {
+    LoadingSolver::builder(Paraboloid::new(10.0).unwrap(), half_space(n))
+}
+
+#[test]
+fn grids() {
+    for (nx, ny) in [(0, 0), (0, 5), (5, 0)] {
+        assert!(matches!(
+            Grid::new(nx, ny, 1.0, 1.0),
+            Err(Error::EmptyGrid { .. })
+        ));
+        assert!(matches!(
+            Grid::with_sides(nx, ny, 1.0, 1.0),
+            Err(Error::EmptyGrid { .. })
+        ));
+    }
+    assert!(matches!(Grid::square(0, 1.0), Err(Error::EmptyGrid { .. })));
+    for n in [Grid::MAX_SIDE + 1, usize::MAX / 2, usize::MAX] {
+        for (nx, ny) in [(n, 1), (1, n), (n, n)] {
+            assert!(matches!(
+                Grid::new(nx, ny, 1.0, 1.0),
+                Err(Error::GridTooLarge { .. })
+            ));
+            let sides = Grid::with_sides(nx, ny, 1.0, 1.0);
+            assert!(matches!(sides, Err(Error::GridTooLarge { .. })));
+        }
+    }
+    for bad in NOT_POSITIVE {
+        for grid in [
+            Grid::new(4, 4, bad, 1.0),
+            Grid::new(4, 4, 1.0, bad),
+            Grid::with_sides(4, 4, bad, 1.0),
+            Grid::with_sides(4, 4, 1.0, bad),
+            Grid::square(4, bad),
+        ] {
+            assert!(matches!(grid, Err(Error::NotPositive { .. })), "{bad}");
+        }
+    }
+    // Areas that over- or underflow.
+    for cell in [1e200, 1e-200] {
+        assert!(matches!(
+            Grid::new(4, 4, cell, cell),
+            Err(Error::NotPositive { .. })
+        ));
+    }
+}
+
+#[test]
+fn moduli() {
+    let grid = Grid::square(4, 1.0).unwrap();
+    for bad in NOT_POSITIVE {
+        assert!(
+            matches!(Boussinesq::new(grid, bad), Err(Error::NotPositive { .. })),
+            "{bad}"
+        );
+    }
+    // 1/E* overflows.
+    assert!(matches!(
+        Boussinesq::new(grid, 5e-324),
+        Err(Error::NotPositive { .. })
+    ));
+}
+
+#[test]
+fn heights() {
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut heights = DMatrix::zeros(5, 4);
+        heights[(3, 2)] = value;
+        let error = HeightMap::new(heights.clone()).unwrap_err();
+        assert!(
+            matches!(error, Error::HeightNotFinite { ix: 3, iy: 2, .. }),
+            "{error}"
+        );
+        let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
+        let error = LoadingSolver::new(Told(heights), kernel).unwrap_err();
+        assert!(
+            matches!(error, Error::HeightNotFinite { ix: 3, iy: 2, .. }),
+            "{error}"
+        );
+    }
+    assert!(matches!(
+        HeightMap::new(DMatrix::zeros(0, 3)),
+        Err(Error::EmptyGrid { .. })
+    ));
+    for shape in [(4, 5), (5, 5), (20, 1), (0, 0)] {
+        let heights = Told(DMatrix::zeros(shape.0, shape.1));
+        let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
+        let Err(Error::GridMismatch { expected, found }) = LoadingSolver::new(heights, kernel)
+        else {
+            panic!("{shape:?} accepted");
+        };
+        assert_eq!((expected, found), ((5, 4), shape));
+    }
+    // Each height is finite, their difference is not.
+    let mut heights = DMatrix::from_element(4, 4, -1e308);
+    heights[(1, 1)] = 1e308;
+    let error = LoadingSolver::new(Told(heights), half_space(4)).unwrap_err();
+    assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    // The surface's own error arrives as it is.
+    let error = LoadingSolver::new(Refuses, half_space(4)).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            Error::LengthMismatch {
+                expected: 1,
+                found: 2
+            }
+        ),
+        "{error}"
+    );
+    // Waves too short for the grid.
+    let rough = SelfAffine::new(0.8, 1.0, 0.1, Amplitude::RmsHeight(1.0), 1).unwrap();
+    let error = LoadingSolver::new(rough, half_space(4)).unwrap_err();
+    assert!(matches!(error, Error::CutoffBelowGrid { .. }), "{error}");
+}
+
+#[test]
+fn limits() {
+    for bad in NOT_POSITIVE {
+        let error = sphere(4).max_load(bad).build().unwrap_err();
+        assert!(matches!(error, Error::NotPositive { .. }), "{error}");
+        let error = sphere(4).max_approach(bad).build().unwrap_err();
+        assert!(matches!(error, Error::NotPositive { .. }), "{error}");
+    }
+    for bad in [
+        -1e-9,
+        1.0 + 1e-9,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ] {
+        let error = sphere(4).max_area_fraction(bad).build().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    }
+    let error = sphere(4).window_size(0).build().unwrap_err();
+    assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+}
+
+/// Every limit ends the path with `None`, after the last state that obeys it and before the first
+/// that does not.
+#[test]
+fn limits_are_ends_and_not_errors() {
+    let all: Vec<ContactState> = sphere(6).build().unwrap().map(Result::unwrap).collect();
+    assert_eq!(all.len(), 36);
+    let run = |builder: LoadingBuilder<Paraboloid, Boussinesq>| {
+        let mut path = builder.build().unwrap();
+        let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
+        for _ in 0..3 {
+            assert!(path.next().is_none(), "fused");
+        }
+        assert_eq!(path.size_hint(), (0, Some(0)));
+        states
+    };
+    for nodes in [0, 1, 7, 36, usize::MAX] {
+        assert_eq!(run(sphere(6).max_nodes(nodes)).len(), nodes.min(36));
+    }
+    for (fraction, nodes) in [(0.0, 0), (1.0 / 36.0, 1), (0.5, 18), (0.999, 35), (1.0, 36)] {
+        assert_eq!(run(sphere(6).max_area_fraction(fraction)).len(), nodes);
+    }
+    // A whole shell has the same load: limits between shells, far from rounding.
+    let (before, after) = (all[15], all[16]);
+    assert!(after.approach > before.approach * 1.01);
+    let load = 0.5 * (before.load + after.load);
+    assert_eq!(run(sphere(6).max_load(load)).len(), 16);
+    let approach = 0.5 * (before.approach + after.approach);
+    assert_eq!(run(sphere(6).max_approach(approach)).len(), 16);
+    assert_eq!(run(sphere(6).window_size(usize::MAX)).len(), 36);
+}
+
+#[test]
+fn states_that_are_not_reached() {
+    let all: Vec<ContactState> = sphere(6).build().unwrap().map(Result::unwrap).collect();
+    let mut path = sphere(6).build().unwrap();
+    assert!(path.pressure().unwrap().iter().all(|p| *p == 0.0));
+    assert_eq!(path.state(), None);
+    for (k, state) in all.iter().enumerate() {
+        let Err(Error::StateNotReached { step, present }) = path.pressure_at(state) else {
+            panic!("{state:?} answered");
+        };
+        assert_eq!((step, present), (k + 1, k));
+        path.next().unwrap().unwrap();
+        assert!(path.pressure_at(state).is_ok());
+    }
+}
+
+/// An updater that returns something malformed.
+struct Malformed {
+    inner: RecursiveCholesky,
+    what: &'static str,
+}
+
+impl LinearUpdater for Malformed {
+    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
+        self.inner.schur(system, nodes, schur)?;
+        match self.what {
+            "size" => schur.resize(nodes.len() + 1),
+            "nan" => schur.rhs_mut().iter_mut().for_each(|row| row[1] = f64::NAN),
+            _ => (),
+        }
+        Ok(())
+    }
+    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
+        self.inner.commit(system, touched)
+    }
+    fn solve(
+        &mut self,
+        system: &System,
+        touched: &Touched,
+        count: usize,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        self.inner.solve(system, touched, count, solution)?;
+        match self.what {
+            "y1" => solution.y1.push(0.0),
+            "y2" => solution.y2.clear(),
+            _ => (),
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn malformed_updaters() {
+    for what in ["size", "y1", "y2", "nan"] {
+        let updater = Malformed {
+            inner: RecursiveCholesky::new(),
+            what,
+        };
+        let builder = LoadingSolver::builder(FlatPunch::default(), half_space(4));
+        let mut path = builder.updater(updater).window_size(3).build().unwrap();
+        let error = path.find_map(Result::err).unwrap();
+        let typed = match what {
+            "nan" => matches!(error, Error::NotMonotone { .. }),
+            _ => matches!(error, Error::UpdaterMismatch { .. }),
+        };
+        assert!(typed, "{what}: {error}");
+        assert!(path.next().is_none());
+    }
+}
+
+#[test]
+fn kernels_that_are_no_kernels() {
+    let grid = Grid::square(4, 1.0).unwrap();
+    let build = |coefficient: fn(isize, isize) -> f64| {
+        LoadingSolver::new(FlatPunch::default(), Kernel(grid, coefficient)).unwrap_err()
+    };
+    for error in [
+        build(|di, dj| if (di, dj) == (2, -1) { f64::NAN } else { 1.0 }),
+        build(|di, dj| {
+            if (di, dj) == (2, -1) {
+                f64::INFINITY
+            } else {
+                1.0
+            }
+        }),
+    ] {
+        assert!(
+            matches!(error, Error::KernelNotFinite { di: 2, dj: -1, .. }),
+            "{error}"
+        );
+    }
+    let error = build(|di, dj| if (di, dj) == (2, -1) { 0.6 } else { 0.5 });
+    let Error::KernelNotSymmetric {
+        di,
+        dj,
+        value,
+        opposite,
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert!([(2, -1), (-2, 1)].contains(&(di, dj)));
+    assert_eq!(
+        (value + opposite, (value - opposite).abs() < 0.11),
+        (1.1, true)
+    );
+    for error in [
+        build(|_, _| 0.0),
+        build(|di, dj| if (di, dj) == (0, 0) { -1.0 } else { 0.0 }),
+    ] {
+        assert!(
+            matches!(error, Error::NotPositiveDefinite { .. }),
+            "{error}"
+        );
+    }
+}

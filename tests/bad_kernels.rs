@@ -1,0 +1,238 @@
+//! Kernels that are not positive definite, or under which contact does not only grow: an error that
+//! names the node and the approach, instead of a wrong path.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use asperity::loading::LoadingSolver;
+use asperity::surface::HeightMap;
+use asperity::{Boundary, Error, Grid, InfluenceKernel};
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+
+/// Coefficients along a strip, by distance.
+#[derive(Debug, Clone)]
+struct Strip(Vec<f64>);
+
+impl InfluenceKernel for Strip {
+    fn grid(&self) -> Grid {
+        Grid::new(self.0.len(), 1, 1.0, 1.0).unwrap()
+    }
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn coefficient(&self, di: isize, _dj: isize) -> f64 {
+        self.0[di.unsigned_abs()]
+    }
+}
+
+impl Strip {
+    fn matrix(&self, nodes: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| {
+            self.0[nodes[i].abs_diff(nodes[j])]
+        })
+    }
+}
+
+fn solver(kernel: &Strip, gaps: &[f64], window: Option<usize>) -> LoadingSolver<HeightMap, Strip> {
+    let heights = DMatrix::from_fn(gaps.len(), 1, |ix, _| -gaps[ix]);
+    let builder = LoadingSolver::builder(HeightMap::new(heights).unwrap(), kernel.clone());
+    match window {
+        Some(size) => builder.window_size(size),
+        None => builder,
+    }
+    .build()
+    .unwrap()
+}
+
+#[test]
+fn a_kernel_that_is_not_positive_definite_names_node_and_approach() {
+    // The determinant of all three nodes is (1 - d)(1 + d - 2 c²) < 0, those of two are positive.
+    let (c, d) = (0.8, 0.2);
+    let kernel = Strip(vec![1.0, c, d]);
+    // Node 1 touches at 0.1 / (1 - c) = 0.5; then node 2, at gap + u = approach with
+    // u = d p0 + c p1, p the solution of the two nodes.
+    let gaps = [0.0, 0.1, 1.0];
+    let pair = kernel.matrix(&[0, 1]).lu();
+    let y1 = -pair.solve(&DVector::from_row_slice(&gaps[..2])).unwrap();
+    let y2 = pair.solve(&DVector::from_element(2, 1.0)).unwrap();
+    let row = DVector::from_row_slice(&[d, c]);
+    let expected = (gaps[2] + row.dot(&y1)) / (1.0 - row.dot(&y2));
+    let determinant = (1.0 - d) * (1.0 + d - 2.0 * c * c) / (1.0 - c * c);
+    for window in [Some(1), Some(2), None] {
+        let mut path = solver(&kernel, &gaps, window);
+        let first = path.next().unwrap().unwrap();
+        let second = path.next().unwrap().unwrap();
+        assert_eq!((first.node, second.node), ((0, 0), (1, 0)));
+        // Three nodes, a handful of roundings.
+        assert!((second.approach - 0.5).abs() < 1e-14);
+        let error = path.next().unwrap().unwrap_err();
+        let Error::NotPositiveDefinite {
+            ix,
+            iy,
+            approach,
+            pivot,
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert_eq!((ix, iy), (2, 0));
+        assert!(
+            (approach - expected).abs() < 1e-13 * expected,
+            "{approach} {expected}"
+        );
+        assert!((pivot - determinant).abs() < 1e-13, "{pivot} {determinant}");
+        assert!(path.next().is_none() && path.next().is_none());
+        // What came before stays.
+        assert_eq!(path.state(), Some(second));
+        assert_eq!(path.contact_order(), [0, 1]);
+        let certificate = path.certificate().unwrap();
+        assert!(certificate.least_pressure >= -1e-12, "{certificate:?}");
+    }
+}
+
+#[test]
+fn an_overlap_names_node_and_approach() {
+    // Positive definite, but a cell raises the surface at a distance of two.
+    let kernel = Strip(vec![1.0, 0.0, -0.4, 0.0, 0.0]);
+    assert!(
+        kernel
+            .matrix(&[0, 1, 2, 3, 4])
+            .symmetric_eigenvalues()
+            .min()
+            > 0.0
+    );
+    // Node 2 raises node 4 to the indenter before node 3, whose neighbours do nothing to it,
+    // touches at 0.95. In a window of three nodes nobody watches node 4, whose bound was 1.
+    let gaps = [0.0, 5.0, 0.1, 0.95, 1.0];
+    let mut path = solver(&kernel, &gaps, Some(3));
+    let error = path.find_map(Result::err).unwrap();
+    let Error::NotMonotone {
+        ix,
+        iy,
+        approach,
+        value,
+        ..
+    } = error
+    else {
+        panic!("{error}");
+    };
+    assert_eq!((ix, iy), (4, 0));
+    assert!((approach - 0.95).abs() < 1e-14);
+    // p2 = (0.85 + 0.4 * 0.95) / 0.84, gap = 1 - 0.4 p2 - 0.95.
+    let gap = 1.0 - 0.4 * (0.85 + 0.4 * 0.95) / 0.84 - 0.95;
+    assert!((value - gap).abs() < 1e-13, "{value} {gap}");
+    assert!(path.next().is_none());
+    // Where all are watched, no bound is needed, and the path is right: no node leaves.
+    for window in [Some(1), Some(5), None] {
+        let mut path = solver(&kernel, &gaps, window);
+        assert_eq!(path.by_ref().map(Result::unwrap).count(), 5);
+        assert_eq!(path.contact_order(), [0, 2, 4, 3, 1]);
+    }
+}
+
+#[test]
+fn nodes_that_would_leave_the_contact_are_named() {
+    // Positive definite, and the middle of three nodes is pulled down by its neighbours more than
+    // it resists: y2 there has the sign of 1 + d - 2 c < 0.
+    let (c, d) = (0.7, 0.2);
+    let kernel = Strip(vec![1.0, c, d, 0.0]);
+    assert!(kernel.matrix(&[0, 1, 2]).symmetric_eigenvalues().min() > 0.0);
+    // The fourth node is far away: the three are all in contact long before.
+    let gaps = [0.0, 0.01, 0.2, 100.0];
+    for window in [Some(1), Some(2), None] {
+        let mut path = solver(&kernel, &gaps, window);
+        let mut states = 0;
+        let error = loop {
+            match path.next() {
+                Some(Ok(_)) => states += 1,
+                Some(Err(error)) => break error,
+                None => panic!("no error after {states} states, window {window:?}"),
+            }
+        };
+        let Error::NotMonotone {
+            ix,
+            iy,
+            approach,
+            value,
+            ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        // Noticed when the window is renewed: at once if it holds a single node.
+        assert!(
+            states == 3 || (states == 4 && window != Some(1)),
+            "window {window:?}: {states}"
+        );
+        assert_eq!((ix, iy), (1, 0), "window {window:?}");
+        assert!(approach > 0.0 && value < 0.0);
+        assert!(path.next().is_none());
+    }
+}
+
+/// Whether pressures and gaps of a state have the right sign, straight from the influence matrix.
+fn exact(kernel: &Strip, gaps: &[f64], contact: &[usize], approach: f64) -> bool {
+    let rhs = contact.iter().map(|&i| approach - gaps[i]);
+    let rhs = DVector::from_iterator(contact.len(), rhs);
+    let pressure = kernel.matrix(contact).lu().solve(&rhs).unwrap();
+    let displacement = |i: usize| -> f64 {
+        let terms = contact.iter().zip(&pressure);
+        terms.map(|(&j, p)| kernel.0[i.abs_diff(j)] * p).sum()
+    };
+    // Far above rounding: the condition number is below 1e3.
+    let slack = 1e-9 * (approach + gaps.iter().copied().fold(0.0, f64::max));
+    let mut outside = (0..gaps.len()).filter(|i| !contact.contains(i));
+    let overlap = outside.any(|i| gaps[i] + displacement(i) - approach < -slack);
+    !overlap && pressure.iter().all(|p| *p >= -slack / kernel.0[0])
+}
+
+/// A positive definite kernel with any coefficients, scaled down if they are too large for one.
+fn kernel() -> impl Strategy<Value = Strip> {
+    prop::collection::vec(-0.6..0.9, 7).prop_map(|coefficients| {
+        let mut kernel = Strip(vec![0.0]);
+        kernel.0.extend(coefficients);
+        let all: Vec<_> = (0..kernel.0.len()).collect();
+        let least = kernel.matrix(&all).symmetric_eigenvalues().min();
+        let scale = (0.95 / -least).min(1.0);
+        kernel.0.iter_mut().for_each(|value| *value *= scale);
+        kernel.0[0] = 1.0;
+        kernel
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// A path that comes to its end without an error is exact at every event, whenever the kernel
+    /// was checked. With a window of one node, so is everything that was yielded before an error.
+    #[test]
+    fn no_wrong_path_ends_without_an_error(
+        kernel in kernel(),
+        gaps in prop::collection::vec(0.0..1.0, 8),
+        window in prop_oneof![Just(None), (1_usize..5).prop_map(Some)],
+    ) {
+        let mut path = solver(&kernel, &gaps, window);
+        let mut states = Vec::new();
+        let mut failed = false;
+        for state in path.by_ref() {
+            match state {
+                Ok(state) => states.push(state),
+                Err(Error::NotMonotone { ix, iy, approach, .. }) => {
+                    prop_assert!(ix < 8 && iy == 0 && approach >= 0.0);
+                    failed = true;
+                }
+                Err(error) => prop_assert!(false, "{}", error),
+            }
+        }
+        prop_assert!(path.next().is_none());
+        prop_assert!(failed || states.len() == 8);
+        if !failed || window == Some(1) {
+            let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+            let gaps: Vec<f64> = gaps.iter().map(|gap| gap - least).collect();
+            for state in &states {
+                let contact = &path.contact_order()[..state.step];
+                prop_assert!(exact(&kernel, &gaps, contact, state.approach), "{:?}", state);
+            }
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Numbers at the ends of the range of double precision: an error or a finite path, never a panic.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use asperity::loading::{History, LoadingSolver};
+use asperity::surface::HeightMap;
+use asperity::{Boussinesq, ContactRule, ContactState, Error, Grid};
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+/// Any positive number, most of them extreme.
+fn positive() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        prop::sample::select(vec![
+            5e-324,
+            1e-308,
+            2.3e-308,
+            1e-300,
+            1e-200,
+            1e-154,
+            1e-150,
+            1e-100,
+            1e-30,
+            1.0,
+            1e30,
+            1e100,
+            1e150,
+            1e154,
+            1e200,
+            1e300,
+            1e308,
+            f64::MAX,
+        ]),
+        (-323.0..308.0).prop_map(|exponent: f64| 10_f64.powf(exponent)),
+    ]
+}
+
+/// Any number at all.
+fn anything() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => positive(),
+        2 => positive().prop_map(|x| -x),
+        1 => prop::sample::select(vec![0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY]),
+    ]
+}
+
+/// The sides of a cell: mostly of the same size.
+fn cell() -> impl Strategy<Value = (f64, f64)> {
+    prop_oneof![
+        1 => (positive(), positive()),
+        9 => (positive(), -3.0..3.0).prop_map(|(dx, aspect)| (dx, dx * 10_f64.powf(aspect))),
+    ]
+}
+
+fn finite(state: &ContactState) -> bool {
+    let stiffness = state.interfacial_stiffness;
+    [
+        state.approach,
+        state.load,
+        state.contact_area,
+        state.contact_area_fraction,
+        state.mean_gap,
+        state.contact_stiffness,
+        state.energy,
+    ]
+    .iter()
+    .all(|value| value.is_finite())
+        && !stiffness.is_nan()
+        && (stiffness.is_finite() || state.contact_area_fraction == 1.0)
+}
+
+/// Runs a path to its end, asking for everything on the way; the states and the error, if any.
+fn run(
+    grid: Grid,
+    e_star: f64,
+    heights: &DMatrix<f64>,
+    rule: ContactRule,
+    window: Option<usize>,
+) -> Result<Vec<ContactState>, Error> {
+    let kernel = Boussinesq::new(grid, e_star)?;
+    let surface = HeightMap::new(heights.clone())?;
+    let mut builder = LoadingSolver::builder(surface, kernel).rule(rule);
+    if let Some(size) = window {
+        builder = builder.window_size(size);
+    }
+    let mut path = builder.build()?;
+    let mut states = Vec::new();
+    while let Some(state) = path.next() {
+        states.push(state?);
+        path.certificate()?;
+        path.gap()?;
+    }
+    assert!(path.next().is_none());
+    let history: History = states.iter().copied().collect();
+    for target in [0.0, 1e-308, 1.0, f64::MAX, f64::INFINITY, f64::NAN, -1.0] {
+        let readings = [
+            history.at_load(target),
+            history.at_approach(target),
+            history.at_mean_gap(target),
+        ];
+        for state in readings.iter().flatten() {
+            path.pressure_at(state)?;
+        }
+    }
+    Ok(states)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn grids_never_panic(nx in any::<usize>(), ny in any::<usize>(), small in 0_usize..70, lx in anything(), ly in anything()) {
+        for (nx, ny) in [(nx, ny), (small, ny), (nx, small), (small, small)] {
+            for grid in [Grid::new(nx, ny, lx, ly), Grid::with_sides(nx, ny, lx, ly)].into_iter().flatten() {
+                prop_assert!(grid.nodes() > 0 && grid.dx() > 0.0 && grid.dy() > 0.0);
+                let (sx, sy) = grid.sides();
+                for value in [grid.cell_area(), grid.nominal_area(), sx, sy] {
+                    prop_assert!(value > 0.0 && value.is_finite(), "{:?}", grid);
+                }
+            }
+        }
+    }
+
+    /// Anything goes in; nothing panics, and no state is infinite or NaN.
+    #[test]
+    fn paths_of_any_numbers(
+        (nx, ny) in (1_usize..5, 1_usize..5),
+        (dx, dy) in cell(),
+        e_star in positive(),
+        heights in prop::collection::vec(anything(), 16),
+        paper in any::<bool>(),
+        window in prop_oneof![Just(None), (1_usize..5).prop_map(Some)],
+    ) {
+        let Ok(grid) = Grid::new(nx, ny, dx, dy) else { return Ok(()) };
+        let heights = DMatrix::from_fn(nx, ny, |ix, iy| heights[ix + 4 * iy]);
+        let rule = if paper { ContactRule::SmallestGap } else { ContactRule::FirstContact };
+        if let Ok(states) = run(grid, e_star, &heights, rule, window) {
+            prop_assert_eq!(states.len(), grid.nodes());
+            for state in &states {
+                prop_assert!(finite(state), "{:?}", state);
+            }
+        }
+    }
+
+    /// Consistent units of any size: heights, cells and moduli each of one order of magnitude.
+    #[test]
+    fn paths_in_any_units(
+        (nx, ny) in (1_usize..5, 1_usize..5),
+        aspect in -2.0..2.0,
+        (height, cell, e_star) in (-310.0..300.0, -150.0..150.0, -300.0..300.0),
+        heights in prop::collection::vec(0.0..1.0, 16),
+        window in prop_oneof![Just(None), (1_usize..5).prop_map(Some)],
+    ) {
+        let power = |exponent: f64| 10_f64.powf(exponent);
+        let Ok(grid) = Grid::new(nx, ny, power(cell), power(cell + aspect)) else { return Ok(()) };
+        let heights = DMatrix::from_fn(nx, ny, |ix, iy| power(height) * heights[ix + 4 * iy]);
+        if let Ok(states) = run(grid, power(e_star), &heights, ContactRule::FirstContact, window) {
+            prop_assert_eq!(states.len(), grid.nodes());
+            for pair in states.windows(2) {
+                prop_assert!(finite(&pair[1]), "{:?}", pair[1]);
+                prop_assert!(pair[1].approach >= pair[0].approach && pair[1].load >= pair[0].load);
+            }
+        }
+    }
+}
+
+/// Units are only units: powers of two change the exponents of a path and not one bit else. (Those
+/// of the influence coefficients must be even, for the sake of their square roots.)
+#[test]
+fn powers_of_two_scale_exactly() {
+    let heights = DMatrix::from_fn(7, 6, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
+    let states = |length: i32, height: i32, modulus: i32| {
+        let [cell, height, modulus] = [length, height, modulus].map(|e| 2_f64.powi(e));
+        let grid = Grid::new(7, 6, cell, 3.0 * cell).unwrap();
+        run(
+            grid,
+            modulus,
+            &(&heights * height),
+            ContactRule::FirstContact,
+            None,
+        )
+        .unwrap()
+    };
+    let reference = states(0, 0, 0);
+    assert_eq!(reference.len(), 42);
+    for (length, height, modulus) in [
+        (-30, -40, 38),
+        (100, -200, 60),
+        (-200, -300, -100),
+        (150, 200, 90),
+    ] {
+        let scaled = states(length, height, modulus);
+        for (a, b) in reference.iter().zip(&scaled) {
+            let scale = |value: f64, exponent: i32| value * 2_f64.powi(exponent);
+            assert_eq!(a.node, b.node);
+            assert_eq!(scale(a.approach, height), b.approach);
+            assert_eq!(scale(a.mean_gap, height), b.mean_gap);
+            assert_eq!(scale(a.load, length + height + modulus), b.load);
+            assert_eq!(
+                scale(a.contact_stiffness, length + modulus),
+                b.contact_stiffness
+            );
+            assert_eq!(scale(a.energy, length + 2 * height + modulus), b.energy);
+        }
+    }
+}
+
+/// Named extremes: tiny heights on large cells and the reverse, soft and hard.
+#[test]
+fn sensible_paths_far_from_one() {
+    let heights = DMatrix::from_fn(4, 5, |ix, iy| ((3 * ix + 7 * iy) as f64).cos());
+    for (height, cell, e_star) in [
+        (1e-300, 1e150, 1.0),
+        (1e-300, 1e100, 1e100),
+        (1e-150, 1e-150, 1e150),
+        (1e100, 1e-50, 1e-50),
+        (1e-9, 1e-9, 1e11),
+        (1e150, 1e120, 1e-150),
+    ] {
+        let grid = Grid::new(4, 5, cell, cell).unwrap();
+        let states = run(
+            grid,
+            e_star,
+            &(&heights * height),
+            ContactRule::FirstContact,
+            None,
+        );
+        match states {
+            Ok(states) => assert!(states.len() == 20 && states.iter().all(finite)),
+            Err(error) => panic!("height {height:e}, cell {cell:e}, E* {e_star:e}: {error}"),
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! The fixed-load solver against another solver's results, against the path, and at extremes.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+mod common;
+
+use asperity::fixed_load::FixedLoadSolver;
+use asperity::loading::History;
+use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
+use asperity::{
+    Boundary, Boussinesq, Error, FixedLoadSolution, Grid, InfluenceKernel, LoadingSolver,
+};
+use common::surface;
+use nalgebra::DMatrix;
+
+fn relative(found: f64, expected: f64) -> f64 {
+    ((found - expected) / expected).abs()
+}
+
+/// Every figure of a certificate within the tolerance.
+fn check(solution: &FixedLoadSolution, tolerance: f64) {
+    let certificate = solution.certificate;
+    assert!(certificate.complementarity <= tolerance, "{certificate:?}");
+    assert!(certificate.least_gap >= -tolerance, "{certificate:?}");
+    assert!(
+        certificate.greatest_contact_gap <= tolerance,
+        "{certificate:?}"
+    );
+    // A sum of positive numbers, scaled: rounding of the sum only.
+    assert!(certificate.load_error.abs() <= 1e-13, "{certificate:?}");
+    assert!(solution.pressure.iter().all(|p| *p >= 0.0));
+}
+
+/// Contact nodes and greatest pressure from aspher 0.1.3 at a tolerance of 1e-13.
+#[test]
+fn reference_loads() {
+    let grid = Grid::square(128, 1e-2).unwrap();
+    let mut solver = FixedLoadSolver::builder(
+        surface("selfaffine_128"),
+        Boussinesq::new(grid, 1.0).unwrap(),
+    )
+    .tolerance(1e-12)
+    .build()
+    .unwrap();
+    for (load, nodes, max_pressure) in [
+        (1.0000000000000002e-08, 30, 0.1580411344104674),
+        (1.0000000000000001e-07, 217, 0.2824562862218864),
+        (1.0000000000000002e-06, 1772, 0.452405481594745),
+        (5e-06, 6542, 0.973088073478147),
+    ] {
+        let solution = solver.solve(load).unwrap();
+        check(&solution, 1e-12);
+        assert_eq!(solution.state.contact_nodes, nodes, "load {load}");
+        // Pressures err some hundred times as much as gaps, relative to the greatest of each.
+        let error = relative(solution.state.max_pressure, max_pressure);
+        assert!(error < 1e-9, "load {load}: {error:e}");
+    }
+}
+
+/// At random loads on random surfaces the state is that of the path, computed by a factorisation
+/// that shares no code with the iteration.
+#[test]
+fn loads_on_the_path() {
+    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut uniform = || {
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for (case, &(nx, ny)) in [(32, 32), (40, 25), (33, 47), (64, 64), (1, 90), (24, 24)]
+        .iter()
+        .enumerate()
+    {
+        let grid = Grid::new(nx, ny, 1e-4, if case == 1 { 2e-4 } else { 1e-4 }).unwrap();
+        let (lx, ly) = grid.sides();
+        let long = lx.max(ly);
+        let surface = SelfAffine::new(
+            0.8,
+            long / 2.0,
+            4.0 * grid.dx().max(grid.dy()),
+            Amplitude::RmsHeight(1e-2 * long),
+            case as u64,
+        )
+        .unwrap();
+        let map = HeightMap::sample(&surface, &grid).unwrap();
+        let kernel = Boussinesq::new(grid, 1e9).unwrap();
+        let mut path = LoadingSolver::new(map.clone(), kernel.clone()).unwrap();
+        let history: History = path.by_ref().map(Result::unwrap).collect();
+        let last = history.states()[history.states().len() - 1].load;
+        let mut solver = FixedLoadSolver::builder(map, kernel)
+            .tolerance(1e-12)
+            .build()
+            .unwrap();
+        for i in 0..17 {
+            let load = last * 10_f64.powf(-5.0 * uniform() + 0.3);
+            let expected = history.at_load(load).unwrap();
+            let by_approach = i % 4 == 3;
+            let solution = if by_approach {
+                solver.solve_approach(expected.approach).unwrap()
+            } else {
+                solver.solve(load).unwrap()
+            };
+            if !by_approach {
+                check(&solution, 1e-12);
+            }
+            let state = solution.state;
+            let context = format!("case {case}, load {load:e}: {state:?}, {expected:?}");
+            assert_eq!(state.contact_nodes, expected.step, "{context}");
+            // Near full contact the mean gap is a small difference; it is measured by the rms
+            // height. Everything else is within some hundred times the tolerance, and 1e-8 is what
+            // was asked for.
+            assert!(
+                (state.mean_gap - expected.mean_gap).abs() < 1e-10 * long,
+                "{context}"
+            );
+            for (found, expected) in [
+                (state.load, expected.load),
+                (state.approach, expected.approach),
+                (state.contact_stiffness, expected.contact_stiffness),
+                (state.energy, expected.energy),
+            ] {
+                assert!(relative(found, expected) < 1e-8, "{context}");
+            }
+            if expected.interfacial_stiffness.is_finite() {
+                let error = relative(state.interfacial_stiffness, expected.interfacial_stiffness);
+                assert!(error < 1e-8, "{error:e} {context}");
+            } else {
+                assert!(state.interfacial_stiffness.is_infinite());
+            }
+            let pressure = path.pressure_at(&expected).unwrap();
+            let error = (&solution.pressure - &pressure).amax() / pressure.amax();
+            assert!(error < 1e-8, "{context}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn single_node_to_far_beyond_full_contact() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 64.0, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let own = kernel.coefficient(0, 0);
+    for tolerance in [1e-8, 1e-12] {
+        let mut solver = FixedLoadSolver::builder(surface, kernel.clone())
+            .tolerance(tolerance)
+            .build()
+            .unwrap();
+        for exponent in -60..=4 {
+            let load = 10_f64.powi(exponent);
+            let solution = solver.solve(load).unwrap();
+            check(&solution, tolerance);
+            if exponent <= -10 {
+                assert_eq!(solution.state.contact_nodes, 1);
+                // δ = C₀ p and K = ΔA / C₀.
+                let approach = own * load / grid.cell_area();
+                assert!(relative(solution.state.approach, approach) < tolerance);
+                let stiffness = grid.cell_area() / own;
+                assert!(relative(solution.state.contact_stiffness, stiffness) < tolerance);
+            }
+            if exponent >= 1 {
+                assert_eq!(solution.state.contact_nodes, grid.nodes());
+                assert!(solution.state.interfacial_stiffness.is_infinite());
+                assert_eq!(solution.state.mean_gap, 0.0);
+            }
+        }
+    }
+}
+
+/// A tolerance below rounding is an error, soon, with the best residual.
+#[test]
+fn below_rounding() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 64.0, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let mut solver = FixedLoadSolver::builder(surface, Boussinesq::new(grid, 1.0).unwrap())
+        .tolerance(1e-18)
+        .build()
+        .unwrap();
+    match solver.solve(0.1) {
+        // Rounding of a convolution is about 1e-15 of the greatest displacement.
+        Err(Error::NoConvergence { residual, .. }) => assert!(residual < 1e-13, "{residual:e}"),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Symmetric shapes have ties at every step; a flat punch touches everywhere at once.
+#[test]
+fn symmetric_shapes() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let mut punch = FixedLoadSolver::builder(
+        HeightMap::new(DMatrix::from_element(64, 64, 3.0)).unwrap(),
+        kernel.clone(),
+    )
+    .tolerance(1e-12)
+    .build()
+    .unwrap();
+    let solution = punch.solve(1.0).unwrap();
+    check(&solution, 1e-12);
+    assert_eq!(solution.state.contact_nodes, 4096);
+    // The square punch on 64 × 64 cells from a dense solver, given to eight digits.
+    assert!(relative(solution.state.contact_stiffness, 1.1461731) < 1e-7);
+
+    let mut sphere = FixedLoadSolver::builder(Paraboloid::new(10.0).unwrap(), kernel)
+        .tolerance(1e-12)
+        .build()
+        .unwrap();
+    let solution = sphere.solve(0.001).unwrap();
+    check(&solution, 1e-12);
+    let p = &solution.pressure;
+    for ((ix, iy), value) in (0..64 * 64).map(|k| ((k % 64, k / 64), p[(k % 64, k / 64)])) {
+        // Mirror images are equal to the tolerance times the condition.
+        assert!((value - p[(63 - ix, iy)]).abs() < 1e-9 * p.max());
+        assert!((value - p[(iy, ix)]).abs() < 1e-9 * p.max());
+    }
+}
+
+/// A kernel with nothing but the required methods.
+struct Plain(Boussinesq);
+
+impl InfluenceKernel for Plain {
+    fn grid(&self) -> Grid {
+        self.0.grid()
+    }
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        self.0.coefficient(di, dj)
+    }
+}
+
+#[test]
+fn any_kernel_nested_or_not() {
+    let grid = Grid::square(96, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 96.0, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let mut plainly = FixedLoadSolver::builder(surface, Plain(kernel.clone()))
+        .tolerance(1e-11)
+        .stiffness(false)
+        .build()
+        .unwrap();
+    let mut without = plainly.solve(0.02).unwrap();
+    assert!(without.state.contact_stiffness.is_nan() && without.pressure_rate.is_empty());
+    assert!(plainly.solve_from(&without, 0.03).is_ok());
+    plainly.add_stiffness(&mut without).unwrap();
+    let solve = |nested: bool| {
+        FixedLoadSolver::builder(surface, Plain(kernel.clone()))
+            .tolerance(1e-11)
+            .nested(nested)
+            .build()
+            .unwrap()
+            .solve(0.02)
+            .unwrap()
+    };
+    let (nested, plain) = (solve(true), solve(false));
+    assert_eq!(nested.contact, plain.contact);
+    // The tolerance times the condition.
+    assert!((&nested.pressure - &plain.pressure).amax() < 1e-8 * plain.pressure.max());
+    assert_eq!(plain.coarse_convolutions, 0.0);
+    // The stiffness is the same whether it comes with the solution or later.
+    assert_eq!(without.state, nested.state);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let grid = Grid::square(8, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let punch = || FlatPunch::new(1.0).unwrap();
+    for tolerance in [0.0, -1.0, f64::NAN, 1.0] {
+        let built = FixedLoadSolver::builder(punch(), kernel.clone())
+            .tolerance(tolerance)
+            .build();
+        assert!(matches!(built, Err(Error::OutOfRange { .. })));
+    }
+    let mut solver = FixedLoadSolver::new(punch(), kernel.clone()).unwrap();
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(solver.solve(bad), Err(Error::NotPositive { .. })));
+        assert!(matches!(
+            solver.solve_approach(bad),
+            Err(Error::NotPositive { .. })
+        ));
+    }
+    let surface = SelfAffine::new(0.8, 0.5, 0.25, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let mut hasty = FixedLoadSolver::builder(surface, kernel)
+        .tolerance(1e-12)
+        .max_iterations(2)
+        .build()
+        .unwrap();
+    match hasty.solve(0.1) {
+        Err(Error::NoConvergence { residual, .. }) => assert!(residual.is_finite()),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_sweep_is_its_loads() {
+    let grid = Grid::square(96, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 96.0, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let mut solver = FixedLoadSolver::builder(surface, kernel)
+        .tolerance(1e-11)
+        .build()
+        .unwrap();
+    // Up, in small and large steps, and down again.
+    let loads = [1e-6, 1e-4, 1e-2, 1.1e-2, 0.1, 0.12, 3.0, 0.05, 1e-5];
+    let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+    assert_eq!(swept.len(), loads.len());
+    for (load, swept) in loads.into_iter().zip(swept) {
+        check(&swept, 1e-11);
+        let cold = solver.solve(load).unwrap();
+        assert_eq!(swept.contact, cold.contact, "load {load}");
+        let error = (&swept.pressure - &cold.pressure).amax() / cold.pressure.max();
+        // The tolerance times the condition.
+        assert!(error < 1e-8, "load {load}: {error:e}");
+        let error = relative(swept.state.contact_stiffness, cold.state.contact_stiffness);
+        assert!(error < 1e-10, "load {load}: {error:e}");
+    }
+    let mut sweep = solver.sweep([1.0, -1.0, 2.0]);
+    assert!(sweep.next().unwrap().is_ok());
+    assert!(matches!(sweep.next(), Some(Err(Error::NotPositive { .. }))));
+    assert!(sweep.next().is_none());
+}
+
+/// Sums are taken in fixed chunks: the number of threads does not touch a bit.
+#[cfg(feature = "rayon")]
+#[test]
+fn threads_do_not_change_a_bit() {
+    let grid = Grid::new(150, 130, 1.0 / 150.0, 1.0 / 150.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 150.0, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    let solve = || {
+        let kernel = Boussinesq::new(grid, 1.0).unwrap();
+        let mut solver = FixedLoadSolver::new(surface, kernel).unwrap();
+        solver.solve(0.1).unwrap()
+    };
+    let in_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(solve)
+    };
+    let one = in_threads(1);
+    for threads in [2, 3] {
+        assert!(in_threads(threads) == one);
+    }
+}
+
+/// A kernel that is not positive definite is an error and not an answer.
+struct Negative(Grid);
+
+impl InfluenceKernel for Negative {
+    fn grid(&self) -> Grid {
+        self.0
+    }
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        if (di, dj) == (0, 0) { 1.0 } else { 3.0 }
+    }
+}
+
+#[test]
+fn indefinite_kernels_are_refused() {
+    let grid = Grid::square(8, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.5, 0.25, Amplitude::RmsHeight(1e-2), 3).unwrap();
+    for load in [1e-6, 1.0, 1e6] {
+        let solved = FixedLoadSolver::new(surface, Negative(grid))
+            .unwrap()
+            .solve(load);
+        match solved {
+            Err(Error::FactorizationFailed { .. } | Error::NoConvergence { .. }) => {}
+            Ok(solution) => check(&solution, 1e-8),
+            Err(other) => panic!("{other:?}"),
+        }
+    }
+}
