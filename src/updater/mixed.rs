@@ -6,6 +6,7 @@ use super::factor::{CholeskyTimings, Factor};
 use super::{LinearUpdater, Schur, Solution, System, Touched, WindowCost};
 use crate::Error;
 use crate::convolution::Convolution;
+use crate::parallel;
 
 /// A [`RecursiveCholesky`](super::RecursiveCholesky) with its factor in single precision: half the
 /// memory, 2n² bytes for n nodes, and products at twice the speed.
@@ -81,6 +82,17 @@ impl MixedCholesky {
         if nodes == self.refined {
             return Ok(());
         }
+        parallel::inside(|| self.refine_on(system, touched, nodes))
+    }
+
+    /// The same on the given nodes.
+    fn refine_on(
+        &mut self,
+        system: &System,
+        touched: &Touched,
+        nodes: Vec<usize>,
+    ) -> Result<(), Error> {
+        let count = nodes.len();
         let known = self.solution[0].len().min(count);
         // The displacements of a solution on fewer nodes are known already.
         let starts_from_refined = nodes.starts_with(&self.refined);
