@@ -49,6 +49,11 @@ impl RecursiveCholesky {
         MixedCholesky::new()
     }
 
+    /// The factor alone.
+    pub(super) fn into_factor(self) -> Factor<f64> {
+        self.factor
+    }
+
     /// Where the time went so far.
     #[must_use]
     pub fn timings(&self) -> CholeskyTimings {

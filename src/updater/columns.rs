@@ -72,6 +72,18 @@ impl<T: Precision> Columns<T> {
         rows.saturating_mul(watched).saturating_mul(size_of::<T>())
     }
 
+    /// The same with every number changed.
+    pub(super) fn map<R>(self, change: impl Fn(T) -> R) -> Columns<R> {
+        let block = |block: Block<T>| Block {
+            width: block.width,
+            values: block.values.into_iter().map(&change).collect(),
+        };
+        Columns {
+            rows: self.rows,
+            blocks: self.blocks.into_iter().map(block).collect(),
+        }
+    }
+
     /// Keeps, of the columns that were watched before, those at `kept` (ascending), and makes room
     /// for `new` more.
     pub(super) fn watch(&mut self, kept: &[usize], new: usize) {

@@ -44,6 +44,15 @@ impl<T: Precision> Panels<T> {
         blocks.saturating_mul(ROWS * ROWS * size_of::<T>())
     }
 
+    /// The same with every number changed; a panel is dropped as soon as it is replaced.
+    pub(super) fn map<R>(self, change: impl Fn(T) -> R) -> Panels<R> {
+        let panel = |panel: Vec<T>| panel.into_iter().map(&change).collect();
+        Panels {
+            panels: self.panels.into_iter().map(panel).collect(),
+            rows: self.rows,
+        }
+    }
+
     /// Appends rows, to be filled.
     pub(super) fn push_rows(&mut self, count: usize) {
         self.rows += count;
