@@ -60,6 +60,15 @@ where
         .for_each(work_on_part);
 }
 
+/// Runs `work` on one of the threads that its loops are divided among: a thread outside of them
+/// would go to sleep, and have to be woken, at every loop.
+pub(crate) fn among_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    #[cfg(feature = "rayon")]
+    return rayon::scope(|_| work());
+    #[cfg(not(feature = "rayon"))]
+    work()
+}
+
 /// Runs `work`, which must be inlined, compiled for the widest vectors this processor has. Without
 /// fused multiply-add, which Rust never introduces by itself, results do not depend on which.
 #[inline(always)]

@@ -32,6 +32,7 @@
 
 mod active_set;
 mod builder;
+mod continuation;
 mod descent;
 mod hierarchy;
 mod iterate;

@@ -2,12 +2,15 @@
 
 use nalgebra::DMatrix;
 
+use super::continuation::Continuation;
 use super::hierarchy::{coarse_target, prolong};
 use super::iterate::{Criteria, Effort};
 use super::level::{Level, Target};
 use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 use super::sweep::LoadSweep;
+use super::tangent::Tangent;
 use crate::iterative::{dot, sum, sum_over};
+use crate::parallel::among_threads;
 use crate::{Error, Grid, InfluenceKernel, Surface};
 
 /// Tolerance on the coarser grids, whose solutions are but starts, relative to the approach ...
@@ -62,14 +65,15 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         let load = Error::require_positive("load", load)?;
         let target = Target::Sum(load / self.grid.cell_area());
         self.start_cold(target, 0)?;
-        self.finish(target, Some(load), None)
+        self.finish(target, Some(load), false, &mut Tangent::default())
     }
 
     /// Contact under the load `load` \[N\], from a solution for another load.
     ///
     /// The start is the pressure that follows from the exact tangent,
-    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$: it saves the coarser grids and, for a
-    /// small change of load, some iterations. Without a stiffness the pressure is scaled.
+    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$: it saves the coarser grids and some
+    /// iterations. Without a stiffness the pressure is scaled. If the load is more than a quarter
+    /// larger or a fifth smaller the solution is of no use, and this is [`Self::solve`].
     ///
     /// # Errors
     ///
@@ -81,23 +85,47 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     ) -> Result<FixedLoadSolution, Error> {
         let load = Error::require_positive("load", load)?;
         self.grid.check_shape(solution.pressure.shape())?;
-        let target = load / self.grid.cell_area();
-        let start = &mut self.levels[0].iterate.pressure;
-        start.copy_from_slice(solution.pressure.as_slice());
-        let mut rate = None;
-        if solution.state.contact_stiffness > 0.0 {
+        self.grid.check_shape(solution.displacement.shape())?;
+        let fine = &mut self.levels[0];
+        fine.iterate
+            .pressure
+            .copy_from_slice(solution.pressure.as_slice());
+        fine.iterate.approach = solution.state.approach;
+        let gaps = fine.gap.iter().zip(&solution.displacement);
+        for (closure, (gap, displacement)) in fine.iterate.closure.iter_mut().zip(gaps) {
+            *closure = gap + displacement;
+        }
+        let mut tangent = Tangent::default();
+        if !solution.pressure_rate.is_empty() {
             self.grid.check_shape(solution.pressure_rate.shape())?;
-            let change = (load - solution.state.load) / solution.state.contact_stiffness;
-            for (start, rate) in start.iter_mut().zip(&solution.pressure_rate) {
-                *start = (*start + change * rate).max(0.0);
-            }
-            rate = Some(solution.pressure_rate.as_slice());
+            tangent = Tangent::of(fine, solution.pressure_rate.as_slice())?;
         }
-        let total = sum(start);
-        for value in start {
-            *value *= target / total;
+        self.next_load(&mut Continuation::new(tangent), load, true)
+    }
+
+    /// Contact under the load `load` \[N\], from the state of the finest grid if that is one and
+    /// near.
+    pub(super) fn next_load(
+        &mut self,
+        continuation: &mut Continuation,
+        load: f64,
+        is_state: bool,
+    ) -> Result<FixedLoadSolution, Error> {
+        let load = Error::require_positive("load", load)?;
+        let sum = load / self.grid.cell_area();
+        let near = is_state && Continuation::reaches(&self.levels[0], sum);
+        if near {
+            continuation.predict(&mut self.levels[0], sum);
+        } else {
+            *continuation = Continuation::default();
+            self.start_cold(Target::Sum(sum), 0)?;
         }
-        self.finish(Target::Sum(target), Some(load), rate)
+        self.finish(
+            Target::Sum(sum),
+            Some(load),
+            near,
+            &mut continuation.tangent,
+        )
     }
 
     /// Contact under each of `loads` \[N\] in turn, every solution the start of the next: see
@@ -117,7 +145,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
         let target = Target::Approach(Error::require_positive("approach", approach)?);
         self.start_cold(target, 0)?;
-        self.finish(target, None, None)
+        self.finish(target, None, false, &mut Tangent::default())
     }
 
     /// Fills the start of `level` from the grids coarser than it.
@@ -138,7 +166,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
                 verify: false,
             };
             // A start that is not quite what was asked for is a start.
-            match self.levels[level + 1].solve(coarse_target, criteria) {
+            let coarse = &mut self.levels[level + 1];
+            match among_threads(|| coarse.solve(coarse_target, criteria, false)) {
                 Ok(_) | Err(Error::NoConvergence { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -172,7 +201,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         &mut self,
         target: Target,
         load: Option<f64>,
-        rate_start: Option<&[f64]>,
+        prediction: bool,
+        tangent: &mut Tangent,
     ) -> Result<FixedLoadSolution, Error> {
         let criteria = Criteria {
             tolerance: self.tolerance,
@@ -180,10 +210,13 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             max_iterations: self.max_iterations,
             verify: true,
         };
-        let effort = self.levels[0].solve(target, criteria)?;
+        let effort = {
+            let fine = &mut self.levels[0];
+            among_threads(|| fine.solve(target, criteria, prediction))?
+        };
         let mut solution = self.solution(effort, load);
         if self.stiffness {
-            self.tangent(&mut solution, rate_start)?;
+            self.tangent(&mut solution, tangent)?;
         }
         Ok(solution)
     }

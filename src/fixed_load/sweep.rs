@@ -2,6 +2,7 @@
 
 use std::iter::FusedIterator;
 
+use super::continuation::Continuation;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
 use crate::{Error, InfluenceKernel, Surface};
@@ -30,7 +31,9 @@ use crate::{Error, InfluenceKernel, Surface};
 pub struct LoadSweep<'a, S, K, I> {
     solver: &'a mut FixedLoadSolver<S, K>,
     loads: I,
-    previous: Option<FixedLoadSolution>,
+    continuation: Continuation,
+    /// Whether the solver holds a solution of this sweep.
+    warm: bool,
     finished: bool,
 }
 
@@ -39,7 +42,8 @@ impl<'a, S, K, I> LoadSweep<'a, S, K, I> {
         Self {
             solver,
             loads,
-            previous: None,
+            continuation: Continuation::default(),
+            warm: false,
             finished: false,
         }
     }
@@ -56,14 +60,9 @@ impl<S: Surface, K: InfluenceKernel, I: Iterator<Item = f64>> Iterator for LoadS
             self.finished = true;
             return None;
         };
-        let solved = match &self.previous {
-            Some(previous) => self.solver.solve_from(previous, load),
-            None => self.solver.solve(load),
-        };
-        match &solved {
-            Ok(solution) => self.previous = Some(solution.clone()),
-            Err(_) => self.finished = true,
-        }
+        let warm = std::mem::replace(&mut self.warm, true);
+        let solved = self.solver.next_load(&mut self.continuation, load, warm);
+        self.finished = solved.is_err();
         Some(solved)
     }
 

@@ -5,8 +5,100 @@ use nalgebra::DMatrix;
 use super::level::Level;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
-use crate::iterative::{dot, solve_linear, sum, sum_over};
+use crate::iterative::{ContactSet, LinearSystem, dot, sum, sum_over};
+use crate::parallel::among_threads;
 use crate::{Error, InfluenceKernel, Surface};
+
+/// The pressure per unit of approach, $y_2$, and its displacement, both on the whole grid; empty
+/// where they are not known.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tangent {
+    pub(super) rate: Vec<f64>,
+    pub(super) displacement: Vec<f64>,
+}
+
+impl Tangent {
+    pub(super) fn is_known(&self) -> bool {
+        !self.rate.is_empty()
+    }
+
+    /// That of a rate; the displacement costs a convolution.
+    pub(super) fn of(level: &mut Level, rate: &[f64]) -> Result<Self, Error> {
+        Ok(Self {
+            rate: rate.to_vec(),
+            displacement: level.operator.apply_field(rate)?.to_vec(),
+        })
+    }
+}
+
+/// What a solution for the tangent took and gave.
+struct Solved {
+    iterations: usize,
+    /// $e^T C_{II}^{-1} e$.
+    unit_unit: f64,
+}
+
+impl Level {
+    /// Solves $C_{II}\\, y_2 = e$ on the contact set, from the tangent of another one if it is known.
+    fn solve_tangent(
+        &mut self,
+        tangent: &mut Tangent,
+        tolerance: f64,
+        max_iterations: usize,
+    ) -> Result<Solved, Error> {
+        let contact = &self.iterate.contact;
+        let ones = vec![1.0; contact.len()];
+        let mut y = Vec::new();
+        let mut residual = Vec::new();
+        let is_known = tangent.is_known();
+        if is_known {
+            contact.gather(&tangent.rate, &mut y);
+            contact.gather(&tangent.displacement, &mut residual);
+            for value in &mut residual {
+                *value = 1.0 - *value;
+            }
+        } else {
+            self.inverse.apply(&ones, &mut y);
+        }
+        // Nodes that have left take their displacements with them.
+        let places = contact.places();
+        let mut rates = tangent.rate.iter().zip(places);
+        let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == ContactSet::NONE);
+        let mut equations = LinearSystem {
+            operator: &mut self.operator,
+            inverse: &mut self.inverse,
+            contact,
+            tolerance,
+            max_iterations,
+        };
+        let stale = lost || !is_known;
+        if stale {
+            equations.residual(&ones, &y, &mut residual)?;
+        }
+        let outcome = equations.solve(&ones, &mut y, &mut residual)?;
+        if !outcome.converged {
+            return Err(Error::NoConvergence {
+                residual: outcome.residual,
+                tolerance,
+                iterations: outcome.iterations,
+            });
+        }
+        if stale || outcome.iterations > 0 {
+            tangent.displacement.clear();
+            tangent
+                .displacement
+                .extend_from_slice(self.operator.displacement());
+        }
+        tangent.rate.clear();
+        tangent.rate.resize(self.gap.len(), 0.0);
+        contact.scatter(&y, &mut tangent.rate);
+        Ok(Solved {
+            iterations: outcome.iterations,
+            // With the residual r, $e^T C^{-1} e = e^T y + y^T r$ but for the square of the error.
+            unit_unit: sum(&y) + dot(&y, &residual),
+        })
+    }
+}
 
 impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// Adds the stiffnesses and the rate of pressure to a solution of this solver that was computed
@@ -17,51 +109,26 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// [`Error::GridMismatch`] if the solution lives on another grid, [`Error::NoConvergence`], and
     /// [`Error::FactorizationFailed`] if the kernel is not positive definite.
     pub fn add_stiffness(&mut self, solution: &mut FixedLoadSolution) -> Result<(), Error> {
-        self.tangent(solution, None)
+        self.tangent(solution, &mut Tangent::default())
     }
 
-    /// Solves $C_{II}\\, y_2 = e$ on the nodes that carry, from a start that is a field.
+    /// Stiffnesses of a solution, from the tangent of another one if it is known.
     pub(super) fn tangent(
         &mut self,
         solution: &mut FixedLoadSolution,
-        start: Option<&[f64]>,
+        tangent: &mut Tangent,
     ) -> Result<(), Error> {
         self.grid.check_shape(solution.pressure.shape())?;
         let pressure = solution.pressure.as_slice();
-        let Level {
-            operator,
-            inverse,
-            iterate,
-            ..
-        } = &mut self.levels[0];
-        let contact = &mut iterate.contact;
+        let fine = &mut self.levels[0];
+        let contact = &mut fine.iterate.contact;
         if contact.assign(|node| pressure[node] > 0.0) {
-            inverse.update(contact);
+            fine.inverse.update(contact);
         }
-        let mut residual = vec![1.0; contact.len()];
-        let mut rate = Vec::new();
-        match start {
-            Some(start) => contact.gather(start, &mut rate),
-            None => inverse.apply(&residual, &mut rate),
-        }
-        let outcome = solve_linear(
-            operator,
-            inverse,
-            contact,
-            &mut residual,
-            &mut rate,
-            self.tolerance,
-            self.max_iterations,
-        )?;
-        if !outcome.converged {
-            return Err(Error::NoConvergence {
-                residual: outcome.residual,
-                tolerance: self.tolerance,
-                iterations: outcome.iterations,
-            });
-        }
-        let displacement = operator.apply(contact, &rate)?;
-        let nodes = displacement.len();
+        let (tolerance, max_iterations) = (self.tolerance, self.max_iterations);
+        let solved = among_threads(|| fine.solve_tangent(tangent, tolerance, max_iterations))?;
+        let nodes = self.grid.nodes();
+        let displacement = &tangent.displacement;
         // Nodes in contact are left out: then full contact is exact.
         let closing = sum_over(nodes, |node| {
             if pressure[node] > 0.0 {
@@ -70,15 +137,13 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
                 1.0 - displacement[node]
             }
         });
-        // With the residual r, $e^T C^{-1} e = e^T y + y^T r$ but for the square of the error.
-        let stiffness = self.grid.cell_area() * (sum(&rate) + dot(&rate, &residual));
+        let stiffness = self.grid.cell_area() * solved.unit_unit;
         let (nx, ny) = self.grid.shape();
-        solution.pressure_rate = DMatrix::zeros(nx, ny);
-        contact.scatter(&rate, solution.pressure_rate.as_mut_slice());
+        solution.pressure_rate = DMatrix::from_column_slice(nx, ny, &tangent.rate);
         solution.state.contact_stiffness = stiffness;
         solution.state.interfacial_stiffness = stiffness / (closing / nodes as f64);
-        solution.stiffness_iterations = outcome.iterations;
-        solution.convolutions += operator.take_convolutions();
+        solution.stiffness_iterations = solved.iterations;
+        solution.convolutions += self.levels[0].operator.take_convolutions();
         Ok(())
     }
 }

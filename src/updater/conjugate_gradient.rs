@@ -3,7 +3,7 @@
 use super::{LinearUpdater, Schur, Solution, System, Touched};
 use crate::Error;
 use crate::convolution::Convolution;
-use crate::iterative::{ContactSet, Operator, SparseInverse, dot, solve_linear};
+use crate::iterative::{ContactSet, LinearSystem, Operator, SparseInverse, dot};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
@@ -116,7 +116,8 @@ impl ConjugateGradient {
         }
     }
 
-    /// Solves $C_{II} x = B_I$ for one right-hand side, from the start `x`.
+    /// Solves $C_{II} x = B_I$ for one right-hand side, from the start `x`, and returns the residual.
+    /// The operator then holds the displacements of x.
     fn solve_rhs(
         &self,
         grid: &mut OnGrid,
@@ -125,32 +126,33 @@ impl ConjugateGradient {
         x: &mut Vec<f64>,
     ) -> Result<Vec<f64>, Error> {
         let nodes = grid.contact.nodes().iter();
-        let mut b: Vec<f64> = nodes.map(|&n| system.rhs_at(n as usize)[rhs]).collect();
+        let b: Vec<f64> = nodes.map(|&n| system.rhs_at(n as usize)[rhs]).collect();
         x.resize(b.len(), 0.0);
-        self.iterate(grid, &mut b, x, self.tolerance)?;
-        Ok(b)
+        self.iterate(grid, &b, x, self.tolerance)
     }
 
-    /// Solves $C_{II} x = b$ from the start `x` to a relative tolerance; leaves the residual in b.
+    /// Solves $C_{II} x = b$ from the start `x` to a relative tolerance, and returns the residual.
+    /// The operator then holds the displacements of x.
     fn iterate(
         &self,
         grid: &mut OnGrid,
-        b: &mut [f64],
+        b: &[f64],
         x: &mut [f64],
         tolerance: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<Vec<f64>, Error> {
         let greatest = b.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let outcome = solve_linear(
-            &mut grid.operator,
-            &mut grid.inverse,
-            &grid.contact,
-            b,
-            x,
-            tolerance * greatest,
-            self.max_iterations,
-        )?;
+        let mut equations = LinearSystem {
+            operator: &mut grid.operator,
+            inverse: &mut grid.inverse,
+            contact: &grid.contact,
+            tolerance: tolerance * greatest,
+            max_iterations: self.max_iterations,
+        };
+        let mut residual = Vec::new();
+        equations.residual(b, x, &mut residual)?;
+        let outcome = equations.solve(b, x, &mut residual)?;
         if outcome.converged {
-            return Ok(());
+            return Ok(residual);
         }
         Err(Error::NoConvergence {
             residual: outcome.residual / greatest,
@@ -172,7 +174,9 @@ impl ConjugateGradient {
         let contact = grid.contact.len();
         // Columns to the root of the tolerance: see the type.
         let tolerance = 0.1 * self.tolerance.sqrt();
-        for &node in nodes {
+        // $S = C_{PP} - B^T C_{II}^{-1} B$ with B the coefficients between contact and watched.
+        let mut b = Vec::new();
+        for (j, &node) in nodes.iter().enumerate() {
             let mut column = match earlier.iter().position(|column| column.node == node) {
                 Some(found) => earlier.swap_remove(found),
                 None => Column {
@@ -183,29 +187,28 @@ impl ConjugateGradient {
             };
             let place = table.place(node);
             let others = grid.contact.nodes().iter();
-            column.residual.clear();
-            column
-                .residual
-                .extend(others.map(|&other| table.between(place, table.place(other as usize))));
-            self.iterate(grid, &mut column.residual, &mut column.values, tolerance)?;
+            b.clear();
+            b.extend(others.map(|&other| table.between(place, table.place(other as usize))));
+            column.residual = self.iterate(grid, &b, &mut column.values, tolerance)?;
+            let inside = grid.operator.displacement();
+            let matrix = schur.as_mut_slice();
+            for (i, &other) in nodes.iter().enumerate().skip(j) {
+                matrix[i + nodes.len() * j] =
+                    table.between(table.place(other), place) - inside[other];
+            }
             self.columns.push(column);
         }
-        // $S = C_{PP} - B^T C_{II}^{-1} B$ with B the coefficients between contact and watched.
+        let matrix = schur.as_mut_slice();
         for j in 0..nodes.len() {
-            let column = &self.columns[j];
-            let place = table.place(nodes[j]);
-            let inside = grid.operator.apply(&grid.contact, &column.values)?;
-            let matrix = schur.as_mut_slice();
             for i in j..nodes.len() {
-                let direct = table.between(table.place(nodes[i]), place);
-                let corrected = dot(&self.columns[i].values, &column.residual);
-                matrix[i + nodes.len() * j] = direct - inside[nodes[i]] - corrected;
+                let corrected = dot(&self.columns[i].values, &self.columns[j].residual);
+                matrix[i + nodes.len() * j] -= corrected;
             }
         }
         for rhs in 0..System::RHS {
             let mut x = std::mem::take(&mut self.solutions[rhs]);
             let residual = self.solve_rhs(grid, system, rhs, &mut x)?;
-            let inside = grid.operator.apply(&grid.contact, &x)?;
+            let inside = grid.operator.displacement();
             let reduced = schur.rhs_mut().iter_mut();
             for ((reduced, column), &node) in reduced.zip(&self.columns).zip(nodes) {
                 let corrected = dot(&column.values, &residual);
