@@ -35,7 +35,7 @@ fn compare(name: &str, tolerance: f64, events: &[Event], states: &[ContactState]
             (
                 "contact_stiffness",
                 event.contact_stiffness,
-                state.contact_stiffness,
+                state.contact_stiffness.unwrap(),
             ),
             (
                 "interfacial",

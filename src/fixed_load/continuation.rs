@@ -81,12 +81,16 @@ impl Continuation {
             return;
         }
         let total = sum(&self.tangent.rate);
-        let unit = |field: &[f64]| field.iter().map(|value| value / total).collect();
+        // Per unit of the sum, in which the gauge is a displacement of all nodes alike.
+        let unit = |field: &[f64], gauge: f64| {
+            let values = field.iter();
+            values.map(|value| value / total - gauge).collect()
+        };
         let tangent = Earlier {
             sum: now,
-            pressure: unit(&self.tangent.rate),
-            displacement: unit(&self.tangent.displacement),
-            approach: total.recip(),
+            pressure: unit(&self.tangent.rate, 0.0),
+            displacement: unit(&self.tangent.displacement, level.gauge),
+            approach: total.recip() - level.gauge,
         };
         let mut second = 0.0;
         if let Some(earlier) = &self.earlier

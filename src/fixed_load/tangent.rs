@@ -7,10 +7,10 @@ use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
 use crate::iterative::{ContactSet, LinearSystem, dot, sum, sum_over};
 use crate::parallel::among_threads;
-use crate::{Error, InfluenceKernel, Surface};
+use crate::{Boundary, Error, InfluenceKernel, Surface};
 
-/// The pressure per unit of approach, $y_2$, and its displacement, both on the whole grid; empty
-/// where they are not known.
+/// The pressure per unit of approach, $y_2$, and its displacement, both on the whole grid and in the
+/// gauge of the level: in the zero gauge full contact is singular. Empty where they are not known.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tangent {
     pub(super) rate: Vec<f64>,
@@ -22,12 +22,21 @@ impl Tangent {
         !self.rate.is_empty()
     }
 
-    /// That of a rate; the displacement costs a convolution.
-    pub(super) fn of(level: &mut Level, rate: &[f64]) -> Result<Self, Error> {
-        Ok(Self {
-            rate: rate.to_vec(),
-            displacement: level.operator.apply_field(rate)?.to_vec(),
-        })
+    /// That of a solution, which costs a convolution; unknown if it has no stiffnesses.
+    pub(super) fn of(level: &mut Level, solution: &FixedLoadSolution) -> Result<Self, Error> {
+        let state = &solution.state;
+        let Some(interfacial) = state.interfacial_stiffness else {
+            return Ok(Self::default());
+        };
+        let (gauge, cell_area) = (level.gauge, level.grid.cell_area());
+        // $1 / K_s = 1 / K_i + s / \Delta A$ in the gauge s.
+        let in_gauge = 1.0 / (1.0 / interfacial + gauge / cell_area);
+        let stiffness = state.contact_stiffness.unwrap_or(in_gauge);
+        let rates = solution.pressure_rate.iter();
+        let rate: Vec<f64> = rates.map(|rate| stiffness * rate).collect();
+        let displacement =
+            level.in_gauge(|level| Ok(level.operator.apply_field(&rate)?.to_vec()))?;
+        Ok(Self { rate, displacement })
     }
 }
 
@@ -39,6 +48,17 @@ struct Solved {
 }
 
 impl Level {
+    /// Does `work` with displacements in the gauge of the level.
+    fn in_gauge<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.operator.set_uniform(self.gauge);
+        let done = work(self);
+        self.operator.set_uniform(0.0);
+        done
+    }
+
     /// Solves $C_{II}\\, y_2 = e$ on the contact set, from the tangent of another one if it is known.
     fn solve_tangent(
         &mut self,
@@ -126,7 +146,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             fine.inverse.update(contact);
         }
         let (tolerance, max_iterations) = (self.tolerance, self.max_iterations);
-        let solved = among_threads(|| fine.solve_tangent(tangent, tolerance, max_iterations))?;
+        let solve = |fine: &mut Level| fine.solve_tangent(tangent, tolerance, max_iterations);
+        let solved = among_threads(|| fine.in_gauge(solve))?;
         let nodes = self.grid.nodes();
         let displacement = &tangent.displacement;
         // Nodes in contact are left out: then full contact is exact.
@@ -139,9 +160,13 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         });
         let stiffness = self.grid.cell_area() * solved.unit_unit;
         let (nx, ny) = self.grid.shape();
-        solution.pressure_rate = DMatrix::from_column_slice(nx, ny, &tangent.rate);
-        solution.state.contact_stiffness = stiffness;
-        solution.state.interfacial_stiffness = stiffness / (closing / nodes as f64);
+        let rates = tangent.rate.iter().map(|rate| rate / stiffness);
+        solution.pressure_rate = DMatrix::from_iterator(nx, ny, rates);
+        solution.state.contact_stiffness = match fine.boundary {
+            Boundary::Free => Some(stiffness),
+            Boundary::Periodic => None,
+        };
+        solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
         solution.stiffness_iterations = solved.iterations;
         solution.convolutions += self.levels[0].operator.take_convolutions();
         Ok(())

@@ -148,6 +148,30 @@ impl KernelTable {
         })
     }
 
+    /// The same kernel with a uniform displacement added, so that the gauge becomes `gauge`; itself if
+    /// the boundary is free.
+    pub(crate) fn in_gauge(&self, gauge: f64) -> Self {
+        let mut table = self.clone();
+        if let Some(present) = self.gauge() {
+            for value in &mut table.values {
+                *value = *value - present + gauge;
+            }
+        }
+        table
+    }
+
+    /// The gauge for computing: of the size of the least one in which a kernel like Love's is an
+    /// inverse M-matrix, and of no influence on results. `None` if the boundary is free.
+    ///
+    /// In the zero gauge the least coefficient is that of the farthest node. That gauge is 1.5 times
+    /// its absolute value, on a square of many nodes with Love's kernel: 0.74 L / (E* M), near s\*.
+    pub(crate) fn computing_gauge(&self) -> Option<f64> {
+        let mean = self.gauge()?;
+        let least = self.values.iter().copied().fold(f64::INFINITY, f64::min) - mean;
+        // A single node has no other, and nothing but its gauge.
+        Some(if least < 0.0 { -1.5 * least } else { mean })
+    }
+
     /// The coefficient at offset (di, dj), or `None` if it lies outside the grid.
     #[must_use]
     pub fn coefficient(&self, di: isize, dj: isize) -> Option<f64> {
@@ -161,13 +185,71 @@ impl KernelTable {
 
     /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
     /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
-    /// on blocks. A direction with a single node stays as it is; the last block of an odd number
-    /// of nodes reaches beyond the grid, where the kernel is continued by its last value.
+    /// on blocks. A direction with a single node stays as it is.
+    ///
+    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, where
+    /// the kernel is continued by its last value; those of a periodic one are a little smaller than two
+    /// cells, so that they fit the period, and weighted by how much they overlap.
     ///
     /// # Errors
     ///
     /// Those of [`Grid::new`].
     pub(crate) fn coarsened(&self) -> Result<Self, Error> {
+        match self.boundary {
+            Boundary::Free => self.coarsened_free(),
+            Boundary::Periodic => self.coarsened_periodic(),
+        }
+    }
+
+    fn coarsened_periodic(&self) -> Result<Self, Error> {
+        let (nx, ny) = self.grid.shape();
+        let (lx, ly) = self.grid.sides();
+        let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
+        let grid = Grid::with_sides(cx, cy, lx, ly)?;
+        // For each offset of blocks the offsets of cells, and their weights: sums over the sources,
+        // averages over the observers.
+        let overlaps = |nodes: usize, blocks: usize| -> Vec<[(usize, f64); 4]> {
+            let width = nodes as f64 / blocks as f64;
+            (0..blocks)
+                .map(|offset| {
+                    let at = offset as f64 * width;
+                    let first = at as isize - 1;
+                    let weight = |cell: isize| (1.0 - (cell as f64 - at).abs() / width).max(0.0);
+                    let sum: f64 = (first..first + 4).map(weight).sum();
+                    std::array::from_fn(|i| {
+                        let cell = first + i as isize;
+                        let place = cell.rem_euclid(nodes as isize) as usize;
+                        (place, weight(cell) * width / sum)
+                    })
+                })
+                .collect()
+        };
+        let (along_x, along_y) = (overlaps(nx, cx), overlaps(ny, cy));
+        let width = 2 * nx - 1;
+        let (cx, cy) = (cx as isize, cy as isize);
+        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
+        for dj in 1 - cy..cy {
+            for di in 1 - cx..cx {
+                // By symmetry offsets need no sign: C(−di, −dj) = C(di, dj).
+                let (di, dj) = if dj < 0 { (-di, -dj) } else { (di, dj) };
+                let mut sum = 0.0;
+                for &(j, wj) in &along_y[dj as usize] {
+                    let row = self.center() + j * width;
+                    for &(i, wi) in &along_x[di.rem_euclid(cx) as usize] {
+                        sum += wi * wj * self.values[row + i];
+                    }
+                }
+                values.push(sum);
+            }
+        }
+        Ok(Self {
+            grid,
+            boundary: self.boundary,
+            values,
+        })
+    }
+
+    fn coarsened_free(&self) -> Result<Self, Error> {
         let (nx, ny) = self.grid.shape();
         let factor = |nodes: usize| if nodes > 1 { 2 } else { 1 };
         let (fx, fy) = (factor(nx), factor(ny));
