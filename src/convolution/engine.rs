@@ -95,6 +95,16 @@ impl Engine<f64> {
         engine
     }
 
+    /// Replaces the symbol by its inverse, both without their normalisation.
+    #[cfg(test)]
+    pub(super) fn invert_symbol(&mut self) {
+        let (px, py) = self.padded();
+        let points = px as f64 * py as f64;
+        for value in &mut self.symbol {
+            *value = 1.0 / (*value * points * points);
+        }
+    }
+
     /// Greatest absolute value of the symbol, without its normalisation.
     pub(super) fn greatest_symbol(&self) -> f64 {
         let values = self.symbol.iter().map(|value| value.abs());

@@ -135,6 +135,14 @@ impl Convolution {
         }
     }
 
+    /// The convolution with the inverse of the symbol.
+    #[cfg(test)]
+    pub(crate) fn inverted(&self) -> Self {
+        let mut inverted = self.clone();
+        inverted.engine.invert_symbol();
+        inverted
+    }
+
     /// Displacement \[m\] of every node under `pressure` \[Pa\].
     ///
     /// # Errors

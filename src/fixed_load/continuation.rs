@@ -37,6 +37,17 @@ impl Continuation {
         }
     }
 
+    /// The sum of pressures at an approach, by the tangent or in proportion.
+    pub(super) fn sum_at(&self, level: &Level, approach: f64) -> f64 {
+        let iterate = &level.iterate;
+        let now = sum(&iterate.pressure);
+        if !self.tangent.is_known() {
+            return now * approach / iterate.approach;
+        }
+        let compliance = sum(&self.tangent.rate).recip() - level.gauge;
+        now + (approach - iterate.approach) / compliance
+    }
+
     /// Whether the state of `level` is a good start for another sum of pressures.
     pub(super) fn reaches(level: &Level, target: f64) -> bool {
         let ratio = target / sum(&level.iterate.pressure);

@@ -75,6 +75,9 @@ impl Level {
                 if residual.iter().all(|r| *r == 0.0) {
                     break;
                 }
+                if directions.forget() {
+                    continue;
+                }
                 return Err(Error::FactorizationFailed {
                     nodes: contact.len(),
                 });

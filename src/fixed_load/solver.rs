@@ -9,6 +9,7 @@ use super::level::{Level, Target};
 use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 use super::sweep::LoadSweep;
 use super::tangent::Tangent;
+use super::target::ContactTarget;
 use crate::iterative::{dot, sum, sum_over};
 use crate::parallel::among_threads;
 use crate::{Boundary, Error, Grid, InfluenceKernel, Surface};
@@ -128,13 +129,51 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         )
     }
 
-    /// Contact under each of `loads` \[N\] in turn, every solution the start of the next: see
-    /// [`Self::solve_from`].
-    pub fn sweep<I>(&mut self, loads: I) -> LoadSweep<'_, S, K, I::IntoIter>
+    /// Contact at each of `targets` in turn, plain numbers being loads, every state the start of the
+    /// next: see [`Self::solve_from`].
+    pub fn sweep<I>(&mut self, targets: I) -> LoadSweep<'_, S, K, I::IntoIter>
     where
-        I: IntoIterator<Item = f64>,
+        I: IntoIterator,
+        I::Item: Into<ContactTarget>,
     {
-        LoadSweep::new(self, loads.into_iter())
+        LoadSweep::new(self, targets.into_iter())
+    }
+
+    /// Contact at a target: a load, an approach, a contact area or a mean gap. For the latter two
+    /// the load is found by solving for several, each from the one before.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area
+    /// fraction or a mean gap that cannot be.
+    pub fn solve_target(
+        &mut self,
+        target: impl Into<ContactTarget>,
+    ) -> Result<FixedLoadSolution, Error> {
+        self.next_target(&mut Continuation::default(), target.into(), None)
+    }
+
+    /// Contact at a target, from the `last` solution, which the finest grid holds.
+    pub(super) fn next_target(
+        &mut self,
+        continuation: &mut Continuation,
+        target: ContactTarget,
+        last: Option<&FixedLoadSolution>,
+    ) -> Result<FixedLoadSolution, Error> {
+        match target {
+            ContactTarget::Load(load) => self.next_load(continuation, load, last.is_some()),
+            ContactTarget::Approach(approach) => {
+                self.next_approach(continuation, approach, last.is_some())
+            }
+            ContactTarget::AreaFraction(fraction) => {
+                let sought = self.nodes_of(fraction)?;
+                self.search(continuation, sought, last)
+            }
+            ContactTarget::MeanGap(mean_gap) => {
+                let sought = self.mean_gap_of(mean_gap)?;
+                self.search(continuation, sought, last)
+            }
+        }
     }
 
     /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
@@ -145,6 +184,16 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// [`Error::NotPositive`] for the approach, [`Error::ApproachNotReached`] if no load or every
     /// large one goes with it on a periodic half-space, and those of [`Self::solve`].
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
+        self.next_approach(&mut Continuation::default(), approach, false)
+    }
+
+    /// Contact at an approach, from the state of the finest grid if that is one and near.
+    fn next_approach(
+        &mut self,
+        continuation: &mut Continuation,
+        approach: f64,
+        is_state: bool,
+    ) -> Result<FixedLoadSolution, Error> {
         let approach = Error::require_positive("approach", approach)?;
         let Level { boundary, gap, .. } = &self.levels[0];
         if *boundary == Boundary::Periodic {
@@ -154,8 +203,15 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             }
         }
         let target = Target::Approach(approach);
-        self.start_cold(target, 0)?;
-        self.finish(target, None, false, &mut Tangent::default())
+        let sum = continuation.sum_at(&self.levels[0], approach);
+        let near = is_state && Continuation::reaches(&self.levels[0], sum);
+        if near {
+            continuation.predict(&mut self.levels[0], sum);
+        } else {
+            *continuation = Continuation::default();
+            self.start_cold(target, 0)?;
+        }
+        self.finish(target, None, near, &mut continuation.tangent)
     }
 
     /// Fills the start of `level` from the grids coarser than it.

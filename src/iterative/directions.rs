@@ -39,6 +39,14 @@ impl Directions {
         values
     }
 
+    /// Forgets all of them, and says whether there were any: among a few nodes they may leave nothing
+    /// for another, though a step in single precision was not exact.
+    pub(crate) fn forget(&mut self) -> bool {
+        let any = !self.last.is_empty();
+        self.last.clear();
+        any
+    }
+
     /// Adds a direction, and forgets the oldest.
     pub(crate) fn push(&mut self, values: Vec<f64>, image: Vec<f64>, curvature: f64) {
         if self.last.len() == MEMORY {

@@ -1,6 +1,8 @@
 //! What iterations need: the influence operator on a contact set, a sparse approximation of its
 //! inverse, and preconditioned conjugate gradients, all in O(grid) memory.
 
+#[cfg(test)]
+mod comparison;
 mod directions;
 mod lattice;
 mod operator;

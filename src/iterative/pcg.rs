@@ -78,6 +78,9 @@ impl LinearSystem<'_> {
                 self.contact.gather(displacement, &mut image);
                 let curvature = dot(&direction, &image);
                 if curvature.is_nan() || curvature <= 0.0 {
+                    if directions.forget() {
+                        continue;
+                    }
                     return Err(Error::FactorizationFailed {
                         nodes: self.contact.len(),
                     });

@@ -1,25 +1,35 @@
 //! Solutions by conjugate gradients and FFT, without a factor.
 
-use super::{LinearUpdater, Schur, Solution, System, Touched};
+use super::{LinearUpdater, Schur, Solution, System, Touched, WindowCost};
 use crate::Error;
 use crate::convolution::Convolution;
 use crate::iterative::{ContactSet, LinearSystem, Operator, SparseInverse, dot};
+
+/// What a column costs, some twenty convolutions, is the same in every window. A refresh costs as
+/// much as three columns, 700 ns for each node of the grid, and products between columns grow with
+/// their number: so many are watched that both are small beside the columns.
+const WINDOW_COST: WindowCost = WindowCost {
+    solve: 0.0,
+    schur: 0.3,
+    convolution: 700.0,
+    most_watched: 0.05,
+};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
 ///
 /// No factor is kept: beside memory in proportion to the grid, the columns
 /// $X = C_{II}^{-1} C_{IP}$ of the watched nodes P and their residuals, 16 bytes for each contact
-/// node and each watched one. So the window bounds the memory: set
-/// [`window_size`](crate::loading::LoadingBuilder::window_size) to some ten nodes where contact is
-/// large.
+/// node and each watched one: some hundred of them by default, fewer where the memory budget or
+/// [`window_size`](crate::loading::LoadingBuilder::window_size) says so.
 ///
 /// When nodes touch, columns and solutions are carried over by the paper's recursion (eqs. 10-13,
 /// for a block of nodes): all starts are warm. Schur complements take the residuals into account,
 /// $b_i^T C^{-1} b_j \approx b_i^T x_j + x_i^T r_j$, whose error is the product of two: columns need
 /// only the root of the tolerance.
 ///
-/// [`RecursiveCholesky`](super::RecursiveCholesky) is faster wherever its factor fits.
+/// [`RecursiveCholesky`](super::RecursiveCholesky) is faster wherever its factor fits, and
+/// [`Handover`](super::Handover) chooses between the two.
 #[derive(Debug, Clone)]
 pub struct ConjugateGradient {
     tolerance: f64,
@@ -99,6 +109,40 @@ impl ConjugateGradient {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.order.is_empty()
+    }
+
+    /// Begins with the contact set `order` and the solution on it.
+    pub(super) fn take_over(
+        &mut self,
+        system: &System,
+        order: Vec<usize>,
+        solution: &Solution,
+    ) -> Result<(), Error> {
+        system.check_nodes(&order)?;
+        let mut grid = Self::on_grid(&mut self.grid, system)?;
+        let mut in_contact = vec![false; system.gap().len()];
+        for &node in &order {
+            in_contact[node] = true;
+        }
+        grid.contact.assign(|node| in_contact[node]);
+        grid.inverse.update(&grid.contact);
+        let places = grid.contact.places();
+        for (start, (values, sign)) in self
+            .solutions
+            .iter_mut()
+            .zip([(&solution.y1, -1.0), (&solution.y2, 1.0)])
+        {
+            start.resize(order.len(), 0.0);
+            for (&node, value) in order.iter().zip(values) {
+                start[places[node] as usize] = sign * value;
+            }
+        }
+        // The row sums begin from nothing.
+        self.solutions[2].resize(order.len(), 0.0);
+        self.columns.clear();
+        self.order = order;
+        self.grid = Some(grid);
+        Ok(())
     }
 
     /// What depends on the grid, made at first use.
@@ -356,6 +400,10 @@ impl LinearUpdater for ConjugateGradient {
         let done = self.solve_prefix(&mut grid, system, &order, solution);
         self.grid = Some(grid);
         done
+    }
+
+    fn window_cost(&self) -> WindowCost {
+        WINDOW_COST
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
