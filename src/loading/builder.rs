@@ -148,7 +148,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
             .memory_budget
             .or_else(memory::available)
             .unwrap_or(usize::MAX);
-        let path = LoadingSolver {
+        let mut path = LoadingSolver {
             contact: Vec::with_capacity(limits.nodes),
             in_contact: vec![false; grid.nodes()],
             committed: 0,
@@ -184,6 +184,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
                 nodes_that_fit: 0,
             });
         }
+        path.updater.set_memory_budget(budget - needed);
         Ok(path)
     }
 

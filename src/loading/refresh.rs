@@ -21,11 +21,12 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     /// Commits what touched, computes all gaps and opens the next window.
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
         let count = self.contact.len();
-        let size = self.affordable(count, self.next_window_size(count))?;
         if count > self.committed {
+            // There is room: it was asked for before these nodes were watched.
             self.updater.commit(&self.system, self.window.touched())?;
             self.committed = count;
         }
+        let size = self.affordable(count, self.next_window_size(count))?;
         self.solve(count)?;
         if !self.updater.is_exact() {
             self.renew_front();

@@ -109,7 +109,7 @@ impl LinearUpdater for RecursiveCholesky {
         let Factor {
             panels, columns, ..
         } = &self.factor;
-        parallel::inside(|| {
+        parallel::among_threads(|| {
             columns.subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
             panels.solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
         });

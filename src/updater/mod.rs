@@ -11,6 +11,7 @@ mod columns;
 mod conjugate_gradient;
 mod dense;
 mod factor;
+mod handover;
 mod mixed;
 mod panels;
 mod precision;
@@ -25,6 +26,7 @@ pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use factor::CholeskyTimings;
+pub use handover::Handover;
 pub use mixed::MixedCholesky;
 pub use schur::Schur;
 pub use system::System;
@@ -130,5 +132,11 @@ pub trait LinearUpdater {
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         let _ = (contact, watched);
         0
+    }
+
+    /// Tells the updater how many bytes are left for it, before the first node is in contact. What
+    /// [`bytes`](Self::bytes) says is held to that by the path; an updater need not do anything.
+    fn set_memory_budget(&mut self, bytes: usize) {
+        let _ = bytes;
     }
 }
