@@ -141,7 +141,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
         let table = KernelTable::new(&self.kernel)?;
         let mut fields = Fields::new(Convolution::from_table(&table)?, grid.nodes());
         let row_sums = fields.displacement(&vec![1.0; grid.nodes()])?.to_vec();
-        let contact_only_grows = self.kernel.contact_only_grows();
+        let growth = self.kernel.contact_growth();
         let gauge = table.gauge().unwrap_or_default() / grid.cell_area();
         let system = System::new(table, gap.values, row_sums)?;
         let budget = self
@@ -155,6 +155,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
             ranking: Vec::with_capacity(grid.nodes()),
             window: Window::default(),
             solution: Solution::default(),
+            solved: None,
             front: Front::default(),
             ahead: VecDeque::new(),
             failure: None,
@@ -170,7 +171,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
             memory_budget: budget,
             grid,
             gauge,
-            contact_only_grows,
+            growth,
             system,
             fields,
             rms_height: gap.rms_height,

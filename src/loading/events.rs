@@ -7,7 +7,7 @@ use super::solver::LoadingSolver;
 use super::state::ContactState;
 use super::window::Candidate;
 use crate::updater::LinearUpdater;
-use crate::{Boundary, Error, InfluenceKernel, Surface};
+use crate::{Boundary, ContactGrowth, Error, InfluenceKernel, Surface};
 
 /// How far pressures and gaps may lie below zero, relative to the greatest ones, for a window of an
 /// updater that is not exact to be accepted: its order of events is then right but for nodes whose
@@ -16,10 +16,18 @@ const VERIFIED: f64 = 1e-7;
 
 /// The same for a state of an exact updater: far above rounding, as in a refresh.
 const CHECKED: f64 = 1e-10;
+
 /// Greatest change of the approach at which a node touches, relative to it, that may rest on a
 /// Schur complement that is not exact. Only nodes between others in contact change so much; measured,
 /// the states of a 256² surface then stay within 5e-8.
 const MOST_DRIFT: f64 = 1.5;
+
+/// A condition of contact that a state breaks.
+struct Contradiction {
+    error: Error,
+    /// Until which approach the condition held, estimated from the rate at the state.
+    until: f64,
+}
 
 impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     /// Computes at least one more state, unless the path is at its end. Returns what went wrong
@@ -35,7 +43,8 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             }
         }
         self.checked_event()?;
-        if self.updater.is_exact() {
+        let exact = self.updater.is_exact();
+        if exact && !self.may_take_back() {
             return Ok(None);
         }
         // What changes in a window carries errors of single precision, which must stay small beside
@@ -47,7 +56,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             let drifted = next.is_some_and(|next| self.window.drift(next) > MOST_DRIFT);
             let ended = little_left(self.front.mean_gap, start.mean_gap)
                 || little_left(self.front.closing, start.closing);
-            if drifted || ended {
+            if !exact && (drifted || ended) {
                 self.window.give_up(0);
             }
             match self.checked_event() {
@@ -56,8 +65,18 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
                 Err(error) => break Some(error),
             }
         };
-        let whole = self.verify()?;
+        let whole = if exact {
+            self.check_gaps()?
+        } else {
+            self.verify()?
+        };
         Ok(failure.filter(|_| whole))
+    }
+
+    /// Whether bounds on the approach at which a node touches may fail, so that a window is checked
+    /// at its end, and its last events taken back.
+    pub(super) fn may_take_back(&self) -> bool {
+        self.growth == ContactGrowth::Monotone && self.rule == ContactRule::FirstContact
     }
 
     /// The next node of the window that touches, if the window still knows.
@@ -71,13 +90,14 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     /// The next event of the window, with its state checked if contact may not only grow.
     fn checked_event(&mut self) -> Result<bool, Error> {
         let more = self.event()?;
-        let unsure = self.rule == ContactRule::FirstContact && !self.contact_only_grows;
+        let unsure =
+            self.rule == ContactRule::FirstContact && self.growth == ContactGrowth::Unknown;
         if more
             && unsure
-            && let Some(error) = self.contradiction(CHECKED)?
+            && let Some(contradiction) = self.contradiction(CHECKED)?
         {
             self.drop_events(1);
-            return Err(error);
+            return Err(contradiction.error);
         }
         Ok(more)
     }
@@ -178,9 +198,33 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         Ok(whole)
     }
 
+    /// Checks all gaps at the end of a window whose bounds may have failed, and takes back the events
+    /// after the first overlap. Gaps only close, so that none has overlapped where none does at the
+    /// end. Returns whether the whole window stood.
+    ///
+    /// The next refresh needs the same solution and the same displacements, and finds them.
+    fn check_gaps(&mut self) -> Result<bool, Error> {
+        let mut whole = true;
+        let mut fewest = 1;
+        while self.ahead.len() > 1
+            && let Some(Contradiction { until, .. }) = self.contradiction(CHECKED)?
+        {
+            whole = false;
+            let states = self.ahead.iter().rev();
+            let later = states.take_while(|state| self.gauged_approach(state) > until);
+            let events = later.count().max(fewest).min(self.ahead.len() - 1);
+            self.drop_events(events);
+            // An estimate that keeps failing must not make the search long.
+            fewest *= 2;
+        }
+        Ok(whole)
+    }
+
     /// Takes back the last events, and lets the window know no further ones.
     fn drop_events(&mut self, events: usize) {
         self.ahead.truncate(self.ahead.len() - events);
+        self.solved = None;
+        self.timings.taken_back += events;
         for node in self.contact.drain(self.contact.len() - events..) {
             self.in_contact[node] = false;
         }
@@ -191,38 +235,47 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
 
     /// Whose pressure or gap at the front is negative by more than `tolerance`, relative to the
     /// greatest pressure and to the lengths of the problem.
-    fn contradiction(&mut self, tolerance: f64) -> Result<Option<Error>, Error> {
+    fn contradiction(&mut self, tolerance: f64) -> Result<Option<Contradiction>, Error> {
         self.solve(self.contact.len())?;
         let approach = self.front.approach;
         let grid = self.grid;
-        let contradiction = |quantity, node, value| {
+        let contradiction = |quantity, node, value, until| {
             let (ix, iy) = grid.coordinates(node);
-            Ok(Some(Error::NotMonotone {
+            let error = Error::NotMonotone {
                 quantity,
                 ix,
                 iy,
                 approach,
                 value,
-            }))
+            };
+            Contradiction { error, until }
         };
         let solution = self.solution.y1.iter().zip(&self.solution.y2);
         let pressures = solution.map(|(y1, y2)| y1 + approach * y2);
         let greatest = pressures.clone().fold(0.0, f64::max);
         for (&node, pressure) in self.contact.iter().zip(pressures) {
             if pressure < -tolerance * greatest {
-                return contradiction("pressure", node, pressure);
+                let error = contradiction("pressure", node, pressure, f64::NEG_INFINITY);
+                return Ok(Some(error));
             }
         }
         let overlap = -tolerance * (self.greatest_gap + approach);
+        let start = Instant::now();
         let [u1, u2] = self.fields.displacements(&self.contact, &self.solution)?;
+        self.timings.convolution += start.elapsed();
         let gaps = self.system.gap().iter().zip(u1).zip(u2);
+        let mut first: Option<(usize, f64, f64)> = None;
         for (node, ((gap, u1), u2)) in gaps.enumerate() {
-            let gap = gap + u1 - approach * (1.0 - u2);
+            let (r1, r2) = (gap + u1, 1.0 - u2);
+            let gap = r1 - approach * r2;
             if !self.in_contact[node] && gap < overlap {
-                return contradiction("gap", node, gap);
+                let until = if r2 > 0.0 { r1 / r2 } else { f64::NEG_INFINITY };
+                if first.is_none_or(|(_, _, earliest)| until < earliest) {
+                    first = Some((node, gap, until));
+                }
             }
         }
-        Ok(None)
+        Ok(first.map(|(node, gap, until)| contradiction("gap", node, gap, until)))
     }
 
     /// The path cannot go on although nodes are left: none of their gaps closes.

@@ -7,7 +7,7 @@ use super::limits::ContactRule;
 use super::solver::LoadingSolver;
 use super::sum::Sum;
 use crate::updater::LinearUpdater;
-use crate::{Error, InfluenceKernel, Surface};
+use crate::{ContactGrowth, Error, InfluenceKernel, Surface};
 
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, before
 /// it counts as an overlap. The displacement comes from an FFT and a triangular solve, whose errors
@@ -22,12 +22,16 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
         let count = self.contact.len();
         let size = self.affordable(count, self.next_window_size(count))?;
-        if count > self.committed {
-            self.updater.commit(&self.system, self.window.touched())?;
-            self.committed = count;
+        if self.may_take_back() {
+            // The solution that verified the last window, to the last bit, whatever was asked for
+            // in between.
+            self.solve(count)?;
+            self.commit()?;
+        } else {
+            self.commit()?;
+            self.solve(count)?;
         }
-        self.solve(count)?;
-        if !self.updater.is_exact() {
+        if self.may_take_back() || !self.updater.is_exact() {
             self.renew_front();
         }
         let start = Instant::now();
@@ -72,7 +76,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             (ContactRule::SmallestGap, _) => 1,
             (_, Some(size)) => size,
             // Bounds on the events of others may not hold.
-            (_, None) if !self.contact_only_grows => 1,
+            (_, None) if self.growth == ContactGrowth::Unknown => 1,
             // No use in watching many more than may still touch.
             (_, None) => automatic_window(count, nodes, self.updater.window_cost())
                 .min(2 * (self.limits.nodes - count)),

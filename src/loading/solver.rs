@@ -9,7 +9,7 @@ use super::limits::{ContactRule, Limits};
 use super::state::ContactState;
 use super::window::Window;
 use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, System, Touched};
-use crate::{Error, Grid, InfluenceKernel, Surface};
+use crate::{ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
@@ -45,7 +45,7 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     pub(super) limits: Limits,
     pub(super) memory_budget: usize,
     pub(super) grid: Grid,
-    pub(super) contact_only_grows: bool,
+    pub(super) growth: ContactGrowth,
     /// The gauge of a periodic kernel over the cell area, zero of a free one: the approach in the
     /// gauge is that of the mean planes and this times the load.
     pub(super) gauge: f64,
@@ -55,6 +55,8 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     pub(super) greatest_gap: f64,
     pub(super) window: Window,
     pub(super) solution: Solution,
+    /// For how many of the nodes in contact the solution is, if it is for any.
+    pub(super) solved: Option<usize>,
     /// Nodes in the order in which they touched.
     pub(super) contact: Vec<usize>,
     pub(super) in_contact: Vec<bool>,
@@ -78,6 +80,9 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
 pub struct LoadingTimings {
     /// Number of windows.
     pub windows: usize,
+    /// Number of events that were computed and then taken back, because a state did not stand the
+    /// check at the end of its window.
+    pub taken_back: usize,
     /// Displacements of all nodes at every refresh.
     pub convolution: Duration,
     /// Choice of the nodes to watch.
@@ -101,8 +106,12 @@ pub(super) struct Front {
 }
 
 impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
-    /// Solves for the first `count` nodes in contact.
+    /// Solves for the first `count` nodes in contact, unless that is what was done last.
     pub(super) fn solve(&mut self, count: usize) -> Result<(), Error> {
+        if self.solved == Some(count) {
+            return Ok(());
+        }
+        self.solved = None;
         let pending = self.contact.len() - self.committed;
         let none = Touched::default();
         let touched = if pending > 0 {
@@ -120,6 +129,18 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
                     found: values.len(),
                 });
             }
+        }
+        self.solved = Some(count);
+        Ok(())
+    }
+
+    /// Hands the nodes that touched over to the updater.
+    pub(super) fn commit(&mut self) -> Result<(), Error> {
+        let count = self.contact.len();
+        if count > self.committed {
+            self.updater.commit(&self.system, self.window.touched())?;
+            self.committed = count;
+            self.solved = None;
         }
         Ok(())
     }
