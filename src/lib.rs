@@ -30,5 +30,5 @@ pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
 };
-pub use loading::{ContactRule, ContactState, LoadingSolver};
+pub use loading::{ContactEvent, ContactRule, ContactState, LoadingSolver};
 pub use surface::{HeightMap, SelfAffine, Surface};

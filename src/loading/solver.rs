@@ -7,15 +7,16 @@ use std::time::Duration;
 use super::fields::Fields;
 use super::limits::{ContactRule, Limits};
 use super::state::ContactState;
+use super::stepwise::Stepwise;
 use super::window::Window;
 use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, System, Touched};
 use crate::{ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
-/// A fused iterator: it yields one [`ContactState`] for each node that touches, from first touch
-/// (approach 0, load 0) up to full contact or a limit, and `None` for ever after that or after an
-/// error. Fields of the present state, that of the last item, are computed on demand.
+/// A fused iterator: it yields one [`ContactState`] for each node that touches (or leaves, with a
+/// kernel that lets nodes leave), from first touch (approach 0, load 0) up to full contact or a
+/// limit, and `None` for ever after that or after an error. Fields of the present state, that of the last item, are computed on demand.
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
@@ -57,7 +58,7 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     pub(super) solution: Solution,
     /// For how many of the nodes in contact the solution is, if it is for any.
     pub(super) solved: Option<usize>,
-    /// Nodes in the order in which they touched.
+    /// Nodes in contact, in the order in which they touched.
     pub(super) contact: Vec<usize>,
     pub(super) in_contact: Vec<bool>,
     /// How many of them the updater knows.
@@ -65,6 +66,7 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     /// Scratch for the choice of the watched nodes: (key, node).
     pub(super) ranking: Vec<(f64, usize)>,
     pub(super) front: Front,
+    pub(super) stepwise: Stepwise,
     /// States that are computed but not yielded yet.
     pub(super) ahead: VecDeque<ContactState>,
     /// What went wrong after them.
@@ -172,7 +174,11 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> Iterator for LoadingSolve
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let done = self.state.map_or(0, |state| state.step);
+        if self.is_stepwise() && !self.finished {
+            // Nodes may leave and touch again.
+            return (0, None);
+        }
+        let done = self.state.map_or(0, |state| state.contact_nodes);
         let most = self.limits.nodes.saturating_sub(done);
         // One more for an error.
         (0, Some(if self.finished { 0 } else { most + 1 }))
