@@ -170,17 +170,22 @@ fn complementary(matrix: &DMatrix<f64>, gaps: &[f64], approach: f64) -> DVector<
     }
 }
 
+/// Both sides solve with matrices of condition 1e3 at most, which loses three digits of sixteen.
+const EXACT: f64 = 1e-12;
+/// Solutions that are refined or iterated to residuals of 1e-12 and 1e-14: times the condition number.
+const ITERATED: f64 = 1e-10;
+
 /// A path from first touch to its end, checked at every event and between events. Returns the number
 /// of releases.
 ///
-/// Everything within 1e-12 of the greatest pressure or load: both sides solve with matrices of
-/// condition 1e3 at most, which loses three digits of sixteen.
+/// Everything within `tolerance` of the greatest pressure or load. With a factor in double precision
+/// that is [`EXACT`].
 fn check<U: LinearUpdater>(
     kernel: &Table,
     gaps: &[f64],
     mut path: LoadingSolver<HeightMap, Table, U>,
+    tolerance: f64,
 ) -> usize {
-    const TOLERANCE: f64 = 1e-12;
     let matrix = kernel.matrix();
     let gaps = from_first_touch(gaps);
     let mut contact = BTreeSet::new();
@@ -190,12 +195,12 @@ fn check<U: LinearUpdater>(
         let scale = expected.max().max(1e-3);
         let error = (DVector::from_column_slice(pressure.as_slice()) - &expected).amax();
         assert!(
-            error <= TOLERANCE * scale,
+            error <= tolerance * scale,
             "{state:?}: pressure {error:e} of {scale:e}"
         );
         let error = (expected.sum() - state.load).abs();
         assert!(
-            error <= TOLERANCE * scale * gaps.len() as f64,
+            error <= tolerance * scale * gaps.len() as f64,
             "{state:?}: load {error:e}"
         );
         let displacement = (&matrix * &expected).mean();
@@ -203,7 +208,7 @@ fn check<U: LinearUpdater>(
             DVector::from_column_slice(&gaps).mean() + displacement - state.approach_in(kernel);
         let error = (mean_gap - state.mean_gap).abs();
         assert!(
-            error <= TOLERANCE * (1.0 + state.approach_in(kernel)),
+            error <= tolerance * (1.0 + state.approach_in(kernel)),
             "{state:?}: {error:e}"
         );
     };
@@ -224,10 +229,20 @@ fn check<U: LinearUpdater>(
         );
         let map = path.contact_map();
         assert!((0..gaps.len()).all(|node| map.as_slice()[node] == contact.contains(&node)));
+        // Gaps are relative to Sq, of which the approach is up to a hundred times.
         let certificate = path.certificate().unwrap();
-        assert!(certificate.least_pressure >= -1e-11, "{certificate:?}");
-        assert!(certificate.least_gap >= -1e-11, "{certificate:?}");
-        assert!(certificate.greatest_contact_gap <= 1e-11, "{certificate:?}");
+        assert!(
+            certificate.least_pressure >= -100.0 * tolerance,
+            "{certificate:?}"
+        );
+        assert!(
+            certificate.least_gap >= -100.0 * tolerance,
+            "{certificate:?}"
+        );
+        assert!(
+            certificate.greatest_contact_gap <= 100.0 * tolerance,
+            "{certificate:?}"
+        );
         compare(&path.pressure().unwrap(), &state);
         if let Some(last) = states.last() {
             assert!(state.load >= last.load);
@@ -236,7 +251,7 @@ fn check<U: LinearUpdater>(
             compare(&path.pressure_at(&middle).unwrap(), &middle);
             let work = 0.5 * (last.load + state.load) * (state.approach - last.approach);
             let error = (state.energy - last.energy - work).abs();
-            assert!(error <= TOLERANCE * (1.0 + state.energy.abs()), "{error:e}");
+            assert!(error <= tolerance * (1.0 + state.energy.abs()), "{error:e}");
         }
         states.push(state);
     }
@@ -281,7 +296,7 @@ impl InGauge for ContactState {
 /// A random kernel with random gaps.
 fn case(seed: u64) -> (Table, Vec<f64>) {
     let mut random = StdRng::seed_from_u64(seed);
-    let shapes = [(12, 1), (4, 3), (5, 4), (6, 6), (1, 15), (3, 7)];
+    let shapes = [(20, 1), (5, 4), (6, 6), (1, 30), (3, 7), (8, 9)];
     let shape = shapes[random.random_range(0..shapes.len())];
     let boundary = if random.random_bool(0.5) {
         Boundary::Free
@@ -297,9 +312,9 @@ fn case(seed: u64) -> (Table, Vec<f64>) {
 #[test]
 fn random_kernels_against_an_independent_solver() {
     let mut releases = 0;
-    for seed in 0..60 {
+    for seed in 0..250 {
         let (kernel, gaps) = case(seed);
-        releases += check(&kernel, &gaps, kernel.path(&gaps));
+        releases += check(&kernel, &gaps, kernel.path(&gaps), EXACT);
     }
     println!("{releases} releases");
     assert!(releases >= 100, "{releases}");
@@ -308,16 +323,14 @@ fn random_kernels_against_an_independent_solver() {
 #[test]
 fn other_updaters_on_random_kernels() {
     let mut releases = 0;
-    for seed in 100..120 {
+    for seed in 250..310 {
         let (kernel, gaps) = case(seed);
-        let own = check(&kernel, &gaps, kernel.path_with(&gaps, Dense::new()));
+        let own = check(&kernel, &gaps, kernel.path_with(&gaps, Dense::new()), EXACT);
         let mixed = kernel.path_with(&gaps, RecursiveCholesky::mixed());
-        assert_eq!(check(&kernel, &gaps, mixed), own);
+        assert_eq!(check(&kernel, &gaps, mixed, ITERATED), own);
         let iterative = ConjugateGradient::with_tolerance(1e-14).unwrap();
-        assert_eq!(
-            check(&kernel, &gaps, kernel.path_with(&gaps, iterative)),
-            own
-        );
+        let iterative = kernel.path_with(&gaps, iterative);
+        assert_eq!(check(&kernel, &gaps, iterative, ITERATED), own);
         releases += own;
     }
     println!("{releases} releases");
@@ -330,7 +343,7 @@ proptest! {
     #[test]
     fn any_seed(seed in any::<u64>()) {
         let (kernel, gaps) = case(seed);
-        check(&kernel, &gaps, kernel.path(&gaps));
+        check(&kernel, &gaps, kernel.path(&gaps), EXACT);
     }
 }
 
@@ -358,7 +371,7 @@ fn nodes_that_touch_and_leave_together() {
                 levels[ix.min(nx - 1 - ix) + 6 * iy.min(ny - 1 - iy)]
             })
             .collect();
-        releases += check(&kernel, &gaps, kernel.path(&gaps));
+        releases += check(&kernel, &gaps, kernel.path(&gaps), EXACT);
     }
     println!("{releases} releases");
     assert!(releases >= 50, "{releases}");
