@@ -62,11 +62,14 @@ impl<T: Precision> Panels<T> {
                     values[b] = *value;
                 }
             }
-            vectorized(|| {
-                for (rotation, values) in rotations.iter().zip(&mut block) {
-                    rotate(*rotation, values, &mut removed);
-                }
-            });
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (rotation, values) in rotations.iter().zip(&mut block) {
+                        rotate(*rotation, values, &mut removed);
+                    }
+                },
+            );
             for b in 0..count {
                 let (before, here) = block[known..].split_at_mut(b);
                 let mut x = [removed[b]];
@@ -75,7 +78,7 @@ impl<T: Precision> Panels<T> {
                     rotate(*rotation, &mut l, &mut x);
                     values[b] = l[0];
                 }
-                let (diagonal, x) = (here[0][b].widen(), x[0].widen());
+                let (diagonal, x): (f64, f64) = (here[0][b].into(), x[0].into());
                 let root = libm::hypot(diagonal, x);
                 here[0][b] = T::of(root);
                 rotations.push((T::of(diagonal / root), T::of(x / root)));
