@@ -230,20 +230,12 @@ fn check<U: LinearUpdater>(
         );
         let map = path.contact_map();
         assert!((0..gaps.len()).all(|node| map.as_slice()[node] == contact.contains(&node)));
-        // Gaps are relative to Sq, of which the approach is up to a hundred times.
+        // Gaps are relative to Sq, some 0.3, and round like the approach in the gauge of the kernel.
+        let slack = 30.0 * tolerance * (1.0 + state.approach_in(kernel));
         let certificate = path.certificate().unwrap();
-        assert!(
-            certificate.least_pressure >= -100.0 * tolerance,
-            "{certificate:?}"
-        );
-        assert!(
-            certificate.least_gap >= -100.0 * tolerance,
-            "{certificate:?}"
-        );
-        assert!(
-            certificate.greatest_contact_gap <= 100.0 * tolerance,
-            "{certificate:?}"
-        );
+        assert!(certificate.least_pressure >= -slack, "{certificate:?}");
+        assert!(certificate.least_gap >= -slack, "{certificate:?}");
+        assert!(certificate.greatest_contact_gap <= slack, "{certificate:?}");
         compare(&path.pressure().unwrap(), &state);
         if let Some(last) = states.last() {
             assert!(state.load >= last.load);
