@@ -541,7 +541,10 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
                     (state.load, expected.load),
                     (state.mean_gap, expected.mean_gap),
                     (state.energy, expected.energy),
-                    (state.contact_stiffness, expected.contact_stiffness),
+                    (
+                        state.contact_stiffness.unwrap(),
+                        expected.contact_stiffness.unwrap(),
+                    ),
                 ] {
                     assert!(
                         (found - expected).abs() < 1e-12 * (1.0 + expected),

@@ -30,7 +30,7 @@ use crate::{ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 ///     .build()?;
 /// while let Some(state) = path.next() {
 ///     let state = state?;
-///     println!("{} nodes carry {} N", state.step, state.load);
+///     println!("{} nodes carry {} N", state.contact_nodes, state.load);
 /// }
 /// assert!(path.certificate()?.least_pressure > -1e-12);
 /// # Ok(())
