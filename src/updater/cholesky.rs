@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::factor::{CholeskyTimings, Factor};
+use super::panels::ROWS;
 use super::{LinearUpdater, MixedCholesky, Schur, Solution, System, Touched};
 use crate::{Error, parallel};
 
@@ -49,6 +50,32 @@ impl RecursiveCholesky {
         MixedCholesky::new()
     }
 
+    /// The factor of a contact set that is known as a whole.
+    pub(crate) fn of(system: &System, contact: &[usize]) -> Result<Self, Error> {
+        let mut updater = Self::new();
+        let (mut schur, mut touched) = (Schur::default(), Touched::default());
+        for nodes in contact.chunks(ROWS) {
+            updater.schur(system, nodes, &mut schur)?;
+            touched.reset(nodes.len());
+            let mut reduced = schur.rhs().to_vec();
+            for (position, &node) in nodes.iter().enumerate() {
+                touched
+                    .push(&schur, node, position, &mut reduced)
+                    .map_err(|_| Error::FactorizationFailed {
+                        nodes: contact.len(),
+                    })?;
+            }
+            updater.commit(system, &touched)?;
+        }
+        Ok(updater)
+    }
+
+    /// Bytes held at most while [`Self::of`] factors `contact` nodes.
+    pub(crate) fn bytes_of(contact: usize) -> usize {
+        let window = 2 * ROWS * ROWS * size_of::<f64>();
+        Self::new().bytes(contact, ROWS).saturating_add(window)
+    }
+
     /// The factor alone.
     pub(super) fn into_factor(self) -> Factor<f64> {
         self.factor
@@ -81,6 +108,13 @@ impl LinearUpdater for RecursiveCholesky {
         self.factor.commit(system, touched)?;
         self.border
             .extend((0..touched.len()).filter_map(|event| touched.rhs(event)));
+        Ok(())
+    }
+
+    /// The rows of later nodes are rotated into place, n² of them at most: much less than a new
+    /// factor, and as accurate.
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        self.factor.release(system, node)?.remove(&mut self.border);
         Ok(())
     }
 

@@ -387,6 +387,29 @@ impl LinearUpdater for ConjugateGradient {
         Ok(())
     }
 
+    /// Solutions start from what they were on the nodes that stay.
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        system.check_nodes(&[node])?;
+        let position = self.order.iter().position(|&other| other == node);
+        let position = position.ok_or_else(|| system.not_in_contact(node))?;
+        let mut grid = Self::on_grid(&mut self.grid, system)?;
+        self.order.remove(position);
+        self.columns.clear();
+        let place = grid.contact.places()[node] as usize;
+        let known = self.solutions.iter_mut().filter(|x| place < x.len());
+        known.for_each(|x| {
+            x.remove(place);
+        });
+        let mut in_contact = vec![false; system.gap().len()];
+        for &node in &self.order {
+            in_contact[node] = true;
+        }
+        grid.contact.assign(|node| in_contact[node]);
+        grid.inverse.update(&grid.contact);
+        self.grid = Some(grid);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         system: &System,

@@ -238,6 +238,21 @@ impl LinearUpdater for MixedCholesky {
         Ok(())
     }
 
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        if let Some(double) = &mut self.double {
+            double.release(system, node)?;
+        } else {
+            self.factor.release(system, node)?;
+        }
+        self.contact.retain(|&other| other != node);
+        // The next solution starts afresh: from zero, which displaces nothing.
+        self.refined.clear();
+        self.solution.iter_mut().for_each(Vec::clear);
+        let answers = self.fields.iter_mut().flat_map(|fields| &mut fields.answer);
+        answers.for_each(|answer| answer.fill(0.0));
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         system: &System,

@@ -74,7 +74,7 @@ impl Default for WindowCost {
     }
 }
 
-/// A growing contact set and the inverse of its influence matrix.
+/// A contact set that grows, and rarely shrinks, and the inverse of its influence matrix.
 ///
 /// An updater starts with an empty contact set. It is told of nodes in the order in which they
 /// touch, in two stages: first they are *watched* ([`schur`](Self::schur)), then those that
@@ -101,6 +101,20 @@ pub trait LinearUpdater {
     ///
     /// Whatever keeps the updater from growing.
     fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error>;
+
+    /// Takes a committed node out of the contact set: those after it move up by one. No node is
+    /// watched afterwards. Called only if the pressure of a node falls to zero, which some kernels
+    /// never let happen.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotInContact`], and whatever keeps the updater from shrinking; then nothing has
+    /// changed. By default [`Error::ReleaseNotSupported`].
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        system.check_nodes(&[node])?;
+        let (ix, iy) = system.table().grid().coordinates(node);
+        Err(Error::ReleaseNotSupported { ix, iy })
+    }
 
     /// Solves for the first `count` nodes of the sequence that consists of the committed nodes and,
     /// after them, those of `touched` (which are not committed yet).
