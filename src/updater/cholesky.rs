@@ -3,8 +3,9 @@
 use std::time::Instant;
 
 use super::factor::{CholeskyTimings, Factor};
+use super::panels::ROWS;
 use super::{LinearUpdater, MixedCholesky, Schur, Solution, System, Touched};
-use crate::Error;
+use crate::{Error, parallel};
 
 /// The Cholesky factor of the contact set's influence matrix, grown by one row for each node that
 /// touches (paper, eqs. 14-19), in blocks.
@@ -49,6 +50,37 @@ impl RecursiveCholesky {
         MixedCholesky::new()
     }
 
+    /// The factor of a contact set that is known as a whole.
+    pub(crate) fn of(system: &System, contact: &[usize]) -> Result<Self, Error> {
+        let mut updater = Self::new();
+        let (mut schur, mut touched) = (Schur::default(), Touched::default());
+        for nodes in contact.chunks(ROWS) {
+            updater.schur(system, nodes, &mut schur)?;
+            touched.reset(nodes.len());
+            let mut reduced = schur.rhs().to_vec();
+            for (position, &node) in nodes.iter().enumerate() {
+                touched
+                    .push(&schur, node, position, &mut reduced)
+                    .map_err(|_| Error::FactorizationFailed {
+                        nodes: contact.len(),
+                    })?;
+            }
+            updater.commit(system, &touched)?;
+        }
+        Ok(updater)
+    }
+
+    /// Bytes held at most while [`Self::of`] factors `contact` nodes.
+    pub(crate) fn bytes_of(contact: usize) -> usize {
+        let window = 2 * ROWS * ROWS * size_of::<f64>();
+        Self::new().bytes(contact, ROWS).saturating_add(window)
+    }
+
+    /// The factor alone.
+    pub(super) fn into_factor(self) -> Factor<f64> {
+        self.factor
+    }
+
     /// Where the time went so far.
     #[must_use]
     pub fn timings(&self) -> CholeskyTimings {
@@ -79,6 +111,13 @@ impl LinearUpdater for RecursiveCholesky {
         Ok(())
     }
 
+    /// The rows of later nodes are rotated into place, n² of them at most: much less than a new
+    /// factor, and as accurate.
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        self.factor.release(system, node)?.remove(&mut self.border);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         _system: &System,
@@ -101,12 +140,13 @@ impl LinearUpdater for RecursiveCholesky {
             y.extend(pending.iter().map(|values| values[rhs]));
         }
         let terms: Vec<_> = touched.positions().iter().copied().zip(pending).collect();
-        self.factor
-            .columns
-            .subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
-        self.factor
-            .panels
-            .solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
+        let Factor {
+            panels, columns, ..
+        } = &self.factor;
+        parallel::among_threads(|| {
+            columns.subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
+            panels.solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
+        });
         for value in y1 {
             *value = -*value;
         }

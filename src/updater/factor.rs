@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::columns::Columns;
-use super::panels::Panels;
+use super::panels::{Panels, Rotations};
 use super::precision::Precision;
 use super::{Schur, System, Touched};
 use crate::Error;
@@ -18,6 +18,8 @@ pub struct CholeskyTimings {
     pub schur: Duration,
     /// Rows that become part of the factor.
     pub commit: Duration,
+    /// Rows of nodes that left the contact.
+    pub release: Duration,
     /// Solutions on the contact set.
     pub solve: Duration,
 }
@@ -129,6 +131,22 @@ impl<T: Precision> Factor<T> {
         Ok(())
     }
 
+    /// Removes a node from the contact set, and forgets the watched ones. Returns what removes its
+    /// entry from $L^{-1} B$.
+    pub(super) fn release(&mut self, system: &System, node: usize) -> Result<Rotations<T>, Error> {
+        system.check_nodes(&[node])?;
+        let start = Instant::now();
+        let place = system.table().place(node);
+        let position = self.places.iter().position(|&other| other == place);
+        let position = position.ok_or_else(|| system.not_in_contact(node))?;
+        self.places.remove(position);
+        self.watched.clear();
+        let rotations = self.panels.remove(position);
+        self.columns.forget(self.panels.rows());
+        self.timings.release += start.elapsed();
+        Ok(rotations)
+    }
+
     /// Bytes held with `contact` nodes in contact and `watched` watched.
     pub(super) fn bytes(contact: usize, watched: usize) -> usize {
         Panels::<T>::bytes(contact)
@@ -146,5 +164,20 @@ impl<T: Precision> Factor<T> {
             });
         }
         Ok(())
+    }
+}
+
+impl Factor<f64> {
+    /// The same in single precision, divided by `scale`.
+    pub(super) fn rounded(self, scale: f64) -> Factor<f32> {
+        let round = |value: f64| f32::of(value / scale);
+        Factor {
+            panels: self.panels.map(round),
+            columns: self.columns.map(round),
+            places: self.places,
+            watched: self.watched,
+            scale: self.scale * scale,
+            timings: self.timings,
+        }
     }
 }
