@@ -25,45 +25,33 @@ impl Periodic {
 }
 
 /// A free or a periodic half-space.
-pub(crate) enum HalfSpace {
-    Free(Boussinesq),
-    Love(PeriodicBoussinesq),
-    Spectral(Spectral),
-}
+pub(crate) struct HalfSpace(Box<dyn InfluenceKernel>);
 
 impl HalfSpace {
     /// A half-space of composite modulus `e_star`: free unless it is to be periodic.
     pub(crate) fn new(periodic: Option<Periodic>, grid: Grid, e_star: f64) -> Result<Self, Error> {
-        Ok(match periodic {
-            None => Self::Free(Boussinesq::new(grid, e_star)?),
-            Some(Periodic::Love) => Self::Love(PeriodicBoussinesq::new(grid, e_star)?),
-            Some(Periodic::Spectral) => Self::Spectral(Spectral::new(grid, e_star)?),
-        })
-    }
-
-    fn kernel(&self) -> &dyn InfluenceKernel {
-        match self {
-            Self::Free(kernel) => kernel,
-            Self::Love(kernel) => kernel,
-            Self::Spectral(kernel) => kernel,
-        }
+        Ok(Self(match periodic {
+            None => Box::new(Boussinesq::new(grid, e_star)?),
+            Some(Periodic::Love) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
+            Some(Periodic::Spectral) => Box::new(Spectral::new(grid, e_star)?),
+        }))
     }
 }
 
 impl InfluenceKernel for HalfSpace {
     fn grid(&self) -> Grid {
-        self.kernel().grid()
+        self.0.grid()
     }
 
     fn boundary(&self) -> Boundary {
-        self.kernel().boundary()
+        self.0.boundary()
     }
 
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.kernel().coefficient(di, dj)
+        self.0.coefficient(di, dj)
     }
 
     fn contact_growth(&self) -> ContactGrowth {
-        self.kernel().contact_growth()
+        self.0.contact_growth()
     }
 }

@@ -53,8 +53,8 @@ pub struct Handover {
 
 #[derive(Debug, Clone)]
 enum Stage {
-    Factor(RecursiveCholesky),
-    Iterations(ConjugateGradient),
+    Factor(Box<RecursiveCholesky>),
+    Iterations(Box<ConjugateGradient>),
 }
 
 impl Default for Handover {
@@ -68,7 +68,7 @@ impl Handover {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            stage: Stage::Factor(RecursiveCholesky::new()),
+            stage: Stage::Factor(Box::default()),
             budget: usize::MAX,
             order: Vec::new(),
             handed_over_at: None,
@@ -83,15 +83,15 @@ impl Handover {
 
     fn updater(&self) -> &dyn LinearUpdater {
         match &self.stage {
-            Stage::Factor(factor) => factor,
-            Stage::Iterations(iterations) => iterations,
+            Stage::Factor(factor) => &**factor,
+            Stage::Iterations(iterations) => &**iterations,
         }
     }
 
     fn updater_mut(&mut self) -> &mut dyn LinearUpdater {
         match &mut self.stage {
-            Stage::Factor(factor) => factor,
-            Stage::Iterations(iterations) => iterations,
+            Stage::Factor(factor) => &mut **factor,
+            Stage::Iterations(iterations) => &mut **iterations,
         }
     }
 
@@ -116,7 +116,7 @@ impl Handover {
         );
         self.handed_over_at = Some(order.len());
         // The factor goes before anything takes its place.
-        self.stage = Stage::Iterations(ConjugateGradient::new());
+        self.stage = Stage::Iterations(Box::default());
         if let Stage::Iterations(iterations) = &mut self.stage {
             iterations.take_over(system, order, &solution)?;
         }
@@ -171,7 +171,7 @@ impl LinearUpdater for Handover {
             && !self.factor_fits(factor)
         {
             self.handed_over_at = Some(0);
-            self.stage = Stage::Iterations(ConjugateGradient::new());
+            self.stage = Stage::Iterations(Box::default());
         }
     }
 }
