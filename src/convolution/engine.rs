@@ -6,7 +6,7 @@ use super::real::Real;
 use super::transforms::{Transforms, Workspace};
 use super::transpose::{BLOCK, blocks, gather, interleave, pitch};
 use crate::kernel::KernelTable;
-use crate::parallel::for_each_block;
+use crate::parallel::{for_each_block, inside};
 use crate::{Boundary, Error, Grid};
 
 /// Parts into which the blocks of a large grid are divided, each with its own working memory.
@@ -173,13 +173,21 @@ impl<T: Real> Engine<T> {
     ) -> Result<(), Error> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
+        if self.scratch.len() > 1 {
+            inside(|| self.filter(pressure, factors, displacement));
+        } else {
+            self.filter(pressure, factors, displacement);
+        }
+        Ok(())
+    }
+
+    fn filter(&mut self, pressure: &[f64], factors: [f64; 2], displacement: &mut [f64]) {
         let nx = self.grid.nx();
         self.fill_rows(|transforms, iy, spectrum, work| {
             transforms.forward_row(&pressure[iy * nx..][..nx], factors[0], spectrum, work);
         });
         self.filter_columns();
         self.restore_rows(factors[1], displacement);
-        Ok(())
     }
 
     pub(super) fn check_length(&self, field: &[f64]) -> Result<(), Error> {

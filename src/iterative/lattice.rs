@@ -205,3 +205,67 @@ impl Lattice {
         self.coefficients[(CENTER as i32 + offset - other) as usize]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Error, Grid, PeriodicBoussinesq};
+
+    /// Every neighbour is another node, once, and earlier in one order of all nodes; and its place in
+    /// the table of coefficients is that of its influence, across the edges too.
+    #[test]
+    fn neighbours_on_a_periodic_grid() -> Result<(), Error> {
+        for (nx, ny) in [(64, 48), (40, 24), (33, 20), (16, 16), (50, 1), (2, 3)] {
+            let grid = Grid::new(nx, ny, 1.0, 1.5)?;
+            let table = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
+            let lattices = Lattices::new(&table);
+            let last = lattices.levels.len() as u32 - 1;
+            let order = |node: usize| {
+                let level = (node % nx | node / nx).trailing_zeros().min(last);
+                (last - level, node)
+            };
+            for node in 0..grid.nodes() {
+                let mut found = [Neighbour::default(); 8];
+                let (count, lattice) = lattices.earlier(node, |_| true, &mut found);
+                let mut seen = vec![node];
+                for neighbour in &found[..count] {
+                    let other = neighbour.node as usize;
+                    assert!(order(other) < order(node), "{other} and {node}");
+                    assert!(!seen.contains(&other), "{other} twice");
+                    seen.push(other);
+                    let influence = table.between(table.place(other), table.place(node));
+                    let expected = (influence / table.self_influence()) as f32;
+                    let stored = lattice.between(neighbour.offset, 0);
+                    // The same coefficient, from one period or the next.
+                    assert!((stored - expected).abs() <= 1e-6, "{stored} and {expected}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The corner next to all others across both edges sees them.
+    #[test]
+    fn edges_are_no_edges() -> Result<(), Error> {
+        let grid = Grid::square(64, 1.0)?;
+        let table = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
+        let lattices = Lattices::new(&table);
+        let mut found = [Neighbour::default(); 8];
+        let (count, _) = lattices.earlier(63 + 64 * 63, |_| true, &mut found);
+        let nodes: Vec<usize> = found[..count].iter().map(|n| n.node as usize).collect();
+        // All eight around it are earlier: it is the last of the finest level.
+        for (x, y) in [
+            (62, 62),
+            (63, 62),
+            (0, 62),
+            (62, 63),
+            (0, 63),
+            (62, 0),
+            (63, 0),
+            (0, 0),
+        ] {
+            assert!(nodes.contains(&(x + 64 * y)), "({x}, {y}) in {nodes:?}");
+        }
+        Ok(())
+    }
+}

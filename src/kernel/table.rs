@@ -1,5 +1,7 @@
 //! All influence coefficients of a grid, ready for look-up without index arithmetic.
 
+mod coarse;
+
 use super::{Boundary, InfluenceKernel};
 use crate::{Error, Grid};
 
@@ -183,116 +185,6 @@ impl KernelTable {
         self.values.get(index as usize).copied()
     }
 
-    /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
-    /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
-    /// on blocks. A direction with a single node stays as it is.
-    ///
-    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, where
-    /// the kernel is continued by its last value; those of a periodic one are a little smaller than two
-    /// cells, so that they fit the period, and weighted by how much they overlap.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Grid::new`].
-    pub(crate) fn coarsened(&self) -> Result<Self, Error> {
-        match self.boundary {
-            Boundary::Free => self.coarsened_free(),
-            Boundary::Periodic => self.coarsened_periodic(),
-        }
-    }
-
-    fn coarsened_periodic(&self) -> Result<Self, Error> {
-        let (nx, ny) = self.grid.shape();
-        let (lx, ly) = self.grid.sides();
-        let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
-        let grid = Grid::with_sides(cx, cy, lx, ly)?;
-        // For each offset of blocks the offsets of cells, and their weights: sums over the sources,
-        // averages over the observers.
-        let overlaps = |nodes: usize, blocks: usize| -> Vec<[(usize, f64); 4]> {
-            let width = nodes as f64 / blocks as f64;
-            (0..blocks)
-                .map(|offset| {
-                    let at = offset as f64 * width;
-                    let first = at as isize - 1;
-                    let weight = |cell: isize| (1.0 - (cell as f64 - at).abs() / width).max(0.0);
-                    let sum: f64 = (first..first + 4).map(weight).sum();
-                    std::array::from_fn(|i| {
-                        let cell = first + i as isize;
-                        let place = cell.rem_euclid(nodes as isize) as usize;
-                        (place, weight(cell) * width / sum)
-                    })
-                })
-                .collect()
-        };
-        let (along_x, along_y) = (overlaps(nx, cx), overlaps(ny, cy));
-        let width = 2 * nx - 1;
-        let (cx, cy) = (cx as isize, cy as isize);
-        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
-        for dj in 1 - cy..cy {
-            for di in 1 - cx..cx {
-                // By symmetry offsets need no sign: C(−di, −dj) = C(di, dj).
-                let (di, dj) = if dj < 0 { (-di, -dj) } else { (di, dj) };
-                let mut sum = 0.0;
-                for &(j, wj) in &along_y[dj as usize] {
-                    let row = self.center() + j * width;
-                    for &(i, wi) in &along_x[di.rem_euclid(cx) as usize] {
-                        sum += wi * wj * self.values[row + i];
-                    }
-                }
-                values.push(sum);
-            }
-        }
-        Ok(Self {
-            grid,
-            boundary: self.boundary,
-            values,
-        })
-    }
-
-    fn coarsened_free(&self) -> Result<Self, Error> {
-        let (nx, ny) = self.grid.shape();
-        let factor = |nodes: usize| if nodes > 1 { 2 } else { 1 };
-        let (fx, fy) = (factor(nx), factor(ny));
-        let grid = Grid::new(
-            nx.div_ceil(fx),
-            ny.div_ceil(fy),
-            self.grid.dx() * fx as f64,
-            self.grid.dy() * fy as f64,
-        )?;
-        // Differences between the places of two cells within their blocks, and how often each
-        // occurs; sums over the sources, averages over the observers.
-        let differences = |factor: usize| -> &'static [(isize, f64)] {
-            if factor == 2 {
-                &[(-1, 0.5), (0, 1.0), (1, 0.5)]
-            } else {
-                &[(0, 1.0)]
-            }
-        };
-        let (nx, ny) = (nx as isize, ny as isize);
-        let (cx, cy) = (grid.nx() as isize, grid.ny() as isize);
-        let width = 2 * nx - 1;
-        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
-        for dj in 1 - cy..cy {
-            for di in 1 - cx..cx {
-                let mut sum = 0.0;
-                for &(oj, wj) in differences(fy) {
-                    let j = (dj * fy as isize + oj).clamp(1 - ny, ny - 1) + ny - 1;
-                    for &(oi, wi) in differences(fx) {
-                        let i = (di * fx as isize + oi).clamp(1 - nx, nx - 1) + nx - 1;
-                        sum += wi * wj * self.values[(i + j * width) as usize];
-                    }
-                }
-                values.push(sum);
-            }
-        }
-        let boundary = self.boundary;
-        Ok(Self {
-            grid,
-            boundary,
-            values,
-        })
-    }
-
     /// The displacement of a cell under its own unit pressure, C(0, 0).
     #[must_use]
     pub fn self_influence(&self) -> f64 {
@@ -327,5 +219,29 @@ impl KernelTable {
         for (value, &other) in column.iter_mut().zip(others) {
             *value = self.values[base - other];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::PeriodicBoussinesq;
+
+    #[test]
+    fn another_gauge_is_a_uniform_displacement() -> Result<(), Error> {
+        let grid = Grid::new(12, 9, 1.0, 1.0)?;
+        let kernel = PeriodicBoussinesq::new(grid, 1.0)?;
+        let table = KernelTable::new(&kernel)?;
+        let zero = table.in_gauge(0.0);
+        // Means of 108 numbers near 1.
+        assert!(zero.gauge().is_some_and(|gauge| gauge.abs() < 1e-15));
+        let own = table.coefficient(5, 4).unwrap_or(f64::NAN) - kernel.gauge();
+        let found = zero.coefficient(5, 4).unwrap_or(f64::NAN);
+        assert!((found - own).abs() < 1e-15);
+        // Of the size of the least gauge that makes the kernel an inverse M-matrix.
+        let ratio =
+            table.computing_gauge().unwrap_or(f64::NAN) / kernel.least_gauge().unwrap_or(f64::NAN);
+        assert!((0.8..1.3).contains(&ratio), "{ratio}");
+        Ok(())
     }
 }

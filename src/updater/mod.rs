@@ -15,7 +15,10 @@ mod handover;
 mod mixed;
 mod panels;
 mod precision;
+mod products;
+mod residual;
 mod schur;
+mod substitution;
 mod system;
 mod touched;
 
