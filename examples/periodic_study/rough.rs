@@ -324,7 +324,7 @@ impl Study {
                     ],
                     self.series(|s| s.load, |s| s.stiffness),
                 ),
-                legend: Corner::TopLeft,
+                legend: Corner::BottomLeft,
             },
         ]
     }
