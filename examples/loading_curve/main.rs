@@ -9,13 +9,21 @@
 //! `contact_map.png`, and prints a short table. If the path ends with an error, everything up to
 //! there is written all the same, and the exit code is 1.
 
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/axis.rs"]
 mod axis;
 mod curves;
 mod job;
 mod map;
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/number.rs"]
 mod number;
 mod options;
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/outcome.rs"]
 mod outcome;
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/panel.rs"]
 mod panel;
 mod path;
 mod table;

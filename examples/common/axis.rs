@@ -49,6 +49,24 @@ impl Axis {
         }
     }
 
+    /// A linear axis of a quantity without unit, or whose label has it.
+    pub(crate) fn plain(label: &str, from: f64, to: f64) -> Self {
+        Self {
+            label: label.to_string(),
+            logarithmic: false,
+            ends: (from, to),
+            unit: 1.0,
+        }
+    }
+
+    /// A logarithmic axis of a quantity without unit, or whose label has it, between positive ends.
+    pub(crate) fn plain_logarithmic(label: &str, from: f64, to: f64) -> Self {
+        Self {
+            label: label.to_string(),
+            ..Self::logarithmic("", "", from, to)
+        }
+    }
+
     /// The same axis with some room at both ends, given as fractions of its length.
     pub(crate) fn with_room(mut self, before: f64, after: f64) -> Self {
         let length = self.ends.1 - self.ends.0;

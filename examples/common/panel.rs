@@ -127,10 +127,15 @@ impl Panel {
         y: &Axis,
     ) -> Drawn<DB> {
         self.border(area)?;
+        self.frame_below(area, x)?;
+        self.frame_left(area, y)
+    }
+
+    /// Ticks and label of an axis along the lower edge.
+    pub(crate) fn frame_below<DB: DrawingBackend>(&self, area: &Area<DB>, x: &Axis) -> Drawn<DB> {
         let ink = INK.stroke_width(self.stroke);
         let bottom = self.top + self.height;
-        let [along_x, along_y] = self.room();
-        for tick in x.ticks(along_x) {
+        for tick in x.ticks(self.room()[0]) {
             let (at, _) = rounded(self.pixel(tick.place, 0.0));
             let length = self.tick(tick.label.is_some());
             area.draw(&PathElement::new(
@@ -142,8 +147,20 @@ impl Panel {
                 self.write(area, &label, (at, bottom + self.font / 2), self.font, pos)?;
             }
         }
+        self.write(
+            area,
+            x.label(),
+            (self.left + self.width / 2, bottom + self.font * 9 / 4),
+            self.font * 9 / 8,
+            anchor(HPos::Center, VPos::Top),
+        )
+    }
+
+    /// Ticks and label of an axis along the left edge.
+    pub(crate) fn frame_left<DB: DrawingBackend>(&self, area: &Area<DB>, y: &Axis) -> Drawn<DB> {
+        let ink = INK.stroke_width(self.stroke);
         let mut widest = 0;
-        for tick in y.ticks(along_y) {
+        for tick in y.ticks(self.room()[1]) {
             let (_, at) = rounded(self.pixel(0.0, tick.place));
             let length = self.tick(tick.label.is_some());
             let line = vec![(self.left, at), (self.left + length, at)];
@@ -160,19 +177,11 @@ impl Panel {
                 widest = widest.max(label_width(&label, self.font));
             }
         }
-        let size = self.font * 9 / 8;
-        self.write(
-            area,
-            x.label(),
-            (self.left + self.width / 2, bottom + self.font * 9 / 4),
-            size,
-            anchor(HPos::Center, VPos::Top),
-        )?;
         let at = (
             self.left - widest - self.font * 5 / 4,
             self.top + self.height / 2,
         );
-        upwards(area, y.label(), at, size)
+        upwards(area, y.label(), at, self.font * 9 / 8)
     }
 
     /// Frame with one axis, upwards along its right edge.
@@ -205,7 +214,7 @@ impl Panel {
     }
 
     /// The rectangle alone.
-    fn border<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+    pub(crate) fn border<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
         let corners = corners.map(|(x, y)| rounded(self.pixel(x, y)));
         let ink = INK.stroke_width(self.stroke);
@@ -217,10 +226,22 @@ impl Panel {
     pub(crate) fn curve<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,
-        (x, y): (&Axis, &Axis),
+        axes: (&Axis, &Axis),
         points: impl Iterator<Item = (f64, f64)>,
         colour: RGBColor,
     ) -> Drawn<DB> {
+        area.draw(&PathElement::new(
+            self.trace(axes, points),
+            colour.stroke_width(2 * self.stroke),
+        ))
+    }
+
+    /// The pixels of [`Self::curve`].
+    pub(crate) fn trace(
+        &self,
+        (x, y): (&Axis, &Axis),
+        points: impl Iterator<Item = (f64, f64)>,
+    ) -> Vec<(i32, i32)> {
         // Half the width of the line: nearer points do not show.
         let apart = f64::from(self.stroke);
         let mut kept: Vec<(f64, f64)> = Vec::new();
@@ -241,11 +262,7 @@ impl Panel {
             last = Some(point);
         }
         kept.extend(last);
-        let path: Vec<(i32, i32)> = kept.into_iter().map(rounded).collect();
-        area.draw(&PathElement::new(
-            path,
-            colour.stroke_width(2 * self.stroke),
-        ))
+        kept.into_iter().map(rounded).collect()
     }
 }
 
