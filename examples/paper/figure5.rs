@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::axis::Axis;
-use crate::chart::{self, Chart, Corner, Series, Style, colour};
+use crate::chart::{self, BLACK, Chart, Corner, Series, Style, colour};
 use crate::fits::{Line, Spread};
 use crate::outcome::Failure;
 use crate::run::Run;
@@ -36,6 +36,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
     let mut rows = Vec::new();
     let mut whole = Vec::new();
     let mut below = Vec::new();
+    let mut lines_drawn = Vec::new();
     for (place, family) in study.families.iter().enumerate() {
         let colour = colour(place);
         let mut lines = Vec::new();
@@ -61,7 +62,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             if index == 0 {
                 let ends = points.first().into_iter().chain(points.last());
                 let fitted = ends.map(|(x, _)| (*x, line.at(*x)));
-                below.push(Series::new("its line", colour, Style::Dashed, fitted));
+                let name = if place == 0 { "lines of seed 1" } else { "" };
+                lines_drawn.push(Series::new(name, BLACK, Style::Dashed, fitted));
             }
         }
         let of = |value: fn(&(Line, f64)) -> f64| Spread::of(lines.iter().map(value));
@@ -72,6 +74,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             end: family.at_end(|p| p.area),
         });
     }
+    below.extend(lines_drawn);
     write_csv(
         &directory.join("figure5.csv"),
         &["surface", "seed", "load", "area", "corrected_area"],
@@ -90,7 +93,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             legend: Corner::TopLeft,
         },
         Chart {
-            title: "Below 30 % contact, with the fitted line".to_string(),
+            title: "Below 30 % contact, with fitted lines".to_string(),
             x: Axis::plain("load W / A₀E*", 0.0, greatest(&below)),
             y: Axis::plain("contact area A / A₀", 0.0, STRAIGHT),
             series: below,

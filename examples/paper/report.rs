@@ -13,7 +13,7 @@ use crate::outcome::Failure;
 use crate::peers::Comparison;
 use crate::rules::Rules;
 use crate::study::Study;
-use crate::{findings, verdicts};
+use crate::{findings, sections, verdicts};
 
 /// What this example owns of the page; the rest is left as it is.
 const BEGIN: &str = "<!-- written by the example `paper`: begin -->";
@@ -80,12 +80,12 @@ impl Report {
             self.introduction(),
             verdicts::conclusions(self),
             verdicts::surfaces(self),
-            verdicts::figure3(self, prefix),
-            verdicts::figure4(self, prefix),
-            verdicts::figure5(self, prefix),
-            verdicts::figure6(self, prefix),
-            verdicts::figure7(self, prefix),
-            verdicts::figure8(self, prefix),
+            sections::figure3(self, prefix),
+            sections::figure4(self, prefix),
+            sections::figure5(self, prefix),
+            sections::figure6(self, prefix),
+            sections::figure7(self, prefix),
+            sections::figure8(self, prefix),
             findings::rules(self),
             findings::peers(self),
             findings::list(self)?,
