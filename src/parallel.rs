@@ -4,6 +4,26 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+/// Runs `work` in one of rayon's threads, so that the loops inside it do not pass from the calling
+/// thread to rayon's and back one by one.
+pub(crate) fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    #[cfg(feature = "rayon")]
+    return rayon::scope(|_| work());
+    #[cfg(not(feature = "rayon"))]
+    work()
+}
+
+/// Runs both, at the same time if there are threads.
+pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    #[cfg(feature = "rayon")]
+    rayon::join(a, b);
+    #[cfg(not(feature = "rayon"))]
+    {
+        a();
+        b();
+    }
+}
+
 /// Calls `work` for each item.
 pub(crate) fn for_each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
     #[cfg(feature = "rayon")]

@@ -4,7 +4,9 @@
 mod common;
 
 use asperity::loading::LoadingSolver;
-use asperity::updater::{ConjugateGradient, Dense, LinearUpdater, RecursiveCholesky};
+use asperity::updater::{
+    ConjugateGradient, Dense, LinearUpdater, MixedCholesky, RecursiveCholesky,
+};
 use asperity::{Boussinesq, ContactState, Grid};
 use common::{Event, read_events, surface};
 
@@ -138,16 +140,16 @@ fn dense_window_automatic() {
 
 #[test]
 fn mixed_precision() {
-    for window in [None, Some(7)] {
+    for (window, from) in [(None, 0), (Some(7), 0), (None, 500), (Some(7), 500)] {
         run(
             "selfaffine_48",
-            RecursiveCholesky::mixed(),
+            MixedCholesky::single_from(from),
             window,
             usize::MAX,
         );
         run(
             "selfaffine_40_full",
-            RecursiveCholesky::mixed(),
+            MixedCholesky::single_from(from),
             window,
             usize::MAX,
         );

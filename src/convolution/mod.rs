@@ -49,7 +49,7 @@ use num_complex::Complex;
 pub use direct::direct_sum;
 
 use crate::kernel::KernelTable;
-use crate::parallel::for_each_block;
+use crate::parallel::{for_each_block, inside};
 use crate::{Error, Grid, InfluenceKernel};
 use transforms::{Transforms, Workspace};
 use transpose::{BLOCK, blocks, gather, interleave, pitch};
@@ -211,13 +211,21 @@ impl Convolution {
     pub fn apply(&mut self, pressure: &[f64], displacement: &mut [f64]) -> Result<(), Error> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
+        if self.scratch.len() > 1 {
+            inside(|| self.filter(pressure, displacement));
+        } else {
+            self.filter(pressure, displacement);
+        }
+        Ok(())
+    }
+
+    fn filter(&mut self, pressure: &[f64], displacement: &mut [f64]) {
         let nx = self.grid.nx();
         self.fill_rows(|transforms, iy, spectrum, work| {
             transforms.forward_row(&pressure[iy * nx..][..nx], spectrum, work);
         });
         self.filter_columns();
         self.restore_rows(displacement);
-        Ok(())
     }
 
     /// Writes the displacements \[m\] under two `pressures` \[Pa\] into `displacements`.

@@ -94,7 +94,10 @@ impl<const K: usize> SparseInverse<K> {
                 let old = old_rows.get(old_places[node as usize] as usize);
                 match old {
                     Some(old) if old.neighbours == row.neighbours => *row = *old,
-                    _ => vectorized(|| row.fill(lattice, &found, count)),
+                    _ => vectorized(
+                        #[inline(always)]
+                        || row.fill(lattice, &found, count),
+                    ),
                 }
             }
         });

@@ -30,7 +30,10 @@ fn reduce<T: Copy + Send>(
 pub(crate) fn sum_over(length: usize, value: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let part = |range: Range<usize>| {
         let mut total = 0.0;
-        vectorized(|| total = lanes(range, &value));
+        vectorized(
+            #[inline(always)]
+            || total = lanes(range, &value),
+        );
         total
     };
     reduce(length, 0.0, part, |a, b| a + b)

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::factor::{CholeskyTimings, Factor};
 use super::{LinearUpdater, MixedCholesky, Schur, Solution, System, Touched};
-use crate::Error;
+use crate::{Error, parallel};
 
 /// The Cholesky factor of the contact set's influence matrix, grown by one row for each node that
 /// touches (paper, eqs. 14-19), in blocks.
@@ -47,6 +47,11 @@ impl RecursiveCholesky {
     #[must_use]
     pub fn mixed() -> MixedCholesky {
         MixedCholesky::new()
+    }
+
+    /// The factor alone.
+    pub(super) fn into_factor(self) -> Factor<f64> {
+        self.factor
     }
 
     /// Where the time went so far.
@@ -101,12 +106,13 @@ impl LinearUpdater for RecursiveCholesky {
             y.extend(pending.iter().map(|values| values[rhs]));
         }
         let terms: Vec<_> = touched.positions().iter().copied().zip(pending).collect();
-        self.factor
-            .columns
-            .subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
-        self.factor
-            .panels
-            .solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
+        let Factor {
+            panels, columns, ..
+        } = &self.factor;
+        parallel::inside(|| {
+            columns.subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
+            panels.solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
+        });
         for value in y1 {
             *value = -*value;
         }

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::panels::{Panels, ROWS};
 use super::precision::Precision;
 use super::touched::Touched;
-use crate::parallel;
+use crate::parallel::{self, vectorized};
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
 /// that there are several to share among threads.
@@ -33,10 +34,11 @@ struct Block<T> {
 }
 
 impl<T: Precision> Block<T> {
-    fn zeros(rows: usize, width: usize) -> Self {
+    /// Columns with room for `rows` rows, and none yet.
+    fn with_capacity(rows: usize, width: usize) -> Self {
         Self {
             width,
-            values: vec![T::default(); rows * width],
+            values: Vec::with_capacity(rows * width),
         }
     }
 
@@ -70,6 +72,18 @@ impl<T: Precision> Columns<T> {
         rows.saturating_mul(watched).saturating_mul(size_of::<T>())
     }
 
+    /// The same with every number changed.
+    pub(super) fn map<R>(self, change: impl Fn(T) -> R) -> Columns<R> {
+        let block = |block: Block<T>| Block {
+            width: block.width,
+            values: block.values.into_iter().map(&change).collect(),
+        };
+        Columns {
+            rows: self.rows,
+            blocks: self.blocks.into_iter().map(block).collect(),
+        }
+    }
+
     /// Keeps, of the columns that were watched before, those at `kept` (ascending), and makes room
     /// for `new` more.
     pub(super) fn watch(&mut self, kept: &[usize], new: usize) {
@@ -95,7 +109,7 @@ impl<T: Precision> Columns<T> {
         let mut left = new;
         while left > 0 {
             let width = width.min(left);
-            self.blocks.push(Block::zeros(rows, width));
+            self.blocks.push(Block::with_capacity(rows, width));
             left -= width;
         }
     }
@@ -127,14 +141,16 @@ impl<T: Precision> Columns<T> {
                 for (row, values) in rows.clone().zip(here.chunks_mut(width)) {
                     fill(row, *start, values);
                 }
-                let mut target = MatMut::from_row_major_slice_mut(here, rows.len(), width);
+                let target = MatMut::from_row_major_slice_mut(here, rows.len(), width);
                 let above = block.view(0..rows.start, 0..width);
-                T::subtract_product(target.as_mut(), 1.0, factor.left(p), above);
-                T::solve_lower(factor.diagonal(p), target);
-                let values = &mut block.values[rows.start * width..rows.end * width];
-                for (value, solved) in values.iter_mut().zip(here) {
-                    *value = T::of(*solved);
-                }
+                T::subtract_product(target, 1.0, factor.left(p), above);
+                vectorized(
+                    #[inline(always)]
+                    || block.values.extend(here.iter().map(|value| T::of(*value))),
+                );
+                let solution = &mut block.values[rows.start * width..];
+                let solution = MatMut::from_row_major_slice_mut(solution, rows.len(), width);
+                solve_lower_triangular_in_place(factor.diagonal(p), solution, Par::Seq);
             }
         });
     }
@@ -246,14 +262,17 @@ impl<T: Precision> Columns<T> {
         });
 
         let columns = located(untouched);
-        let mut values = Vec::with_capacity((before + touched.len()) * untouched.len());
-        for row in 0..before {
-            values.extend(
-                columns
-                    .iter()
-                    .map(|(_, (block, column))| block.get(row, *column)),
-            );
-        }
+        let width = untouched.len();
+        let mut values = vec![T::default(); before * width];
+        parallel::for_each_chunk(&mut values, (ROWS * width).max(1), |chunk, values| {
+            for (row, values) in values.chunks_mut(width).enumerate() {
+                let row = chunk * ROWS + row;
+                for (value, (_, (block, column))) in values.iter_mut().zip(&columns) {
+                    *value = block.get(row, *column);
+                }
+            }
+        });
+        values.reserve_exact(touched.len() * width);
         for event in 0..touched.len() {
             values.extend(untouched.iter().map(|&position| window(position, event)));
         }

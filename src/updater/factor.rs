@@ -148,3 +148,18 @@ impl<T: Precision> Factor<T> {
         Ok(())
     }
 }
+
+impl Factor<f64> {
+    /// The same in single precision, divided by `scale`.
+    pub(super) fn rounded(self, scale: f64) -> Factor<f32> {
+        let round = |value: f64| f32::of(value / scale);
+        Factor {
+            panels: self.panels.map(round),
+            columns: self.columns.map(round),
+            places: self.places,
+            watched: self.watched,
+            scale: self.scale * scale,
+            timings: self.timings,
+        }
+    }
+}

@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use super::factor::{CholeskyTimings, Factor};
-use super::{LinearUpdater, Schur, Solution, System, Touched, WindowCost};
+use super::residual::Fields;
+use super::{LinearUpdater, RecursiveCholesky, Schur, Solution, System, Touched, WindowCost};
 use crate::Error;
-use crate::convolution::Convolution;
+use crate::parallel;
 
 /// A [`RecursiveCholesky`](super::RecursiveCholesky) with its factor in single precision: half the
 /// memory, 2n² bytes for n nodes, and products at twice the speed.
@@ -20,8 +21,16 @@ use crate::convolution::Convolution;
 ///   single precision, some 1e-7 of them;
 /// * nodes whose contact differs by less than that in approach may touch in another order;
 /// * every window is verified against the conditions of contact before its states are yielded.
+///
+/// Refinement costs more than it saves while the factor is small. Up to
+/// [`MixedCholesky::SINGLE_FROM`] nodes in contact everything is in double precision, as in a
+/// [`RecursiveCholesky`](super::RecursiveCholesky), and takes up to 67 MB; then the factor is rounded.
 #[derive(Debug, Clone)]
 pub struct MixedCholesky {
+    /// The factor as long as it is small.
+    double: Option<RecursiveCholesky>,
+    /// Nodes in contact from which on it is not.
+    single_from: usize,
     factor: Factor<f32>,
     /// Nodes in contact, in the order of the factor.
     contact: Vec<usize>,
@@ -29,15 +38,6 @@ pub struct MixedCholesky {
     solution: [Vec<f64>; System::RHS],
     refined: Vec<usize>,
     fields: Option<Fields>,
-}
-
-/// Fields over the grid for the residual.
-#[derive(Debug, Clone)]
-struct Fields {
-    convolution: Convolution,
-    spread: [Vec<f64>; System::RHS],
-    /// $C_{:,I} Y$.
-    answer: [Vec<f64>; System::RHS],
 }
 
 /// Greatest residual of a refined solution relative to its right-hand side. A rounding error of
@@ -54,10 +54,21 @@ impl Default for MixedCholesky {
 }
 
 impl MixedCholesky {
+    /// Nodes in contact from which on single precision pays.
+    pub const SINGLE_FROM: usize = 4096;
+
     /// An empty contact set.
     #[must_use]
     pub fn new() -> Self {
+        Self::single_from(Self::SINGLE_FROM)
+    }
+
+    /// An empty contact set whose factor is in single precision from `nodes` nodes on.
+    #[must_use]
+    pub fn single_from(nodes: usize) -> Self {
         Self {
+            double: (nodes > 0).then(RecursiveCholesky::new),
+            single_from: nodes,
             factor: Factor::new(),
             contact: Vec::new(),
             solution: Default::default(),
@@ -69,7 +80,8 @@ impl MixedCholesky {
     /// Where the time went so far.
     #[must_use]
     pub fn timings(&self) -> CholeskyTimings {
-        self.factor.timings
+        let double = self.double.as_ref().map(RecursiveCholesky::timings);
+        double.unwrap_or(self.factor.timings)
     }
 
     /// Solves $C_{II} Y = B_I$ for the first `count` nodes of the committed ones and `touched`.
@@ -81,6 +93,17 @@ impl MixedCholesky {
         if nodes == self.refined {
             return Ok(());
         }
+        parallel::inside(|| self.refine_on(system, touched, nodes))
+    }
+
+    /// The same on the given nodes.
+    fn refine_on(
+        &mut self,
+        system: &System,
+        touched: &Touched,
+        nodes: Vec<usize>,
+    ) -> Result<(), Error> {
+        let count = nodes.len();
         let known = self.solution[0].len().min(count);
         // The displacements of a solution on fewer nodes are known already.
         let starts_from_refined = nodes.starts_with(&self.refined);
@@ -179,75 +202,11 @@ impl MixedCholesky {
     }
 }
 
-/// One column of a residual, in units that suit single precision.
-#[derive(Debug, Default)]
-struct Residual {
-    values: Vec<f32>,
-    unit: f64,
-    relative: f64,
-}
-
-impl Fields {
-    fn new(system: &System) -> Result<Self, Error> {
-        let field = || vec![0.0; system.gap().len()];
-        Ok(Self {
-            convolution: Convolution::from_table(system.table())?,
-            spread: [field(), field(), field()],
-            answer: [field(), field(), field()],
-        })
-    }
-
-    /// $C_{:,I} Y$ for a solution on the given nodes.
-    fn convolve(
-        &mut self,
-        nodes: &[usize],
-        solution: &[Vec<f64>; System::RHS],
-    ) -> Result<(), Error> {
-        for (field, column) in self.spread.iter_mut().zip(solution) {
-            field.fill(0.0);
-            for (&node, &value) in nodes.iter().zip(column) {
-                field[node] = value;
-            }
-        }
-        let [s1, s2, s3] = &self.spread;
-        let [a1, a2, a3] = &mut self.answer;
-        self.convolution.apply_two([s1, s2], [a1, a2])?;
-        self.convolution.apply(s3, a3)
-    }
-
-    /// $B_I - C_{II} Y$ on the given nodes.
-    fn residual(&self, system: &System, nodes: &[usize]) -> [Residual; System::RHS] {
-        let mut residuals: [Residual; System::RHS] = Default::default();
-        for (i, residual) in residuals.iter_mut().enumerate() {
-            let rhs = |node: usize| system.rhs_at(node)[i];
-            let answer = &self.answer[i];
-            let difference = |&node: &usize| rhs(node) - answer[node];
-            residual.unit = nodes
-                .iter()
-                .map(difference)
-                .map(f64::abs)
-                .fold(0.0, f64::max);
-            let scale = nodes
-                .iter()
-                .map(|&node| rhs(node).abs())
-                .fold(0.0, f64::max);
-            if residual.unit > 0.0 {
-                residual.relative = residual.unit / scale;
-                residual.values.extend(
-                    nodes
-                        .iter()
-                        .map(|node| (difference(node) / residual.unit) as f32),
-                );
-            } else {
-                residual.values.resize(nodes.len(), 0.0);
-            }
-        }
-        residuals
-    }
-}
-
 impl LinearUpdater for MixedCholesky {
     fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
+        if let Some(double) = &mut self.double {
+            return double.schur(system, nodes, schur);
+        }
         self.factor.scale = system.table().self_influence().sqrt();
         self.factor.eliminate(system, nodes, schur)?;
         self.refine(system, &Touched::default(), self.contact.len())?;
@@ -263,8 +222,19 @@ impl LinearUpdater for MixedCholesky {
     }
 
     fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
-        self.factor.commit(system, touched)?;
+        let Some(double) = &mut self.double else {
+            self.factor.commit(system, touched)?;
+            self.contact.extend_from_slice(touched.nodes());
+            return Ok(());
+        };
+        double.commit(system, touched)?;
         self.contact.extend_from_slice(touched.nodes());
+        if self.contact.len() >= self.single_from
+            && let Some(double) = self.double.take()
+        {
+            let scale = system.table().self_influence().sqrt();
+            self.factor = double.into_factor().rounded(scale);
+        }
         Ok(())
     }
 
@@ -275,6 +245,9 @@ impl LinearUpdater for MixedCholesky {
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), Error> {
+        if let Some(double) = &mut self.double {
+            return double.solve(system, touched, count, solution);
+        }
         let start = Instant::now();
         self.refine(system, touched, count)?;
         solution.y1.clear();
@@ -289,6 +262,9 @@ impl LinearUpdater for MixedCholesky {
 
     /// A refined solution reads the factor three times, and needs nine displacements more.
     fn window_cost(&self) -> WindowCost {
+        if let Some(double) = &self.double {
+            return double.window_cost();
+        }
         WindowCost {
             solve: 0.5,
             schur: 0.005,
@@ -298,15 +274,14 @@ impl LinearUpdater for MixedCholesky {
     }
 
     fn is_exact(&self) -> bool {
-        false
+        self.double.is_some()
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
-        let fields = self.fields.as_ref();
-        let fields = fields.map_or(0, |fields| {
-            fields.convolution.memory()
-                + 2 * System::RHS * fields.spread[0].len() * size_of::<f64>()
-        });
+        if let Some(double) = &self.double {
+            return double.bytes(contact, watched);
+        }
+        let fields = self.fields.as_ref().map_or(0, Fields::bytes);
         let vectors = System::RHS * (size_of::<f64>() + size_of::<f32>()) + size_of::<usize>();
         Factor::<f32>::bytes(contact, watched)
             .saturating_add(contact.saturating_mul(vectors))

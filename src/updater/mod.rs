@@ -14,6 +14,7 @@ mod factor;
 mod mixed;
 mod panels;
 mod precision;
+mod residual;
 mod schur;
 mod system;
 mod touched;

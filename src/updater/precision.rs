@@ -4,8 +4,9 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, DivAssign, Mul, SubAssign};
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
+
+use crate::parallel::vectorized;
 
 /// Products of single precision that are summed in it before the sum goes to double precision: few
 /// enough to lose no more than storing the factors does, enough for GEMM at full speed.
@@ -29,9 +30,6 @@ pub(super) trait Precision:
     /// The nearest number of this type.
     fn of(value: f64) -> Self;
 
-    /// The number as `f64`.
-    fn widen(self) -> f64;
-
     /// target −= scale A B.
     fn subtract_product(
         target: MatMut<'_, f64>,
@@ -39,18 +37,11 @@ pub(super) trait Precision:
         a: MatRef<'_, Self>,
         b: MatRef<'_, Self>,
     );
-
-    /// target ← L⁻¹ target.
-    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>);
 }
 
 impl Precision for f64 {
     fn of(value: f64) -> Self {
         value
-    }
-
-    fn widen(self) -> f64 {
-        self
     }
 
     fn subtract_product(
@@ -61,20 +52,12 @@ impl Precision for f64 {
     ) {
         matmul(target, Accum::Add, a, b, -scale, Par::Seq);
     }
-
-    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>) {
-        solve_lower_triangular_in_place(l, target, Par::Seq);
-    }
 }
 
 impl Precision for f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
     fn of(value: f64) -> Self {
         value as Self
-    }
-
-    fn widen(self) -> f64 {
-        f64::from(self)
     }
 
     fn subtract_product(
@@ -110,22 +93,16 @@ impl Precision for f32 {
                 let Some((target, sum)) = columns else {
                     continue;
                 };
-                for (target, sum) in target.as_slice_mut().iter_mut().zip(sum.as_slice()) {
-                    *target -= scale * sum.widen();
-                }
+                let (target, sum) = (target.as_slice_mut(), sum.as_slice());
+                vectorized(
+                    #[inline(always)]
+                    || {
+                        for (target, sum) in target.iter_mut().zip(sum) {
+                            *target -= scale * f64::from(*sum);
+                        }
+                    },
+                );
             }
         }
-    }
-
-    fn solve_lower(l: MatRef<'_, Self>, target: MatMut<'_, f64>) {
-        let mut wide = Mat::<f64>::zeros(l.ncols(), l.nrows());
-        for (wide, row) in wide.as_mut().col_iter_mut().zip(l.transpose().col_iter()) {
-            if let Some((wide, row)) = wide.try_as_col_major_mut().zip(row.try_as_col_major()) {
-                for (wide, value) in wide.as_slice_mut().iter_mut().zip(row.as_slice()) {
-                    *wide = value.widen();
-                }
-            }
-        }
-        solve_lower_triangular_in_place(wide.transpose(), target, Par::Seq);
     }
 }

@@ -132,7 +132,10 @@ impl Touched {
         self.factor.resize(start + k, 0.0);
         let (earlier, column) = self.factor.split_at_mut(start);
         schur.copy_column(position, column);
-        vectorized(|| subtract_products(earlier, column, position));
+        vectorized(
+            #[inline(always)]
+            || subtract_products(earlier, column, position),
+        );
         let pivot = column[position];
         if pivot.is_nan() || pivot <= 0.0 {
             self.factor.truncate(start);
