@@ -56,9 +56,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             }));
             let name = if index == 0 { family.rough.name() } else { "" };
             let all = run.points.iter().map(|p| (p.load, p.area));
-            whole.push(Series::new(name, colour, Style::Line, all.clone()));
-            let low = all.filter(|(_, area)| *area <= STRAIGHT);
-            below.push(Series::new(name, colour, Style::Line, low));
+            whole.push(Series::new(name, colour, Style::Line, all));
+            below.push(Series::new(name, colour, Style::Line, points.clone()));
             if index == 0 {
                 let ends = points.first().into_iter().chain(points.last());
                 let fitted = ends.map(|(x, _)| (*x, line.at(*x)));

@@ -64,7 +64,9 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
             }));
             let name = if index == 0 { family.rough.name() } else { "" };
             let approach = run.points.iter().map(|p| (p.load, -p.approach));
-            small.push(Series::new(name, colour, Style::Line, approach.clone()));
+            let light = run.evenly(0.0, SMALL_FIT, SAMPLES);
+            let light = light.iter().map(|p| (p.load, -p.approach));
+            small.push(Series::new(name, colour, Style::Line, light));
             all.push(Series::new(name, colour, Style::Line, approach));
             let k = run.points.iter().map(|p| (p.load, p.contact_stiffness));
             stiffness.push(Series::new(name, colour, Style::Line, k.clone()));
