@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! cargo run --release --example fixed_load -- --surface FILE.npy --side M --e-star PA \
-//!     --load N [--load N ...] [--tolerance T] [--save DIR]
+//!     --load N [--load N ...] [--periodic love|spectral] [--tolerance T] [--save DIR]
 //! ```
 //!
 //! Heights in metres, `z[ix, iy]`, positive towards the half-space; `--side` is the length along x,
-//! cells are square. Loads are forces. Results go to stdout, progress to stderr.
+//! cells are square. Loads are forces. Results go to stdout, progress to stderr. With `--periodic` the
+//! approach is that of the mean planes, and there is no contact stiffness but the interfacial one.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -14,8 +15,13 @@ use std::time::Instant;
 
 use asperity::io::write_npy;
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, FixedLoadSolver, Grid};
+use asperity::{FixedLoadSolver, Grid};
 use clap::Parser;
+use half_space::{HalfSpace, Periodic};
+
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "common/half_space.rs"]
+mod half_space;
 
 #[derive(Debug, Parser)]
 #[command(about = "Contact of a rough surface with an elastic half-space under given loads")]
@@ -32,6 +38,9 @@ struct Arguments {
     /// Load [N]; may be given several times.
     #[arg(long, required = true)]
     load: Vec<f64>,
+    /// Make surface and half-space periodic, with this kernel.
+    #[arg(long, value_enum)]
+    periodic: Option<Periodic>,
     /// Greatest error of gaps relative to the approach.
     #[arg(long, default_value_t = 1e-8)]
     tolerance: f64,
@@ -46,8 +55,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (nx, ny) = map.shape();
     let cell = arguments.side / nx as f64;
     let grid = Grid::new(nx, ny, cell, cell)?;
+    let kernel = HalfSpace::new(arguments.periodic, grid, arguments.e_star)?;
     let start = Instant::now();
-    let mut solver = FixedLoadSolver::builder(map, Boussinesq::new(grid, arguments.e_star)?)
+    let mut solver = FixedLoadSolver::builder(map, kernel)
         .tolerance(arguments.tolerance)
         .stiffness(false)
         .build()?;
@@ -69,13 +79,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         let state = solution.state;
         println!(
             "load={:e} contact_nodes={} max_pressure={:e} mean_gap={:e} approach={:e} \
-             contact_stiffness={:e} iterations={} seconds={seconds:.6}",
+             contact_stiffness={} interfacial_stiffness={} iterations={} seconds={seconds:.6}",
             state.load,
             state.contact_nodes,
             state.max_pressure,
             state.mean_gap,
             state.approach,
-            state.contact_stiffness,
+            printed(state.contact_stiffness),
+            printed(state.interfacial_stiffness),
             solution.iterations,
         );
         eprintln!(
@@ -97,4 +108,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+/// Nothing where there is none.
+fn printed(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:e}"))
 }

@@ -96,7 +96,9 @@ fn compare(exact: &[ContactState], mixed: &[ContactState]) {
         ("approach", |state| state.approach),
         ("load", |state| state.load),
         ("mean gap", |state| state.mean_gap),
-        ("contact stiffness", |state| state.contact_stiffness),
+        ("contact stiffness", |state| {
+            state.contact_stiffness.unwrap_or(f64::NAN)
+        }),
         ("interfacial stiffness", |state| state.interfacial_stiffness),
     ];
     for (name, column) in columns {

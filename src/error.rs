@@ -231,9 +231,18 @@ pub enum Error {
         value: f64,
     },
 
-    /// A periodic kernel where only a free half-space can be solved for so far.
-    #[error("the fixed-load solver takes a free half-space, but the kernel is periodic")]
-    PeriodicNotSupported,
+    /// An approach that a periodic half-space takes at no load, or at any large enough one: its mean
+    /// planes approach by no more than the mean initial gap.
+    #[error(
+        "the mean planes of a periodic half-space approach by less than the mean initial gap of \
+         {mean_gap} m before full contact and by no more after it, not by {approach} m"
+    )]
+    ApproachNotReached {
+        /// The approach asked for \[m\].
+        approach: f64,
+        /// The mean initial gap \[m\], which is that of full contact.
+        mean_gap: f64,
+    },
 
     /// The memory budget would be exceeded by going on.
     #[error(

@@ -59,7 +59,7 @@ fn finite(state: &ContactState) -> bool {
         state.contact_area,
         state.contact_area_fraction,
         state.mean_gap,
-        state.contact_stiffness,
+        state.contact_stiffness.unwrap(),
         state.energy,
     ]
     .iter()
@@ -196,8 +196,8 @@ fn powers_of_two_scale_exactly() {
             assert_eq!(scale(a.mean_gap, height), b.mean_gap);
             assert_eq!(scale(a.load, length + height + modulus), b.load);
             assert_eq!(
-                scale(a.contact_stiffness, length + modulus),
-                b.contact_stiffness
+                scale(a.contact_stiffness.unwrap(), length + modulus),
+                b.contact_stiffness.unwrap()
             );
             assert_eq!(scale(a.energy, length + 2 * height + modulus), b.energy);
         }

@@ -185,7 +185,7 @@ fn assert_same_path(a: &Path, b: &Path) {
         for (x, y) in [
             (a.approach, b.approach),
             (a.load, b.load),
-            (a.contact_stiffness, b.contact_stiffness),
+            (a.contact_stiffness.unwrap(), b.contact_stiffness.unwrap()),
             (a.energy, b.energy),
         ] {
             assert!((x - y).abs() <= 1e-9 * x.abs(), "{a:?} {b:?}");

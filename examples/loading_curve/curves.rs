@@ -53,8 +53,12 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState
     area.fill(&WHITE)?;
     let (nx, ny) = job.grid().shape();
     let title = format!(
-        "Loading path of {} states: {nx} × {ny} nodes, E* = {}, Sq = {}",
+        "Loading path of {} states: {nx} × {ny} nodes{}, E* = {}, Sq = {}",
         states.len(),
+        match job.periodic() {
+            None => String::new(),
+            Some(kernel) => format!(", periodic ({} kernel)", kernel.name()),
+        },
         quantity(job.e_star(), "Pa", 4),
         quantity(job.heights().rms_height(), "m", 4)
     );
@@ -87,14 +91,32 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState
         }
     };
 
-    let stiffnesses: [Quantity; 2] = [|s| s.contact_stiffness, |s| s.interfacial_stiffness];
+    // A periodic half-space has no approach but that of the mean planes, and no stiffness but the
+    // interfacial one.
+    let both: [Curve; 2] = [
+        (contact_stiffness, BLUE, "contact, K = dW/dδ"),
+        (
+            |s| s.interfacial_stiffness,
+            ORANGE,
+            "interfacial, −dW/d(mean gap)",
+        ),
+    ];
+    let interfacial: [Curve; 1] = [(both[1].0, BLUE, "")];
+    let (approach, stiffness, stiffnesses) = match job.periodic() {
+        None => ("approach δ", "stiffness", &both[..]),
+        Some(_) => (
+            "approach of the mean planes",
+            "interfacial stiffness",
+            &interfacial[..],
+        ),
+    };
     let all: [(Axis, &[Curve]); 4] = [
         (
             logarithmic("contact area A", "m²", &[|s| s.contact_area]),
             &[(|s| s.contact_area, BLUE, "")],
         ),
         (
-            linear("approach δ", "m", |s| s.approach),
+            linear(approach, "m", |s| s.approach),
             &[(|s| s.approach, BLUE, "")],
         ),
         (
@@ -102,15 +124,15 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState
             &[(|s| s.mean_gap, BLUE, "")],
         ),
         (
-            logarithmic("stiffness", "N/m", &stiffnesses),
-            &[
-                (|s| s.contact_stiffness, BLUE, "contact, K = dW/dδ"),
-                (
-                    |s| s.interfacial_stiffness,
-                    ORANGE,
-                    "interfacial, −dW/d(mean gap)",
-                ),
-            ],
+            logarithmic(
+                stiffness,
+                "N/m",
+                &stiffnesses
+                    .iter()
+                    .map(|(value, ..)| *value)
+                    .collect::<Vec<_>>(),
+            ),
+            stiffnesses,
         ),
     ];
     for (place, (y, curves)) in (0_i32..).zip(all) {
@@ -152,6 +174,11 @@ fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) 
         panel.write(area, name, (x + 44 * FINE, y), panel.font, pos)?;
     }
     Ok(())
+}
+
+/// NaN, which is not drawn, where there is none.
+fn contact_stiffness(state: &ContactState) -> f64 {
+    state.contact_stiffness.unwrap_or(f64::NAN)
 }
 
 /// Least and greatest positive finite value of some quantities.

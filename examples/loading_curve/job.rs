@@ -3,8 +3,9 @@
 use std::fmt;
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boussinesq, ContactRule, Grid};
+use asperity::{ContactRule, Grid};
 
+use crate::half_space::{HalfSpace, Periodic};
 use crate::number::quantity;
 use crate::options::Options;
 use crate::outcome::Failure;
@@ -21,6 +22,7 @@ pub(crate) struct Job {
     name: String,
     rms_gradient: f64,
     e_star: f64,
+    periodic: Option<Periodic>,
     rule: ContactRule,
     max_nodes: usize,
 }
@@ -49,6 +51,7 @@ impl Job {
             name,
             rms_gradient,
             e_star: options.e_star,
+            periodic: options.periodic,
             rule: options.rule.into(),
             max_nodes,
         })
@@ -75,8 +78,12 @@ impl Job {
         self.max_nodes
     }
 
-    pub(crate) fn kernel(&self) -> Result<Boussinesq, Failure> {
-        Boussinesq::new(self.grid, self.e_star)
+    pub(crate) fn periodic(&self) -> Option<Periodic> {
+        self.periodic
+    }
+
+    pub(crate) fn kernel(&self) -> Result<HalfSpace, Failure> {
+        HalfSpace::new(self.periodic, self.grid, self.e_star)
             .map_err(|error| Failure::new("no such half-space", error))
     }
 }
@@ -98,6 +105,10 @@ impl fmt::Display for Job {
             quantity(self.heights.rms_height(), "m", 5),
             self.rms_gradient.abs()
         )?;
+        match self.periodic {
+            None => writeln!(f, "half-space free")?,
+            Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
+        }
         writeln!(
             f,
             "loading    E* {}, to {} nodes in contact ({:.4} % of the nominal area), rule {:?}",

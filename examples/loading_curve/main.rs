@@ -8,11 +8,18 @@
 //! Writes `path.csv` with one line for each node that touches, `loading_curve.svg` and
 //! `contact_map.png`, and prints a short table. If the path ends with an error, everything up to
 //! there is written all the same, and the exit code is 1.
+//!
+//! With `--periodic love` or `--periodic spectral` surface and half-space repeat with the nominal
+//! area: `approach` is then that of the mean planes, and `contact_stiffness` is empty, because there
+//! is no distant point from which another approach could be counted.
 
 #[allow(dead_code)] // shared: each example uses its part
 #[path = "../common/axis.rs"]
 mod axis;
 mod curves;
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/half_space.rs"]
+mod half_space;
 mod job;
 mod map;
 #[allow(dead_code)] // shared: each example uses its part

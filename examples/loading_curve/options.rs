@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use asperity::ContactRule;
 use clap::{Parser, ValueEnum};
 
+use crate::half_space::Periodic;
+
 /// The exact loading path of a rough surface: one state of contact for each node that touches.
 ///
 /// Without --surface, a self-affine surface with the spectrum of Zhang, Zhang & Jin (2020), Table 1:
@@ -28,6 +30,11 @@ pub(crate) struct Options {
     /// Composite modulus E* = E / (1 - ν²) against a rigid body
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, default_value = "1")]
     pub(crate) e_star: f64,
+
+    /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
+    /// half-space, which goes on without pressure]
+    #[arg(long, value_enum)]
+    pub(crate) periodic: Option<Periodic>,
 
     /// Contact area over nominal area at which the path ends
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction, default_value = "0.1")]

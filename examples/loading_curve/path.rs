@@ -82,16 +82,20 @@ impl PathFile {
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
     fn write(&mut self, state: &ContactState) -> Result<(), Failure> {
         let (ix, iy) = state.node;
+        // Empty where there is none: on a periodic half-space.
+        let contact_stiffness = state
+            .contact_stiffness
+            .map_or_else(String::new, |stiffness| format!("{stiffness:e}"));
         let line = writeln!(
             self.output,
-            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{:e},{:e}",
+            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{:e}",
             state.step,
             state.approach,
             state.load,
             state.contact_area,
             state.contact_area_fraction,
             state.mean_gap,
-            state.contact_stiffness,
+            contact_stiffness,
             state.interfacial_stiffness,
         );
         let done = match line {

@@ -42,14 +42,17 @@ pub(crate) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
             }
         };
         println!(
-            "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e}",
+            "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12.4e} {:>12.4e}",
             state.step,
             state.load,
             state.mean_pressure() / job.e_star(),
             state.contact_area_fraction,
             state.approach / length,
             state.mean_gap / length,
-            state.contact_stiffness,
+            // Nothing where there is none.
+            state
+                .contact_stiffness
+                .map_or_else(|| "-".to_string(), |stiffness| format!("{stiffness:.4e}")),
             state.interfacial_stiffness,
             greatest / job.e_star(),
         );

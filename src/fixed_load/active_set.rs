@@ -2,8 +2,8 @@
 
 use super::iterate::{Criteria, Effort, Errors, Iterate};
 use super::level::{Level, Target};
-use crate::Error;
 use crate::iterative::{ContactSet, dot, greatest, sum, sum_over};
+use crate::{Boundary, Error};
 
 /// Inner iterations stop when the residual on the contact set is below this part of the worst
 /// error in the set itself.
@@ -100,7 +100,8 @@ impl Level {
                 if gap[node] < gap[best] { node } else { best }
             },
         );
-        let alone = 0.5 * sum * self.self_influence + gap[highest];
+        let own = self.self_influence - self.gauge;
+        let alone = 0.5 * sum * own + gap[highest];
         // Written so that NaN, from a start that failed, is replaced as well.
         if energy <= alone {
             return Ok(());
@@ -180,10 +181,42 @@ impl Level {
     ) -> Result<Errors, Error> {
         let dead_band = DEAD_BAND * criteria.tolerance * criteria.scale(self.iterate.approach);
         self.choose_contact(dead_band);
+        if let Target::Approach(_) = target
+            && self.boundary == Boundary::Periodic
+        {
+            self.leave_one_out()?;
+        }
         let contact = std::mem::replace(&mut self.iterate.contact, ContactSet::new(0));
         let outcome = self.round_on(&contact, target, criteria, inner, effort);
         self.iterate.contact = contact;
         outcome
+    }
+
+    /// Takes the widest gap out of a periodic contact that is everywhere.
+    ///
+    /// Uniform pressure does not displace it relative to its mean plane, so that no pressure there
+    /// answers to an approach; short of full contact, some node is always out of contact.
+    fn leave_one_out(&mut self) -> Result<(), Error> {
+        let Iterate {
+            pressure,
+            closure,
+            contact,
+            ..
+        } = &mut self.iterate;
+        if contact.len() < closure.len() {
+            return Ok(());
+        }
+        let widest = (1..closure.len()).fold(0, |widest, node| {
+            if closure[node] > closure[widest] {
+                node
+            } else {
+                widest
+            }
+        });
+        pressure[widest] = 0.0;
+        contact.assign(|node| node != widest);
+        self.inverse.update(contact);
+        self.refresh()
     }
 
     /// Nodes with pressure or overlap.

@@ -4,7 +4,7 @@ use super::hierarchy::levels;
 use super::solver::FixedLoadSolver;
 use crate::initial_gap::InitialGap;
 use crate::kernel::KernelTable;
-use crate::{Boundary, Error, InfluenceKernel, Surface};
+use crate::{Error, InfluenceKernel, Surface};
 
 /// Sets up a [`FixedLoadSolver`].
 #[derive(Debug, Clone)]
@@ -60,9 +60,6 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadBuilder<S, K> {
                 value: self.tolerance,
                 expected: "above 0 and below 1",
             });
-        }
-        if self.kernel.boundary() == Boundary::Periodic {
-            return Err(Error::PeriodicNotSupported);
         }
         let gap = InitialGap::of(&self.surface, &grid)?;
         let table = KernelTable::new(&self.kernel)?;

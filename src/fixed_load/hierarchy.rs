@@ -2,7 +2,7 @@
 
 use super::level::{Level, Target};
 use crate::kernel::KernelTable;
-use crate::{Error, Grid};
+use crate::{Boundary, Error, Grid};
 
 /// Sides of at most so many nodes are not coarsened further.
 const COARSEST: usize = 16;
@@ -21,7 +21,9 @@ pub(super) fn levels(
             return Ok(levels);
         }
         let coarse = table.coarsened()?;
-        let gap = restrict(&fine.grid, &fine.gap, &coarse.grid());
+        let grid = coarse.grid();
+        let blocks = Blocks::new(&fine.grid, &grid, table.boundary());
+        let gap = blocks.restrict(&fine.gap);
         levels.push(Level::new(&coarse, gap)?);
         table = std::borrow::Cow::Owned(coarse);
     }
@@ -35,29 +37,54 @@ pub(super) fn coarse_target(target: Target, fine: &Grid, coarse: &Grid) -> Targe
     }
 }
 
-/// The block in which a node lies.
-fn block(fine: &Grid, coarse: &Grid, node: usize) -> usize {
-    let (ix, iy) = fine.coordinates(node);
-    let halve = |i: usize, fine: usize| if fine > 1 { i / 2 } else { i };
-    coarse.index(halve(ix, fine.nx()), halve(iy, fine.ny()))
+/// Blocks of nodes of a fine grid, each a node of a coarse one.
+pub(super) struct Blocks<'a> {
+    fine: &'a Grid,
+    coarse: &'a Grid,
+    boundary: Boundary,
 }
 
-/// Averages over blocks.
-fn restrict(fine: &Grid, values: &[f64], coarse: &Grid) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0_u32); coarse.nodes()];
-    for (node, value) in values.iter().enumerate() {
-        let (sum, count) = &mut sums[block(fine, coarse, node)];
-        *sum += value;
-        *count += 1;
+impl<'a> Blocks<'a> {
+    pub(super) fn new(fine: &'a Grid, coarse: &'a Grid, boundary: Boundary) -> Self {
+        Self {
+            fine,
+            coarse,
+            boundary,
+        }
     }
-    sums.into_iter()
-        .map(|(sum, count)| sum / f64::from(count.max(1)))
-        .collect()
-}
 
-/// The same pressure on all nodes of a block.
-pub(super) fn prolong(coarse: &Grid, values: &[f64], fine: &Grid, result: &mut [f64]) {
-    for (node, value) in result.iter_mut().enumerate() {
-        *value = values[block(fine, coarse, node)];
+    /// The block in which a node lies.
+    fn of(&self, node: usize) -> usize {
+        let (ix, iy) = self.fine.coordinates(node);
+        let halve = |i: usize, fine: usize, coarse: usize| match self.boundary {
+            Boundary::Free if fine == 1 => i,
+            Boundary::Free => i / 2,
+            // Blocks share the period equally.
+            Boundary::Periodic => (2 * i + 1) * coarse / (2 * fine),
+        };
+        self.coarse.index(
+            halve(ix, self.fine.nx(), self.coarse.nx()),
+            halve(iy, self.fine.ny(), self.coarse.ny()),
+        )
+    }
+
+    /// Averages over blocks.
+    fn restrict(&self, values: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0_u32); self.coarse.nodes()];
+        for (node, value) in values.iter().enumerate() {
+            let (sum, count) = &mut sums[self.of(node)];
+            *sum += value;
+            *count += 1;
+        }
+        sums.into_iter()
+            .map(|(sum, count)| sum / f64::from(count.max(1)))
+            .collect()
+    }
+
+    /// The same pressure on all nodes of a block.
+    pub(super) fn prolong(&self, values: &[f64], result: &mut [f64]) {
+        for (node, value) in result.iter_mut().enumerate() {
+            *value = values[self.of(node)];
+        }
     }
 }

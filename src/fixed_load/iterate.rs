@@ -15,8 +15,9 @@ pub(super) struct Iterate {
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
-    /// Relative to the approach, or to `length` if that is smaller.
+    /// Relative to the approach, at least `floor`, or to `length` if that is smaller.
     pub(super) tolerance: f64,
+    pub(super) floor: f64,
     pub(super) length: f64,
     pub(super) max_iterations: usize,
     /// Whether to compute the displacement afresh at the end, and to go on if it disagrees.
@@ -27,6 +28,11 @@ impl Criteria {
     /// The unit of length of the tolerance.
     pub(super) fn scale(&self, approach: f64) -> f64 {
         // NaN stays NaN.
+        let approach = if approach < self.floor {
+            self.floor
+        } else {
+            approach
+        };
         if self.length < approach {
             self.length
         } else {

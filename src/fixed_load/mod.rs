@@ -21,6 +21,14 @@
 //! * **Nested grids**: the start comes from a grid of half as many nodes a side, recursively, with
 //!   the Galerkin kernel (pressures uniform on blocks of 2 × 2), which any kernel has.
 //!
+//! # Periodic half-spaces
+//!
+//! With the load prescribed every search direction has the sum zero, so that the gauge of a periodic
+//! kernel drops out: the zero gauge is used, and what is reported does not depend on that of the kernel.
+//! The approach is that of the mean planes, displacements are about their mean, and there is no contact
+//! stiffness but the interfacial one. Up to full contact an approach can be prescribed as well; from
+//! there on it stays the mean initial gap, whatever the load.
+//!
 //! # References
 //!
 //! * I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206: conjugate gradients with a growing and

@@ -12,14 +12,14 @@ pub struct FixedLoadSolution {
     pub pressure: DMatrix<f64>,
     /// Gap $g + u - \delta$ \[m\]: zero in contact but for the tolerance.
     pub gap: DMatrix<f64>,
-    /// Displacement of the half-space u = C p \[m\], positive into it.
+    /// Displacement of the half-space u = C p \[m\], positive into it; about its mean if the
+    /// half-space is periodic.
     pub displacement: DMatrix<f64>,
     /// Which nodes carry pressure.
     pub contact: DMatrix<bool>,
-    /// Pressure per unit of approach \[Pa/m\], $y_2 = C_{II}^{-1} e$ on the contact set: the exact
-    /// derivative $\mathrm dp / \mathrm d\delta$, and with the load
-    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$. Empty if stiffnesses were not asked
-    /// for.
+    /// Pressure per unit of load \[1/m²\], the exact derivative on further loading
+    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$ with $y_2 = C_{II}^{-1} e$ on the
+    /// contact set. Empty if stiffnesses were not asked for.
     pub pressure_rate: DMatrix<f64>,
     /// How well the conditions of contact are met.
     pub certificate: FixedLoadCertificate,
@@ -39,7 +39,7 @@ pub struct FixedLoadSolution {
 pub struct FixedLoadState {
     /// Number of nodes that carry pressure.
     pub contact_nodes: usize,
-    /// Normal approach δ from first touch \[m\].
+    /// Normal approach δ from first touch \[m\]; of the mean planes if the half-space is periodic.
     pub approach: f64,
     /// Normal load $W = \Delta A \sum p$ \[N\].
     pub load: f64,
@@ -49,11 +49,12 @@ pub struct FixedLoadState {
     pub contact_area_fraction: f64,
     /// Gap averaged over the nominal area \[m\].
     pub mean_gap: f64,
-    /// Normal contact stiffness $K = dW/d\delta$ \[N/m\]; NaN if it was not asked for.
-    pub contact_stiffness: f64,
-    /// Interfacial stiffness $K_i = -dW/d\bar g$ \[N/m\]: infinite in full contact,
-    /// NaN if it was not asked for.
-    pub interfacial_stiffness: f64,
+    /// Normal contact stiffness $K = dW/d\delta$ \[N/m\] with the approach of a distant point of the
+    /// half-space; `None` if the half-space is periodic, which has none, or if it was not asked for.
+    pub contact_stiffness: Option<f64>,
+    /// Interfacial stiffness $K_i = -dW/d\bar g$ \[N/m\]: infinite in full contact, `None` if it was
+    /// not asked for.
+    pub interfacial_stiffness: Option<f64>,
     /// Elastic energy $U = \tfrac12 \Delta A \sum p\\, u$ \[J\].
     pub energy: f64,
     /// Greatest pressure \[Pa\].
@@ -65,6 +66,9 @@ pub struct FixedLoadState {
 ///
 /// All figures are relative and dimensionless: gaps to the approach, loads to the load. Pressures
 /// are never negative. Zero would be exact.
+///
+/// Far beyond full contact of a periodic half-space, where the approach stays what it is and rounding
+/// grows with the pressure, gaps are relative to C(0, 0) p̄ once that is larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FixedLoadCertificate {

@@ -2,13 +2,13 @@
 
 use nalgebra::DMatrix;
 
-use super::hierarchy::{coarse_target, prolong};
+use super::hierarchy::{Blocks, coarse_target};
 use super::iterate::{Criteria, Effort};
 use super::level::{Level, Target};
 use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 use super::sweep::LoadSweep;
 use crate::iterative::{dot, sum, sum_over};
-use crate::{Error, Grid, InfluenceKernel, Surface};
+use crate::{Boundary, Error, Grid, InfluenceKernel, Surface};
 
 /// Tolerance on the coarser grids, whose solutions are but starts, relative to the approach ...
 const COARSE_TOLERANCE: f64 = 1e-2;
@@ -68,7 +68,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// Contact under the load `load` \[N\], from a solution for another load.
     ///
     /// The start is the pressure that follows from the exact tangent,
-    /// $\mathrm dp / \mathrm dW = y_2 / (\Delta A \sum y_2)$: it saves the coarser grids and, for a
+    /// [`pressure_rate`](FixedLoadSolution::pressure_rate): it saves the coarser grids and, for a
     /// small change of load, some iterations. Without a stiffness the pressure is scaled.
     ///
     /// # Errors
@@ -85,13 +85,13 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         let start = &mut self.levels[0].iterate.pressure;
         start.copy_from_slice(solution.pressure.as_slice());
         let mut rate = None;
-        if solution.state.contact_stiffness > 0.0 {
+        if !solution.pressure_rate.is_empty() {
             self.grid.check_shape(solution.pressure_rate.shape())?;
-            let change = (load - solution.state.load) / solution.state.contact_stiffness;
+            let change = load - solution.state.load;
             for (start, rate) in start.iter_mut().zip(&solution.pressure_rate) {
                 *start = (*start + change * rate).max(0.0);
             }
-            rate = Some(solution.pressure_rate.as_slice());
+            rate = Some(solution);
         }
         let total = sum(start);
         for value in start {
@@ -109,13 +109,23 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         LoadSweep::new(self, loads.into_iter())
     }
 
-    /// Contact at the approach `approach` \[m\] from first touch.
+    /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
+    /// half-space is periodic, where it determines the load only below the mean initial gap.
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for the approach, and those of [`Self::solve`].
+    /// [`Error::NotPositive`] for the approach, [`Error::ApproachNotReached`] if no load or every
+    /// large one goes with it on a periodic half-space, and those of [`Self::solve`].
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
-        let target = Target::Approach(Error::require_positive("approach", approach)?);
+        let approach = Error::require_positive("approach", approach)?;
+        let Level { boundary, gap, .. } = &self.levels[0];
+        if *boundary == Boundary::Periodic {
+            let mean_gap = sum(gap) / gap.len() as f64;
+            if approach >= mean_gap {
+                return Err(Error::ApproachNotReached { approach, mean_gap });
+            }
+        }
+        let target = Target::Approach(approach);
         self.start_cold(target, 0)?;
         self.finish(target, None, None)
     }
@@ -129,6 +139,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             self.start_cold(coarse_target, level + 1)?;
             let criteria = Criteria {
                 tolerance: COARSE_TOLERANCE.max(self.tolerance),
+                floor: self.levels[level + 1].least_length(coarse_target),
                 length: if self.rms_height > 0.0 {
                     COARSE_RMS_HEIGHTS * self.rms_height
                 } else {
@@ -143,10 +154,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
                 Err(error) => return Err(error),
             }
             let (fine, coarse) = self.levels.split_at_mut(level + 1);
-            prolong(
-                &coarse_grid,
+            Blocks::new(&grid, &coarse_grid, fine[level].boundary).prolong(
                 &coarse[0].iterate.pressure,
-                &grid,
                 &mut fine[level].iterate.pressure,
             );
         } else {
@@ -172,24 +181,31 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         &mut self,
         target: Target,
         load: Option<f64>,
-        rate_start: Option<&[f64]>,
+        rate_start: Option<&FixedLoadSolution>,
     ) -> Result<FixedLoadSolution, Error> {
         let criteria = Criteria {
             tolerance: self.tolerance,
+            floor: self.levels[0].least_length(target),
             length: f64::INFINITY,
             max_iterations: self.max_iterations,
             verify: true,
         };
         let effort = self.levels[0].solve(target, criteria)?;
-        let mut solution = self.solution(effort, load);
+        let length = criteria.scale(self.levels[0].iterate.approach);
+        let mut solution = self.solution(effort, load, length);
         if self.stiffness {
             self.tangent(&mut solution, rate_start)?;
         }
         Ok(solution)
     }
 
-    /// Puts everything together but the stiffnesses.
-    fn solution(&mut self, effort: Effort, load_asked: Option<f64>) -> FixedLoadSolution {
+    /// Puts everything together but the stiffnesses, with errors of gaps in units of `length`.
+    fn solution(
+        &mut self,
+        effort: Effort,
+        load_asked: Option<f64>,
+        length: f64,
+    ) -> FixedLoadSolution {
         let (nx, ny) = self.grid.shape();
         let nodes = self.grid.nodes();
         let fine = &mut self.levels[0];
@@ -220,10 +236,9 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             .filter(|(_, p)| **p > 0.0)
             .fold(0.0_f64, |most, (gap, _)| most.max(gap.abs()));
         let certificate = FixedLoadCertificate {
-            complementarity: sum_over(nodes, |node| p[node] * gaps[node].abs())
-                / (total * approach),
-            least_gap: least_gap / approach,
-            greatest_contact_gap: greatest_contact_gap / approach,
+            complementarity: sum_over(nodes, |node| p[node] * gaps[node].abs()) / (total * length),
+            least_gap: least_gap / length,
+            greatest_contact_gap: greatest_contact_gap / length,
             load_error: (cell_area * total - load) / load,
         };
         let state = FixedLoadState {
@@ -233,8 +248,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             contact_area: contact_nodes as f64 * cell_area,
             contact_area_fraction: contact_nodes as f64 / nodes as f64,
             mean_gap,
-            contact_stiffness: f64::NAN,
-            interfacial_stiffness: f64::NAN,
+            contact_stiffness: None,
+            interfacial_stiffness: None,
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
             max_pressure: pressure.max(),
         };

@@ -6,7 +6,7 @@ use super::level::Level;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
 use crate::iterative::{dot, solve_linear, sum, sum_over};
-use crate::{Error, InfluenceKernel, Surface};
+use crate::{Boundary, Error, InfluenceKernel, Surface};
 
 impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// Adds the stiffnesses and the rate of pressure to a solution of this solver that was computed
@@ -20,11 +20,12 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         self.tangent(solution, None)
     }
 
-    /// Solves $C_{II}\\, y_2 = e$ on the nodes that carry, from a start that is a field.
+    /// Solves $C_{II}\\, y_2 = e$ on the nodes that carry, from the tangent of another solution; in
+    /// the gauge of the level, since in the zero gauge full contact is singular.
     pub(super) fn tangent(
         &mut self,
         solution: &mut FixedLoadSolution,
-        start: Option<&[f64]>,
+        start: Option<&FixedLoadSolution>,
     ) -> Result<(), Error> {
         self.grid.check_shape(solution.pressure.shape())?;
         let pressure = solution.pressure.as_slice();
@@ -32,6 +33,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             operator,
             inverse,
             iterate,
+            gauge,
+            boundary,
             ..
         } = &mut self.levels[0];
         let contact = &mut iterate.contact;
@@ -40,11 +43,23 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         }
         let mut residual = vec![1.0; contact.len()];
         let mut rate = Vec::new();
-        match start {
-            Some(start) => contact.gather(start, &mut rate),
+        let cell_area = self.grid.cell_area();
+        match start.and_then(|start| Some((start, start.state.interfacial_stiffness?))) {
+            Some((start, stiffness)) => {
+                // $1 / K_s = 1 / K_i + s / \Delta A$ in the gauge s.
+                let stiffness = start
+                    .state
+                    .contact_stiffness
+                    .unwrap_or(1.0 / (1.0 / stiffness + *gauge / cell_area));
+                contact.gather(start.pressure_rate.as_slice(), &mut rate);
+                for value in &mut rate {
+                    *value *= stiffness;
+                }
+            }
             None => inverse.apply(&residual, &mut rate),
         }
-        let outcome = solve_linear(
+        operator.set_uniform(*gauge);
+        let solved = solve_linear(
             operator,
             inverse,
             contact,
@@ -52,7 +67,10 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             &mut rate,
             self.tolerance,
             self.max_iterations,
-        )?;
+        )
+        .and_then(|outcome| Ok((outcome, operator.apply(contact, &rate)?.to_vec())));
+        operator.set_uniform(0.0);
+        let (outcome, displacement) = solved?;
         if !outcome.converged {
             return Err(Error::NoConvergence {
                 residual: outcome.residual,
@@ -60,7 +78,6 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
                 iterations: outcome.iterations,
             });
         }
-        let displacement = operator.apply(contact, &rate)?;
         let nodes = displacement.len();
         // Nodes in contact are left out: then full contact is exact.
         let closing = sum_over(nodes, |node| {
@@ -71,12 +88,18 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             }
         });
         // With the residual r, $e^T C^{-1} e = e^T y + y^T r$ but for the square of the error.
-        let stiffness = self.grid.cell_area() * (sum(&rate) + dot(&rate, &residual));
+        let stiffness = cell_area * (sum(&rate) + dot(&rate, &residual));
+        for value in &mut rate {
+            *value /= stiffness;
+        }
         let (nx, ny) = self.grid.shape();
         solution.pressure_rate = DMatrix::zeros(nx, ny);
         contact.scatter(&rate, solution.pressure_rate.as_mut_slice());
-        solution.state.contact_stiffness = stiffness;
-        solution.state.interfacial_stiffness = stiffness / (closing / nodes as f64);
+        solution.state.contact_stiffness = match boundary {
+            Boundary::Free => Some(stiffness),
+            Boundary::Periodic => None,
+        };
+        solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
         solution.stiffness_iterations = outcome.iterations;
         solution.convolutions += operator.take_convolutions();
         Ok(())

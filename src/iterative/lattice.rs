@@ -2,8 +2,10 @@
 //!
 //! The level of a node is how often both its indices halve. The nodes of level l and above form a
 //! lattice with steps of 2ˡ cells; coarse levels come first, and within a level the order is that
-//! of the node indices.
+//! of the node indices. On a periodic grid a lattice goes on beyond the edge wherever its steps fit
+//! the period.
 
+use crate::Boundary;
 use crate::kernel::KernelTable;
 
 /// Neighbours are looked for up to so many lattice steps along x and y.
@@ -21,6 +23,9 @@ pub(super) struct Lattice {
     /// Offsets in lattice steps at which an earlier node may be, those of the greatest influence
     /// first, by the parity of both lattice indices.
     candidates: [Vec<[i16; 2]>; 4],
+    /// If the lattice is periodic, all offsets to other nodes of it, those of the greatest influence
+    /// first; each node once, however small the lattice.
+    around: Vec<[i16; 2]>,
     /// Influence coefficients relative to C(0, 0), WIDTH × WIDTH.
     coefficients: Vec<f32>,
 }
@@ -71,6 +76,11 @@ impl Lattices {
         let class = (a & 1) | ((b & 1) << 1);
         // Lattice indices within the grid.
         let ends = [((nx - 1) >> level) as isize, ((ny - 1) >> level) as isize];
+        let reaches_over = |at: isize, end: isize| at < REACH || at + REACH > end;
+        if !lattice.around.is_empty() && (reaches_over(a, ends[0]) || reaches_over(b, ends[1])) {
+            let found = self.earlier_around(node, level, is_in, neighbours);
+            return (found, lattice);
+        }
         let mut count = 0;
         for &[da, db] in &lattice.candidates[class as usize] {
             let (da, db) = (da as isize, db as isize);
@@ -92,23 +102,69 @@ impl Lattices {
         }
         (count, lattice)
     }
+
+    /// [`Self::earlier`] on a periodic lattice of level `level`, beyond the edges too: what is earlier
+    /// there depends on the nodes themselves and not on their offset.
+    fn earlier_around(
+        &self,
+        node: usize,
+        level: u32,
+        is_in: impl Fn(usize) -> bool,
+        neighbours: &mut [Neighbour],
+    ) -> usize {
+        let [nx, ny] = self.shape;
+        let (ix, iy) = (node % nx, node / nx);
+        let last = self.levels.len() as u32 - 1;
+        let mut count = 0;
+        for &[da, db] in &self.levels[level as usize].around {
+            let (da, db) = (da as isize, db as isize);
+            let along = |at: usize, steps: isize, nodes: usize| {
+                (at as isize + (steps << level)).rem_euclid(nodes as isize) as usize
+            };
+            let (x, y) = (along(ix, da, nx), along(iy, db, ny));
+            let other = x + nx * y;
+            let coarser = (x | y).trailing_zeros().min(last) > level;
+            if (coarser || other < node) && is_in(other) {
+                neighbours[count] = Neighbour {
+                    node: other as u32,
+                    offset: (da + db * WIDTH) as i32,
+                };
+                count += 1;
+                if count == neighbours.len() {
+                    break;
+                }
+            }
+        }
+        count
+    }
 }
 
 impl Lattice {
     fn new(table: &KernelTable, level: u32, is_last: bool) -> Self {
         let own = table.self_influence();
+        let (nx, ny) = table.grid().shape();
+        let step = 1_usize << level;
+        let wraps = table.boundary() == Boundary::Periodic
+            && nx.is_multiple_of(step)
+            && ny.is_multiple_of(step);
+        // In cells, beyond the grid in its next period if there is one.
+        let cells = |steps: isize, nodes: usize| {
+            let cells = steps << level;
+            if wraps { cells % nodes as isize } else { cells }
+        };
+        let coefficient = |di, dj| table.coefficient(cells(di, nx), cells(dj, ny));
         let mut coefficients = Vec::with_capacity((WIDTH * WIDTH) as usize);
         for dj in -SPAN..=SPAN {
             for di in -SPAN..=SPAN {
-                // Offsets beyond the grid are never asked for.
-                let value = table.coefficient(di << level, dj << level).unwrap_or(0.0);
+                // Offsets beyond a grid that ends are never asked for.
+                let value = coefficient(di, dj).unwrap_or(0.0);
                 coefficients.push((value / own) as f32);
             }
         }
         let mut offsets = Vec::new();
         for db in -REACH..=REACH {
             for da in -REACH..=REACH {
-                if let Some(value) = table.coefficient(da << level, db << level) {
+                if let Some(value) = coefficient(da, db) {
                     offsets.push((value, da, db));
                 }
             }
@@ -126,8 +182,19 @@ impl Lattice {
                 .map(|&(_, da, db)| [da as i16, db as i16])
                 .collect()
         });
+        // Half a period each way, of which the far end counts once; the node itself is not another.
+        let half = |steps: isize, nodes: usize| {
+            let period = (nodes / step) as isize;
+            -period < 2 * steps && 2 * steps <= period
+        };
+        let around = offsets
+            .iter()
+            .filter(|&&(_, da, db)| wraps && (da, db) != (0, 0) && half(da, nx) && half(db, ny))
+            .map(|&(_, da, db)| [da as i16, db as i16])
+            .collect();
         Self {
             candidates,
+            around,
             coefficients,
         }
     }
@@ -136,5 +203,69 @@ impl Lattice {
     #[inline(always)]
     pub(super) fn between(&self, offset: i32, other: i32) -> f32 {
         self.coefficients[(CENTER as i32 + offset - other) as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Error, Grid, PeriodicBoussinesq};
+
+    /// Every neighbour is another node, once, and earlier in one order of all nodes; and its place in
+    /// the table of coefficients is that of its influence, across the edges too.
+    #[test]
+    fn neighbours_on_a_periodic_grid() -> Result<(), Error> {
+        for (nx, ny) in [(64, 48), (40, 24), (33, 20), (16, 16), (50, 1), (2, 3)] {
+            let grid = Grid::new(nx, ny, 1.0, 1.5)?;
+            let table = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
+            let lattices = Lattices::new(&table);
+            let last = lattices.levels.len() as u32 - 1;
+            let order = |node: usize| {
+                let level = (node % nx | node / nx).trailing_zeros().min(last);
+                (last - level, node)
+            };
+            for node in 0..grid.nodes() {
+                let mut found = [Neighbour::default(); 8];
+                let (count, lattice) = lattices.earlier(node, |_| true, &mut found);
+                let mut seen = vec![node];
+                for neighbour in &found[..count] {
+                    let other = neighbour.node as usize;
+                    assert!(order(other) < order(node), "{other} and {node}");
+                    assert!(!seen.contains(&other), "{other} twice");
+                    seen.push(other);
+                    let influence = table.between(table.place(other), table.place(node));
+                    let expected = (influence / table.self_influence()) as f32;
+                    let stored = lattice.between(neighbour.offset, 0);
+                    // The same coefficient, from one period or the next.
+                    assert!((stored - expected).abs() <= 1e-6, "{stored} and {expected}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The corner next to all others across both edges sees them.
+    #[test]
+    fn edges_are_no_edges() -> Result<(), Error> {
+        let grid = Grid::square(64, 1.0)?;
+        let table = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
+        let lattices = Lattices::new(&table);
+        let mut found = [Neighbour::default(); 8];
+        let (count, _) = lattices.earlier(63 + 64 * 63, |_| true, &mut found);
+        let nodes: Vec<usize> = found[..count].iter().map(|n| n.node as usize).collect();
+        // All eight around it are earlier: it is the last of the finest level.
+        for (x, y) in [
+            (62, 62),
+            (63, 62),
+            (0, 62),
+            (62, 63),
+            (0, 63),
+            (62, 0),
+            (63, 0),
+            (0, 0),
+        ] {
+            assert!(nodes.contains(&(x + 64 * y)), "({x}, {y}) in {nodes:?}");
+        }
+        Ok(())
     }
 }

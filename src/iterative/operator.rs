@@ -1,6 +1,6 @@
 //! The influence matrix as an operator: pressures on a contact set to displacements everywhere.
 
-use super::ContactSet;
+use super::{ContactSet, sum};
 use crate::Error;
 use crate::convolution::Convolution;
 
@@ -10,6 +10,8 @@ pub(crate) struct Operator {
     convolution: Convolution,
     pressure: Vec<f64>,
     displacement: Vec<f64>,
+    /// Uniform displacement per unit of the sum of pressures.
+    uniform: f64,
     convolutions: usize,
 }
 
@@ -20,6 +22,7 @@ impl Operator {
             convolution,
             pressure: vec![0.0; nodes],
             displacement: vec![0.0; nodes],
+            uniform: 0.0,
             convolutions: 0,
         }
     }
@@ -34,20 +37,35 @@ impl Operator {
         std::mem::take(&mut self.convolutions)
     }
 
+    /// Adds a uniform displacement, `uniform` per unit of the sum of pressures, to that of the kernel:
+    /// a change of gauge.
+    pub(crate) fn set_uniform(&mut self, uniform: f64) {
+        self.uniform = uniform;
+    }
+
     /// Displacement of every node under the pressures of a contact set.
     pub(crate) fn apply(&mut self, contact: &ContactSet, values: &[f64]) -> Result<&[f64], Error> {
         self.pressure.fill(0.0);
         contact.scatter(values, &mut self.pressure);
-        self.convolutions += 1;
-        self.convolution
-            .apply(&self.pressure, &mut self.displacement)?;
-        Ok(&self.displacement)
+        self.convolve(None, sum(values))
     }
 
     /// Displacement of every node under a pressure field.
     pub(crate) fn apply_field(&mut self, pressure: &[f64]) -> Result<&[f64], Error> {
+        self.convolve(Some(pressure), sum(pressure))
+    }
+
+    /// Convolves a field, the operator's own if none is given, of the sum `total`.
+    fn convolve(&mut self, pressure: Option<&[f64]>, total: f64) -> Result<&[f64], Error> {
         self.convolutions += 1;
+        let pressure = pressure.unwrap_or(&self.pressure);
         self.convolution.apply(pressure, &mut self.displacement)?;
+        if self.uniform != 0.0 {
+            let everywhere = self.uniform * total;
+            for value in &mut self.displacement {
+                *value += everywhere;
+            }
+        }
         Ok(&self.displacement)
     }
 }

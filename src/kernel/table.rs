@@ -1,5 +1,7 @@
 //! All influence coefficients of a grid, ready for look-up without index arithmetic.
 
+mod coarse;
+
 use super::{Boundary, InfluenceKernel};
 use crate::{Error, Grid};
 
@@ -148,6 +150,30 @@ impl KernelTable {
         })
     }
 
+    /// The same kernel with a uniform displacement added, so that the gauge becomes `gauge`; itself if
+    /// the boundary is free.
+    pub(crate) fn in_gauge(&self, gauge: f64) -> Self {
+        let mut table = self.clone();
+        if let Some(present) = self.gauge() {
+            for value in &mut table.values {
+                *value = *value - present + gauge;
+            }
+        }
+        table
+    }
+
+    /// The gauge for computing: of the size of the least one in which a kernel like Love's is an
+    /// inverse M-matrix, and of no influence on results. `None` if the boundary is free.
+    ///
+    /// In the zero gauge the least coefficient is that of the farthest node. That gauge is 1.5 times
+    /// its absolute value, on a square of many nodes with Love's kernel: 0.74 L / (E* M), near s\*.
+    pub(crate) fn computing_gauge(&self) -> Option<f64> {
+        let mean = self.gauge()?;
+        let least = self.values.iter().copied().fold(f64::INFINITY, f64::min) - mean;
+        // A single node has no other, and nothing but its gauge.
+        Some(if least < 0.0 { -1.5 * least } else { mean })
+    }
+
     /// The coefficient at offset (di, dj), or `None` if it lies outside the grid.
     #[must_use]
     pub fn coefficient(&self, di: isize, dj: isize) -> Option<f64> {
@@ -157,58 +183,6 @@ impl KernelTable {
         }
         let index = (di + nx - 1) + (dj + ny - 1) * (2 * nx - 1);
         self.values.get(index as usize).copied()
-    }
-
-    /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
-    /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
-    /// on blocks. A direction with a single node stays as it is; the last block of an odd number
-    /// of nodes reaches beyond the grid, where the kernel is continued by its last value.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Grid::new`].
-    pub(crate) fn coarsened(&self) -> Result<Self, Error> {
-        let (nx, ny) = self.grid.shape();
-        let factor = |nodes: usize| if nodes > 1 { 2 } else { 1 };
-        let (fx, fy) = (factor(nx), factor(ny));
-        let grid = Grid::new(
-            nx.div_ceil(fx),
-            ny.div_ceil(fy),
-            self.grid.dx() * fx as f64,
-            self.grid.dy() * fy as f64,
-        )?;
-        // Differences between the places of two cells within their blocks, and how often each
-        // occurs; sums over the sources, averages over the observers.
-        let differences = |factor: usize| -> &'static [(isize, f64)] {
-            if factor == 2 {
-                &[(-1, 0.5), (0, 1.0), (1, 0.5)]
-            } else {
-                &[(0, 1.0)]
-            }
-        };
-        let (nx, ny) = (nx as isize, ny as isize);
-        let (cx, cy) = (grid.nx() as isize, grid.ny() as isize);
-        let width = 2 * nx - 1;
-        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
-        for dj in 1 - cy..cy {
-            for di in 1 - cx..cx {
-                let mut sum = 0.0;
-                for &(oj, wj) in differences(fy) {
-                    let j = (dj * fy as isize + oj).clamp(1 - ny, ny - 1) + ny - 1;
-                    for &(oi, wi) in differences(fx) {
-                        let i = (di * fx as isize + oi).clamp(1 - nx, nx - 1) + nx - 1;
-                        sum += wi * wj * self.values[(i + j * width) as usize];
-                    }
-                }
-                values.push(sum);
-            }
-        }
-        let boundary = self.boundary;
-        Ok(Self {
-            grid,
-            boundary,
-            values,
-        })
     }
 
     /// The displacement of a cell under its own unit pressure, C(0, 0).
@@ -245,5 +219,29 @@ impl KernelTable {
         for (value, &other) in column.iter_mut().zip(others) {
             *value = self.values[base - other];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::PeriodicBoussinesq;
+
+    #[test]
+    fn another_gauge_is_a_uniform_displacement() -> Result<(), Error> {
+        let grid = Grid::new(12, 9, 1.0, 1.0)?;
+        let kernel = PeriodicBoussinesq::new(grid, 1.0)?;
+        let table = KernelTable::new(&kernel)?;
+        let zero = table.in_gauge(0.0);
+        // Means of 108 numbers near 1.
+        assert!(zero.gauge().is_some_and(|gauge| gauge.abs() < 1e-15));
+        let own = table.coefficient(5, 4).unwrap_or(f64::NAN) - kernel.gauge();
+        let found = zero.coefficient(5, 4).unwrap_or(f64::NAN);
+        assert!((found - own).abs() < 1e-15);
+        // Of the size of the least gauge that makes the kernel an inverse M-matrix.
+        let ratio =
+            table.computing_gauge().unwrap_or(f64::NAN) / kernel.least_gauge().unwrap_or(f64::NAN);
+        assert!((0.8..1.3).contains(&ratio), "{ratio}");
+        Ok(())
     }
 }

@@ -150,8 +150,8 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             contact_area_fraction: step as f64 / nodes as f64,
             mean_gap: front.mean_gap,
             contact_stiffness: match self.system.table().boundary() {
-                Boundary::Free => stiffness,
-                Boundary::Periodic => interfacial_stiffness,
+                Boundary::Free => Some(stiffness),
+                Boundary::Periodic => None,
             },
             interfacial_stiffness,
             energy: front.energy - 0.5 * self.gauge * load * load,

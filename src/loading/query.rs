@@ -101,16 +101,19 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         Ok(pressure)
     }
 
-    /// Displacement of the half-space \[m\] at the present state, positive into it.
+    /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean
+    /// if the half-space is periodic.
     ///
     /// # Errors
     ///
     /// Those of [`Self::pressure`].
     pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
         let pressure = self.pressure()?;
-        let field = self.fields.displacement(pressure.as_slice())?;
+        // What the gauge adds everywhere.
+        let uniform = self.gauge * self.state.map_or(0.0, |state| state.load);
+        let field = self.fields.displacement(pressure.as_slice())?.iter();
         let (nx, ny) = self.grid.shape();
-        Ok(DMatrix::from_column_slice(nx, ny, field))
+        Ok(DMatrix::from_iterator(nx, ny, field.map(|u| u - uniform)))
     }
 
     /// Gap \[m\] at the present state, $g + u - \delta$: zero in contact but for rounding.
@@ -119,7 +122,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
-        let approach = self.state.map_or(0.0, |state| self.gauged_approach(&state));
+        let approach = self.state.map_or(0.0, |state| state.approach);
         let mut gap = self.displacement()?;
         for (value, initial) in gap.iter_mut().zip(self.system.gap()) {
             *value = initial + *value - approach;

@@ -22,11 +22,13 @@ pub struct ContactState {
     pub contact_area_fraction: f64,
     /// Gap averaged over the nominal area \[m\].
     pub mean_gap: f64,
-    /// Normal contact stiffness $K = dW/d\delta$ \[N/m\]. With the approach of the mean planes, that
-    /// of a periodic half-space is its interfacial stiffness.
-    pub contact_stiffness: f64,
+    /// Normal contact stiffness $K = dW/d\delta$ \[N/m\] with the approach of a distant point of the
+    /// half-space; `None` if the half-space is periodic, which has none: every distant point recedes
+    /// without bound.
+    pub contact_stiffness: Option<f64>,
     /// Interfacial stiffness $K_i = -dW/d\bar g$ \[N/m\]: infinite in full contact, where the mean
-    /// gap cannot change.
+    /// gap cannot change. On a periodic half-space it is dW/dδ as well, since δ is that of the mean
+    /// planes.
     pub interfacial_stiffness: f64,
     /// Elastic energy $U = \int W\, d\delta$ \[J\].
     pub energy: f64,
@@ -54,6 +56,11 @@ impl ContactState {
             && !self.interfacial_stiffness.is_nan()
     }
 
+    /// $dW/d\delta$ for the approach of this state: that of the mean planes if there is no other.
+    fn load_rate(&self) -> f64 {
+        self.contact_stiffness.unwrap_or(self.interfacial_stiffness)
+    }
+
     /// The state at another approach with the same nodes in contact, by the exact linear relations
     /// of the interval between two events:
     /// $W = W_n + K (\delta - \delta_n)$, $\bar g = \bar g_n - (K / K_i)(\delta - \delta_n)$.
@@ -64,7 +71,7 @@ impl ContactState {
         if approach == self.approach {
             return *self;
         }
-        let change = self.contact_stiffness * (approach - self.approach);
+        let change = self.load_rate() * (approach - self.approach);
         Self {
             approach,
             ..self.at_load(self.load + change)
@@ -75,7 +82,7 @@ impl ContactState {
     #[must_use]
     pub fn at_load(&self, load: f64) -> Self {
         let change = load - self.load;
-        let advance = change / self.contact_stiffness;
+        let advance = change / self.load_rate();
         Self {
             approach: self.approach + advance,
             load,

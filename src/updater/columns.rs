@@ -1,19 +1,23 @@
 //! Right-hand sides under forward substitution.
 
+use std::array;
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par};
 
 use super::panels::{Panels, ROWS};
 use super::precision::Precision;
+use super::products::{add_products, subtract_transposed};
 use super::touched::Touched;
 use crate::parallel::{self, vectorized};
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
 /// that there are several to share among threads.
 const WIDTH: usize = 64;
+
+/// Columns of a block come in so many, as many as fit a vector.
+const UNIT: usize = 16;
 
 /// The forward-substituted columns $F = L^{-1}C_{IP}$ of the watched nodes P, which grow with the
 /// factor L.
@@ -103,14 +107,15 @@ impl<T: Precision> Columns<T> {
             block.values.truncate(to);
             block.width = kept.len();
         }
-        // An even number of blocks of equal width, so that two threads end together.
+        // An even number of blocks of much the same width, so that two threads end together.
         let blocks = 2 * new.div_ceil(2 * WIDTH);
-        let width = new.div_ceil(blocks.max(1)).next_multiple_of(8);
-        let mut left = new;
-        while left > 0 {
-            let width = width.min(left);
-            self.blocks.push(Block::with_capacity(rows, width));
-            left -= width;
+        let units = new.div_ceil(UNIT);
+        let end = |block: usize| new.min(block * units / blocks * UNIT);
+        for block in 0..blocks {
+            let width = end(block + 1) - end(block);
+            if width > 0 {
+                self.blocks.push(Block::with_capacity(rows, width));
+            }
         }
     }
 
@@ -182,18 +187,23 @@ impl<T: Precision> Columns<T> {
 
     /// R −= Fᵀ X for X given row by row.
     pub(super) fn subtract_products<const N: usize>(&self, x: &[[T; N]], mut r: &mut [[T; N]]) {
-        let x = MatRef::from_row_major_slice(x.as_flattened(), self.rows, N);
         let tiles = self.tiles();
         let mut tasks = Vec::with_capacity(tiles.len());
         for (_, block, columns) in &tiles {
             let (here, rest) = r.split_at_mut(columns.len());
             r = rest;
-            tasks.push((block, columns.clone(), here));
+            tasks.push((block, columns.start, here));
         }
-        parallel::for_each(&mut tasks, |(block, columns, r)| {
-            let f = block.view(0..self.rows, columns.clone()).transpose();
-            let r = MatMut::from_row_major_slice_mut(r.as_flattened_mut(), columns.len(), N);
-            matmul(r, Accum::Add, f, x, T::of(-1.0), Par::Seq);
+        parallel::for_each(&mut tasks, |(block, column, r)| {
+            let mut sums = [[T::default(); WIDTH]; N];
+            let values = block.values.get(*column..).unwrap_or_default();
+            let targets = sums.each_mut().map(|sums| &mut sums[..r.len()]);
+            subtract_transposed(values, block.width, x, targets);
+            for (k, r) in r.iter_mut().enumerate() {
+                for (r, sums) in r.iter_mut().zip(&sums) {
+                    *r += sums[k];
+                }
+            }
         });
     }
 
@@ -248,8 +258,10 @@ impl<T: Precision> Columns<T> {
             for start in (0..before).step_by(CACHED_ROWS) {
                 let rows = start..(start + CACHED_ROWS).min(before);
                 for ((_, (block, column)), target) in &mut *events {
-                    for (row, target) in rows.clone().zip(&mut target[rows.clone()]) {
-                        *target = block.get(row, *column);
+                    let values = &block.values[start * block.width + column..];
+                    let values = values.iter().step_by(block.width);
+                    for (target, value) in target[rows.clone()].iter_mut().zip(values) {
+                        *target = *value;
                     }
                 }
             }
@@ -294,25 +306,20 @@ impl<T: Precision> Columns<T> {
             return;
         }
         let watched = self.blocks.iter().map(|block| block.width).sum();
-        let mut factors = vec![[T::default(); N]; watched];
+        let mut factors: [Vec<T>; N] = array::from_fn(|_| vec![T::default(); watched]);
         for (position, values) in terms {
-            factors[*position] = *values;
+            for (factors, value) in factors.iter_mut().zip(values) {
+                factors[*position] = *value;
+            }
         }
         let mut products = vec![[T::default(); N]; rows];
         parallel::for_each_chunk(&mut products, ROWS, |chunk, products| {
-            let rows = chunk * ROWS..chunk * ROWS + products.len();
-            let mut factors = &factors[..];
+            let mut first = 0;
             for block in &self.blocks {
-                let (here, rest) = factors.split_at(block.width);
-                factors = rest;
-                matmul(
-                    MatMut::from_row_major_slice_mut(products.as_flattened_mut(), rows.len(), N),
-                    Accum::Add,
-                    block.view(rows.clone(), 0..block.width),
-                    MatRef::from_row_major_slice(here.as_flattened(), block.width, N),
-                    T::of(1.0),
-                    Par::Seq,
-                );
+                let factors = factors.each_ref().map(|x| &x[first..][..block.width]);
+                first += block.width;
+                let values = &block.values[chunk * ROWS * block.width..];
+                add_products(values, block.width, factors, products);
             }
         });
         for (i, target) in target.into_iter().enumerate() {
@@ -324,6 +331,6 @@ impl<T: Precision> Columns<T> {
 }
 
 /// Rows of the columns that are spread over the rows of the factor at a time.
-const CACHED_ROWS: usize = 32;
+const CACHED_ROWS: usize = 16;
 /// Rows of the factor that one thread fills at a time.
 const EVENTS: usize = 32;

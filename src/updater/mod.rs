@@ -14,8 +14,10 @@ mod factor;
 mod mixed;
 mod panels;
 mod precision;
+mod products;
 mod residual;
 mod schur;
+mod substitution;
 mod system;
 mod touched;
 

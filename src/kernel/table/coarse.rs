@@ -1,0 +1,180 @@
+//! The same kernel on a grid of half as many nodes a side.
+
+use super::KernelTable;
+use crate::{Boundary, Error, Grid};
+
+impl KernelTable {
+    /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
+    /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
+    /// on blocks. A direction with a single node stays as it is.
+    ///
+    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, where
+    /// the kernel is continued by its last value; those of a periodic one are a little smaller than two
+    /// cells, so that they fit the period, and weighted by how much they overlap.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Grid::new`].
+    pub(crate) fn coarsened(&self) -> Result<Self, Error> {
+        match self.boundary {
+            Boundary::Free => self.coarsened_free(),
+            Boundary::Periodic => self.coarsened_periodic(),
+        }
+    }
+
+    fn coarsened_periodic(&self) -> Result<Self, Error> {
+        let (nx, ny) = self.grid.shape();
+        let (lx, ly) = self.grid.sides();
+        let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
+        let grid = Grid::with_sides(cx, cy, lx, ly)?;
+        // For each offset of blocks the offsets of cells, and their weights: sums over the sources,
+        // averages over the observers.
+        let overlaps = |nodes: usize, blocks: usize| -> Vec<[(usize, f64); 4]> {
+            let width = nodes as f64 / blocks as f64;
+            (0..blocks)
+                .map(|offset| {
+                    let at = offset as f64 * width;
+                    let first = at as isize - 1;
+                    let weight = |cell: isize| (1.0 - (cell as f64 - at).abs() / width).max(0.0);
+                    let sum: f64 = (first..first + 4).map(weight).sum();
+                    std::array::from_fn(|i| {
+                        let cell = first + i as isize;
+                        let place = cell.rem_euclid(nodes as isize) as usize;
+                        (place, weight(cell) * width / sum)
+                    })
+                })
+                .collect()
+        };
+        let (along_x, along_y) = (overlaps(nx, cx), overlaps(ny, cy));
+        let width = 2 * nx - 1;
+        let (cx, cy) = (cx as isize, cy as isize);
+        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
+        for dj in 1 - cy..cy {
+            for di in 1 - cx..cx {
+                // By symmetry offsets need no sign: C(−di, −dj) = C(di, dj).
+                let (di, dj) = if dj < 0 { (-di, -dj) } else { (di, dj) };
+                let mut sum = 0.0;
+                for &(j, wj) in &along_y[dj as usize] {
+                    let row = self.center() + j * width;
+                    for &(i, wi) in &along_x[di.rem_euclid(cx) as usize] {
+                        sum += wi * wj * self.values[row + i];
+                    }
+                }
+                values.push(sum);
+            }
+        }
+        Ok(Self {
+            grid,
+            boundary: self.boundary,
+            values,
+        })
+    }
+
+    fn coarsened_free(&self) -> Result<Self, Error> {
+        let (nx, ny) = self.grid.shape();
+        let factor = |nodes: usize| if nodes > 1 { 2 } else { 1 };
+        let (fx, fy) = (factor(nx), factor(ny));
+        let grid = Grid::new(
+            nx.div_ceil(fx),
+            ny.div_ceil(fy),
+            self.grid.dx() * fx as f64,
+            self.grid.dy() * fy as f64,
+        )?;
+        // Differences between the places of two cells within their blocks, and how often each
+        // occurs; sums over the sources, averages over the observers.
+        let differences = |factor: usize| -> &'static [(isize, f64)] {
+            if factor == 2 {
+                &[(-1, 0.5), (0, 1.0), (1, 0.5)]
+            } else {
+                &[(0, 1.0)]
+            }
+        };
+        let (nx, ny) = (nx as isize, ny as isize);
+        let (cx, cy) = (grid.nx() as isize, grid.ny() as isize);
+        let width = 2 * nx - 1;
+        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
+        for dj in 1 - cy..cy {
+            for di in 1 - cx..cx {
+                let mut sum = 0.0;
+                for &(oj, wj) in differences(fy) {
+                    let j = (dj * fy as isize + oj).clamp(1 - ny, ny - 1) + ny - 1;
+                    for &(oi, wi) in differences(fx) {
+                        let i = (di * fx as isize + oi).clamp(1 - nx, nx - 1) + nx - 1;
+                        sum += wi * wj * self.values[(i + j * width) as usize];
+                    }
+                }
+                values.push(sum);
+            }
+        }
+        let boundary = self.boundary;
+        Ok(Self {
+            grid,
+            boundary,
+            values,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{PeriodicBoussinesq, Spectral};
+
+    /// The average over the nodes of one block of the displacement by unit pressure on another.
+    #[test]
+    fn periodic_blocks_are_averages() -> Result<(), Error> {
+        let grid = Grid::new(8, 6, 1.0, 1.5)?;
+        let fine = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
+        let coarse = fine.coarsened()?;
+        assert_eq!(coarse.grid(), Grid::new(4, 3, 2.0, 3.0)?);
+        for (di, dj) in (0..7 * 5).map(|i| (i % 7 - 3, i / 7 - 2)) {
+            let mut sum = 0.0;
+            for i in 0..16 {
+                let (ax, ay, bx, by) = (i % 2, i / 2 % 2, i / 4 % 2, i / 8);
+                let (x, y) = (2 * di + ax - bx, 2 * dj + ay - by);
+                sum += fine.coefficient(x % 8, y % 6).unwrap_or(f64::NAN);
+            }
+            let found = coarse.coefficient(di, dj).unwrap_or(f64::NAN);
+            // 16 terms near 1.
+            assert!((found - sum / 4.0).abs() < 1e-14, "{found} {sum}");
+        }
+        Ok(())
+    }
+
+    /// Blocks that do not fit a whole number of times: long waves answer as on the fine grid, and
+    /// all do positively.
+    #[test]
+    fn odd_periodic_grids_coarsen() -> Result<(), Error> {
+        for n in [17_usize, 25, 33, 99] {
+            let grid = Grid::square(n, 1.0)?;
+            let tables = [
+                KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?,
+                KernelTable::new(&Spectral::new(grid, 1.0)?)?,
+            ];
+            for fine in tables {
+                let coarse = fine.coarsened()?;
+                coarse.check_periodicity()?;
+                // Along x; across, waves that do not vary.
+                let symbol = |table: &KernelTable, k: usize| {
+                    let (nx, ny) = table.grid().shape();
+                    let mut sum = 0.0;
+                    for (i, j) in (0..nx * ny).map(|node| (node % nx, node / nx)) {
+                        let turn = std::f64::consts::TAU * (k * i % nx) as f64 / nx as f64;
+                        let value = table.coefficient(i as isize, j as isize);
+                        sum += value.unwrap_or(f64::NAN) * turn.cos();
+                    }
+                    sum
+                };
+                let ratio = symbol(&coarse, 1) / symbol(&fine, 1);
+                // Averages over blocks of 2/n of a wave, of pressure and displacement, and what
+                // weights at fractions of a cell do: (π / n)² and a little.
+                assert!((ratio - 1.0).abs() < 40.0 / (n * n) as f64, "{n}: {ratio}");
+                for k in 1..coarse.grid().nx() {
+                    let value = symbol(&coarse, k);
+                    assert!(value > 0.0, "{n}, wave {k}: {value}");
+                }
+            }
+        }
+        Ok(())
+    }
+}
