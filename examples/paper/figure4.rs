@@ -20,7 +20,7 @@ use crate::table::write_csv;
 /// Contact areas that are shown.
 const AREAS: [f64; 4] = [0.01, 0.05, 0.15, 0.4];
 /// Pixels a side of a map.
-const MAP: i32 = 256;
+const MAP: i32 = 216;
 const FONT: i32 = 14;
 /// Darkest colour: this pressure over E* h′ and all above.
 const DARKEST: f64 = 1.5;

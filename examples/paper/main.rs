@@ -12,6 +12,8 @@
 #[allow(dead_code)] // shared: each example uses its part
 #[path = "../common/axis.rs"]
 mod axis;
+#[allow(dead_code)] // shared: each example uses its part
+#[path = "../common/chart.rs"]
 mod chart;
 mod figure3;
 mod figure4;

@@ -240,7 +240,7 @@ impl Point {
             corrected: area - STAIRCASE * edges as f64 / grid.nodes() as f64,
             approach: state.approach / SQ,
             mean_gap: state.mean_gap / SQ,
-            contact_stiffness: state.contact_stiffness * SQ / force,
+            contact_stiffness: known(state.contact_stiffness) * SQ / force,
             interfacial_stiffness: state.interfacial_stiffness * SQ / force,
             event: true,
         }
@@ -257,8 +257,8 @@ impl Point {
             corrected: area - STAIRCASE * edges as f64 / grid.nodes() as f64,
             approach: state.approach / SQ,
             mean_gap: state.mean_gap / SQ,
-            contact_stiffness: state.contact_stiffness * SQ / force,
-            interfacial_stiffness: state.interfacial_stiffness * SQ / force,
+            contact_stiffness: known(state.contact_stiffness) * SQ / force,
+            interfacial_stiffness: known(state.interfacial_stiffness) * SQ / force,
             event: false,
         }
     }
@@ -277,6 +277,11 @@ impl Point {
     pub(crate) fn decay(&self) -> f64 {
         self.load / self.interfacial_stiffness
     }
+}
+
+/// A stiffness that a free half-space has and that was asked for.
+fn known(stiffness: Option<f64>) -> f64 {
+    stiffness.unwrap_or(f64::NAN)
 }
 
 /// The states of a path, every one up to 500 nodes and one in 500 parts from there.
@@ -359,5 +364,5 @@ pub(crate) fn punch_stiffness(nodes: usize) -> Result<f64, asperity::Error> {
     let heights = HeightMap::new(DMatrix::zeros(nodes, nodes))?;
     let kernel = Boussinesq::new(grid, E_STAR)?;
     let solution = FixedLoadSolver::new(heights, kernel)?.solve(NOMINAL_AREA * E_STAR)?;
-    Ok(solution.state.contact_stiffness * SQ / (NOMINAL_AREA * E_STAR))
+    Ok(known(solution.state.contact_stiffness) * SQ / (NOMINAL_AREA * E_STAR))
 }

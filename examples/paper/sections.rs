@@ -303,7 +303,8 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
         "### Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
          The exponential is y₀ + A exp(−W/t) through u/Sq = −δ/Sq, the line is fitted from {} on; both by least \
          squares over evenly spaced loads, as the paper does not say over which. The fits of the exponential \
-         depend on the range more than on the seed, and none starts at 0, where every path does.\n\n\
+         depend on the range more than on the seed, and none starts at 0, where every path does. All three numbers \
+         agree for: {}.\n\n\
          **Saturated stiffness.** The rigid square punch has K = {} E\\*L, {} in these units; the same punch on \
          the mesh has {} ({:.2} % less, the error of the mesh), and the surfaces end there. It has nothing to \
          do with roughness. Nor does it need A/A₀ = 1, as the paper has it: see the row at 10 % contact.\n\n\
@@ -317,11 +318,38 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
         ),
         table.text,
         scientific(LARGE_LOAD, 1),
+        exponentials(report),
         asperity::reference::SQUARE_PUNCH_STIFFNESS,
         scientific(exact, 4),
         scientific(punch, 4),
         100.0 * (1.0 - punch / exact),
     )
+}
+
+/// Ranges over which all three numbers of the exponential are the paper's.
+fn exponentials(report: &Report) -> String {
+    let paper = [
+        PAPER_EXPONENTIAL.0,
+        PAPER_EXPONENTIAL.1,
+        PAPER_EXPONENTIAL.2,
+    ];
+    let mut texts = Vec::new();
+    for (name, fits) in families(report).zip(&report.figure7.fits) {
+        for (greatest, found) in SMALL_LOADS.iter().zip(&fits.exponentials) {
+            if paper
+                .iter()
+                .zip(found)
+                .all(|(paper, ours)| verdict(*paper, *ours) == "agrees")
+            {
+                texts.push(format!("{name} with W ≤ {}", scientific(*greatest, 2)));
+            }
+        }
+    }
+    if texts.is_empty() {
+        "none of these ranges".to_string()
+    } else {
+        texts.join(", ")
+    }
 }
 
 /// Mean gap and interfacial stiffness.
