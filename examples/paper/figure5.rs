@@ -94,7 +94,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
         Chart {
             title: "Below 30 % contact, with fitted lines".to_string(),
             x: Axis::plain("load W / A₀E*", 0.0, greatest(&below)),
-            y: Axis::plain("contact area A / A₀", 0.0, STRAIGHT),
+            y: Axis::plain("contact area A / A₀", 0.0, 1.1 * STRAIGHT),
             series: below,
             legend: Corner::BottomRight,
         },
