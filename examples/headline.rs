@@ -57,7 +57,7 @@ fn run<U: LinearUpdater>(
     let mut solver = builder.build()?;
     let mut nodes = 0;
     for state in solver.by_ref() {
-        nodes = state?.step;
+        nodes = state?.contact_nodes;
         if nodes % 64 == 0 {
             bar.set_position(nodes as u64);
         }

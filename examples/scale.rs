@@ -8,7 +8,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use asperity::surface::{Amplitude, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky};
+use asperity::updater::{Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, ContactState, Grid, LoadingSolver};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -28,6 +28,12 @@ struct Options {
     /// Both precisions, compared state by state.
     #[arg(long)]
     compare: bool,
+    /// The factor up to a memory budget of so many MB, conjugate gradients after.
+    #[arg(long)]
+    budget: Option<usize>,
+    /// Nodes to watch at a time.
+    #[arg(long)]
+    window: Option<usize>,
     /// Seed of the surface.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -47,10 +53,16 @@ fn run<U: LinearUpdater>(
     let bar = ProgressBar::new(options.contact_nodes as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let start = Instant::now();
-    let mut path = LoadingSolver::builder(surface, kernel)
+    let mut builder = LoadingSolver::builder(surface, kernel)
         .updater(updater)
-        .max_nodes(options.contact_nodes)
-        .build()?;
+        .max_nodes(options.contact_nodes);
+    if let Some(megabytes) = options.budget {
+        builder = builder.memory_budget(megabytes * 1_000_000);
+    }
+    if let Some(size) = options.window {
+        builder = builder.window_size(size);
+    }
+    let mut path = builder.build()?;
     let mut states = Vec::new();
     for state in path.by_ref() {
         states.push(state?);
@@ -116,6 +128,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         compare(&exact, &mixed);
     } else if options.mixed {
         run(&options, RecursiveCholesky::mixed())?;
+    } else if options.budget.is_some() {
+        run(&options, Handover::new())?;
     } else {
         run(&options, RecursiveCholesky::new())?;
     }

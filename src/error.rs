@@ -192,16 +192,16 @@ pub enum Error {
          precision; choose other units"
     )]
     NotFinite {
-        /// Number of contact nodes of the state.
+        /// Number of the state.
         step: usize,
     },
 
     /// A state was asked for that the path has not reached.
     #[error("state {step} was asked for, but the path has reached {present}")]
     StateNotReached {
-        /// Number of contact nodes of the state.
+        /// Number of the state asked for.
         step: usize,
-        /// Number of contact nodes at present.
+        /// Number of the present state.
         present: usize,
     },
 
@@ -212,10 +212,10 @@ pub enum Error {
         nodes: usize,
     },
 
-    /// The kernel breaks monotonicity: a node in contact would leave it, or one out of contact
-    /// overlaps, although the approach only grows.
+    /// The kernel breaks what it promises of the growth of contact, or is too ill-conditioned for
+    /// the promise to show: a node in contact would leave it, or one out of contact overlaps.
     #[error(
-        "the kernel breaks the monotone growth of contact: at approach {approach} the {quantity} \
+        "the kernel breaks the promised growth of contact: at approach {approach} the {quantity} \
          of node ({ix}, {iy}) is {value}"
     )]
     NotMonotone {
@@ -229,6 +229,34 @@ pub enum Error {
         approach: f64,
         /// The offending value.
         value: f64,
+    },
+
+    /// A node is to leave the contact, and the updater cannot remove nodes.
+    #[error("node ({ix}, {iy}) leaves the contact, and this updater cannot remove nodes")]
+    ReleaseNotSupported {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+    },
+
+    /// A node was to leave the contact without being in it.
+    #[error("node ({ix}, {iy}) is not in contact, and cannot leave it")]
+    NotInContact {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+    },
+
+    /// Nodes touch and leave at one approach without end: they do so together, and what tells them
+    /// apart lies below the rounding errors.
+    #[error("{events} events at the approach {approach}, and no end of them")]
+    Cycling {
+        /// The approach.
+        approach: f64,
+        /// Number of events there.
+        events: usize,
     },
 
     /// An approach that a periodic half-space takes at no load, or at any large enough one: its mean

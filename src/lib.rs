@@ -27,6 +27,8 @@ pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::Error;
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use grid::Grid;
-pub use kernel::{Boundary, Boussinesq, InfluenceKernel, PeriodicBoussinesq, Spectral};
-pub use loading::{ContactRule, ContactState, LoadingSolver};
+pub use kernel::{
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
+};
+pub use loading::{ContactEvent, ContactRule, ContactState, LoadingSolver};
 pub use surface::{HeightMap, SelfAffine, Surface};

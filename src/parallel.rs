@@ -4,15 +4,6 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// Runs `work` in one of rayon's threads, so that the loops inside it do not pass from the calling
-/// thread to rayon's and back one by one.
-pub(crate) fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    #[cfg(feature = "rayon")]
-    return rayon::scope(|_| work());
-    #[cfg(not(feature = "rayon"))]
-    work()
-}
-
 /// Runs both, at the same time if there are threads.
 pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
@@ -78,6 +69,15 @@ where
         .zip(scratch)
         .enumerate()
         .for_each(work_on_part);
+}
+
+/// Runs `work` on one of the threads that its loops are divided among: a thread outside of them
+/// would go to sleep, and have to be woken, at every loop.
+pub(crate) fn among_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    #[cfg(feature = "rayon")]
+    return rayon::scope(|_| work());
+    #[cfg(not(feature = "rayon"))]
+    work()
 }
 
 /// Runs `work`, which must be inlined, compiled for the widest vectors this processor has. Without

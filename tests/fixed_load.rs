@@ -3,7 +3,7 @@
 
 mod common;
 
-use asperity::fixed_load::FixedLoadSolver;
+use asperity::fixed_load::{ContactTarget, FixedLoadSolver};
 use asperity::loading::History;
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
 use asperity::{
@@ -329,6 +329,80 @@ fn a_sweep_is_its_loads() {
     assert!(sweep.next().unwrap().is_ok());
     assert!(matches!(sweep.next(), Some(Err(Error::NotPositive { .. }))));
     assert!(sweep.next().is_none());
+}
+
+/// Areas and mean gaps are states of the path, alone and in a sweep.
+#[test]
+fn areas_mean_gaps_and_approaches() {
+    let grid = Grid::square(48, 1.0).unwrap();
+    let surface = SelfAffine::new(0.8, 0.25, 4.0 / 48.0, Amplitude::RmsHeight(1e-2), 5).unwrap();
+    let map = HeightMap::sample(&surface, &grid).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let mut path = LoadingSolver::new(map.clone(), kernel.clone()).unwrap();
+    let history: History = path.by_ref().map(Result::unwrap).collect();
+    for stiffness in [true, false] {
+        let mut solver = FixedLoadSolver::builder(map.clone(), kernel.clone())
+            .tolerance(1e-12)
+            .stiffness(stiffness)
+            .build()
+            .unwrap();
+        // Up and down, in small steps and in large ones.
+        let fractions = [2e-4, 0.01, 0.011, 0.3, 0.32, 0.9, 1.0, 0.05];
+        let areas = fractions.map(ContactTarget::AreaFraction);
+        for (fraction, solution) in fractions.into_iter().zip(solver.sweep(areas)) {
+            let solution = solution.unwrap();
+            check(&solution, 1e-12);
+            let nodes = (fraction * grid.nodes() as f64).round().max(1.0) as usize;
+            assert_eq!(solution.state.contact_nodes, nodes);
+        }
+        let gaps: Vec<f64> = [30, 200, 230, 1000, 2200, 400]
+            .map(|step: usize| history.states()[step].mean_gap)
+            .to_vec();
+        let targets = gaps.iter().map(|&gap| ContactTarget::MeanGap(gap));
+        for (&gap, solution) in gaps.iter().zip(solver.sweep(targets)) {
+            let state = solution.unwrap().state;
+            assert!((state.mean_gap - gap).abs() <= 1e-12 * state.approach);
+            let expected = history.at_mean_gap(gap).unwrap();
+            // The tolerance of the gap times the stiffness.
+            assert!(relative(state.load, expected.load) < 1e-8, "{state:?}");
+        }
+        let steps = [100, 110, 900, 850];
+        let approaches = steps.map(|step: usize| history.states()[step].approach);
+        let targets = approaches.map(ContactTarget::Approach);
+        for (step, solution) in steps.into_iter().zip(solver.sweep(targets)) {
+            let load = solution.unwrap().state.load;
+            assert!(relative(load, history.states()[step].load) < 1e-8);
+        }
+        // One alone, and a plain number for a load.
+        let area = ContactTarget::AreaFraction(0.2);
+        let alone = solver.solve_target(area).unwrap();
+        assert_eq!(alone.state.contact_nodes, 461);
+        let same = solver.solve_target(alone.state.load).unwrap();
+        assert_eq!(same.contact, alone.contact);
+        assert!(relative(same.state.approach, alone.state.approach) < 1e-11);
+        for bad in [
+            ContactTarget::AreaFraction(0.0),
+            ContactTarget::AreaFraction(1.1),
+            ContactTarget::AreaFraction(f64::NAN),
+            ContactTarget::MeanGap(0.0),
+            ContactTarget::MeanGap(1.0),
+            ContactTarget::MeanGap(f64::NAN),
+        ] {
+            let solved = solver.solve_target(bad);
+            assert!(matches!(solved, Err(Error::OutOfRange { .. })), "{bad:?}");
+        }
+    }
+}
+
+/// Four nodes of a symmetric shape touch together: numbers between are not to be had.
+#[test]
+fn unreachable_areas() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let mut sphere = FixedLoadSolver::new(Paraboloid::new(10.0).unwrap(), kernel).unwrap();
+    let area = ContactTarget::AreaFraction(5.0 / 256.0);
+    let nodes = sphere.solve_target(area).unwrap().state.contact_nodes;
+    assert_eq!(nodes, 4);
 }
 
 /// Sums are taken in fixed chunks: the number of threads does not touch a bit.

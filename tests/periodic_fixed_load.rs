@@ -9,7 +9,8 @@ use asperity::loading::History;
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
 use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boundary, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
+    Boundary, ContactGrowth, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+    Spectral, Surface,
 };
 use common::surface;
 use nalgebra::DMatrix;
@@ -86,10 +87,10 @@ impl InfluenceKernel for Kernel {
             Self::Spectral(kernel) => kernel.coefficient(di, dj),
         }
     }
-    fn contact_only_grows(&self) -> bool {
+    fn contact_growth(&self) -> ContactGrowth {
         match self {
-            Self::Love(kernel) => kernel.contact_only_grows(),
-            Self::Spectral(kernel) => kernel.contact_only_grows(),
+            Self::Love(kernel) => kernel.contact_growth(),
+            Self::Spectral(kernel) => kernel.contact_growth(),
         }
     }
 }

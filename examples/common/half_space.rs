@@ -1,6 +1,8 @@
 //! The half-space that the command line asks for.
 
-use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral,
+};
 use clap::ValueEnum;
 
 /// The kernel of a periodic half-space.
@@ -61,7 +63,7 @@ impl InfluenceKernel for HalfSpace {
         self.kernel().coefficient(di, dj)
     }
 
-    fn contact_only_grows(&self) -> bool {
-        self.kernel().contact_only_grows()
+    fn contact_growth(&self) -> ContactGrowth {
+        self.kernel().contact_growth()
     }
 }

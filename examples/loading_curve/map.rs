@@ -54,7 +54,7 @@ pub(crate) fn draw<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
     let caption = solver.state().map_or_else(String::new, |state| {
         format!(
             "{} nodes in contact, A/A₀ = {:.2} %, W = {}",
-            state.step,
+            state.contact_nodes,
             100.0 * state.contact_area_fraction,
             quantity(state.load, "N", 4)
         )

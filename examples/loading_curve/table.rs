@@ -43,7 +43,7 @@ pub(crate) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
         };
         println!(
             "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12.4e} {:>12.4e}",
-            state.step,
+            state.contact_nodes,
             state.load,
             state.mean_pressure() / job.e_star(),
             state.contact_area_fraction,

@@ -4,7 +4,8 @@ use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{Convolution, PARALLEL_NODES, direct_sum};
+use super::engine::PARALLEL_NODES;
+use super::{Convolution, direct_sum};
 use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
 /// 1 / √(1 + r²): as slow a decay as Boussinesq's, so that a wrong padding shows.
@@ -160,7 +161,7 @@ fn periodic_grids_are_not_padded() -> Result<(), Error> {
     // Two primes, which no fast length comes near.
     let grid = Grid::new(37, 53, 1.0, 1.0)?;
     let convolution = Convolution::new(&Spectral::new(grid, 1.0)?)?;
-    assert_eq!(convolution.transforms.padded(), (37, 53));
+    assert_eq!(convolution.engine.padded(), (37, 53));
     Ok(())
 }
 
@@ -209,9 +210,9 @@ fn parts_and_threads_do_not_change_a_bit() -> Result<(), Box<dyn std::error::Err
     let kernel = Slow(parallel_grid()?);
     let pressure = random_field(&kernel.grid(), 3);
     let mut convolution = Convolution::new(&kernel)?;
-    let parts = convolution.scratch.len();
+    let parts = convolution.engine.scratch.len();
     let mut one_part = convolution.clone();
-    one_part.scratch.truncate(1);
+    one_part.engine.scratch.truncate(1);
     let expected = one_part.convolve(&pressure)?;
     #[cfg(feature = "rayon")]
     for threads in [1, 2, 3] {
@@ -319,7 +320,7 @@ fn refuses_a_kernel_whose_sum_overflows() -> Result<(), Error> {
 fn memory_counts_symbol_and_spectra() -> Result<(), Error> {
     let grid = Grid::new(100, 100, 1.0, 1.0)?;
     let convolution = Convolution::new(&Slow(grid))?;
-    let (px, py) = convolution.transforms.padded();
+    let (px, py) = convolution.engine.padded();
     assert!(px >= 199 && py >= 199);
     let columns = px / 2 + 1;
     let least = 8 * columns * py + 2 * 16 * columns * grid.ny();

@@ -6,34 +6,35 @@ use num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
+use super::real::Real;
 use super::size::fast_size;
 use crate::{Boundary, Grid};
 
 /// Plans of all transforms of a grid, zero-padded unless it is periodic.
 #[derive(Clone)]
-pub(super) struct Transforms {
+pub(super) struct Transforms<T: Real> {
     nx: usize,
     ny: usize,
-    row_forward: Arc<dyn RealToComplex<f64>>,
-    row_inverse: Arc<dyn ComplexToReal<f64>>,
-    column_forward: Arc<dyn Fft<f64>>,
-    column_inverse: Arc<dyn Fft<f64>>,
+    row_forward: Arc<dyn RealToComplex<T>>,
+    row_inverse: Arc<dyn ComplexToReal<T>>,
+    column_forward: Arc<dyn Fft<T>>,
+    column_inverse: Arc<dyn Fft<T>>,
 }
 
 /// Working memory of the transforms, one for each thread.
 #[derive(Clone)]
-pub(super) struct Workspace {
+pub(super) struct Workspace<T> {
     /// One padded row.
-    row: Vec<f64>,
+    row: Vec<T>,
     /// One padded column.
-    column: Vec<Complex<f64>>,
+    column: Vec<Complex<T>>,
     /// Its spectrum.
-    spectrum: Vec<Complex<f64>>,
+    spectrum: Vec<Complex<T>>,
     /// What the plans ask for.
-    fft: Vec<Complex<f64>>,
+    fft: Vec<Complex<T>>,
 }
 
-impl Transforms {
+impl<T: Real> Transforms<T> {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
         let (nx, ny) = grid.shape();
         let (px, py) = match boundary {
@@ -64,7 +65,7 @@ impl Transforms {
         self.row_forward.complex_len()
     }
 
-    pub(super) fn workspace(&self) -> Workspace {
+    pub(super) fn workspace(&self) -> Workspace<T> {
         let (px, py) = self.padded();
         let fft = [
             self.row_forward.get_scratch_len(),
@@ -73,10 +74,10 @@ impl Transforms {
             self.column_inverse.get_outofplace_scratch_len(),
         ];
         Workspace {
-            row: vec![0.0; px],
-            column: vec![Complex::default(); py],
-            spectrum: vec![Complex::default(); py],
-            fft: vec![Complex::default(); fft.into_iter().max().unwrap_or(0)],
+            row: vec![T::zero(); px],
+            column: vec![T::ZERO; py],
+            spectrum: vec![T::ZERO; py],
+            fft: vec![T::ZERO; fft.into_iter().max().unwrap_or(0)],
         }
     }
 
@@ -84,16 +85,19 @@ impl Transforms {
     pub(super) fn forward_row(
         &self,
         values: &[f64],
-        spectrum: &mut [Complex<f64>],
-        work: &mut Workspace,
+        factor: f64,
+        spectrum: &mut [Complex<T>],
+        work: &mut Workspace<T>,
     ) {
         if values.iter().all(|&value| value == 0.0) {
-            spectrum.fill(Complex::default());
+            spectrum.fill(T::ZERO);
             return;
         }
         let (inside, padding) = work.row.split_at_mut(self.nx);
-        inside.copy_from_slice(values);
-        padding.fill(0.0);
+        for (place, &value) in inside.iter_mut().zip(values) {
+            *place = T::rounded(value * factor);
+        }
+        padding.fill(T::zero());
         self.forward_padded_row(spectrum, work);
     }
 
@@ -101,21 +105,21 @@ impl Transforms {
     pub(super) fn forward_kernel_row(
         &self,
         value: impl Fn(isize) -> f64,
-        spectrum: &mut [Complex<f64>],
-        work: &mut Workspace,
+        spectrum: &mut [Complex<T>],
+        work: &mut Workspace<T>,
     ) {
-        work.row.fill(0.0);
+        work.row.fill(T::zero());
         let (positive, negative) = work.row.split_at_mut(self.nx);
         for (place, di) in positive.iter_mut().zip(0..) {
-            *place = value(di);
+            *place = T::rounded(value(di));
         }
         for (place, di) in negative.iter_mut().rev().zip(1..self.nx as isize) {
-            *place = value(-di);
+            *place = T::rounded(value(-di));
         }
         self.forward_padded_row(spectrum, work);
     }
 
-    fn forward_padded_row(&self, spectrum: &mut [Complex<f64>], work: &mut Workspace) {
+    fn forward_padded_row(&self, spectrum: &mut [Complex<T>], work: &mut Workspace<T>) {
         let done = self
             .row_forward
             .process_with_scratch(&mut work.row, spectrum, &mut work.fft);
@@ -126,42 +130,45 @@ impl Transforms {
     /// The nx values of a row, given its spectrum, which is destroyed.
     pub(super) fn inverse_row(
         &self,
-        spectrum: &mut [Complex<f64>],
+        spectrum: &mut [Complex<T>],
+        factor: f64,
         values: &mut [f64],
-        work: &mut Workspace,
+        work: &mut Workspace<T>,
     ) {
         // Real up to rounding since the row is real; the transform insists on exactly. An odd
         // length has no Nyquist frequency at the end.
-        spectrum[0].im = 0.0;
+        spectrum[0].im = T::zero();
         if work.row.len().is_multiple_of(2) {
-            spectrum[self.columns() - 1].im = 0.0;
+            spectrum[self.columns() - 1].im = T::zero();
         }
         let done = self
             .row_inverse
             .process_with_scratch(spectrum, &mut work.row, &mut work.fft);
         // Those imaginary parts and lengths are all it could complain of.
         debug_assert!(done.is_ok(), "{done:?}");
-        values.copy_from_slice(&work.row[..self.nx]);
+        for (value, place) in values.iter_mut().zip(&work.row) {
+            *value = place.widened() * factor;
+        }
     }
 
     /// Multiplies the spectrum of a column of ny entries, padded with zeros where there is padding,
     /// by `symbol`.
     pub(super) fn filter_column(
         &self,
-        entries: &mut [Complex<f64>],
-        symbol: &[f64],
-        work: &mut Workspace,
+        entries: &mut [Complex<T>],
+        symbol: &[T],
+        work: &mut Workspace<T>,
     ) {
         let (inside, padding) = work.column.split_at_mut(self.ny);
         inside.copy_from_slice(entries);
-        padding.fill(Complex::default());
+        padding.fill(T::ZERO);
         self.column_forward.process_outofplace_with_scratch(
             &mut work.column,
             &mut work.spectrum,
             &mut work.fft,
         );
         for (value, &factor) in work.spectrum.iter_mut().zip(symbol) {
-            *value *= factor;
+            *value = *value * factor;
         }
         self.column_inverse.process_outofplace_with_scratch(
             &mut work.spectrum,
@@ -177,14 +184,14 @@ impl Transforms {
     /// row dj, and the symbol real. Without padding row −dj is row ny − dj, which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
     pub(super) fn symbol_column(
         &self,
-        entries: &[Complex<f64>],
-        symbol: &mut [f64],
-        work: &mut Workspace,
+        entries: &[Complex<T>],
+        symbol: &mut [T],
+        work: &mut Workspace<T>,
     ) {
         let (inside, padding) = work.column.split_at_mut(self.ny);
         inside.copy_from_slice(entries);
-        inside[0].im = 0.0;
-        padding.fill(Complex::default());
+        inside[0].im = T::zero();
+        padding.fill(T::ZERO);
         for (opposite, entry) in padding.iter_mut().rev().zip(&entries[1..]) {
             *opposite = entry.conj();
         }
@@ -194,14 +201,14 @@ impl Transforms {
             &mut work.fft,
         );
         let (px, py) = self.padded();
-        let normalisation = 1.0 / (px as f64 * py as f64);
+        let normalisation = T::rounded(1.0 / (px as f64 * py as f64));
         for (value, spectrum) in symbol.iter_mut().zip(&work.spectrum) {
             *value = spectrum.re * normalisation;
         }
     }
 }
 
-impl Workspace {
+impl<T> Workspace<T> {
     /// Bytes held.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.row[..])

@@ -23,13 +23,20 @@ const STRICTEST: f64 = 0.125;
 const DEAD_BAND: f64 = 0.1;
 
 impl Level {
-    /// Solves from the pressure of the present iterate, which must be ≥ 0 and, for a sum, have it.
+    /// Solves from the pressure of the present iterate, which for a sum must have it. If it is a
+    /// `prediction` its displacements and its approach are known, and it may be negative; else it
+    /// must not be.
     ///
     /// # Errors
     ///
     /// [`Error::NoConvergence`] with the best residual, and [`Error::FactorizationFailed`] if the
     /// kernel is not positive definite.
-    pub(super) fn solve(&mut self, target: Target, criteria: Criteria) -> Result<Effort, Error> {
+    pub(super) fn solve(
+        &mut self,
+        target: Target,
+        criteria: Criteria,
+        prediction: bool,
+    ) -> Result<Effort, Error> {
         let mut effort = Effort::default();
         let mut best = f64::INFINITY;
         let no_convergence = |best: f64, effort: Effort| Error::NoConvergence {
@@ -37,14 +44,17 @@ impl Level {
             tolerance: criteria.tolerance,
             iterations: effort.iterations,
         };
-        self.refresh()?;
-        self.iterate.approach = match target {
-            Target::Approach(approach) => approach,
+        if !prediction {
+            self.refresh()?;
+        }
+        match target {
+            Target::Approach(approach) => self.iterate.approach = approach,
+            Target::Sum(_) if prediction => {}
             Target::Sum(sum) => {
                 self.prefer_single_node(sum)?;
-                dot(&self.iterate.pressure, &self.iterate.closure) / sum
+                self.iterate.approach = dot(&self.iterate.pressure, &self.iterate.closure) / sum;
             }
-        };
+        }
         let (mut inner, mut previous) = (INNER, f64::INFINITY);
         let mut unconfirmed = 0;
         let mut working = criteria;
@@ -228,7 +238,7 @@ impl Level {
             contact,
         } = &mut self.iterate;
         let deepest = *approach - dead_band;
-        contact.assign(|node| pressure[node] > 0.0 || closure[node] < deepest);
+        contact.assign(|node| pressure[node] != 0.0 || closure[node] < deepest);
         self.inverse.update(contact);
     }
 }

@@ -3,17 +3,7 @@
 use super::iterate::{Criteria, Effort, Errors};
 use super::level::{Level, Target};
 use crate::Error;
-use crate::iterative::{ContactSet, add_scaled, dot, greatest, sum, sum_over};
-
-/// Earlier directions to which a new one is made conjugate.
-const MEMORY: usize = 2;
-
-/// A search direction and what it does to the contact set.
-struct Direction {
-    values: Vec<f64>,
-    image: Vec<f64>,
-    curvature: f64,
-}
+use crate::iterative::{ContactSet, Directions, add_scaled, dot, greatest, sum, sum_over};
 
 /// Where a round began.
 struct Start {
@@ -55,7 +45,7 @@ impl Level {
         let mut errors = self.errors(contact, &x, &closure);
         let mut residual = vec![0.0; x.len()];
         let mut z = Vec::new();
-        let mut directions: Vec<Direction> = Vec::new();
+        let mut directions = Directions::default();
         loop {
             let approach = self.iterate.approach;
             let others = errors.in_set();
@@ -76,21 +66,17 @@ impl Level {
                 *r = approach - g;
             }
             self.inverse.apply(&residual, &mut z);
-            let mut values = z.clone();
-            for earlier in &directions {
-                add_scaled(
-                    &mut values,
-                    -dot(&z, &earlier.image) / earlier.curvature,
-                    &earlier.values,
-                );
-            }
-            let displacement = self.operator.apply(contact, &values)?;
+            let values = directions.conjugate(&z);
+            let displacement = self.operator.step(contact, &values)?;
             let mut image = Vec::new();
             contact.gather(displacement, &mut image);
             let curvature = dot(&values, &image);
             if curvature.is_nan() || curvature <= 0.0 {
                 if residual.iter().all(|r| *r == 0.0) {
                     break;
+                }
+                if directions.forget() {
+                    continue;
                 }
                 return Err(Error::FactorizationFailed {
                     nodes: contact.len(),
@@ -101,14 +87,7 @@ impl Level {
             add_scaled(&mut self.iterate.closure, step, displacement);
             add_scaled(&mut closure, step, &image);
             self.iterate.approach = approach_of(&closure);
-            if directions.len() == MEMORY {
-                directions.remove(0);
-            }
-            directions.push(Direction {
-                values,
-                image,
-                curvature,
-            });
+            directions.push(values, image, curvature);
             effort.iterations += 1;
             errors = self.errors(contact, &x, &closure);
         }

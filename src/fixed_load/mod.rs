@@ -40,17 +40,21 @@
 
 mod active_set;
 mod builder;
+mod continuation;
 mod descent;
 mod hierarchy;
 mod iterate;
 mod level;
 mod release;
+mod search;
 mod solution;
 mod solver;
 mod sweep;
 mod tangent;
+mod target;
 
 pub use builder::FixedLoadBuilder;
 pub use solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 pub use solver::FixedLoadSolver;
 pub use sweep::LoadSweep;
+pub use target::ContactTarget;

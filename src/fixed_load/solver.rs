@@ -2,12 +2,16 @@
 
 use nalgebra::DMatrix;
 
+use super::continuation::Continuation;
 use super::hierarchy::{Blocks, coarse_target};
 use super::iterate::{Criteria, Effort};
 use super::level::{Level, Target};
 use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 use super::sweep::LoadSweep;
+use super::tangent::Tangent;
+use super::target::ContactTarget;
 use crate::iterative::{dot, sum, sum_over};
+use crate::parallel::among_threads;
 use crate::{Boundary, Error, Grid, InfluenceKernel, Surface};
 
 /// Tolerance on the coarser grids, whose solutions are but starts, relative to the approach ...
@@ -62,14 +66,15 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         let load = Error::require_positive("load", load)?;
         let target = Target::Sum(load / self.grid.cell_area());
         self.start_cold(target, 0)?;
-        self.finish(target, Some(load), None)
+        self.finish(target, Some(load), false, &mut Tangent::default())
     }
 
     /// Contact under the load `load` \[N\], from a solution for another load.
     ///
     /// The start is the pressure that follows from the exact tangent,
-    /// [`pressure_rate`](FixedLoadSolution::pressure_rate): it saves the coarser grids and, for a
-    /// small change of load, some iterations. Without a stiffness the pressure is scaled.
+    /// [`pressure_rate`](FixedLoadSolution::pressure_rate): it saves the coarser grids and some
+    /// iterations. Without a stiffness the pressure is scaled. If the load is more than a quarter
+    /// larger or a fifth smaller the solution is of no use, and this is [`Self::solve`].
     ///
     /// # Errors
     ///
@@ -81,32 +86,94 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     ) -> Result<FixedLoadSolution, Error> {
         let load = Error::require_positive("load", load)?;
         self.grid.check_shape(solution.pressure.shape())?;
-        let target = load / self.grid.cell_area();
-        let start = &mut self.levels[0].iterate.pressure;
-        start.copy_from_slice(solution.pressure.as_slice());
-        let mut rate = None;
+        self.grid.check_shape(solution.displacement.shape())?;
+        let fine = &mut self.levels[0];
+        fine.iterate
+            .pressure
+            .copy_from_slice(solution.pressure.as_slice());
+        fine.iterate.approach = solution.state.approach;
+        let gaps = fine.gap.iter().zip(&solution.displacement);
+        for (closure, (gap, displacement)) in fine.iterate.closure.iter_mut().zip(gaps) {
+            *closure = gap + displacement;
+        }
+        let mut tangent = Tangent::default();
         if !solution.pressure_rate.is_empty() {
             self.grid.check_shape(solution.pressure_rate.shape())?;
-            let change = load - solution.state.load;
-            for (start, rate) in start.iter_mut().zip(&solution.pressure_rate) {
-                *start = (*start + change * rate).max(0.0);
-            }
-            rate = Some(solution);
+            tangent = Tangent::of(fine, solution)?;
         }
-        let total = sum(start);
-        for value in start {
-            *value *= target / total;
-        }
-        self.finish(Target::Sum(target), Some(load), rate)
+        self.next_load(&mut Continuation::new(tangent), load, true)
     }
 
-    /// Contact under each of `loads` \[N\] in turn, every solution the start of the next: see
-    /// [`Self::solve_from`].
-    pub fn sweep<I>(&mut self, loads: I) -> LoadSweep<'_, S, K, I::IntoIter>
+    /// Contact under the load `load` \[N\], from the state of the finest grid if that is one and
+    /// near.
+    pub(super) fn next_load(
+        &mut self,
+        continuation: &mut Continuation,
+        load: f64,
+        is_state: bool,
+    ) -> Result<FixedLoadSolution, Error> {
+        let load = Error::require_positive("load", load)?;
+        let sum = load / self.grid.cell_area();
+        let near = is_state && Continuation::reaches(&self.levels[0], sum);
+        if near {
+            continuation.predict(&mut self.levels[0], sum);
+        } else {
+            *continuation = Continuation::default();
+            self.start_cold(Target::Sum(sum), 0)?;
+        }
+        self.finish(
+            Target::Sum(sum),
+            Some(load),
+            near,
+            &mut continuation.tangent,
+        )
+    }
+
+    /// Contact at each of `targets` in turn, plain numbers being loads, every state the start of the
+    /// next: see [`Self::solve_from`].
+    pub fn sweep<I>(&mut self, targets: I) -> LoadSweep<'_, S, K, I::IntoIter>
     where
-        I: IntoIterator<Item = f64>,
+        I: IntoIterator,
+        I::Item: Into<ContactTarget>,
     {
-        LoadSweep::new(self, loads.into_iter())
+        LoadSweep::new(self, targets.into_iter())
+    }
+
+    /// Contact at a target: a load, an approach, a contact area or a mean gap. For the latter two
+    /// the load is found by solving for several, each from the one before.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area
+    /// fraction or a mean gap that cannot be.
+    pub fn solve_target(
+        &mut self,
+        target: impl Into<ContactTarget>,
+    ) -> Result<FixedLoadSolution, Error> {
+        self.next_target(&mut Continuation::default(), target.into(), None)
+    }
+
+    /// Contact at a target, from the `last` solution, which the finest grid holds.
+    pub(super) fn next_target(
+        &mut self,
+        continuation: &mut Continuation,
+        target: ContactTarget,
+        last: Option<&FixedLoadSolution>,
+    ) -> Result<FixedLoadSolution, Error> {
+        match target {
+            ContactTarget::Load(load) => self.next_load(continuation, load, last.is_some()),
+            ContactTarget::Approach(approach) => {
+                self.next_approach(continuation, approach, last.is_some())
+            }
+            ContactTarget::AreaFraction(fraction) => {
+                let sought = self.nodes_of(fraction)?;
+                self.search(continuation, sought, last)
+            }
+            ContactTarget::MeanGap(mean_gap) => {
+                let sought = self.mean_gap_of(mean_gap)?;
+                self.search(continuation, sought, last)
+            }
+        }
     }
 
     /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
@@ -117,6 +184,16 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
     /// [`Error::NotPositive`] for the approach, [`Error::ApproachNotReached`] if no load or every
     /// large one goes with it on a periodic half-space, and those of [`Self::solve`].
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
+        self.next_approach(&mut Continuation::default(), approach, false)
+    }
+
+    /// Contact at an approach, from the state of the finest grid if that is one and near.
+    fn next_approach(
+        &mut self,
+        continuation: &mut Continuation,
+        approach: f64,
+        is_state: bool,
+    ) -> Result<FixedLoadSolution, Error> {
         let approach = Error::require_positive("approach", approach)?;
         let Level { boundary, gap, .. } = &self.levels[0];
         if *boundary == Boundary::Periodic {
@@ -126,8 +203,15 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             }
         }
         let target = Target::Approach(approach);
-        self.start_cold(target, 0)?;
-        self.finish(target, None, None)
+        let sum = continuation.sum_at(&self.levels[0], approach);
+        let near = is_state && Continuation::reaches(&self.levels[0], sum);
+        if near {
+            continuation.predict(&mut self.levels[0], sum);
+        } else {
+            *continuation = Continuation::default();
+            self.start_cold(target, 0)?;
+        }
+        self.finish(target, None, near, &mut continuation.tangent)
     }
 
     /// Fills the start of `level` from the grids coarser than it.
@@ -149,7 +233,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
                 verify: false,
             };
             // A start that is not quite what was asked for is a start.
-            match self.levels[level + 1].solve(coarse_target, criteria) {
+            let coarse = &mut self.levels[level + 1];
+            match among_threads(|| coarse.solve(coarse_target, criteria, false)) {
                 Ok(_) | Err(Error::NoConvergence { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -181,7 +266,8 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         &mut self,
         target: Target,
         load: Option<f64>,
-        rate_start: Option<&FixedLoadSolution>,
+        prediction: bool,
+        tangent: &mut Tangent,
     ) -> Result<FixedLoadSolution, Error> {
         let criteria = Criteria {
             tolerance: self.tolerance,
@@ -190,11 +276,12 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             max_iterations: self.max_iterations,
             verify: true,
         };
-        let effort = self.levels[0].solve(target, criteria)?;
-        let length = criteria.scale(self.levels[0].iterate.approach);
+        let fine = &mut self.levels[0];
+        let effort = among_threads(|| fine.solve(target, criteria, prediction))?;
+        let length = criteria.scale(fine.iterate.approach);
         let mut solution = self.solution(effort, load, length);
         if self.stiffness {
-            self.tangent(&mut solution, rate_start)?;
+            self.tangent(&mut solution, tangent)?;
         }
         Ok(solution)
     }

@@ -1,15 +1,18 @@
-//! Many loads, one after the other.
+//! Many states, one after the other.
 
 use std::iter::FusedIterator;
 
+use super::continuation::Continuation;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
+use super::target::ContactTarget;
 use crate::{Error, InfluenceKernel, Surface};
 
-/// Contact under a sequence of loads: see [`FixedLoadSolver::sweep`].
+/// Contact at a sequence of loads or other targets: see [`FixedLoadSolver::sweep`].
 ///
-/// A fused iterator: after an error it yields `None` for ever. Loads may come in any order; the
-/// closer each is to the one before, the faster.
+/// A fused iterator: after an error it yields `None` for ever. Targets may come in any order and be
+/// of any kind; the closer each is to the one before, the faster. Every state is as exact as if it
+/// had been solved for alone.
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
@@ -29,39 +32,46 @@ use crate::{Error, InfluenceKernel, Surface};
 #[derive(Debug)]
 pub struct LoadSweep<'a, S, K, I> {
     solver: &'a mut FixedLoadSolver<S, K>,
-    loads: I,
-    previous: Option<FixedLoadSolution>,
+    targets: I,
+    continuation: Continuation,
+    /// The solution that the solver holds.
+    last: Option<FixedLoadSolution>,
     finished: bool,
 }
 
 impl<'a, S, K, I> LoadSweep<'a, S, K, I> {
-    pub(super) fn new(solver: &'a mut FixedLoadSolver<S, K>, loads: I) -> Self {
+    pub(super) fn new(solver: &'a mut FixedLoadSolver<S, K>, targets: I) -> Self {
         Self {
             solver,
-            loads,
-            previous: None,
+            targets,
+            continuation: Continuation::default(),
+            last: None,
             finished: false,
         }
     }
 }
 
-impl<S: Surface, K: InfluenceKernel, I: Iterator<Item = f64>> Iterator for LoadSweep<'_, S, K, I> {
+impl<S, K, I> Iterator for LoadSweep<'_, S, K, I>
+where
+    S: Surface,
+    K: InfluenceKernel,
+    I: Iterator,
+    I::Item: Into<ContactTarget>,
+{
     type Item = Result<FixedLoadSolution, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.finished {
             return None;
         }
-        let Some(load) = self.loads.next() else {
+        let Some(target) = self.targets.next() else {
             self.finished = true;
             return None;
         };
-        let solved = match &self.previous {
-            Some(previous) => self.solver.solve_from(previous, load),
-            None => self.solver.solve(load),
-        };
+        let (continuation, last) = (&mut self.continuation, self.last.as_ref());
+        let solved = self.solver.next_target(continuation, target.into(), last);
         match &solved {
-            Ok(solution) => self.previous = Some(solution.clone()),
+            Ok(solution) => self.last = Some(solution.clone()),
             Err(_) => self.finished = true,
         }
         Some(solved)
@@ -71,11 +81,15 @@ impl<S: Surface, K: InfluenceKernel, I: Iterator<Item = f64>> Iterator for LoadS
         if self.finished {
             return (0, Some(0));
         }
-        (0, self.loads.size_hint().1)
+        (0, self.targets.size_hint().1)
     }
 }
 
-impl<S: Surface, K: InfluenceKernel, I: Iterator<Item = f64>> FusedIterator
-    for LoadSweep<'_, S, K, I>
+impl<S, K, I> FusedIterator for LoadSweep<'_, S, K, I>
+where
+    S: Surface,
+    K: InfluenceKernel,
+    I: Iterator,
+    I::Item: Into<ContactTarget>,
 {
 }

@@ -10,6 +10,7 @@ mod boundary;
 mod boussinesq;
 mod even;
 mod gauss;
+mod growth;
 mod periodic;
 mod periodic_love;
 mod spectral;
@@ -17,6 +18,7 @@ mod table;
 
 pub use boundary::Boundary;
 pub use boussinesq::Boussinesq;
+pub use growth::ContactGrowth;
 pub use periodic_love::PeriodicBoussinesq;
 pub use spectral::Spectral;
 pub use table::KernelTable;
@@ -41,16 +43,16 @@ pub trait InfluenceKernel {
     /// [`Boundary::Periodic`] the coefficients repeat: C(di ± nx, dj) = C(di, dj ± ny) = C(di, dj).
     fn coefficient(&self, di: isize, dj: isize) -> f64;
 
-    /// Whether contact is known only to grow as the approach does: no node ever leaves it, and a
-    /// node's gap closes the slower the more others are in contact. It holds if the influence matrix
-    /// is an inverse M-matrix (all off-diagonals of the inverse negative, its row sums positive), as
-    /// Love's is.
+    /// What is known of how contact grows with the approach: [`ContactGrowth::Unknown`], which is
+    /// always right, unless a kernel says more.
     ///
-    /// If not, which is the default, a path solves afresh for every single state and checks it: it
-    /// is still exact, or ends with [`Error::NotMonotone`](crate::Error::NotMonotone), but costs
-    /// some n² for each of n nodes in memory traffic. Override it where you know better.
-    fn contact_only_grows(&self) -> bool {
-        false
+    /// It decides what a path costs, and not what it finds: of an unknown kernel every event is
+    /// computed by itself, in some n² of memory traffic for each of n nodes. Say more where you know
+    /// more. A promise that turns out wrong ends the path with
+    /// [`Error::NotMonotone`](crate::Error::NotMonotone) as soon as it shows in a rate, a pressure or
+    /// a gap of the wrong sign at the beginning or end of a window, which is soon but not certain.
+    fn contact_growth(&self) -> ContactGrowth {
+        ContactGrowth::Unknown
     }
 }
 
@@ -64,7 +66,7 @@ impl<K: InfluenceKernel + ?Sized> InfluenceKernel for &K {
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
         (**self).coefficient(di, dj)
     }
-    fn contact_only_grows(&self) -> bool {
-        (**self).contact_only_grows()
+    fn contact_growth(&self) -> ContactGrowth {
+        (**self).contact_growth()
     }
 }

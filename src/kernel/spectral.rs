@@ -2,7 +2,7 @@
 
 use super::even::Even;
 use super::periodic::{Periodic, in_long_sides, path_gauge, wave_number};
-use super::{Boundary, InfluenceKernel};
+use super::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 
 /// The periodic half-space, seen by the waves of the grid alone: symbol 2 / (E* |q|) \[m/Pa\].
@@ -30,7 +30,8 @@ use crate::{Error, Grid};
 /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq#gauge):
 /// $C(\mathbf r) = C^{(0)}(\mathbf r) + s$. But the interpolants ring: two cells away along an axis
 /// the inverse is positive (2 % of its diagonal), so that this kernel is an inverse M-matrix in *no*
-/// gauge on all but tiny grids. In every one tried, on the other hand, contact grows monotonically.
+/// gauge on all but tiny grids. In every one tried, on the other hand, contact grows monotonically:
+/// only the convexity of gaps is lost, and a path checks all gaps after every window of events.
 /// The gauge is 4/5 of the long side of the grid over (E* M), near the least gauge of
 /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq) (0.64 to 0.83 of the same on common grids).
 ///
@@ -125,6 +126,13 @@ impl InfluenceKernel for Spectral {
     /// [`Boundary::Periodic`].
     fn boundary(&self) -> Boundary {
         Boundary::Periodic
+    }
+
+    /// Contact was found to grow monotonically for every contact set of small grids (up to 6 × 6 and
+    /// 8 × 4, exhaustively) and for the worst that annealing found on grids up to 24²; gaps are not
+    /// convex.
+    fn contact_growth(&self) -> ContactGrowth {
+        ContactGrowth::Monotone
     }
 
     /// $C^{(0)} + s$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.

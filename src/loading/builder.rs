@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::fields::Fields;
 use super::limits::{ContactRule, Limits};
 use super::solver::{Front, LoadingSolver, LoadingTimings};
+use super::stepwise::Stepwise;
 use super::window::Window;
 use crate::convolution::Convolution;
 use crate::initial_gap::InitialGap;
@@ -80,13 +81,15 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
 
     /// How many nodes to watch at a time. By default as many as make an event cheapest; the states
     /// do not depend on it but for rounding. With 1 the procedure is the paper's, literally: one
-    /// convolution and one row of the factor for each node.
+    /// convolution and one row of the factor for each node. A kernel of
+    /// [`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown) is always followed one event at a
+    /// time.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
         self
     }
 
-    /// Ends the path after this many nodes.
+    /// Ends the path before the first event that would bring more than this many nodes into contact.
     pub fn max_nodes(mut self, nodes: usize) -> Self {
         self.max_nodes = Some(nodes);
         self
@@ -141,21 +144,23 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
         let table = KernelTable::new(&self.kernel)?;
         let mut fields = Fields::new(Convolution::from_table(&table)?, grid.nodes());
         let row_sums = fields.displacement(&vec![1.0; grid.nodes()])?.to_vec();
-        let contact_only_grows = self.kernel.contact_only_grows();
+        let growth = self.kernel.contact_growth();
         let gauge = table.gauge().unwrap_or_default() / grid.cell_area();
         let system = System::new(table, gap.values, row_sums)?;
         let budget = self
             .memory_budget
             .or_else(memory::available)
             .unwrap_or(usize::MAX);
-        let path = LoadingSolver {
+        let mut path = LoadingSolver {
             contact: Vec::with_capacity(limits.nodes),
             in_contact: vec![false; grid.nodes()],
             committed: 0,
             ranking: Vec::with_capacity(grid.nodes()),
             window: Window::default(),
             solution: Solution::default(),
+            solved: None,
             front: Front::default(),
+            stepwise: Stepwise::default(),
             ahead: VecDeque::new(),
             failure: None,
             state: None,
@@ -170,7 +175,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
             memory_budget: budget,
             grid,
             gauge,
-            contact_only_grows,
+            growth,
             system,
             fields,
             rms_height: gap.rms_height,
@@ -184,6 +189,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
                 nodes_that_fit: 0,
             });
         }
+        path.updater.set_memory_budget(budget - needed);
         Ok(path)
     }
 

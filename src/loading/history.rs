@@ -52,10 +52,10 @@ impl History {
     /// The first state with at least this fraction of the nominal area in contact.
     #[must_use]
     pub fn at_area_fraction(&self, fraction: f64) -> Option<ContactState> {
-        let after = self
-            .states
-            .partition_point(|state| state.contact_area_fraction < fraction);
-        self.states.get(after).copied()
+        // Not a search by halves: area shrinks where a node leaves.
+        let mut states = self.states.iter();
+        let enough = |state: &&ContactState| state.contact_area_fraction >= fraction;
+        states.find(enough).copied()
     }
 
     /// The last state that is not beyond the target.

@@ -1,4 +1,4 @@
-//! The loading path: one exact contact state per node that joins.
+//! The loading path: one exact contact state per node that joins, or leaves.
 //!
 //! Between two events everything is linear in the approach δ:
 //!
@@ -8,7 +8,10 @@
 //! and node j touches at $\delta_j = r_{1j} / r_{2j}$. A path is the sequence of these events,
 //! found in *windows*: since contact only ever grows, a $\delta_j$ computed earlier is a lower
 //! bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
-//! smallest bound among all others, is reached.
+//! smallest bound among all others, is reached. What a kernel promises of its contact decides
+//! whether that holds ([`ContactGrowth`](crate::ContactGrowth)): windows are checked at their ends
+//! if bounds may fail, and events are found one at a time, nodes that *leave* among them, if nothing
+//! is known.
 
 mod builder;
 mod certificate;
@@ -21,6 +24,7 @@ mod query;
 mod refresh;
 mod solver;
 mod state;
+mod stepwise;
 mod sum;
 mod window;
 
@@ -29,4 +33,4 @@ pub use certificate::Certificate;
 pub use history::History;
 pub use limits::ContactRule;
 pub use solver::{LoadingSolver, LoadingTimings};
-pub use state::ContactState;
+pub use state::{ContactEvent, ContactState};

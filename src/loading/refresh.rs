@@ -16,25 +16,40 @@ const GAP_TOLERANCE: f64 = 1e-10;
 /// The same for $y_2$ relative to its greatest value; the condition of the influence matrix grows
 /// with the side of the grid only, so that solves lose two or three digits.
 const PRESSURE_TOLERANCE: f64 = 1e-10;
+/// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
+/// otherwise nodes that neither gain nor lose pressure could touch and leave for ever.
+const LEAST_RATE: f64 = 1e-12;
 
 impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     /// Commits what touched, computes all gaps and opens the next window.
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
         let count = self.contact.len();
-        let size = self.affordable(count, self.next_window_size(count))?;
-        if count > self.committed {
-            self.updater.commit(&self.system, self.window.touched())?;
-            self.committed = count;
+        if self.may_take_back() {
+            // The solution that verified the last window, to the last bit, whatever was asked for
+            // in between.
+            self.solve(count)?;
         }
-        self.solve(count)?;
+        // There is room: it was asked for before these nodes were watched.
+        self.commit()?;
+        let size = self.affordable(count, self.next_window_size(count))?;
+        if !self.may_take_back() {
+            self.solve(count)?;
+        }
         if !self.updater.is_exact() {
             self.renew_front();
+        } else if self.may_take_back() {
+            self.renew_stiffness();
         }
         let start = Instant::now();
         self.rank()?;
         let horizon = self.choose(size);
         self.timings.choice += start.elapsed();
         self.timings.windows += 1;
+        self.watch(size, horizon)
+    }
+
+    /// Opens a window on the first `size` nodes of the ranking.
+    pub(super) fn watch(&mut self, size: usize, horizon: f64) -> Result<(), Error> {
         let watched = self.ranking[..size].iter().map(|&(_, node)| node);
         let (nodes, schur) = self.window.open(watched, horizon);
         self.updater.schur(&self.system, nodes, schur)?;
@@ -49,18 +64,24 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         Ok(())
     }
 
+    /// Takes the stiffness at the front from the solution on the contact set.
+    pub(super) fn renew_stiffness(&mut self) {
+        let mut stiffness = Sum::default();
+        self.solution.y2.iter().for_each(|y2| stiffness.add(*y2));
+        self.front.unit_unit = stiffness.total();
+    }
+
     /// Takes load, energy and stiffness at the front from the solution on the contact set.
     fn renew_front(&mut self) {
         let approach = self.front.approach;
-        let (mut stiffness, mut load, mut work) = (Sum::default(), Sum::default(), Sum::default());
+        self.renew_stiffness();
+        let (mut load, mut work) = (Sum::default(), Sum::default());
         let solution = self.solution.y1.iter().zip(&self.solution.y2);
         for (&node, (y1, y2)) in self.contact.iter().zip(solution) {
             let pressure = y1 + approach * y2;
-            stiffness.add(*y2);
             load.add(pressure);
             work.add(pressure * (approach - self.system.gap()[node]));
         }
-        self.front.unit_unit = stiffness.total();
         self.front.load = self.grid.cell_area() * load.total();
         self.front.energy = 0.5 * self.grid.cell_area() * work.total();
     }
@@ -71,8 +92,6 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         let size = match (self.rule, self.window_size) {
             (ContactRule::SmallestGap, _) => 1,
             (_, Some(size)) => size,
-            // Bounds on the events of others may not hold.
-            (_, None) if !self.contact_only_grows => 1,
             // No use in watching many more than may still touch.
             (_, None) => automatic_window(count, nodes, self.updater.window_cost())
                 .min(2 * (self.limits.nodes - count)),
@@ -82,27 +101,18 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
 
     /// Ranks the nodes out of contact by the approach at which they would touch if no other did (or,
     /// under the paper's rule, by their gap), after checking that the path is still one.
-    fn rank(&mut self) -> Result<(), Error> {
+    pub(super) fn rank(&mut self) -> Result<(), Error> {
         let approach = self.front.approach;
         let grid = self.grid;
         let exact = self.rule == ContactRule::FirstContact;
-        if exact {
-            let least = -PRESSURE_TOLERANCE * self.solution.y2.iter().copied().fold(0.0, f64::max);
-            let released = self
-                .contact
-                .iter()
-                .zip(&self.solution.y2)
-                .find(|(_, y2)| y2.is_nan() || **y2 < least);
-            if let Some((&node, &value)) = released {
-                let (ix, iy) = grid.coordinates(node);
-                let quantity = "pressure per unit of approach";
-                return Err(Error::NotMonotone {
-                    quantity,
-                    ix,
-                    iy,
-                    approach,
-                    value,
-                });
+        let stepwise = self.is_stepwise();
+        let least_closing = if stepwise { LEAST_RATE } else { 0.0 };
+        if exact && !stepwise {
+            let least = -PRESSURE_TOLERANCE * self.greatest_rate();
+            let contact = self.contact.iter().zip(&self.solution.y2);
+            let mut rates = contact.map(|(&node, &y2)| (node, y2));
+            if let Some((node, y2)) = rates.find(|(_, y2)| y2.is_nan() || *y2 < least) {
+                return Err(self.not_monotone("pressure per unit of approach", node, y2));
             }
         }
 
@@ -123,7 +133,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             let present = r1 - approach * r2;
             if present.is_nan() {
                 return Err(Error::NotFinite {
-                    step: self.contact.len() + 1,
+                    step: self.steps() + 1,
                 });
             }
             if exact && present < least {
@@ -140,7 +150,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             mean_gap.add(present);
             let key = match self.rule {
                 ContactRule::SmallestGap => present,
-                ContactRule::FirstContact if r2 > 0.0 => r1 / r2,
+                ContactRule::FirstContact if r2 > least_closing => r1 / r2,
                 ContactRule::FirstContact => f64::INFINITY,
             };
             self.ranking.push((key, node));
@@ -148,6 +158,16 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         self.front.closing = closing.total() / grid.nodes() as f64;
         self.front.mean_gap = mean_gap.total() / grid.nodes() as f64;
         Ok(())
+    }
+
+    /// The greatest $y_2$.
+    fn greatest_rate(&self) -> f64 {
+        self.solution.y2.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// What $y_2$ has to be below for a node to lose its pressure.
+    pub(super) fn slowest_release(&self) -> f64 {
+        -LEAST_RATE * self.greatest_rate()
     }
 
     /// Moves the `size` nodes to watch to the front of the ranking, those watched before first;
@@ -179,7 +199,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
     }
 
     /// The greatest window up to `size` that stays within the memory budget.
-    fn affordable(&self, count: usize, mut size: usize) -> Result<usize, Error> {
+    pub(super) fn affordable(&self, count: usize, mut size: usize) -> Result<usize, Error> {
         let budget = self.memory_budget;
         loop {
             let needed = self.bytes(count + size, size);

@@ -7,15 +7,16 @@ use std::time::Duration;
 use super::fields::Fields;
 use super::limits::{ContactRule, Limits};
 use super::state::ContactState;
+use super::stepwise::Stepwise;
 use super::window::Window;
 use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, System, Touched};
-use crate::{Error, Grid, InfluenceKernel, Surface};
+use crate::{ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
-/// A fused iterator: it yields one [`ContactState`] for each node that touches, from first touch
-/// (approach 0, load 0) up to full contact or a limit, and `None` for ever after that or after an
-/// error. Fields of the present state, that of the last item, are computed on demand.
+/// A fused iterator: it yields one [`ContactState`] for each node that touches (or leaves, with a
+/// kernel that lets nodes leave), from first touch (approach 0, load 0) up to full contact or a
+/// limit, and `None` for ever after that or after an error. Fields of the present state, that of the last item, are computed on demand.
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
@@ -29,7 +30,7 @@ use crate::{Error, Grid, InfluenceKernel, Surface};
 ///     .build()?;
 /// while let Some(state) = path.next() {
 ///     let state = state?;
-///     println!("{} nodes carry {} N", state.step, state.load);
+///     println!("{} nodes carry {} N", state.contact_nodes, state.load);
 /// }
 /// assert!(path.certificate()?.least_pressure > -1e-12);
 /// # Ok(())
@@ -45,7 +46,7 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     pub(super) limits: Limits,
     pub(super) memory_budget: usize,
     pub(super) grid: Grid,
-    pub(super) contact_only_grows: bool,
+    pub(super) growth: ContactGrowth,
     /// The gauge of a periodic kernel over the cell area, zero of a free one: the approach in the
     /// gauge is that of the mean planes and this times the load.
     pub(super) gauge: f64,
@@ -55,7 +56,9 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     pub(super) greatest_gap: f64,
     pub(super) window: Window,
     pub(super) solution: Solution,
-    /// Nodes in the order in which they touched.
+    /// For how many of the nodes in contact the solution is, if it is for any.
+    pub(super) solved: Option<usize>,
+    /// Nodes in contact, in the order in which they touched.
     pub(super) contact: Vec<usize>,
     pub(super) in_contact: Vec<bool>,
     /// How many of them the updater knows.
@@ -63,6 +66,7 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
     /// Scratch for the choice of the watched nodes: (key, node).
     pub(super) ranking: Vec<(f64, usize)>,
     pub(super) front: Front,
+    pub(super) stepwise: Stepwise,
     /// States that are computed but not yielded yet.
     pub(super) ahead: VecDeque<ContactState>,
     /// What went wrong after them.
@@ -78,6 +82,9 @@ pub struct LoadingSolver<S, K, U = RecursiveCholesky> {
 pub struct LoadingTimings {
     /// Number of windows.
     pub windows: usize,
+    /// Number of events that were computed and then taken back, because a state did not stand the
+    /// check at the end of its window.
+    pub taken_back: usize,
     /// Displacements of all nodes at every refresh.
     pub convolution: Duration,
     /// Choice of the nodes to watch.
@@ -101,8 +108,12 @@ pub(super) struct Front {
 }
 
 impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
-    /// Solves for the first `count` nodes in contact.
+    /// Solves for the first `count` nodes in contact, unless that is what was done last.
     pub(super) fn solve(&mut self, count: usize) -> Result<(), Error> {
+        if self.solved == Some(count) {
+            return Ok(());
+        }
+        self.solved = None;
         let pending = self.contact.len() - self.committed;
         let none = Touched::default();
         let touched = if pending > 0 {
@@ -120,6 +131,18 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
                     found: values.len(),
                 });
             }
+        }
+        self.solved = Some(count);
+        Ok(())
+    }
+
+    /// Hands the nodes that touched over to the updater.
+    pub(super) fn commit(&mut self) -> Result<(), Error> {
+        let count = self.contact.len();
+        if count > self.committed {
+            self.updater.commit(&self.system, self.window.touched())?;
+            self.committed = count;
+            self.solved = None;
         }
         Ok(())
     }
@@ -151,7 +174,11 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> Iterator for LoadingSolve
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let done = self.state.map_or(0, |state| state.step);
+        if self.is_stepwise() && !self.finished {
+            // Nodes may leave and touch again.
+            return (0, None);
+        }
+        let done = self.state.map_or(0, |state| state.contact_nodes);
         let most = self.limits.nodes.saturating_sub(done);
         // One more for an error.
         (0, Some(if self.finished { 0 } else { most + 1 }))

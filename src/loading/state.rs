@@ -1,17 +1,32 @@
 //! One state of contact.
 
+/// What happens to a node at an event of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ContactEvent {
+    /// Its gap has closed, and it joins the contact.
+    Touch,
+    /// Its pressure has fallen to zero, and it leaves the contact. It never happens with the kernels
+    /// of this crate; see [`ContactGrowth`](crate::ContactGrowth).
+    Release,
+}
+
 /// The state of contact at one instant of loading.
 ///
-/// State n of a path is the instant at which the n-th node touches: its own pressure is still zero.
-/// Stiffnesses are exact derivatives *on further loading*, with node n already in contact.
+/// A state is the instant of an event, at which a node touches or leaves: its own pressure is zero.
+/// Stiffnesses are exact derivatives *on further loading*, with the event already done.
 /// Quantities carry the units of the input; SI is given here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ContactState {
-    /// Number of nodes in contact, n.
+    /// Number of the event, 1 for first touch. Where no node ever leaves the contact it is the number
+    /// of nodes in contact too.
     pub step: usize,
-    /// The node that touched last, (ix, iy).
+    /// What happened.
+    pub event: ContactEvent,
+    /// The node to which it happened, (ix, iy).
     pub node: (usize, usize),
+    /// Number of nodes in contact, n.
+    pub contact_nodes: usize,
     /// Normal approach δ from first touch \[m\]; of the mean planes if the half-space is periodic.
     pub approach: f64,
     /// Normal load $W = \Delta A \sum p$ \[N\].

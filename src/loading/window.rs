@@ -149,14 +149,8 @@ impl Window {
         let node = self.nodes[position];
         let entries = self
             .touched
-            .push(&self.schur, node, position, self.reduced[position])?;
+            .push(&self.schur, node, position, &mut self.reduced)?;
         self.open[position] = false;
-        let column = self.touched.last_column();
-        for (reduced, factor) in self.reduced.iter_mut().zip(column) {
-            for (value, entry) in reduced.iter_mut().zip(entries) {
-                *value -= factor * entry;
-            }
-        }
         Ok(entries)
     }
 }

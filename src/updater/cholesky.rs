@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::factor::{CholeskyTimings, Factor};
+use super::panels::ROWS;
 use super::{LinearUpdater, MixedCholesky, Schur, Solution, System, Touched};
 use crate::{Error, parallel};
 
@@ -49,6 +50,32 @@ impl RecursiveCholesky {
         MixedCholesky::new()
     }
 
+    /// The factor of a contact set that is known as a whole.
+    pub(crate) fn of(system: &System, contact: &[usize]) -> Result<Self, Error> {
+        let mut updater = Self::new();
+        let (mut schur, mut touched) = (Schur::default(), Touched::default());
+        for nodes in contact.chunks(ROWS) {
+            updater.schur(system, nodes, &mut schur)?;
+            touched.reset(nodes.len());
+            let mut reduced = schur.rhs().to_vec();
+            for (position, &node) in nodes.iter().enumerate() {
+                touched
+                    .push(&schur, node, position, &mut reduced)
+                    .map_err(|_| Error::FactorizationFailed {
+                        nodes: contact.len(),
+                    })?;
+            }
+            updater.commit(system, &touched)?;
+        }
+        Ok(updater)
+    }
+
+    /// Bytes held at most while [`Self::of`] factors `contact` nodes.
+    pub(crate) fn bytes_of(contact: usize) -> usize {
+        let window = 2 * ROWS * ROWS * size_of::<f64>();
+        Self::new().bytes(contact, ROWS).saturating_add(window)
+    }
+
     /// The factor alone.
     pub(super) fn into_factor(self) -> Factor<f64> {
         self.factor
@@ -84,6 +111,13 @@ impl LinearUpdater for RecursiveCholesky {
         Ok(())
     }
 
+    /// The rows of later nodes are rotated into place, n² of them at most: much less than a new
+    /// factor, and as accurate.
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        self.factor.release(system, node)?.remove(&mut self.border);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         _system: &System,
@@ -109,7 +143,7 @@ impl LinearUpdater for RecursiveCholesky {
         let Factor {
             panels, columns, ..
         } = &self.factor;
-        parallel::inside(|| {
+        parallel::among_threads(|| {
             columns.subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
             panels.solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
         });

@@ -295,6 +295,12 @@ impl<T: Precision> Columns<T> {
         self.rows = before + touched.len();
     }
 
+    /// Forgets all columns, of a factor that has `rows` rows now.
+    pub(super) fn forget(&mut self, rows: usize) {
+        self.rows = rows;
+        self.blocks.clear();
+    }
+
     /// target −= column of `position` × values, for each (position, values).
     pub(super) fn subtract<const N: usize>(
         &self,

@@ -1,25 +1,35 @@
 //! Solutions by conjugate gradients and FFT, without a factor.
 
-use super::{LinearUpdater, Schur, Solution, System, Touched};
+use super::{LinearUpdater, Schur, Solution, System, Touched, WindowCost};
 use crate::Error;
 use crate::convolution::Convolution;
-use crate::iterative::{ContactSet, Operator, SparseInverse, dot, solve_linear};
+use crate::iterative::{ContactSet, LinearSystem, Operator, SparseInverse, dot};
+
+/// What a column costs, some twenty convolutions, is the same in every window. A refresh costs as
+/// much as three columns, 700 ns for each node of the grid, and products between columns grow with
+/// their number: so many are watched that both are small beside the columns.
+const WINDOW_COST: WindowCost = WindowCost {
+    solve: 0.0,
+    schur: 0.3,
+    convolution: 700.0,
+    most_watched: 0.05,
+};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
 ///
 /// No factor is kept: beside memory in proportion to the grid, the columns
 /// $X = C_{II}^{-1} C_{IP}$ of the watched nodes P and their residuals, 16 bytes for each contact
-/// node and each watched one. So the window bounds the memory: set
-/// [`window_size`](crate::loading::LoadingBuilder::window_size) to some ten nodes where contact is
-/// large.
+/// node and each watched one: some hundred of them by default, fewer where the memory budget or
+/// [`window_size`](crate::loading::LoadingBuilder::window_size) says so.
 ///
 /// When nodes touch, columns and solutions are carried over by the paper's recursion (eqs. 10-13,
 /// for a block of nodes): all starts are warm. Schur complements take the residuals into account,
 /// $b_i^T C^{-1} b_j \approx b_i^T x_j + x_i^T r_j$, whose error is the product of two: columns need
 /// only the root of the tolerance.
 ///
-/// [`RecursiveCholesky`](super::RecursiveCholesky) is faster wherever its factor fits.
+/// [`RecursiveCholesky`](super::RecursiveCholesky) is faster wherever its factor fits, and
+/// [`Handover`](super::Handover) chooses between the two.
 #[derive(Debug, Clone)]
 pub struct ConjugateGradient {
     tolerance: f64,
@@ -101,6 +111,40 @@ impl ConjugateGradient {
         self.order.is_empty()
     }
 
+    /// Begins with the contact set `order` and the solution on it.
+    pub(super) fn take_over(
+        &mut self,
+        system: &System,
+        order: Vec<usize>,
+        solution: &Solution,
+    ) -> Result<(), Error> {
+        system.check_nodes(&order)?;
+        let mut grid = Self::on_grid(&mut self.grid, system)?;
+        let mut in_contact = vec![false; system.gap().len()];
+        for &node in &order {
+            in_contact[node] = true;
+        }
+        grid.contact.assign(|node| in_contact[node]);
+        grid.inverse.update(&grid.contact);
+        let places = grid.contact.places();
+        for (start, (values, sign)) in self
+            .solutions
+            .iter_mut()
+            .zip([(&solution.y1, -1.0), (&solution.y2, 1.0)])
+        {
+            start.resize(order.len(), 0.0);
+            for (&node, value) in order.iter().zip(values) {
+                start[places[node] as usize] = sign * value;
+            }
+        }
+        // The row sums begin from nothing.
+        self.solutions[2].resize(order.len(), 0.0);
+        self.columns.clear();
+        self.order = order;
+        self.grid = Some(grid);
+        Ok(())
+    }
+
     /// What depends on the grid, made at first use.
     fn on_grid(grid: &mut Option<OnGrid>, system: &System) -> Result<OnGrid, Error> {
         match grid.take() {
@@ -116,7 +160,8 @@ impl ConjugateGradient {
         }
     }
 
-    /// Solves $C_{II} x = B_I$ for one right-hand side, from the start `x`.
+    /// Solves $C_{II} x = B_I$ for one right-hand side, from the start `x`, and returns the residual.
+    /// The operator then holds the displacements of x.
     fn solve_rhs(
         &self,
         grid: &mut OnGrid,
@@ -125,32 +170,33 @@ impl ConjugateGradient {
         x: &mut Vec<f64>,
     ) -> Result<Vec<f64>, Error> {
         let nodes = grid.contact.nodes().iter();
-        let mut b: Vec<f64> = nodes.map(|&n| system.rhs_at(n as usize)[rhs]).collect();
+        let b: Vec<f64> = nodes.map(|&n| system.rhs_at(n as usize)[rhs]).collect();
         x.resize(b.len(), 0.0);
-        self.iterate(grid, &mut b, x, self.tolerance)?;
-        Ok(b)
+        self.iterate(grid, &b, x, self.tolerance)
     }
 
-    /// Solves $C_{II} x = b$ from the start `x` to a relative tolerance; leaves the residual in b.
+    /// Solves $C_{II} x = b$ from the start `x` to a relative tolerance, and returns the residual.
+    /// The operator then holds the displacements of x.
     fn iterate(
         &self,
         grid: &mut OnGrid,
-        b: &mut [f64],
+        b: &[f64],
         x: &mut [f64],
         tolerance: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<Vec<f64>, Error> {
         let greatest = b.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let outcome = solve_linear(
-            &mut grid.operator,
-            &mut grid.inverse,
-            &grid.contact,
-            b,
-            x,
-            tolerance * greatest,
-            self.max_iterations,
-        )?;
+        let mut equations = LinearSystem {
+            operator: &mut grid.operator,
+            inverse: &mut grid.inverse,
+            contact: &grid.contact,
+            tolerance: tolerance * greatest,
+            max_iterations: self.max_iterations,
+        };
+        let mut residual = Vec::new();
+        equations.residual(b, x, &mut residual)?;
+        let outcome = equations.solve(b, x, &mut residual)?;
         if outcome.converged {
-            return Ok(());
+            return Ok(residual);
         }
         Err(Error::NoConvergence {
             residual: outcome.residual / greatest,
@@ -172,7 +218,9 @@ impl ConjugateGradient {
         let contact = grid.contact.len();
         // Columns to the root of the tolerance: see the type.
         let tolerance = 0.1 * self.tolerance.sqrt();
-        for &node in nodes {
+        // $S = C_{PP} - B^T C_{II}^{-1} B$ with B the coefficients between contact and watched.
+        let mut b = Vec::new();
+        for (j, &node) in nodes.iter().enumerate() {
             let mut column = match earlier.iter().position(|column| column.node == node) {
                 Some(found) => earlier.swap_remove(found),
                 None => Column {
@@ -183,29 +231,28 @@ impl ConjugateGradient {
             };
             let place = table.place(node);
             let others = grid.contact.nodes().iter();
-            column.residual.clear();
-            column
-                .residual
-                .extend(others.map(|&other| table.between(place, table.place(other as usize))));
-            self.iterate(grid, &mut column.residual, &mut column.values, tolerance)?;
+            b.clear();
+            b.extend(others.map(|&other| table.between(place, table.place(other as usize))));
+            column.residual = self.iterate(grid, &b, &mut column.values, tolerance)?;
+            let inside = grid.operator.displacement();
+            let matrix = schur.as_mut_slice();
+            for (i, &other) in nodes.iter().enumerate().skip(j) {
+                matrix[i + nodes.len() * j] =
+                    table.between(table.place(other), place) - inside[other];
+            }
             self.columns.push(column);
         }
-        // $S = C_{PP} - B^T C_{II}^{-1} B$ with B the coefficients between contact and watched.
+        let matrix = schur.as_mut_slice();
         for j in 0..nodes.len() {
-            let column = &self.columns[j];
-            let place = table.place(nodes[j]);
-            let inside = grid.operator.apply(&grid.contact, &column.values)?;
-            let matrix = schur.as_mut_slice();
             for i in j..nodes.len() {
-                let direct = table.between(table.place(nodes[i]), place);
-                let corrected = dot(&self.columns[i].values, &column.residual);
-                matrix[i + nodes.len() * j] = direct - inside[nodes[i]] - corrected;
+                let corrected = dot(&self.columns[i].values, &self.columns[j].residual);
+                matrix[i + nodes.len() * j] -= corrected;
             }
         }
         for rhs in 0..System::RHS {
             let mut x = std::mem::take(&mut self.solutions[rhs]);
             let residual = self.solve_rhs(grid, system, rhs, &mut x)?;
-            let inside = grid.operator.apply(&grid.contact, &x)?;
+            let inside = grid.operator.displacement();
             let reduced = schur.rhs_mut().iter_mut();
             for ((reduced, column), &node) in reduced.zip(&self.columns).zip(nodes) {
                 let corrected = dot(&column.values, &residual);
@@ -340,6 +387,29 @@ impl LinearUpdater for ConjugateGradient {
         Ok(())
     }
 
+    /// Solutions start from what they were on the nodes that stay.
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        system.check_nodes(&[node])?;
+        let position = self.order.iter().position(|&other| other == node);
+        let position = position.ok_or_else(|| system.not_in_contact(node))?;
+        let mut grid = Self::on_grid(&mut self.grid, system)?;
+        self.order.remove(position);
+        self.columns.clear();
+        let place = grid.contact.places()[node] as usize;
+        let known = self.solutions.iter_mut().filter(|x| place < x.len());
+        known.for_each(|x| {
+            x.remove(place);
+        });
+        let mut in_contact = vec![false; system.gap().len()];
+        for &node in &self.order {
+            in_contact[node] = true;
+        }
+        grid.contact.assign(|node| in_contact[node]);
+        grid.inverse.update(&grid.contact);
+        self.grid = Some(grid);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         system: &System,
@@ -353,6 +423,10 @@ impl LinearUpdater for ConjugateGradient {
         let done = self.solve_prefix(&mut grid, system, &order, solution);
         self.grid = Some(grid);
         done
+    }
+
+    fn window_cost(&self) -> WindowCost {
+        WINDOW_COST
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {

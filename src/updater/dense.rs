@@ -73,6 +73,14 @@ impl LinearUpdater for Dense {
         Ok(())
     }
 
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        system.check_nodes(&[node])?;
+        let position = self.contact.iter().position(|&other| other == node);
+        let position = position.ok_or_else(|| system.not_in_contact(node))?;
+        self.contact.remove(position);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         system: &System,

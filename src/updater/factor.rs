@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::columns::Columns;
-use super::panels::Panels;
+use super::panels::{Panels, Rotations};
 use super::precision::Precision;
 use super::{Schur, System, Touched};
 use crate::Error;
@@ -18,6 +18,8 @@ pub struct CholeskyTimings {
     pub schur: Duration,
     /// Rows that become part of the factor.
     pub commit: Duration,
+    /// Rows of nodes that left the contact.
+    pub release: Duration,
     /// Solutions on the contact set.
     pub solve: Duration,
 }
@@ -127,6 +129,22 @@ impl<T: Precision> Factor<T> {
             .extend(touched.nodes().iter().map(|&node| table.place(node)));
         self.timings.commit += start.elapsed();
         Ok(())
+    }
+
+    /// Removes a node from the contact set, and forgets the watched ones. Returns what removes its
+    /// entry from $L^{-1} B$.
+    pub(super) fn release(&mut self, system: &System, node: usize) -> Result<Rotations<T>, Error> {
+        system.check_nodes(&[node])?;
+        let start = Instant::now();
+        let place = system.table().place(node);
+        let position = self.places.iter().position(|&other| other == place);
+        let position = position.ok_or_else(|| system.not_in_contact(node))?;
+        self.places.remove(position);
+        self.watched.clear();
+        let rotations = self.panels.remove(position);
+        self.columns.forget(self.panels.rows());
+        self.timings.release += start.elapsed();
+        Ok(rotations)
     }
 
     /// Bytes held with `contact` nodes in contact and `watched` watched.

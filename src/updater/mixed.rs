@@ -93,7 +93,7 @@ impl MixedCholesky {
         if nodes == self.refined {
             return Ok(());
         }
-        parallel::inside(|| self.refine_on(system, touched, nodes))
+        parallel::among_threads(|| self.refine_on(system, touched, nodes))
     }
 
     /// The same on the given nodes.
@@ -235,6 +235,21 @@ impl LinearUpdater for MixedCholesky {
             let scale = system.table().self_influence().sqrt();
             self.factor = double.into_factor().rounded(scale);
         }
+        Ok(())
+    }
+
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        if let Some(double) = &mut self.double {
+            double.release(system, node)?;
+        } else {
+            self.factor.release(system, node)?;
+        }
+        self.contact.retain(|&other| other != node);
+        // The next solution starts afresh: from zero, which displaces nothing.
+        self.refined.clear();
+        self.solution.iter_mut().for_each(Vec::clear);
+        let answers = self.fields.iter_mut().flat_map(|fields| &mut fields.answer);
+        answers.for_each(|answer| answer.fill(0.0));
         Ok(())
     }
 

@@ -11,6 +11,7 @@ mod columns;
 mod conjugate_gradient;
 mod dense;
 mod factor;
+mod handover;
 mod mixed;
 mod panels;
 mod precision;
@@ -25,6 +26,7 @@ pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use factor::CholeskyTimings;
+pub use handover::Handover;
 pub use mixed::MixedCholesky;
 pub use schur::Schur;
 pub use system::System;
@@ -72,7 +74,7 @@ impl Default for WindowCost {
     }
 }
 
-/// A growing contact set and the inverse of its influence matrix.
+/// A contact set that grows, and rarely shrinks, and the inverse of its influence matrix.
 ///
 /// An updater starts with an empty contact set. It is told of nodes in the order in which they
 /// touch, in two stages: first they are *watched* ([`schur`](Self::schur)), then those that
@@ -99,6 +101,20 @@ pub trait LinearUpdater {
     ///
     /// Whatever keeps the updater from growing.
     fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error>;
+
+    /// Takes a committed node out of the contact set: those after it move up by one. No node is
+    /// watched afterwards. Called only if the pressure of a node falls to zero, which some kernels
+    /// never let happen.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotInContact`], and whatever keeps the updater from shrinking; then nothing has
+    /// changed. By default [`Error::ReleaseNotSupported`].
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        system.check_nodes(&[node])?;
+        let (ix, iy) = system.table().grid().coordinates(node);
+        Err(Error::ReleaseNotSupported { ix, iy })
+    }
 
     /// Solves for the first `count` nodes of the sequence that consists of the committed nodes and,
     /// after them, those of `touched` (which are not committed yet).
@@ -130,5 +146,11 @@ pub trait LinearUpdater {
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         let _ = (contact, watched);
         0
+    }
+
+    /// Tells the updater how many bytes are left for it, before the first node is in contact. What
+    /// [`bytes`](Self::bytes) says is held to that by the path; an updater need not do anything.
+    fn set_memory_budget(&mut self, bytes: usize) {
+        let _ = bytes;
     }
 }

@@ -1,8 +1,11 @@
 //! The lower-triangular factor, stored in panels of rows that are made as it grows.
 
+mod removal;
+
 use faer::MatRef;
 
 use super::precision::Precision;
+pub(super) use removal::Rotations;
 
 /// Rows of a panel: large enough that products of blocks run at the speed of plain GEMM, small
 /// enough that the unused upper half of the diagonal blocks does not matter.

@@ -25,6 +25,7 @@ pub(super) trait Precision:
     + Mul<Output = Self>
     + SubAssign
     + DivAssign
+    + Into<f64>
     + 'static
 {
     /// The nearest number of this type.

@@ -76,6 +76,12 @@ impl System {
         [self.gap[node], 1.0, self.row_sums[node]]
     }
 
+    /// That a node was to leave the contact without being in it.
+    pub(crate) fn not_in_contact(&self, node: usize) -> Error {
+        let (ix, iy) = self.table.grid().coordinates(node);
+        Error::NotInContact { ix, iy }
+    }
+
     /// `Ok` if all nodes lie in the grid.
     pub(crate) fn check_nodes(&self, nodes: &[usize]) -> Result<(), Error> {
         let limit = self.gap.len();

@@ -114,8 +114,8 @@ impl Touched {
 
     /// Eliminates the node at `position`: appends its column of R, left-looking.
     ///
-    /// `reduced` are the right-hand sides of the node at this moment. Returns the entries that the
-    /// event adds to $L^{-1} B$.
+    /// `reduced` are the right-hand sides of the watched nodes, from which the node is eliminated too.
+    /// Returns the entries that the event adds to $L^{-1} B$.
     ///
     /// # Errors
     ///
@@ -125,7 +125,7 @@ impl Touched {
         schur: &Schur,
         node: usize,
         position: usize,
-        reduced: [f64; System::RHS],
+        reduced: &mut [[f64; System::RHS]],
     ) -> Result<[f64; System::RHS], f64> {
         let k = self.watched;
         let start = self.factor.len();
@@ -148,8 +148,13 @@ impl Touched {
         column[position] = root;
         self.nodes.push(node);
         self.positions.push(position);
-        let entries = reduced.map(|value| value / root);
+        let entries = reduced[position].map(|value| value / root);
         self.rhs.push(entries);
+        for (reduced, factor) in reduced.iter_mut().zip(&*column) {
+            for (value, entry) in reduced.iter_mut().zip(entries) {
+                *value -= factor * entry;
+            }
+        }
         Ok(entries)
     }
 
@@ -189,11 +194,6 @@ impl Touched {
             }
             *here = here.map(|value| value / column[self.positions[t]]);
         }
-    }
-
-    /// Column of R of the last event, empty if there is none.
-    pub(crate) fn last_column(&self) -> &[f64] {
-        &self.factor[self.factor.len().saturating_sub(self.watched)..]
     }
 
     /// Column of event t of R.

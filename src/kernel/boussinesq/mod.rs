@@ -6,7 +6,7 @@ mod near;
 use std::f64::consts::PI;
 
 use self::far::Far;
-use super::{Boundary, InfluenceKernel};
+use super::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 
 /// The elastic half-space with a free boundary, $C(\mathbf d)$ of a cell under uniform pressure
@@ -133,8 +133,8 @@ impl InfluenceKernel for Boussinesq {
 
     /// Love's influence matrix is an inverse M-matrix (checked on grids from 8² to 40², strips, and
     /// cells of aspect 1 to 10), and its principal submatrices inherit that.
-    fn contact_only_grows(&self) -> bool {
-        true
+    fn contact_growth(&self) -> ContactGrowth {
+        ContactGrowth::Convex
     }
 
     /// Love's coefficient \[m/Pa\]; defined at every offset, on the grid or beyond.

@@ -4,7 +4,7 @@ mod short_range;
 
 use super::even::{Even, cosine_of_turn};
 use super::periodic::{Periodic, in_long_sides, least_gauge, path_gauge, wave_number};
-use super::{Boundary, InfluenceKernel};
+use super::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 use short_range::{ALPHA, ShortRange};
 
@@ -174,10 +174,14 @@ impl InfluenceKernel for PeriodicBoussinesq {
     }
 
     /// In a gauge that is large enough, as that of [`PeriodicBoussinesq::new`] is, the influence
-    /// matrix is an inverse M-matrix.
-    fn contact_only_grows(&self) -> bool {
-        self.least_gauge()
-            .is_some_and(|least| self.gauge() >= least)
+    /// matrix is an inverse M-matrix. In a smaller one it is not, but the signs of $y_2$ and $r_2$
+    /// are the same in every gauge.
+    fn contact_growth(&self) -> ContactGrowth {
+        match self.least_gauge() {
+            Some(least) if self.gauge() >= least => ContactGrowth::Convex,
+            Some(_) => ContactGrowth::Monotone,
+            None => ContactGrowth::Unknown,
+        }
     }
 
     /// $C^{(0)} + s$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
