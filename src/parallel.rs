@@ -73,7 +73,7 @@ where
 
 /// Runs `work` on one of the threads that its loops are divided among: a thread outside of them
 /// would go to sleep, and have to be woken, at every loop.
-pub(crate) fn among_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn inside<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     #[cfg(feature = "rayon")]
     return rayon::scope(|_| work());
     #[cfg(not(feature = "rayon"))]

@@ -440,6 +440,11 @@ fn a_surface_whose_node_leaves_can_be_made_from_any_set_of_holes_that_says_so() 
     assert!(made >= 100, "{made}");
 }
 
+fn has_releases((kernel, gaps): &(Table, Vec<f64>)) -> bool {
+    let mut states = kernel.path(gaps).map(Result::unwrap);
+    states.any(|state| state.event == ContactEvent::Release)
+}
+
 /// An updater that knows the three verbs that every path needs, and not how to let a node leave.
 #[derive(Default)]
 struct GrowsOnly(Dense);
@@ -464,11 +469,7 @@ impl LinearUpdater for GrowsOnly {
 
 #[test]
 fn an_updater_that_cannot_let_nodes_leave_says_so() {
-    let releases = |(kernel, gaps): &(Table, Vec<f64>)| {
-        let mut states = kernel.path(gaps).map(Result::unwrap);
-        states.any(|state| state.event == ContactEvent::Release)
-    };
-    let (kernel, gaps) = (0..).map(case).find(releases).unwrap();
+    let (kernel, gaps) = (0..).map(case).find(has_releases).unwrap();
     let mut complete = kernel.path(&gaps);
     let mut path = kernel.path_with(&gaps, GrowsOnly::default());
     loop {
@@ -488,6 +489,74 @@ fn an_updater_that_cannot_let_nodes_leave_says_so() {
     let state = path.state().unwrap();
     assert_eq!(path.contact_order().len(), state.contact_nodes);
     assert!(path.certificate().unwrap().least_pressure > -1e-11);
+}
+
+/// An updater one of whose solutions is not a number.
+struct Spoiled {
+    inner: RecursiveCholesky,
+    solutions: usize,
+    spoiled: usize,
+}
+
+impl LinearUpdater for Spoiled {
+    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
+        self.inner.schur(system, nodes, schur)
+    }
+    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
+        self.inner.commit(system, touched)
+    }
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        self.inner.release(system, node)
+    }
+    fn solve(
+        &mut self,
+        system: &System,
+        touched: &Touched,
+        count: usize,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        self.inner.solve(system, touched, count, solution)?;
+        self.solutions += 1;
+        if self.solutions == self.spoiled {
+            solution.y1.iter_mut().for_each(|y1| *y1 = f64::NAN);
+        }
+        Ok(())
+    }
+}
+
+/// An event whose state fails is not yielded, whether a node touched or left; what came before stays.
+#[test]
+fn states_before_a_failure_stay() {
+    let (kernel, gaps) = (0..).map(case).find(has_releases).unwrap();
+    let expected: Vec<ContactState> = kernel.path(&gaps).map(Result::unwrap).collect();
+    // One solution before first touch, one at every event.
+    for good in 0..expected.len() {
+        let updater = Spoiled {
+            inner: RecursiveCholesky::new(),
+            solutions: 0,
+            spoiled: good + 2,
+        };
+        let mut path = kernel.path_with(&gaps, updater);
+        for expected in &expected[..good] {
+            assert_eq!(path.next().unwrap().unwrap(), *expected);
+        }
+        let error = path.next().unwrap().unwrap_err();
+        assert!(matches!(error, Error::NotMonotone { .. }), "{error}");
+        assert!(path.next().is_none());
+        assert_eq!(path.state().as_ref(), expected[..good].last());
+        for state in &expected[..good] {
+            let approach = state.approach_in(&kernel);
+            let exact = complementary(&kernel.matrix(), &from_first_touch(&gaps), approach);
+            let found = path.pressure_at(state).unwrap();
+            let error = (DVector::from_column_slice(found.as_slice()) - &exact).amax();
+            assert!(
+                error <= EXACT * exact.max().max(1e-3),
+                "{state:?}: {error:e}"
+            );
+        }
+        let nodes = path.state().map_or(0, |state| state.contact_nodes);
+        assert_eq!(path.contact_order().len(), nodes);
+    }
 }
 
 /// Where contact happens to grow, the same path with windows that are checked at their ends; gaps of

@@ -6,7 +6,7 @@ use super::real::Real;
 use super::transforms::{Transforms, Workspace};
 use super::transpose::{BLOCK, blocks, gather, interleave, pitch};
 use crate::kernel::KernelTable;
-use crate::parallel::{among_threads, for_each_block};
+use crate::parallel::{for_each_block, inside};
 use crate::{Boundary, Error, Grid};
 
 /// Parts into which the blocks of a large grid are divided, each with its own working memory.
@@ -174,7 +174,7 @@ impl<T: Real> Engine<T> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
         if self.scratch.len() > 1 {
-            among_threads(|| self.filter(pressure, factors, displacement));
+            inside(|| self.filter(pressure, factors, displacement));
         } else {
             self.filter(pressure, factors, displacement);
         }

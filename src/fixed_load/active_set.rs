@@ -14,6 +14,10 @@ const TIGHTENING: f64 = 0.25;
 const LEAST_INNER: f64 = 0.01;
 /// After so many answers that a fresh convolution does not confirm, the tolerance is below rounding.
 const UNCONFIRMED: usize = 10;
+/// An answer that is not confirmed, for what rounding or the tension that was cut off have done to
+/// it, is asked for again with this part of the tolerance, down to the least part.
+const STRICTER: f64 = 0.5;
+const STRICTEST: f64 = 0.125;
 /// Nodes join for overlaps, and leave for tensions, above this part of the tolerance: what is
 /// smaller is rounding, and would come and go for ever.
 const DEAD_BAND: f64 = 0.1;
@@ -53,9 +57,10 @@ impl Level {
         }
         let (mut inner, mut previous) = (INNER, f64::INFINITY);
         let mut unconfirmed = 0;
+        let mut working = criteria;
         loop {
             effort.rounds += 1;
-            let errors = self.round(target, criteria, inner, &mut effort)?;
+            let errors = self.round(target, working, inner, &mut effort)?;
             if errors.in_set() > 0.5 * previous {
                 inner = LEAST_INNER.max(TIGHTENING * inner);
             }
@@ -65,7 +70,7 @@ impl Level {
             if worst.is_nan() || scale.is_nan() {
                 return Err(no_convergence(best, effort));
             }
-            if worst > criteria.tolerance {
+            if worst > working.tolerance {
                 best = best.min(worst);
             } else if !criteria.verify {
                 return Ok(effort);
@@ -77,6 +82,8 @@ impl Level {
                 }
                 best = best.min(verified);
                 unconfirmed += 1;
+                working.tolerance =
+                    (STRICTER * working.tolerance).max(STRICTEST * criteria.tolerance);
             }
             if unconfirmed >= UNCONFIRMED
                 || effort.iterations >= criteria.max_iterations

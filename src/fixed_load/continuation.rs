@@ -6,7 +6,7 @@ use crate::iterative::{add_scaled, sum};
 
 /// Greatest change of the load, as a factor, for which the last state is a better start than the
 /// coarser grids. Those begin with an error of 3 % of the approach, a step of 7 % of the load with
-/// 0.8 % (512 × 512 nodes, 12 % in contact); both fall with the square of their steps.
+/// 0.8 % (512 × 512 nodes, 12 % in contact).
 const GREATEST_STEP: f64 = 1.25;
 
 /// What a sweep knows beside its last state, which the level holds.

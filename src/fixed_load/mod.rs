@@ -18,6 +18,8 @@
 //! * **Preconditioner**: a sparse inverse Cholesky factor of $C_{II}$.
 //! * **Release**: nodes with tension are set free, their neighbours corrected by the
 //!   preconditioner alone, and the step is accepted only if the energy falls.
+//! * **Precision**: search directions go through a convolution in single precision, residuals are
+//!   computed afresh in double precision before the errors of these steps matter.
 //! * **Nested grids**: the start comes from a grid of half as many nodes a side, recursively, with
 //!   the Galerkin kernel (pressures uniform on blocks of 2 × 2), which any kernel has.
 //!
@@ -28,6 +30,12 @@
 //! The approach is that of the mean planes, displacements are about their mean, and there is no contact
 //! stiffness but the interfacial one. Up to full contact an approach can be prescribed as well; from
 //! there on it stays the mean initial gap, whatever the load.
+//!
+//! # Many states
+//!
+//! [`FixedLoadSolver::sweep`] goes from state to state, each given by a load, an approach, a contact
+//! area or a mean gap ([`ContactTarget`]), and each as exact as if it were alone. Pressures,
+//! displacements and approach are predicted together from the last states and their tangents.
 //!
 //! # References
 //!

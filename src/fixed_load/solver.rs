@@ -11,7 +11,7 @@ use super::sweep::LoadSweep;
 use super::tangent::Tangent;
 use super::target::ContactTarget;
 use crate::iterative::{dot, sum, sum_over};
-use crate::parallel::among_threads;
+use crate::parallel::inside;
 use crate::{Boundary, Error, Grid, InfluenceKernel, Surface};
 
 /// Tolerance on the coarser grids, whose solutions are but starts, relative to the approach ...
@@ -234,7 +234,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             };
             // A start that is not quite what was asked for is a start.
             let coarse = &mut self.levels[level + 1];
-            match among_threads(|| coarse.solve(coarse_target, criteria, false)) {
+            match inside(|| coarse.solve(coarse_target, criteria, false)) {
                 Ok(_) | Err(Error::NoConvergence { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -277,7 +277,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
             verify: true,
         };
         let fine = &mut self.levels[0];
-        let effort = among_threads(|| fine.solve(target, criteria, prediction))?;
+        let effort = inside(|| fine.solve(target, criteria, prediction))?;
         let length = criteria.scale(fine.iterate.approach);
         let mut solution = self.solution(effort, load, length);
         if self.stiffness {

@@ -6,7 +6,7 @@ use super::level::Level;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
 use crate::iterative::{ContactSet, LinearSystem, dot, sum, sum_over};
-use crate::parallel::among_threads;
+use crate::parallel::inside;
 use crate::{Boundary, Error, InfluenceKernel, Surface};
 
 /// The pressure per unit of approach, $y_2$, and its displacement, both on the whole grid and in the
@@ -147,7 +147,7 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
         }
         let (tolerance, max_iterations) = (self.tolerance, self.max_iterations);
         let solve = |fine: &mut Level| fine.solve_tangent(tangent, tolerance, max_iterations);
-        let solved = among_threads(|| fine.in_gauge(solve))?;
+        let solved = inside(|| fine.in_gauge(solve))?;
         let nodes = self.grid.nodes();
         let displacement = &tangent.displacement;
         // Nodes in contact are left out: then full contact is exact.

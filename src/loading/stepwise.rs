@@ -138,22 +138,15 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         Ok(())
     }
 
-    /// Takes back what the last event did to the contact; the updater keeps it.
+    /// Takes a node that left back into the order of contact, so that states before are found there.
+    /// The updater stays without it. A node that touched may stay where it is: behind all others.
     fn undo(&mut self, event: ContactEvent) {
-        match event {
-            ContactEvent::Touch => {
-                if let Some(node) = self.contact.pop() {
-                    self.in_contact[node] = false;
-                }
-            }
-            ContactEvent::Release => {
-                if let Some(Release { node, position, .. }) = self.stepwise.releases.pop() {
-                    self.contact.insert(position, node);
-                    self.in_contact[node] = true;
-                }
-            }
+        if event == ContactEvent::Release
+            && let Some(Release { node, position, .. }) = self.stepwise.releases.pop()
+        {
+            self.contact.insert(position, node);
+            self.in_contact[node] = true;
         }
-        self.solved = None;
     }
 
     /// Solves at the front, checks the conditions of contact there, and finds the next event.

@@ -143,7 +143,7 @@ impl LinearUpdater for RecursiveCholesky {
         let Factor {
             panels, columns, ..
         } = &self.factor;
-        parallel::among_threads(|| {
+        parallel::inside(|| {
             columns.subtract(&terms, [&mut y1[..committed], &mut y2[..committed]]);
             panels.solve_transposed([&mut y1[..committed], &mut y2[..committed]]);
         });

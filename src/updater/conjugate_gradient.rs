@@ -5,9 +5,9 @@ use crate::Error;
 use crate::convolution::Convolution;
 use crate::iterative::{ContactSet, LinearSystem, Operator, SparseInverse, dot};
 
-/// What a column costs, some twenty convolutions, is the same in every window. A refresh costs as
-/// much as three columns, 700 ns for each node of the grid, and products between columns grow with
-/// their number: so many are watched that both are small beside the columns.
+/// What a column costs, some twenty convolutions of 12 ns for each node of the grid, is the same in
+/// every window. A refresh costs as much as three columns, and products between columns, 0.3 ns
+/// each, grow with their number: so many are watched that both are small beside the columns.
 const WINDOW_COST: WindowCost = WindowCost {
     solve: 0.0,
     schur: 0.3,

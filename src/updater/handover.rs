@@ -18,9 +18,7 @@ const LEAST_WINDOW: usize = 64;
 /// right-hand sides); only the time of an event changes. A message of the level `info` goes to the
 /// crate `log`, and [`handed_over_at`](Self::handed_over_at) says where it was.
 ///
-/// The factor is given back to the system. It could serve as a preconditioner for the nodes it knows,
-/// but reads its 4n² bytes twice for each step of an iteration: where it no longer fits, a
-/// convolution is faster.
+/// The factor is given back to the system, to make room for the columns of the iterations.
 ///
 /// ```
 /// use asperity::surface::Paraboloid;

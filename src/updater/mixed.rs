@@ -93,7 +93,7 @@ impl MixedCholesky {
         if nodes == self.refined {
             return Ok(());
         }
-        parallel::among_threads(|| self.refine_on(system, touched, nodes))
+        parallel::inside(|| self.refine_on(system, touched, nodes))
     }
 
     /// The same on the given nodes.
