@@ -89,7 +89,7 @@ fn by_path(
     match last {
         Some(state) => {
             let pressure = path.pressure_at(&state.at_load(load))?;
-            Ok((state.step, pressure.max()))
+            Ok((state.contact_nodes, pressure.max()))
         }
         None => Ok((0, 0.0)),
     }
