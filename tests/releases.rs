@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 use asperity::loading::{ContactEvent, History, LoadingSolver};
 use asperity::surface::HeightMap;
 use asperity::updater::{
-    ConjugateGradient, Dense, LinearUpdater, MixedCholesky, RecursiveCholesky, Schur, Solution,
-    System, Touched,
+    ConjugateGradient, Dense, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky, Schur,
+    Solution, System, Touched,
 };
 use asperity::{Boundary, ContactGrowth, ContactState, Error, Grid, InfluenceKernel};
 use nalgebra::{DMatrix, DVector};
@@ -324,6 +324,8 @@ fn other_updaters_on_random_kernels() {
         let iterative = ConjugateGradient::with_tolerance(1e-14).unwrap();
         let iterative = kernel.path_with(&gaps, iterative);
         assert_eq!(check(&kernel, &gaps, iterative, ITERATED), own);
+        let handover = kernel.path_with(&gaps, Handover::new());
+        assert_eq!(check(&kernel, &gaps, handover, EXACT), own);
         releases += own;
     }
     println!("{releases} releases");

@@ -139,6 +139,12 @@ impl LinearUpdater for Handover {
         }
     }
 
+    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
+        self.updater_mut().release(system, node)?;
+        self.order.retain(|committed| *committed != node);
+        Ok(())
+    }
+
     fn solve(
         &mut self,
         system: &System,
