@@ -269,7 +269,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut criterion = Criterion::default().configure_from_args();
     for at in [1000, 4000] {
         verbs(&mut criterion, "f64", RecursiveCholesky::new(), at)?;
-        verbs(&mut criterion, "mixed", RecursiveCholesky::mixed(), at)?;
+        verbs(&mut criterion, "mixed", MixedCholesky::single_from(0), at)?;
     }
     criterion.final_summary();
     Ok(())

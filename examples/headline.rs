@@ -113,8 +113,7 @@ fn phases<U: LinearUpdater>(run: &Run<U>, updater: CholeskyTimings) {
     phase("solutions on the contact", updater.solve, run.seconds);
     phase("rows of the factor", updater.commit, run.seconds);
     phase("convolution", loading.convolution, run.seconds);
-    let choice = loading.choice.saturating_sub(loading.convolution);
-    phase("choice of the watched nodes", choice, run.seconds);
+    phase("choice of the watched nodes", loading.choice, run.seconds);
     phase("events", loading.events, run.seconds);
     println!("  {} windows", loading.windows);
 }

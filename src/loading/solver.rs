@@ -85,9 +85,9 @@ pub struct LoadingTimings {
     /// Number of events that were computed and then taken back, because a state did not stand the
     /// check at the end of its window.
     pub taken_back: usize,
-    /// Displacements of all nodes at every refresh.
+    /// Displacements of all nodes, at every refresh and every check of a window.
     pub convolution: Duration,
-    /// Choice of the nodes to watch.
+    /// Choice of the nodes to watch, once all displacements are known.
     pub choice: Duration,
     /// Events inside the windows.
     pub events: Duration,

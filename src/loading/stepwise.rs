@@ -156,8 +156,8 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
             return Err(self.not_monotone("pressure", node, value));
         }
         self.renew_stiffness();
-        let start = Instant::now();
         self.rank()?;
+        let start = Instant::now();
         self.stepwise.upcoming = self.first_event();
         self.timings.choice += start.elapsed();
         self.timings.windows += 1;

@@ -2,6 +2,7 @@
 
 use std::array;
 use std::ops::Range;
+use std::ptr;
 
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{MatMut, MatRef, Par};
@@ -54,10 +55,6 @@ impl<T: Precision> Block<T> {
             rows.len(),
             columns,
         )
-    }
-
-    fn get(&self, row: usize, column: usize) -> T {
-        self.values[row * self.width + column]
     }
 }
 
@@ -252,35 +249,55 @@ impl<T: Precision> Columns<T> {
         };
 
         let columns = located(touched.positions());
-        let mut events: Vec<_> = columns.iter().zip(factor.rows_mut(before)).collect();
-        parallel::for_each_chunk(&mut events, EVENTS, |chunk, events| {
-            // A few rows of F at a time: they stay in cache while all rows of L take from them.
-            for start in (0..before).step_by(CACHED_ROWS) {
-                let rows = start..(start + CACHED_ROWS).min(before);
-                for ((_, (block, column)), target) in &mut *events {
-                    let values = &block.values[start * block.width + column..];
-                    let values = values.iter().step_by(block.width);
-                    for (target, value) in target[rows.clone()].iter_mut().zip(values) {
-                        *target = *value;
-                    }
-                }
+        // The new rows of L in pieces: a thread fills one piece of all, and reads its part of F once.
+        let mut pieces: Vec<Vec<&mut [T]>> = Vec::new();
+        pieces.resize_with(before.div_ceil(ROWS), || Vec::with_capacity(columns.len()));
+        for (last, ((position, _), row)) in columns.iter().zip(factor.rows_mut(before)).enumerate()
+        {
+            let (left, here) = row.split_at_mut(before);
+            for (event, target) in here[..=last].iter_mut().enumerate() {
+                *target = window(*position, event);
             }
-            for (i, ((position, _), target)) in events.iter_mut().enumerate() {
-                let count = chunk * EVENTS + i + 1;
-                for (event, target) in target[before..before + count].iter_mut().enumerate() {
-                    *target = window(*position, event);
+            for (piece, target) in pieces.iter_mut().zip(left.chunks_mut(ROWS)) {
+                piece.push(target);
+            }
+        }
+        parallel::for_each_chunk(&mut pieces, 1, |piece, targets| {
+            for targets in targets {
+                let rows = targets.first().map_or(0, |target| target.len());
+                // So few rows of F at a time stay in cache while all rows of L take from them.
+                for start in (0..rows).step_by(CACHED_ROWS) {
+                    let end = rows.min(start + CACHED_ROWS);
+                    for ((_, (block, column)), target) in columns.iter().zip(&mut *targets) {
+                        let first = (piece * ROWS + start) * block.width + column;
+                        let values = block.values[first..].iter().step_by(block.width);
+                        for (target, value) in target[start..end].iter_mut().zip(values) {
+                            *target = *value;
+                        }
+                    }
                 }
             }
         });
 
-        let columns = located(untouched);
+        // What is left of each block, by its columns there.
+        let mut left: Vec<(&Block<T>, Vec<usize>)> = Vec::new();
+        for (_, (block, column)) in located(untouched) {
+            match left.last_mut() {
+                Some((last, columns)) if ptr::eq(*last, block) => columns.push(column),
+                _ => left.push((block, vec![column])),
+            }
+        }
         let width = untouched.len();
         let mut values = vec![T::default(); before * width];
         parallel::for_each_chunk(&mut values, (ROWS * width).max(1), |chunk, values| {
-            for (row, values) in values.chunks_mut(width).enumerate() {
+            for (row, mut values) in values.chunks_mut(width).enumerate() {
                 let row = chunk * ROWS + row;
-                for (value, (_, (block, column))) in values.iter_mut().zip(&columns) {
-                    *value = block.get(row, *column);
+                for (block, columns) in &left {
+                    let source = &block.values[row * block.width..][..block.width];
+                    for (value, &column) in values.iter_mut().zip(columns) {
+                        *value = source[column];
+                    }
+                    values = &mut values[columns.len()..];
                 }
             }
         });
@@ -338,5 +355,3 @@ impl<T: Precision> Columns<T> {
 
 /// Rows of the columns that are spread over the rows of the factor at a time.
 const CACHED_ROWS: usize = 16;
-/// Rows of the factor that one thread fills at a time.
-const EVENTS: usize = 32;
