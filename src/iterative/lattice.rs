@@ -221,7 +221,7 @@ mod tests {
             let lattices = Lattices::new(&table);
             let last = lattices.levels.len() as u32 - 1;
             let order = |node: usize| {
-                let level = (node % nx | node / nx).trailing_zeros().min(last);
+                let level = ((node % nx) | (node / nx)).trailing_zeros().min(last);
                 (last - level, node)
             };
             for node in 0..grid.nodes() {
