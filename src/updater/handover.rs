@@ -52,7 +52,7 @@ pub struct Handover {
 #[derive(Debug, Clone)]
 enum Stage {
     Factor(RecursiveCholesky),
-    Iterations(ConjugateGradient),
+    Iterations(Box<ConjugateGradient>),
 }
 
 impl Default for Handover {
@@ -82,14 +82,14 @@ impl Handover {
     fn updater(&self) -> &dyn LinearUpdater {
         match &self.stage {
             Stage::Factor(factor) => factor,
-            Stage::Iterations(iterations) => iterations,
+            Stage::Iterations(iterations) => &**iterations,
         }
     }
 
     fn updater_mut(&mut self) -> &mut dyn LinearUpdater {
         match &mut self.stage {
             Stage::Factor(factor) => factor,
-            Stage::Iterations(iterations) => iterations,
+            Stage::Iterations(iterations) => &mut **iterations,
         }
     }
 
@@ -114,7 +114,7 @@ impl Handover {
         );
         self.handed_over_at = Some(order.len());
         // The factor goes before anything takes its place.
-        self.stage = Stage::Iterations(ConjugateGradient::new());
+        self.stage = Stage::Iterations(Box::default());
         if let Stage::Iterations(iterations) = &mut self.stage {
             iterations.take_over(system, order, &solution)?;
         }
@@ -169,7 +169,7 @@ impl LinearUpdater for Handover {
             && !self.factor_fits(factor)
         {
             self.handed_over_at = Some(0);
-            self.stage = Stage::Iterations(ConjugateGradient::new());
+            self.stage = Stage::Iterations(Box::default());
         }
     }
 }
