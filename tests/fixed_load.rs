@@ -6,29 +6,10 @@ mod common;
 use asperity::fixed_load::{ContactTarget, FixedLoadSolver};
 use asperity::loading::History;
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
-use asperity::{
-    Boundary, Boussinesq, Error, FixedLoadSolution, Grid, InfluenceKernel, LoadingSolver,
-};
+use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver};
+use common::fixed_load::{check, relative};
 use common::surface;
 use nalgebra::DMatrix;
-
-fn relative(found: f64, expected: f64) -> f64 {
-    ((found - expected) / expected).abs()
-}
-
-/// Every figure of a certificate within the tolerance.
-fn check(solution: &FixedLoadSolution, tolerance: f64) {
-    let certificate = solution.certificate;
-    assert!(certificate.complementarity <= tolerance, "{certificate:?}");
-    assert!(certificate.least_gap >= -tolerance, "{certificate:?}");
-    assert!(
-        certificate.greatest_contact_gap <= tolerance,
-        "{certificate:?}"
-    );
-    // A sum of positive numbers, scaled: rounding of the sum only.
-    assert!(certificate.load_error.abs() <= 1e-13, "{certificate:?}");
-    assert!(solution.pressure.iter().all(|p| *p >= 0.0));
-}
 
 /// Contact nodes and greatest pressure from aspher 0.1.3 at a tolerance of 1e-13.
 #[test]

@@ -3,7 +3,7 @@
 //! The factor is read once for all right-hand sides, in groups of panels. While one thread solves the
 //! triangle of a group, the others multiply the rest of the group before, so that nobody waits.
 
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 
 use super::panels::{Panels, ROWS};
 use super::precision::Precision;
@@ -33,7 +33,7 @@ impl<T: Precision> Panels<T> {
         for group in (1..=last).rev() {
             let start = group * GROUP_ROWS;
             let end = count.min(start + GROUP_ROWS);
-            let known: Vec<[T; N]> = (start..end).map(|k| x.each_ref().map(|x| x[k])).collect();
+            let known = rows(&x, start..end);
             let subtract = |first: usize, x: &mut [&mut [T]; N]| {
                 for (p, known) in (group * GROUP..).zip(known.chunks(ROWS)) {
                     self.subtract_panel(p, first, known, x);
@@ -63,7 +63,7 @@ impl<T: Precision> Panels<T> {
             let (p, start) = (group * GROUP + panel, panel * ROWS);
             let end = count.min(start + ROWS);
             self.solve_triangle_transposed(p, x.each_mut().map(|x| &mut x[start..end]));
-            let known: Vec<[T; N]> = (start..end).map(|k| x.each_ref().map(|x| x[k])).collect();
+            let known = rows(&x, start..end);
             let mut before = x.each_mut().map(|x| &mut x[..start]);
             self.subtract_panel(p, group * GROUP_ROWS, &known, &mut before);
         }
@@ -178,6 +178,11 @@ impl<T: Precision> Panels<T> {
             },
         );
     }
+}
+
+/// Some of the unknowns, row by row.
+fn rows<T: Precision, const N: usize>(x: &[&mut [T]; N], range: Range<usize>) -> Vec<[T; N]> {
+    range.map(|k| x.each_ref().map(|x| x[k])).collect()
 }
 
 /// The length of the shortest.
