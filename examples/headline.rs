@@ -4,13 +4,16 @@
 //! paper. Prints where the time goes, what a plain matrix product of the same work takes, and how much
 //! faster the path is than the paper's own procedure; the last line is for programs.
 
+#[path = "common/phases.rs"]
+mod phases;
+
 use std::error::Error;
 use std::f64::consts::PI;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
-use asperity::updater::{CholeskyTimings, LinearUpdater, RecursiveCholesky};
+use asperity::updater::{LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver};
 use clap::Parser;
 use faer::{Accum, Mat, Par};
@@ -98,26 +101,6 @@ fn peak_memory() -> Option<f64> {
     Some(1024.0 * kibibytes)
 }
 
-fn phase(name: &str, time: Duration, total: f64) {
-    let seconds = time.as_secs_f64();
-    println!(
-        "  {name:<36} {seconds:8.3} s {:5.1} %",
-        100.0 * seconds / total
-    );
-}
-
-fn phases<U: LinearUpdater>(run: &Run<U>, updater: CholeskyTimings) {
-    let loading = run.solver.timings();
-    phase("forward substitution", updater.forward, run.seconds);
-    phase("Schur complements", updater.schur, run.seconds);
-    phase("solutions on the contact", updater.solve, run.seconds);
-    phase("rows of the factor", updater.commit, run.seconds);
-    phase("convolution", loading.convolution, run.seconds);
-    phase("choice of the watched nodes", loading.choice, run.seconds);
-    phase("events", loading.events, run.seconds);
-    println!("  {} windows", loading.windows);
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
 
@@ -133,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds,
         rayon::current_num_threads()
     );
-    phases(&exact, exact.solver.updater().timings());
+    phases::print(exact.solver.timings(), exact.solver.updater().timings());
     println!(
         "  {:.1} GFLOP/s as n^3/3 a second; peak memory {:.0} MB, factor 4n^2 = {:.0} MB",
         flops / exact.seconds / 1e9,
@@ -158,7 +141,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         mixed.seconds,
         mixed.seconds / gemm_seconds
     );
-    phases(&mixed, mixed.solver.updater().timings());
+    phases::print(mixed.solver.timings(), mixed.solver.updater().timings());
     drop(mixed.solver);
 
     let side = if options.paper_full {

@@ -4,11 +4,16 @@
 //! given number of nodes in contact. With `--compare`, the path in mixed precision against the one in
 //! double precision, state by state.
 
+#[path = "common/phases.rs"]
+mod phases;
+
 use std::error::Error;
 use std::time::Instant;
 
 use asperity::surface::{Amplitude, SelfAffine};
-use asperity::updater::{Handover, LinearUpdater, RecursiveCholesky};
+use asperity::updater::{
+    CholeskyTimings, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
+};
 use asperity::{Boussinesq, ContactState, Grid, LoadingSolver};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -42,6 +47,7 @@ struct Options {
 fn run<U: LinearUpdater>(
     options: &Options,
     updater: U,
+    timings: Option<fn(&U) -> CholeskyTimings>,
 ) -> Result<Vec<ContactState>, Box<dyn Error>> {
     const SIDE: f64 = 1e-2;
     let rolloff = SIDE / 4.0;
@@ -88,6 +94,9 @@ fn run<U: LinearUpdater>(
         "  least pressure {:.1e} of the mean, least gap {:.1e} Sq, gap in contact {:.1e} Sq",
         certificate.least_pressure, certificate.least_gap, certificate.greatest_contact_gap
     );
+    if let Some(timings) = timings {
+        phases::print(path.timings(), timings(path.updater()));
+    }
     Ok(states)
 }
 
@@ -122,16 +131,22 @@ fn compare(exact: &[ContactState], mixed: &[ContactState]) {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    let exact = || {
+        let timings = RecursiveCholesky::timings;
+        run(&options, RecursiveCholesky::new(), Some(timings))
+    };
+    let mixed = || {
+        let timings = MixedCholesky::timings;
+        run(&options, RecursiveCholesky::mixed(), Some(timings))
+    };
     if options.compare {
-        let exact = run(&options, RecursiveCholesky::new())?;
-        let mixed = run(&options, RecursiveCholesky::mixed())?;
-        compare(&exact, &mixed);
+        compare(&exact()?, &mixed()?);
     } else if options.mixed {
-        run(&options, RecursiveCholesky::mixed())?;
+        mixed()?;
     } else if options.budget.is_some() {
-        run(&options, Handover::new())?;
+        run(&options, Handover::new(), None)?;
     } else {
-        run(&options, RecursiveCholesky::new())?;
+        exact()?;
     }
     Ok(())
 }

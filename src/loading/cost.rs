@@ -29,7 +29,7 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
         if per_event(k) < per_event(best) {
             best = k;
         }
-        k *= 1.25;
+        k *= 1.05;
     }
     best as usize
 }

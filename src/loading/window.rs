@@ -115,7 +115,7 @@ impl Window {
         for &position in &self.touched.positions()[left..] {
             self.open[position] = true;
         }
-        self.touched.truncate(left);
+        self.touched.truncate(&mut self.schur, left);
         self.horizon = f64::NEG_INFINITY;
     }
 
@@ -149,7 +149,7 @@ impl Window {
         let node = self.nodes[position];
         let entries = self
             .touched
-            .push(&self.schur, node, position, &mut self.reduced)?;
+            .push(&mut self.schur, node, position, &mut self.reduced)?;
         self.open[position] = false;
         Ok(entries)
     }

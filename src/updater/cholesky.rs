@@ -60,7 +60,7 @@ impl RecursiveCholesky {
             let mut reduced = schur.rhs().to_vec();
             for (position, &node) in nodes.iter().enumerate() {
                 touched
-                    .push(&schur, node, position, &mut reduced)
+                    .push(&mut schur, node, position, &mut reduced)
                     .map_err(|_| Error::FactorizationFailed {
                         nodes: contact.len(),
                     })?;

@@ -1,6 +1,7 @@
 //! Right-hand sides under forward substitution.
 
 use std::array;
+use std::mem;
 use std::ops::Range;
 use std::ptr;
 
@@ -14,8 +15,8 @@ use super::touched::Touched;
 use crate::parallel::{self, vectorized};
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
-/// that there are several to share among threads.
-const WIDTH: usize = 64;
+/// that there are several to share among threads: each block reads all of L.
+const WIDTH: usize = 128;
 
 /// Columns of a block come in so many, as many as fit a vector.
 const UNIT: usize = 16;
@@ -29,6 +30,9 @@ const UNIT: usize = 16;
 pub(super) struct Columns<T> {
     rows: usize,
     blocks: Vec<Block<T>>,
+    /// Room of blocks that are no more, for those to come: pages that are new to a process cost as
+    /// much as a tenth of the products.
+    spare: Vec<Vec<T>>,
 }
 
 /// Some neighbouring columns, row by row.
@@ -39,14 +43,6 @@ struct Block<T> {
 }
 
 impl<T: Precision> Block<T> {
-    /// Columns with room for `rows` rows, and none yet.
-    fn with_capacity(rows: usize, width: usize) -> Self {
-        Self {
-            width,
-            values: Vec::with_capacity(rows * width),
-        }
-    }
-
     /// Some rows of the columns `columns`.
     fn view(&self, rows: Range<usize>, columns: Range<usize>) -> MatRef<'_, T> {
         view(
@@ -82,7 +78,16 @@ impl<T: Precision> Columns<T> {
         Columns {
             rows: self.rows,
             blocks: self.blocks.into_iter().map(block).collect(),
+            spare: Vec::new(),
         }
+    }
+
+    /// Room for so many values, and none yet.
+    fn room(&mut self, values: usize) -> Vec<T> {
+        let mut room = self.spare.pop().unwrap_or_default();
+        room.clear();
+        room.reserve_exact(values);
+        room
     }
 
     /// Keeps, of the columns that were watched before, those at `kept` (ascending), and makes room
@@ -111,9 +116,12 @@ impl<T: Precision> Columns<T> {
         for block in 0..blocks {
             let width = end(block + 1) - end(block);
             if width > 0 {
-                self.blocks.push(Block::with_capacity(rows, width));
+                let values = self.room(rows * width);
+                self.blocks.push(Block { width, values });
             }
         }
+        // One for the columns that are kept at the next commit.
+        self.spare.truncate(1);
     }
 
     /// Fills the columns from `first` on (the beginning of a block) with right-hand sides and solves
@@ -239,6 +247,9 @@ impl<T: Precision> Columns<T> {
         scale: f64,
     ) {
         let before = self.rows;
+        let width = untouched.len();
+        let mut values = self.room((before + touched.len()) * width);
+        values.resize(before * width, T::default());
         factor.push_rows(touched.len());
         let window = |position, event| T::of(touched.factor(position, event) / scale);
         let located = |positions: &[usize]| -> Vec<_> {
@@ -247,38 +258,6 @@ impl<T: Precision> Columns<T> {
                 .filter_map(|&position| Some((position, self.locate(position)?)))
                 .collect()
         };
-
-        let columns = located(touched.positions());
-        // The new rows of L in pieces: a thread fills one piece of all, and reads its part of F once.
-        let mut pieces: Vec<Vec<&mut [T]>> = Vec::new();
-        pieces.resize_with(before.div_ceil(ROWS), || Vec::with_capacity(columns.len()));
-        for (last, ((position, _), row)) in columns.iter().zip(factor.rows_mut(before)).enumerate()
-        {
-            let (left, here) = row.split_at_mut(before);
-            for (event, target) in here[..=last].iter_mut().enumerate() {
-                *target = window(*position, event);
-            }
-            for (piece, target) in pieces.iter_mut().zip(left.chunks_mut(ROWS)) {
-                piece.push(target);
-            }
-        }
-        parallel::for_each_chunk(&mut pieces, 1, |piece, targets| {
-            for targets in targets {
-                let rows = targets.first().map_or(0, |target| target.len());
-                // So few rows of F at a time stay in cache while all rows of L take from them.
-                for start in (0..rows).step_by(CACHED_ROWS) {
-                    let end = rows.min(start + CACHED_ROWS);
-                    for ((_, (block, column)), target) in columns.iter().zip(&mut *targets) {
-                        let first = (piece * ROWS + start) * block.width + column;
-                        let values = block.values[first..].iter().step_by(block.width);
-                        for (target, value) in target[start..end].iter_mut().zip(values) {
-                            *target = *value;
-                        }
-                    }
-                }
-            }
-        });
-
         // What is left of each block, by its columns there.
         let mut left: Vec<(&Block<T>, Vec<usize>)> = Vec::new();
         for (_, (block, column)) in located(untouched) {
@@ -287,28 +266,60 @@ impl<T: Precision> Columns<T> {
                 _ => left.push((block, vec![column])),
             }
         }
-        let width = untouched.len();
-        let mut values = vec![T::default(); before * width];
-        parallel::for_each_chunk(&mut values, (ROWS * width).max(1), |chunk, values| {
-            for (row, mut values) in values.chunks_mut(width).enumerate() {
-                let row = chunk * ROWS + row;
-                for (block, columns) in &left {
-                    let source = &block.values[row * block.width..][..block.width];
-                    for (value, &column) in values.iter_mut().zip(columns) {
-                        *value = source[column];
+
+        let columns = located(touched.positions());
+        // The new rows of L in pieces, each with its rows of F, so that a thread reads its part of F
+        // once for all.
+        let mut kept = values.chunks_mut((ROWS * width).max(1));
+        let mut pieces: Vec<Piece<T>> = Vec::new();
+        pieces.resize_with(before.div_ceil(ROWS), || Piece {
+            rows: Vec::with_capacity(columns.len()),
+            kept: kept.next().unwrap_or_default(),
+        });
+        for (last, ((position, _), row)) in columns.iter().zip(factor.rows_mut(before)).enumerate()
+        {
+            let (left, here) = row.split_at_mut(before);
+            for (event, target) in here[..=last].iter_mut().enumerate() {
+                *target = window(*position, event);
+            }
+            for (piece, target) in pieces.iter_mut().zip(left.chunks_mut(ROWS)) {
+                piece.rows.push(target);
+            }
+        }
+        parallel::for_each_chunk(&mut pieces, 1, |piece, targets| {
+            for Piece { rows, kept } in targets {
+                let first = piece * ROWS;
+                let count = ROWS.min(before - first);
+                // So few rows of F at a time stay in cache while all rows of L take from them.
+                for start in (0..count).step_by(CACHED_ROWS) {
+                    let end = count.min(start + CACHED_ROWS);
+                    for ((_, (block, column)), target) in columns.iter().zip(&mut *rows) {
+                        let values = &block.values[(first + start) * block.width + column..];
+                        let values = values.iter().step_by(block.width);
+                        for (target, value) in target[start..end].iter_mut().zip(values) {
+                            *target = *value;
+                        }
                     }
-                    values = &mut values[columns.len()..];
+                    for row in start..end {
+                        let mut values = &mut kept[row * width..][..width];
+                        for (block, columns) in &left {
+                            let source = &block.values[(first + row) * block.width..];
+                            for (value, &column) in values.iter_mut().zip(columns) {
+                                *value = source[column];
+                            }
+                            values = &mut values[columns.len()..];
+                        }
+                    }
                 }
             }
         });
-        values.reserve_exact(touched.len() * width);
+
         for event in 0..touched.len() {
             values.extend(untouched.iter().map(|&position| window(position, event)));
         }
-        self.blocks = vec![Block {
-            width: untouched.len(),
-            values,
-        }];
+        let blocks = mem::replace(&mut self.blocks, vec![Block { width, values }]);
+        self.spare.extend(blocks.into_iter().map(|block| block.values));
+        self.spare.sort_by_key(Vec::capacity);
         self.rows = before + touched.len();
     }
 
@@ -351,6 +362,12 @@ impl<T: Precision> Columns<T> {
             }
         }
     }
+}
+
+/// Rows of F on their way into rows of L, and into the columns that are kept.
+struct Piece<'a, T> {
+    rows: Vec<&'a mut [T]>,
+    kept: &'a mut [T],
 }
 
 /// Rows of the columns that are spread over the rows of the factor at a time.

@@ -55,7 +55,7 @@ impl Default for MixedCholesky {
 
 impl MixedCholesky {
     /// Nodes in contact from which on single precision pays.
-    pub const SINGLE_FROM: usize = 4096;
+    pub const SINGLE_FROM: usize = 2048;
 
     /// An empty contact set.
     #[must_use]

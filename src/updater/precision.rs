@@ -8,9 +8,11 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::parallel::vectorized;
 
-/// Products of single precision that are summed in it before the sum goes to double precision: few
-/// enough to lose no more than storing the factors does, enough for GEMM at full speed.
-const DEPTH: usize = 1024;
+/// Products of single precision that are summed one after the other: few enough to lose little more
+/// than storing the factors does, enough for GEMM at full speed.
+const DEPTH: usize = 256;
+/// Such sums that are added in single precision before the total goes to double precision.
+const SUMS: usize = 4;
 
 /// A number type of the factor: `f64`, or `f32` for half the memory and twice the speed.
 pub(super) trait Precision:
@@ -75,15 +77,23 @@ impl Precision for f32 {
         } else {
             Mat::<Self>::zeros(rows, columns)
         };
-        for start in (0..a.ncols()).step_by(DEPTH) {
-            let depth = DEPTH.min(a.ncols() - start);
-            let (a, b) = (a.subcols(start, depth), b.subrows(start, depth));
-            let sum = if by_rows {
-                product.as_mut().transpose_mut()
-            } else {
-                product.as_mut()
-            };
-            matmul(sum, Accum::Replace, a, b, 1.0, Par::Seq);
+        for start in (0..a.ncols()).step_by(SUMS * DEPTH) {
+            let end = a.ncols().min(start + SUMS * DEPTH);
+            for first in (start..end).step_by(DEPTH) {
+                let depth = DEPTH.min(end - first);
+                let (a, b) = (a.subcols(first, depth), b.subrows(first, depth));
+                let sum = if by_rows {
+                    product.as_mut().transpose_mut()
+                } else {
+                    product.as_mut()
+                };
+                let accum = if first == start {
+                    Accum::Replace
+                } else {
+                    Accum::Add
+                };
+                matmul(sum, accum, a, b, 1.0, Par::Seq);
+            }
             let (target, sum) = if by_rows {
                 (target.as_mut().transpose_mut(), product.as_ref())
             } else {

@@ -1,8 +1,14 @@
 //! The Schur complement of the watched nodes.
 
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrixView, DMatrixViewMut};
 
 use super::System;
+use crate::parallel;
+
+/// Columns that a thread changes at a time.
+const TILE: usize = 144;
 
 /// What remains of the system for the watched nodes once the contact set is eliminated:
 /// the Schur complement S (k × k, lower triangle) and the reduced right-hand sides R, three for each
@@ -55,6 +61,23 @@ impl Schur {
     /// The columns of S as stored.
     pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.matrix
+    }
+
+    /// S += factor R Rᵀ for some columns R, one after the other, of as many rows.
+    pub(crate) fn add_gram(&mut self, factor: f64, columns: &[f64]) {
+        let k = self.size;
+        let events = columns.len() / k.max(1);
+        let all = MatRef::from_column_major_slice(columns, k, events);
+        parallel::for_each_chunk(&mut self.matrix[..k * k], TILE * k, |tile, target| {
+            // What lies above the diagonal in the tile is written and never read.
+            let (first, width) = (tile * TILE, target.len() / k);
+            let rows = k - first;
+            let target = &mut target[first..];
+            let target = MatMut::from_column_major_slice_with_stride_mut(target, rows, width, k);
+            let below = all.subrows(first, rows);
+            let here = below.subrows(0, width).transpose();
+            matmul(target, Accum::Add, below, here, factor, Par::Seq);
+        });
     }
 
     /// Column `j` of S, made whole from the lower triangle.
