@@ -2,10 +2,12 @@
 
 use crate::updater::WindowCost;
 
-/// Nanoseconds for one product in matrix-vector form, in cache: the events inside a window.
-const EVENT_PRODUCT: f64 = 0.15;
+/// Nanoseconds for one product of the events inside a window.
+const EVENT_PRODUCT: f64 = 0.08;
 /// Fraction of the watched nodes that touch before the horizon.
 const YIELD: f64 = 0.85;
+/// The same, of almost all windows.
+const LEAST_YIELD: f64 = 0.75;
 /// Watched nodes that are always worth it.
 const FEWEST: f64 = 16.0;
 /// Watched nodes whose columns cost little however few nodes are in contact.
@@ -32,4 +34,10 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
         k *= 1.05;
     }
     best as usize
+}
+
+/// How many nodes to watch so that `events` of them touch: the columns of others would be of no use.
+pub(super) fn watched_for(events: usize) -> usize {
+    let watched = (events as f64 / LEAST_YIELD).ceil();
+    (watched as usize).max(events)
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::cost::automatic_window;
+use super::cost::{automatic_window, watched_for};
 use super::limits::ContactRule;
 use super::solver::LoadingSolver;
 use super::sum::Sum;
@@ -42,7 +42,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         }
         self.rank()?;
         let start = Instant::now();
-        let horizon = self.choose(size);
+        let (size, horizon) = self.choose(size);
         self.timings.choice += start.elapsed();
         self.timings.windows += 1;
         self.watch(size, horizon)
@@ -92,9 +92,8 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         let size = match (self.rule, self.window_size) {
             (ContactRule::SmallestGap, _) => 1,
             (_, Some(size)) => size,
-            // No use in watching many more than may still touch.
             (_, None) => automatic_window(count, nodes, self.updater.window_cost())
-                .min(2 * (self.limits.nodes - count)),
+                .min(watched_for(self.limits.nodes - count)),
         };
         size.min(nodes - count)
     }
@@ -172,16 +171,32 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         -LEAST_RATE * self.greatest_rate()
     }
 
-    /// Moves the `size` nodes to watch to the front of the ranking, those watched before first;
-    /// returns the horizon, the smallest key among the others.
-    fn choose(&mut self, size: usize) -> f64 {
+    /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
+    /// number, `size` or a little less, and the horizon, the smallest key among the others.
+    fn choose(&mut self, mut size: usize) -> (usize, f64) {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let multiple = match (self.rule, self.window_size) {
+            (ContactRule::FirstContact, None) => self.updater.window_cost().multiple.max(1),
+            _ => 1,
+        };
         let mut horizon = f64::INFINITY;
-        if size < self.ranking.len() {
-            horizon = self.ranking.select_nth_unstable_by(size, order).1.0;
+        let mut among = self.ranking.len();
+        loop {
+            if size < among {
+                let ranking = &mut self.ranking[..among];
+                horizon = ranking.select_nth_unstable_by(size, order).1.0;
+            }
+            let chosen = &mut self.ranking[..size];
+            chosen.sort_unstable_by_key(|&(_, node)| node);
+            let again = |node: &usize| chosen.binary_search_by_key(node, |&(_, node)| node).is_ok();
+            let new = size - self.window.untouched().filter(again).count();
+            if new <= multiple || new.is_multiple_of(multiple) {
+                break;
+            }
+            among = size;
+            size -= new % multiple;
         }
         let chosen = &mut self.ranking[..size];
-        chosen.sort_unstable_by_key(|&(_, node)| node);
         let mut front = 0;
         // Nodes watched before keep their order, so that the updater knows them again.
         for node in self.window.untouched() {
@@ -190,7 +205,7 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
                 front += 1;
             }
         }
-        horizon
+        (size, horizon)
     }
 
     /// Bytes held whatever the number of nodes in contact: all of them O(grid).

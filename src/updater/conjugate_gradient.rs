@@ -13,6 +13,7 @@ const WINDOW_COST: WindowCost = WindowCost {
     schur: 0.3,
     convolution: 700.0,
     most_watched: 0.05,
+    multiple: 1,
 };
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes

@@ -44,6 +44,9 @@ pub struct MixedCholesky {
 /// the convolution is a few 1e-15 of the greatest displacement, and the row sums, the greatest
 /// right-hand side, are a few hundred times the least.
 const TOLERANCE: f64 = 1e-12;
+/// Residuals whose correction changes the next residual by so little that single precision tells how
+/// much, to some 1e-7 of it.
+const SMALL: f64 = 1e-6;
 /// Refinement gains three digits or more at every step, or never arrives.
 const STEPS: usize = 30;
 
@@ -86,9 +89,6 @@ impl MixedCholesky {
 
     /// Solves $C_{II} Y = B_I$ for the first `count` nodes of the committed ones and `touched`.
     fn refine(&mut self, system: &System, touched: &Touched, count: usize) -> Result<(), Error> {
-        if self.fields.is_none() {
-            self.fields = Some(Fields::new(system)?);
-        }
         let nodes = touched.sequence(&self.contact, count)?;
         if nodes == self.refined {
             return Ok(());
@@ -111,14 +111,15 @@ impl MixedCholesky {
         for column in &mut self.solution {
             column.resize(count, 0.0);
         }
+        let fields = match &mut self.fields {
+            Some(fields) => fields,
+            none => none.insert(Fields::new(system)?),
+        };
+        if !starts_from_refined {
+            fields.convolve(&nodes, &self.solution)?;
+        }
         let mut best = f64::INFINITY;
         for step in 0..STEPS {
-            let Some(fields) = &mut self.fields else {
-                break;
-            };
-            if step > 0 || !starts_from_refined {
-                fields.convolve(&nodes, &self.solution)?;
-            }
             let mut residual = fields.residual(system, &nodes);
             let size = residual
                 .iter()
@@ -137,12 +138,22 @@ impl MixedCholesky {
             // At first only the new nodes have a residual.
             let from = if step == 0 { known } else { 0 };
             let corrections = residual.each_mut().map(|column| &mut column.values[..]);
-            self.precondition(touched, corrections, from);
+            precondition(&self.factor, touched, corrections, from);
             let square = self.factor.scale * self.factor.scale;
-            for (column, correction) in self.solution.iter_mut().zip(&residual) {
-                for (y, change) in column.iter_mut().zip(&correction.values) {
-                    *y += f64::from(*change) * correction.unit / square;
+            let change: [Vec<f64>; System::RHS] = residual.map(|column| {
+                let unit = column.unit / square;
+                let values = column.values.into_iter();
+                values.map(|value| f64::from(value) * unit).collect()
+            });
+            for (column, change) in self.solution.iter_mut().zip(&change) {
+                for (y, change) in column.iter_mut().zip(change) {
+                    *y += change;
                 }
+            }
+            if size <= SMALL {
+                fields.add(&nodes, &change)?;
+            } else {
+                fields.convolve(&nodes, &self.solution)?;
             }
         }
         Err(Error::NoConvergence {
@@ -151,55 +162,60 @@ impl MixedCholesky {
             iterations: STEPS,
         })
     }
+}
 
-    /// x ← $(L L^T)^{-1} x$ on the committed nodes and those of `touched`, with x zero before the
-    /// entry `from`.
-    fn precondition(&self, touched: &Touched, mut x: [&mut [f32]; System::RHS], from: usize) {
-        let committed = x[0].len().min(self.factor.len());
-        let Factor {
-            panels,
-            columns,
-            scale,
-            ..
-        } = &self.factor;
-        if from < committed {
-            panels.solve(x.each_mut().map(|x| &mut x[..committed]), from);
-        }
-        let pending = x[0].len() - committed;
-        if pending > 0 {
-            let inside: Vec<[f32; System::RHS]> = (0..committed)
-                .map(|row| x.each_ref().map(|x| x[row]))
-                .collect();
-            let mut products = vec![[0.0; System::RHS]; touched.watched()];
-            if from < committed {
-                columns.subtract_products(&inside, &mut products);
-            }
-            let positions = &touched.positions()[..pending];
-            let mut tail: Vec<[f64; System::RHS]> = positions
-                .iter()
-                .enumerate()
-                .map(|(event, &position)| {
-                    std::array::from_fn(|i| {
-                        f64::from(x[i][committed + event] + products[position][i]) * scale
-                    })
-                })
-                .collect();
-            touched.solve(&mut tail);
-            touched.solve_transposed(&mut tail);
-            let terms: Vec<_> = positions
-                .iter()
-                .zip(&tail)
-                .map(|(&position, values)| (position, values.map(|value| (value * scale) as f32)))
-                .collect();
-            for (event, (_, values)) in terms.iter().enumerate() {
-                for (x, value) in x.iter_mut().zip(values) {
-                    x[committed + event] = *value;
-                }
-            }
-            columns.subtract(&terms, x.each_mut().map(|x| &mut x[..committed]));
-        }
-        panels.solve_transposed(x.each_mut().map(|x| &mut x[..committed]));
+/// x ← $(L L^T)^{-1} x$ on the committed nodes and those of `touched`, with x zero before the
+/// entry `from`.
+fn precondition(
+    factor: &Factor<f32>,
+    touched: &Touched,
+    mut x: [&mut [f32]; System::RHS],
+    from: usize,
+) {
+    let committed = x[0].len().min(factor.len());
+    let Factor {
+        panels,
+        columns,
+        scale,
+        ..
+    } = factor;
+    if from < committed {
+        panels.solve(x.each_mut().map(|x| &mut x[..committed]), from);
     }
+    let pending = x[0].len() - committed;
+    if pending > 0 {
+        let inside: Vec<[f32; System::RHS]> = (0..committed)
+            .map(|row| x.each_ref().map(|x| x[row]))
+            .collect();
+        let mut products = vec![[0.0; System::RHS]; touched.watched()];
+        if from < committed {
+            columns.subtract_products(&inside, &mut products);
+        }
+        let positions = &touched.positions()[..pending];
+        let mut tail: Vec<[f64; System::RHS]> = positions
+            .iter()
+            .enumerate()
+            .map(|(event, &position)| {
+                std::array::from_fn(|i| {
+                    f64::from(x[i][committed + event] + products[position][i]) * scale
+                })
+            })
+            .collect();
+        touched.solve(&mut tail);
+        touched.solve_transposed(&mut tail);
+        let terms: Vec<_> = positions
+            .iter()
+            .zip(&tail)
+            .map(|(&position, values)| (position, values.map(|value| (value * scale) as f32)))
+            .collect();
+        for (event, (_, values)) in terms.iter().enumerate() {
+            for (x, value) in x.iter_mut().zip(values) {
+                x[committed + event] = *value;
+            }
+        }
+        columns.subtract(&terms, x.each_mut().map(|x| &mut x[..committed]));
+    }
+    panels.solve_transposed(x.each_mut().map(|x| &mut x[..committed]));
 }
 
 impl LinearUpdater for MixedCholesky {
@@ -285,6 +301,7 @@ impl LinearUpdater for MixedCholesky {
             schur: 0.005,
             convolution: 150.0,
             most_watched: 0.08,
+            multiple: 96,
         }
     }
 

@@ -59,6 +59,9 @@ pub struct WindowCost {
     /// Greatest number of watched nodes, as a fraction of the contact nodes: their columns must stay
     /// small beside the factor.
     pub most_watched: f64,
+    /// Nodes that were not watched before come in multiples of this if there are more: widths that
+    /// suit the matrix product.
+    pub multiple: usize,
 }
 
 impl Default for WindowCost {
@@ -70,6 +73,7 @@ impl Default for WindowCost {
             schur: 0.01,
             convolution: 50.0,
             most_watched: 0.05,
+            multiple: 96,
         }
     }
 }

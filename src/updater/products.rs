@@ -151,10 +151,24 @@ fn add_lanes<T: Precision>(sums: &mut [T; LANES], a: &[T; LANES], b: &[T; LANES]
     }
 }
 
-/// The sum of all lanes and of the products of what is left.
+/// The sum of all lanes and of the products of what is left, less than fills them; in pairs, so that
+/// few additions wait for one another.
 #[inline(always)]
 fn total<T: Precision>(sums: &[T; LANES], a: &[T], b: &[T]) -> T {
-    let rest = a.iter().zip(b);
-    let rest = rest.fold(T::default(), |sum, (a, b)| sum + *a * *b);
-    sums.iter().fold(rest, |sum, lane| sum + *lane)
+    let mut sums = *sums;
+    if !a.is_empty() {
+        let [mut lanes, mut others] = [[T::default(); LANES]; 2];
+        lanes[..a.len()].copy_from_slice(a);
+        others[..b.len()].copy_from_slice(b);
+        add_lanes(&mut sums, &lanes, &others);
+    }
+    let mut count = LANES;
+    while count > 1 {
+        count /= 2;
+        for k in 0..count {
+            let other = sums[k + count];
+            sums[k] += other;
+        }
+    }
+    sums[0]
 }
