@@ -24,7 +24,7 @@ use crate::parallel;
 ///
 /// Refinement costs more than it saves while the factor is small. Up to
 /// [`MixedCholesky::SINGLE_FROM`] nodes in contact everything is in double precision, as in a
-/// [`RecursiveCholesky`](super::RecursiveCholesky), and takes up to 67 MB; then the factor is rounded.
+/// [`RecursiveCholesky`](super::RecursiveCholesky), and takes up to 17 MB; then the factor is rounded.
 #[derive(Debug, Clone)]
 pub struct MixedCholesky {
     /// The factor as long as it is small.

@@ -9,6 +9,8 @@ use crate::parallel;
 
 /// Columns that a thread changes at a time.
 const TILE: usize = 144;
+/// Watched nodes from which waking threads costs less than it saves.
+const PARALLEL: usize = 400;
 
 /// What remains of the system for the watched nodes once the contact set is eliminated:
 /// the Schur complement S (k × k, lower triangle) and the reduced right-hand sides R, three for each
@@ -66,9 +68,11 @@ impl Schur {
     /// S += factor R Rᵀ for some columns R, one after the other, of as many rows.
     pub(crate) fn add_gram(&mut self, factor: f64, columns: &[f64]) {
         let k = self.size;
-        let events = columns.len() / k.max(1);
-        let all = MatRef::from_column_major_slice(columns, k, events);
-        parallel::for_each_chunk(&mut self.matrix[..k * k], TILE * k, |tile, target| {
+        if k == 0 {
+            return;
+        }
+        let all = MatRef::from_column_major_slice(columns, k, columns.len() / k);
+        let add = |tile: usize, target: &mut [f64]| {
             // What lies above the diagonal in the tile is written and never read.
             let (first, width) = (tile * TILE, target.len() / k);
             let rows = k - first;
@@ -77,7 +81,14 @@ impl Schur {
             let below = all.subrows(first, rows);
             let here = below.subrows(0, width).transpose();
             matmul(target, Accum::Add, below, here, factor, Par::Seq);
-        });
+        };
+        let matrix = &mut self.matrix[..k * k];
+        if k < PARALLEL {
+            let tiles = matrix.chunks_mut(TILE * k).enumerate();
+            tiles.for_each(|(tile, target)| add(tile, target));
+        } else {
+            parallel::for_each_chunk(matrix, TILE * k, add);
+        }
     }
 
     /// Column `j` of S, made whole from the lower triangle.

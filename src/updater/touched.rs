@@ -241,3 +241,72 @@ fn subtract_products(events: &[f64], column: &mut [f64], row: usize) {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Watched nodes: more than a block of events, and a part of one.
+    const WATCHED: usize = 2 * BLOCK + 6;
+
+    /// A matrix whose rows are dominated by their diagonals.
+    fn entry(i: usize, j: usize) -> f64 {
+        let (i, j) = (i.min(j) as f64, i.max(j) as f64);
+        if i == j {
+            100.0
+        } else {
+            libm::sin(3.0 * i + 7.0 * j * j)
+        }
+    }
+
+    fn schur() -> Schur {
+        let mut schur = Schur::default();
+        schur.resize(WATCHED);
+        let mut matrix = schur.matrix_mut();
+        for j in 0..WATCHED {
+            for i in 0..WATCHED {
+                // Nothing above the diagonal may be read.
+                matrix[(i, j)] = if i < j { f64::NAN } else { entry(i, j) };
+            }
+        }
+        schur
+    }
+
+    fn push(touched: &mut Touched, schur: &mut Schur, positions: &[usize]) {
+        let mut reduced = [[1.0; System::RHS]; WATCHED];
+        for &position in positions {
+            touched
+                .push(schur, position, position, &mut reduced)
+                .unwrap();
+        }
+    }
+
+    #[test]
+    fn the_factor_is_that_of_the_schur_complement_also_after_events_are_forgotten() {
+        // All positions, in an order without order.
+        let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
+        let other: Vec<usize> = order[..10]
+            .iter()
+            .chain(order[10..].iter().rev())
+            .copied()
+            .collect();
+        let (mut touched, mut schur) = (Touched::default(), schur());
+        touched.reset(WATCHED);
+        push(&mut touched, &mut schur, &order);
+        for (events, order) in [(WATCHED, &order), (10, &other)] {
+            touched.truncate(&mut schur, events);
+            push(&mut touched, &mut schur, &order[events..]);
+            for &i in order {
+                for &j in order {
+                    let products = (0..=order.iter().position(|&p| p == j).unwrap())
+                        .take(1 + order.iter().position(|&p| p == i).unwrap())
+                        .map(|t| touched.factor(i, t) * touched.factor(j, t));
+                    // A few dozen roundings of numbers up to 100.
+                    let error = products.sum::<f64>() - entry(i, j);
+                    assert!(error.abs() < 1e-12, "{i} {j} {error}");
+                }
+            }
+        }
+    }
+}
