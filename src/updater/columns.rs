@@ -82,10 +82,14 @@ impl<T: Precision> Columns<T> {
         }
     }
 
-    /// Room for so many values, and none yet.
+    /// Room for so many values and no more, and none yet.
     fn room(&mut self, values: usize) -> Vec<T> {
-        let mut room = self.spare.pop().unwrap_or_default();
+        let spare = self.spare.iter().enumerate();
+        let nearest = spare.min_by_key(|(_, room)| room.capacity().abs_diff(values));
+        let nearest = nearest.map(|(index, _)| index);
+        let mut room = nearest.map_or_else(Vec::new, |index| self.spare.swap_remove(index));
         room.clear();
+        room.shrink_to(values);
         room.reserve_exact(values);
         room
     }
@@ -120,8 +124,7 @@ impl<T: Precision> Columns<T> {
                 self.blocks.push(Block { width, values });
             }
         }
-        // One for the columns that are kept at the next commit.
-        self.spare.truncate(1);
+        self.spare.clear();
     }
 
     /// Fills the columns from `first` on (the beginning of a block) with right-hand sides and solves
@@ -320,7 +323,6 @@ impl<T: Precision> Columns<T> {
         let blocks = mem::replace(&mut self.blocks, vec![Block { width, values }]);
         self.spare
             .extend(blocks.into_iter().map(|block| block.values));
-        self.spare.sort_by_key(Vec::capacity);
         self.rows = before + touched.len();
     }
 
