@@ -19,7 +19,7 @@ pub(super) const CHECKED: f64 = 1e-10;
 
 /// Greatest change of the approach at which a node touches, relative to it, that may rest on a
 /// Schur complement that is not exact. Only nodes between others in contact change so much; measured,
-/// the states of a 256² surface then stay within 5e-8.
+/// the states of 256² surfaces then stay within 2e-8.
 const MOST_DRIFT: f64 = 3.0;
 
 impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
