@@ -4,6 +4,8 @@
 //! paper. Prints where the time goes, what a plain matrix product of the same work takes, and how much
 //! faster the path is than the paper's own procedure; the last line is for programs.
 
+#[path = "common/peak_memory.rs"]
+mod peak_memory;
 #[path = "common/phases.rs"]
 mod phases;
 
@@ -18,6 +20,7 @@ use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver};
 use clap::Parser;
 use faer::{Accum, Mat, Par};
 use indicatif::{ProgressBar, ProgressStyle};
+use peak_memory::peak_memory;
 
 /// Times the exact path of a sphere up to a contact fraction of π/16.
 #[derive(Parser)]
@@ -89,16 +92,6 @@ fn gemm_rate() -> f64 {
         best = best.min(start.elapsed().as_secs_f64());
     }
     2.0 * (SIDE as f64).powi(3) / best
-}
-
-/// Greatest resident memory of this process so far in bytes, where the system tells (Linux).
-fn peak_memory() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024.0 * kibibytes)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

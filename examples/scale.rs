@@ -4,6 +4,8 @@
 //! given number of nodes in contact. With `--compare`, the path in mixed precision against the one in
 //! double precision, state by state.
 
+#[path = "common/peak_memory.rs"]
+mod peak_memory;
 #[path = "common/phases.rs"]
 mod phases;
 
@@ -17,6 +19,7 @@ use asperity::updater::{
 use asperity::{Boussinesq, ContactState, Grid, LoadingSolver};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use peak_memory::peak_memory;
 
 /// Times long paths.
 #[derive(Parser)]
@@ -80,6 +83,7 @@ fn run<U: LinearUpdater>(
     bar.finish_and_clear();
     let n = states.len() as f64;
     let certificate = path.certificate()?;
+    let peak = peak_memory().unwrap_or(f64::NAN);
     println!(
         "{} nodes ({:.1} %) in {seconds:.2} s: {:.1} GFLOP/s as n^3/3 a second, {} windows, \
          peak memory {:.0} MB = {:.3} x 4n^2",
@@ -87,8 +91,8 @@ fn run<U: LinearUpdater>(
         100.0 * n / (options.nodes * options.nodes) as f64,
         n.powi(3) / 3.0 / seconds / 1e9,
         path.timings().windows,
-        peak_memory() / 1e6,
-        peak_memory() / (4.0 * n * n)
+        peak / 1e6,
+        peak / (4.0 * n * n)
     );
     println!(
         "  least pressure {:.1e} of the mean, least gap {:.1e} Sq, gap in contact {:.1e} Sq",
@@ -98,14 +102,6 @@ fn run<U: LinearUpdater>(
         phases::print(path.timings(), timings(path.updater()));
     }
     Ok(states)
-}
-
-/// Greatest resident memory of this process so far in bytes, where the system tells (Linux).
-fn peak_memory() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kibibytes = line.and_then(|line| line.trim().strip_suffix("kB")?.trim().parse().ok());
-    kibibytes.map_or(f64::NAN, |kibibytes: f64| 1024.0 * kibibytes)
 }
 
 fn compare(exact: &[ContactState], mixed: &[ContactState]) {

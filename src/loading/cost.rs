@@ -38,6 +38,5 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
 
 /// How many nodes to watch so that `events` of them touch: the columns of others would be of no use.
 pub(super) fn watched_for(events: usize) -> usize {
-    let watched = (events as f64 / LEAST_YIELD).ceil();
-    (watched as usize).max(events)
+    (events as f64 / LEAST_YIELD).ceil() as usize
 }

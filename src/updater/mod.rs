@@ -158,3 +158,14 @@ pub trait LinearUpdater {
         let _ = bytes;
     }
 }
+
+/// A symmetric matrix whose rows are dominated by their diagonals.
+#[cfg(test)]
+fn dominant(i: usize, j: usize) -> f64 {
+    let (i, j) = (i.min(j) as f64, i.max(j) as f64);
+    if i == j {
+        400.0
+    } else {
+        libm::sin(3.0 * i + 7.0 * j * j)
+    }
+}

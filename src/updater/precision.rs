@@ -64,42 +64,29 @@ impl Precision for f32 {
     }
 
     fn subtract_product(
-        mut target: MatMut<'_, f64>,
+        target: MatMut<'_, f64>,
         scale: f64,
         a: MatRef<'_, Self>,
         b: MatRef<'_, Self>,
     ) {
-        let (rows, columns) = (target.nrows(), target.ncols());
-        // In the order of the target, so that neither factor is repacked.
-        let by_rows = target.col_stride() == 1;
-        let mut product = if by_rows {
-            Mat::<Self>::zeros(columns, rows)
+        // Column by column in any case: the transposed product where the target is stored by rows, so
+        // that neither factor is repacked.
+        let (mut target, a, b) = if target.col_stride() == 1 {
+            (target.transpose_mut(), b.transpose(), a.transpose())
         } else {
-            Mat::<Self>::zeros(rows, columns)
+            (target, a, b)
         };
+        let mut product = Mat::<Self>::zeros(target.nrows(), target.ncols());
         for start in (0..a.ncols()).step_by(SUMS * DEPTH) {
             let end = a.ncols().min(start + SUMS * DEPTH);
+            let mut accum = Accum::Replace;
             for first in (start..end).step_by(DEPTH) {
                 let depth = DEPTH.min(end - first);
                 let (a, b) = (a.subcols(first, depth), b.subrows(first, depth));
-                let sum = if by_rows {
-                    product.as_mut().transpose_mut()
-                } else {
-                    product.as_mut()
-                };
-                let accum = if first == start {
-                    Accum::Replace
-                } else {
-                    Accum::Add
-                };
-                matmul(sum, accum, a, b, 1.0, Par::Seq);
+                matmul(product.as_mut(), accum, a, b, 1.0, Par::Seq);
+                accum = Accum::Add;
             }
-            let (target, sum) = if by_rows {
-                (target.as_mut().transpose_mut(), product.as_ref())
-            } else {
-                (target.as_mut(), product.as_ref())
-            };
-            for (target, sum) in target.col_iter_mut().zip(sum.col_iter()) {
+            for (target, sum) in target.as_mut().col_iter_mut().zip(product.col_iter()) {
                 let columns = target.try_as_col_major_mut().zip(sum.try_as_col_major());
                 let Some((target, sum)) = columns else {
                     continue;

@@ -103,16 +103,7 @@ impl<T: Precision> Panels<T> {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-
-    /// A symmetric matrix whose rows are dominated by their diagonals.
-    fn matrix(i: usize, j: usize) -> f64 {
-        let (i, j) = (i.min(j) as f64, i.max(j) as f64);
-        if i == j {
-            400.0
-        } else {
-            libm::sin(3.0 * i + 7.0 * j * j)
-        }
-    }
+    use crate::updater::dominant;
 
     /// The textbook factor and L⁻¹b, of the given rows and columns.
     fn factor(kept: &[usize]) -> (Vec<Vec<f64>>, Vec<f64>) {
@@ -122,10 +113,10 @@ mod tests {
             let mut row: Vec<f64> = Vec::with_capacity(r + 1);
             for (c, &j) in kept[..r].iter().enumerate() {
                 let products: f64 = row.iter().zip(&l[c]).map(|(a, b)| a * b).sum();
-                row.push((matrix(i, j) - products) / l[c][c]);
+                row.push((dominant(i, j) - products) / l[c][c]);
             }
             let squares: f64 = row.iter().map(|a| a * a).sum();
-            row.push((matrix(i, i) - squares).sqrt());
+            row.push((dominant(i, i) - squares).sqrt());
             let known: f64 = row.iter().zip(&x).map(|(a, b)| a * b).sum();
             x.push(((i as f64).cos() - known) / row[r]);
             l.push(row);
