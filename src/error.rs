@@ -196,6 +196,27 @@ pub enum Error {
         step: usize,
     },
 
+    /// A state that does not lie on the path: one of another path, or one that was extrapolated beyond the
+    /// interval between two events in which it would be a state.
+    #[error(
+        "the state of load {load} at approach {approach} does not lie on this path: at step {step} the \
+         {quantity} there is {value}, but {expected} would be a state of it"
+    )]
+    NotOnPath {
+        /// Number of events up to the state.
+        step: usize,
+        /// Load of the state.
+        load: f64,
+        /// Approach of the state.
+        approach: f64,
+        /// What contradicts.
+        quantity: &'static str,
+        /// Its value on this path.
+        value: f64,
+        /// What would be a state.
+        expected: &'static str,
+    },
+
     /// A state was asked for that the path has not reached.
     #[error("state {step} was asked for, but the path has reached {present}")]
     StateNotReached {
@@ -234,6 +255,15 @@ pub enum Error {
     /// A node is to leave the contact, and the updater cannot remove nodes.
     #[error("node ({ix}, {iy}) leaves the contact, and this updater cannot remove nodes")]
     ReleaseNotSupported {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+    },
+
+    /// A node was to join the contact while being in it.
+    #[error("node ({ix}, {iy}) is in contact already")]
+    AlreadyInContact {
         /// Node index along x.
         ix: usize,
         /// Node index along y.

@@ -7,18 +7,19 @@
 #![doc = "<style>.docblock svg { max-width: 100%; height: auto; }</style>\n"]
 #![doc = include_str!("../docs/images/loading_curve.svg")]
 
+pub mod contact;
 pub mod convolution;
 mod elasticity;
 mod error;
 pub mod fixed_load;
 mod grid;
-mod initial_gap;
 pub mod io;
-mod iterative;
 pub mod kernel;
+mod krylov;
 pub mod loading;
 mod memory;
 mod parallel;
+mod problem;
 pub mod reference;
 pub mod surface;
 pub mod updater;
@@ -26,9 +27,11 @@ pub mod updater;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::Error;
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
+pub use contact::{Certificate, ContactState, ContactTarget};
 pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, ContactState, LoadingSolver};
+pub use problem::Problem;
 pub use surface::{HeightMap, SelfAffine, Surface};

@@ -1,5 +1,7 @@
 //! Fast convolution in one precision.
 
+use std::sync::Arc;
+
 use num_complex::Complex;
 
 use super::real::Real;
@@ -18,13 +20,26 @@ const PARTS: usize = 32;
 pub(super) const PARALLEL_NODES: usize = 64 * 64;
 
 /// A convolution whose transforms are done in the precision of T; fields are always double.
+///
+/// Copies share the filter, and have spectra of their own.
 #[derive(Clone)]
 pub(crate) struct Engine<T: Real> {
+    filter: Arc<Filter<T>>,
+    pub(super) spectra: Spectra<T>,
+}
+
+/// What does not depend on the fields.
+struct Filter<T: Real> {
     grid: Grid,
     boundary: Boundary,
     transforms: Transforms<T>,
     /// Real symbol, py values for each of the px / 2 + 1 columns, which are stored one by one.
     symbol: Vec<T>,
+}
+
+/// Working memory.
+#[derive(Clone)]
+pub(super) struct Spectra<T> {
     /// Spectra of the ny rows, in interleaved blocks.
     rows: Vec<Complex<T>>,
     /// The px / 2 + 1 columns of ny numbers each, in interleaved blocks.
@@ -47,115 +62,107 @@ impl Engine<f64> {
     ///
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
     pub(super) fn from_table(table: &KernelTable) -> Result<Self, Error> {
-        let grid = table.grid();
-        let mut convolution = Self::empty(grid, table.boundary());
-        convolution.fill_rows(|transforms, dj, spectrum, work| {
+        let (grid, boundary) = (table.grid(), table.boundary());
+        let transforms = Transforms::new(&grid, boundary);
+        let mut spectra = Spectra::new(&grid, &transforms);
+        spectra.fill_rows(&transforms, grid.ny(), |dj, spectrum, work| {
             // Inside the grid there is always a coefficient.
             let coefficient = |di| table.coefficient(di, dj as isize).unwrap_or(0.0);
             transforms.forward_kernel_row(coefficient, spectrum, work);
         });
-        convolution.fill_symbol();
-        match convolution.symbol.iter().find(|value| !value.is_finite()) {
-            Some(&value) => Err(Error::OutOfRange {
+        let symbol = spectra.symbol(&transforms, grid.ny());
+        if let Some(&value) = symbol.iter().find(|value| !value.is_finite()) {
+            return Err(Error::OutOfRange {
                 quantity: "the sum of the influence coefficients",
                 value,
                 expected: "finite",
-            }),
-            None => Ok(convolution),
+            });
         }
-    }
-
-    /// From `rows`, filled with the spectra of kernel rows dj = 0, 1, …, ny − 1, to the symbol.
-    fn fill_symbol(&mut self) {
-        let transforms = &self.transforms;
-        let (ny, py) = (self.grid.ny(), transforms.padded().1);
-        let pitch = pitch(ny);
-        let (rows, columns) = (&self.rows, transforms.columns());
-        for_each_block(
-            &mut self.symbol,
-            BLOCK * py,
-            &mut self.scratch,
-            |block, symbol, scratch| {
-                let lines = &mut scratch.lines[..BLOCK * pitch];
-                gather(rows, columns, block, lines, pitch);
-                let entries = lines.chunks(pitch);
-                for (symbol, entries) in symbol.chunks_mut(py).zip(entries) {
-                    transforms.symbol_column(&entries[..ny], symbol, &mut scratch.work);
-                }
+        Ok(Self::of(
+            Filter {
+                grid,
+                boundary,
+                transforms,
+                symbol,
             },
-        );
+            spectra,
+        ))
     }
 
     /// The same convolution in single precision, its symbol divided by `unit` and rounded once.
     pub(super) fn to_single(&self, unit: f64) -> Engine<f32> {
-        let mut engine = Engine::empty(self.grid, self.boundary);
-        for (value, &symbol) in engine.symbol.iter_mut().zip(&self.symbol) {
-            *value = (symbol / unit) as f32;
-        }
-        engine
+        let Filter {
+            grid,
+            boundary,
+            ref symbol,
+            ..
+        } = *self.filter;
+        let transforms = Transforms::new(&grid, boundary);
+        let spectra = Spectra::new(&grid, &transforms);
+        let symbol = symbol.iter().map(|value| (value / unit) as f32).collect();
+        Engine::of(
+            Filter {
+                grid,
+                boundary,
+                transforms,
+                symbol,
+            },
+            spectra,
+        )
     }
 
-    /// Replaces the symbol by its inverse, both without their normalisation.
-    #[cfg(test)]
-    pub(super) fn invert_symbol(&mut self) {
-        let (px, py) = self.padded();
-        let points = px as f64 * py as f64;
-        for value in &mut self.symbol {
-            *value = 1.0 / (*value * points * points);
-        }
+    /// The same convolution with another answer to uniform pressure: none.
+    pub(super) fn without_mean(&self) -> Self {
+        let filter = &*self.filter;
+        let mut symbol = filter.symbol.clone();
+        symbol[0] = 0.0;
+        let filter = Filter {
+            transforms: filter.transforms.clone(),
+            symbol,
+            ..*filter
+        };
+        Self::of(filter, self.spectra.clone())
     }
 
     /// Greatest absolute value of the symbol, without its normalisation.
     pub(super) fn greatest_symbol(&self) -> f64 {
-        let values = self.symbol.iter().map(|value| value.abs());
+        let values = self.filter.symbol.iter().map(|value| value.abs());
         let (px, py) = self.padded();
         values.fold(0.0, f64::max) * (px as f64 * py as f64)
     }
 }
 
 impl<T: Real> Engine<T> {
-    fn empty(grid: Grid, boundary: Boundary) -> Self {
-        let transforms = Transforms::new(&grid, boundary);
-        let (columns, rows) = (transforms.columns(), grid.ny());
-        let parts = if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
-            PARTS
-        } else {
-            1
-        };
-        let scratch = Scratch {
-            lines: vec![T::ZERO; BLOCK * pitch(columns.max(rows))],
-            work: transforms.workspace(),
-        };
+    fn of(filter: Filter<T>, spectra: Spectra<T>) -> Self {
         Self {
-            grid,
-            boundary,
-            symbol: vec![T::zero(); columns * transforms.padded().1],
-            rows: vec![T::ZERO; blocks(rows) * BLOCK * columns],
-            columns: vec![T::ZERO; blocks(columns) * BLOCK * rows],
-            scratch: vec![scratch; parts],
-            transforms,
+            filter: Arc::new(filter),
+            spectra,
         }
     }
 
     /// The grid of the fields.
     pub(crate) fn grid(&self) -> Grid {
-        self.grid
+        self.filter.grid
     }
 
     /// Lengths of the transforms.
     pub(super) fn padded(&self) -> (usize, usize) {
-        self.transforms.padded()
+        self.filter.transforms.padded()
     }
 
     /// Bytes held: symbol, spectra and working memory, but not the plans.
-    pub(crate) fn memory(&self) -> usize {
-        let scratch = self
-            .scratch
+    pub(crate) fn bytes(&self) -> usize {
+        let Spectra {
+            rows,
+            columns,
+            scratch,
+        } = &self.spectra;
+        let scratch = scratch
             .iter()
-            .map(|scratch| size_of_val(&scratch.lines[..]) + scratch.work.memory());
-        size_of_val(&self.symbol[..])
-            + size_of_val(&self.rows[..])
-            + size_of_val(&self.columns[..])
+            .map(|scratch| size_of_val(&scratch.lines[..]) + scratch.work.bytes());
+        size_of_val(&self.filter.symbol[..])
+            + size_of_val(&rows[..])
+            + size_of_val(&columns[..])
             + scratch.sum::<usize>()
     }
 
@@ -173,41 +180,70 @@ impl<T: Real> Engine<T> {
     ) -> Result<(), Error> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
-        if self.scratch.len() > 1 {
-            inside(|| self.filter(pressure, factors, displacement));
+        let Self { filter, spectra } = self;
+        if spectra.scratch.len() > 1 {
+            inside(|| filter.apply(spectra, pressure, factors, displacement));
         } else {
-            self.filter(pressure, factors, displacement);
+            filter.apply(spectra, pressure, factors, displacement);
         }
         Ok(())
     }
 
-    fn filter(&mut self, pressure: &[f64], factors: [f64; 2], displacement: &mut [f64]) {
-        let nx = self.grid.nx();
-        self.fill_rows(|transforms, iy, spectrum, work| {
-            transforms.forward_row(&pressure[iy * nx..][..nx], factors[0], spectrum, work);
-        });
-        self.filter_columns();
-        self.restore_rows(factors[1], displacement);
-    }
-
     pub(super) fn check_length(&self, field: &[f64]) -> Result<(), Error> {
-        if field.len() == self.grid.nodes() {
+        let expected = self.filter.grid.nodes();
+        if field.len() == expected {
             Ok(())
         } else {
             Err(Error::LengthMismatch {
-                expected: self.grid.nodes(),
+                expected,
                 found: field.len(),
             })
         }
     }
+}
+
+impl<T: Real> Filter<T> {
+    fn apply(
+        &self,
+        spectra: &mut Spectra<T>,
+        pressure: &[f64],
+        factors: [f64; 2],
+        displacement: &mut [f64],
+    ) {
+        let (transforms, (nx, ny)) = (&self.transforms, self.grid.shape());
+        spectra.fill_rows(transforms, ny, |iy, spectrum, work| {
+            transforms.forward_row(&pressure[iy * nx..][..nx], factors[0], spectrum, work);
+        });
+        spectra.filter_columns(transforms, ny, &self.symbol);
+        spectra.restore_rows(transforms, (nx, ny), factors[1], displacement);
+    }
+}
+
+impl<T: Real> Spectra<T> {
+    fn new(grid: &Grid, transforms: &Transforms<T>) -> Self {
+        let (columns, rows) = (transforms.columns(), grid.ny());
+        let parts = if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
+            PARTS
+        } else {
+            1
+        };
+        let scratch = Scratch {
+            lines: vec![T::ZERO; BLOCK * pitch(columns.max(rows))],
+            work: transforms.workspace(),
+        };
+        Self {
+            rows: vec![T::ZERO; blocks(rows) * BLOCK * columns],
+            columns: vec![T::ZERO; blocks(columns) * BLOCK * rows],
+            scratch: vec![scratch; parts],
+        }
+    }
 
     /// Fills `rows`: `transform(iy, spectrum, work)` gives the spectrum of row iy.
-    fn fill_rows<F>(&mut self, transform: F)
+    fn fill_rows<F>(&mut self, transforms: &Transforms<T>, ny: usize, transform: F)
     where
-        F: Fn(&Transforms<T>, usize, &mut [Complex<T>], &mut Workspace<T>) + Send + Sync,
+        F: Fn(usize, &mut [Complex<T>], &mut Workspace<T>) + Send + Sync,
     {
-        let transforms = &self.transforms;
-        let (ny, columns) = (self.grid.ny(), transforms.columns());
+        let columns = transforms.columns();
         let pitch = pitch(columns);
         for_each_block(
             &mut self.rows,
@@ -217,20 +253,40 @@ impl<T: Real> Engine<T> {
                 let lines = &mut scratch.lines[..BLOCK * pitch];
                 let iys = block * BLOCK..ny;
                 for (spectrum, iy) in lines.chunks_mut(pitch).zip(iys) {
-                    transform(transforms, iy, &mut spectrum[..columns], &mut scratch.work);
+                    transform(iy, &mut spectrum[..columns], &mut scratch.work);
                 }
                 interleave(lines, pitch, rows);
             },
         );
     }
 
-    /// From `rows` to `columns`, multiplied by the symbol.
-    fn filter_columns(&mut self) {
-        let transforms = &self.transforms;
-        let (ny, py) = (self.grid.ny(), transforms.padded().1);
+    /// The symbol from `rows`, filled with the spectra of kernel rows dj = 0, 1, …, ny − 1.
+    fn symbol(&mut self, transforms: &Transforms<T>, ny: usize) -> Vec<T> {
+        let (columns, py) = (transforms.columns(), transforms.padded().1);
         let pitch = pitch(ny);
-        let (rows, columns) = (&self.rows, transforms.columns());
-        let symbol = &self.symbol;
+        let rows = &self.rows;
+        let mut symbol = vec![T::zero(); columns * py];
+        for_each_block(
+            &mut symbol,
+            BLOCK * py,
+            &mut self.scratch,
+            |block, symbol, scratch| {
+                let lines = &mut scratch.lines[..BLOCK * pitch];
+                gather(rows, columns, block, lines, pitch);
+                let entries = lines.chunks(pitch);
+                for (symbol, entries) in symbol.chunks_mut(py).zip(entries) {
+                    transforms.symbol_column(&entries[..ny], symbol, &mut scratch.work);
+                }
+            },
+        );
+        symbol
+    }
+
+    /// From `rows` to `columns`, multiplied by the symbol.
+    fn filter_columns(&mut self, transforms: &Transforms<T>, ny: usize, symbol: &[T]) {
+        let (columns, py) = (transforms.columns(), transforms.padded().1);
+        let pitch = pitch(ny);
+        let rows = &self.rows;
         for_each_block(
             &mut self.columns,
             BLOCK * ny,
@@ -248,9 +304,13 @@ impl<T: Real> Engine<T> {
     }
 
     /// From `columns` to displacement.
-    fn restore_rows(&mut self, factor: f64, displacement: &mut [f64]) {
-        let transforms = &self.transforms;
-        let (nx, ny) = self.grid.shape();
+    fn restore_rows(
+        &mut self,
+        transforms: &Transforms<T>,
+        (nx, ny): (usize, usize),
+        factor: f64,
+        displacement: &mut [f64],
+    ) {
         let pitch = pitch(transforms.columns());
         let columns = &self.columns;
         for_each_block(

@@ -55,7 +55,8 @@ use engine::Engine;
 
 /// Displacement from pressure on a whole grid, by fast Fourier transform.
 ///
-/// All memory is allocated when it is made, so convolutions should be kept and used again. With
+/// All memory is allocated when it is made, so convolutions should be kept and used again; clones
+/// share the transform of the kernel. With
 /// the feature `rayon` the threads of the current pool share the work; results are the same bit
 /// for bit with any number of threads, and without the feature.
 ///
@@ -120,8 +121,8 @@ impl Convolution {
 
     /// Bytes held: symbol, spectra and working memory, but not the plans.
     #[must_use]
-    pub fn memory(&self) -> usize {
-        self.engine.memory()
+    pub fn bytes(&self) -> usize {
+        self.engine.bytes()
     }
 
     /// The same in single precision: half the memory, about half the time, and displacements with
@@ -135,12 +136,11 @@ impl Convolution {
         }
     }
 
-    /// The convolution with the inverse of the symbol.
-    #[cfg(test)]
-    pub(crate) fn inverted(&self) -> Self {
-        let mut inverted = self.clone();
-        inverted.engine.invert_symbol();
-        inverted
+    /// The same about the mean displacement, for a periodic kernel: in the zero gauge.
+    pub(crate) fn without_mean(&self) -> Self {
+        Self {
+            engine: self.engine.without_mean(),
+        }
     }
 
     /// Displacement \[m\] of every node under `pressure` \[Pa\].
@@ -206,8 +206,8 @@ pub(crate) struct SingleConvolution {
 
 impl SingleConvolution {
     /// Bytes held.
-    pub(crate) fn memory(&self) -> usize {
-        self.engine.memory()
+    pub(crate) fn bytes(&self) -> usize {
+        self.engine.bytes()
     }
 
     /// Writes the displacement under `pressure`, no value of which exceeds `greatest`, into

@@ -210,9 +210,9 @@ fn parts_and_threads_do_not_change_a_bit() -> Result<(), Box<dyn std::error::Err
     let kernel = Slow(parallel_grid()?);
     let pressure = random_field(&kernel.grid(), 3);
     let mut convolution = Convolution::new(&kernel)?;
-    let parts = convolution.engine.scratch.len();
+    let parts = convolution.engine.spectra.scratch.len();
     let mut one_part = convolution.clone();
-    one_part.engine.scratch.truncate(1);
+    one_part.engine.spectra.scratch.truncate(1);
     let expected = one_part.convolve(&pressure)?;
     #[cfg(feature = "rayon")]
     for threads in [1, 2, 3] {
@@ -324,6 +324,6 @@ fn memory_counts_symbol_and_spectra() -> Result<(), Error> {
     assert!(px >= 199 && py >= 199);
     let columns = px / 2 + 1;
     let least = 8 * columns * py + 2 * 16 * columns * grid.ny();
-    assert!(convolution.memory() > least && convolution.memory() < 3 * least);
+    assert!(convolution.bytes() > least && convolution.bytes() < 3 * least);
     Ok(())
 }

@@ -210,7 +210,7 @@ impl<T: Real> Transforms<T> {
 
 impl<T> Workspace<T> {
     /// Bytes held.
-    pub(super) fn memory(&self) -> usize {
+    pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.row[..])
             + size_of_val(&self.column[..])
             + size_of_val(&self.spectrum[..])

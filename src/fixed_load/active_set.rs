@@ -2,7 +2,7 @@
 
 use super::iterate::{Criteria, Effort, Errors, Iterate};
 use super::level::{Level, Target};
-use crate::iterative::{ContactSet, dot, greatest, sum, sum_over};
+use crate::krylov::{NodeSet, dot, greatest, sum, sum_over};
 use crate::{Boundary, Error};
 
 /// Inner iterations stop when the residual on the contact set is below this part of the worst
@@ -196,7 +196,7 @@ impl Level {
         {
             self.leave_one_out()?;
         }
-        let contact = std::mem::replace(&mut self.iterate.contact, ContactSet::new(0));
+        let contact = std::mem::replace(&mut self.iterate.contact, NodeSet::new(0));
         let outcome = self.round_on(&contact, target, criteria, inner, effort);
         self.iterate.contact = contact;
         outcome

@@ -2,7 +2,7 @@
 
 use super::level::Level;
 use super::tangent::Tangent;
-use crate::iterative::{add_scaled, sum};
+use crate::krylov::{add_scaled, sum};
 
 /// Greatest change of the load, as a factor, for which the last state is a better start than the
 /// coarser grids. Those begin with an error of 3 % of the approach, a step of 7 % of the load with

@@ -3,7 +3,7 @@
 use super::iterate::{Criteria, Effort, Errors};
 use super::level::{Level, Target};
 use crate::Error;
-use crate::iterative::{ContactSet, Directions, add_scaled, dot, greatest, sum, sum_over};
+use crate::krylov::{Directions, NodeSet, add_scaled, dot, greatest, sum, sum_over};
 
 /// Where a round began.
 struct Start {
@@ -16,7 +16,7 @@ impl Level {
     /// Conjugate gradients on `contact`, then release of nodes with tension.
     pub(super) fn round_on(
         &mut self,
-        contact: &ContactSet,
+        contact: &NodeSet,
         target: Target,
         criteria: Criteria,
         inner: f64,
@@ -116,7 +116,7 @@ impl Level {
     }
 
     /// Moves to the pressures `x`, or less far if the energy rises on the way.
-    fn accept(&mut self, contact: &ContactSet, start: &Start, x: &mut [f64]) -> Result<(), Error> {
+    fn accept(&mut self, contact: &NodeSet, start: &Start, x: &mut [f64]) -> Result<(), Error> {
         contact.scatter(x, &mut self.iterate.pressure);
         self.refresh()?;
         let mut closure = Vec::new();
@@ -137,13 +137,13 @@ impl Level {
     }
 
     /// The worst errors at present.
-    fn errors(&self, contact: &ContactSet, x: &[f64], closure: &[f64]) -> Errors {
+    fn errors(&self, contact: &NodeSet, x: &[f64], closure: &[f64]) -> Errors {
         let approach = self.iterate.approach;
         let (all, places) = (&self.iterate.closure, contact.places());
         Errors {
             residual: greatest(x.len(), 0.0, |i| (approach - closure[i]).abs()),
             overlap: greatest(all.len(), 0.0, |node| {
-                if places[node] == ContactSet::NONE {
+                if places[node] == NodeSet::NONE {
                     approach - all[node]
                 } else {
                     0.0

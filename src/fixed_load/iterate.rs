@@ -1,6 +1,6 @@
 //! Approximate solutions: what they are, how good they are, and when they are good enough.
 
-use crate::iterative::ContactSet;
+use crate::krylov::NodeSet;
 
 /// An approximate solution on one grid: pressure ≥ 0, with the target's sum if it is one.
 #[derive(Debug, Clone)]
@@ -9,7 +9,7 @@ pub(super) struct Iterate {
     /// Initial gap plus displacement, G = g + C p.
     pub(super) closure: Vec<f64>,
     pub(super) approach: f64,
-    pub(super) contact: ContactSet,
+    pub(super) contact: NodeSet,
 }
 
 /// When to stop.
@@ -54,7 +54,7 @@ impl Iterate {
             pressure: vec![0.0; nodes],
             closure: vec![0.0; nodes],
             approach: 0.0,
-            contact: ContactSet::new(nodes),
+            contact: NodeSet::new(nodes),
         }
     }
 

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use super::iterate::Iterate;
 use crate::convolution::Convolution;
-use crate::iterative::{Operator, SparseInverse};
 use crate::kernel::KernelTable;
+use crate::krylov::{Operator, SparseInverse};
 use crate::{Boundary, Error, Grid};
 
 /// What is prescribed.

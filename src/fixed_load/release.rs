@@ -1,7 +1,7 @@
 //! Nodes with tension are set free, their neighbours corrected without a convolution.
 
 use super::level::{Level, Target};
-use crate::iterative::{add_scaled, dot, sum};
+use crate::krylov::{add_scaled, dot, sum};
 
 /// How often nodes that the correction of others has pulled into tension are set free as well.
 const PASSES: usize = 3;

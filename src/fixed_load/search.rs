@@ -3,7 +3,7 @@
 use super::continuation::Continuation;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
-use crate::iterative::sum;
+use crate::krylov::sum;
 use crate::{Error, InfluenceKernel, Surface};
 
 /// Steps after which to give up; bisection alone would halve the bracket so often.

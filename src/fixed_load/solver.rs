@@ -10,7 +10,7 @@ use super::solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
 use super::sweep::LoadSweep;
 use super::tangent::Tangent;
 use super::target::ContactTarget;
-use crate::iterative::{dot, sum, sum_over};
+use crate::krylov::{dot, sum, sum_over};
 use crate::parallel::inside;
 use crate::{Boundary, Error, Grid, InfluenceKernel, Surface};
 

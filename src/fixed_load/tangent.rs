@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::level::Level;
 use super::solution::FixedLoadSolution;
 use super::solver::FixedLoadSolver;
-use crate::iterative::{ContactSet, LinearSystem, dot, sum, sum_over};
+use crate::krylov::{LinearSystem, NodeSet, dot, sum, sum_over};
 use crate::parallel::inside;
 use crate::{Boundary, Error, InfluenceKernel, Surface};
 
@@ -83,7 +83,7 @@ impl Level {
         // Nodes that have left take their displacements with them.
         let places = contact.places();
         let mut rates = tangent.rate.iter().zip(places);
-        let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == ContactSet::NONE);
+        let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == NodeSet::NONE);
         let mut equations = LinearSystem {
             operator: &mut self.operator,
             inverse: &mut self.inverse,

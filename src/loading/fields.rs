@@ -27,7 +27,7 @@ impl Fields {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        4 * self.pressure[0].len() * size_of::<f64>() + self.convolution.memory()
+        4 * self.pressure[0].len() * size_of::<f64>() + self.convolution.bytes()
     }
 
     /// $C_{:,I}\, y_1$ and $C_{:,I}\, y_2$ of a solution on the contact nodes.

@@ -3,7 +3,7 @@
 use super::{LinearUpdater, Schur, Solution, System, Touched, WindowCost};
 use crate::Error;
 use crate::convolution::Convolution;
-use crate::iterative::{ContactSet, LinearSystem, Operator, SparseInverse, dot};
+use crate::krylov::{LinearSystem, NodeSet, Operator, SparseInverse, dot};
 
 /// What a column costs, some twenty convolutions of 12 ns for each node of the grid, is the same in
 /// every window. A refresh costs as much as three columns, and products between columns, 0.3 ns
@@ -49,7 +49,7 @@ pub struct ConjugateGradient {
 struct OnGrid {
     operator: Operator,
     inverse: SparseInverse,
-    contact: ContactSet,
+    contact: NodeSet,
 }
 
 /// $x = C_{II}^{-1} C_{Ij}$ of a watched node j, and the residual of this equation.
@@ -155,7 +155,7 @@ impl ConjugateGradient {
                 Ok(OnGrid {
                     operator: Operator::new(Convolution::from_table(table)?),
                     inverse: SparseInverse::new(table),
-                    contact: ContactSet::new(table.grid().nodes()),
+                    contact: NodeSet::new(table.grid().nodes()),
                 })
             }
         }

@@ -106,6 +106,6 @@ impl Fields {
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
         let values = (2 * System::RHS + 1) * self.added.len();
-        self.convolution.memory() + self.single.memory() + values * size_of::<f64>()
+        self.convolution.bytes() + self.single.bytes() + values * size_of::<f64>()
     }
 }

@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients for one linear system on a contact set.
 
-use super::{ContactSet, Directions, Operator, SparseInverse, add_scaled, dot, greatest};
+use super::{Directions, NodeSet, Operator, SparseInverse, add_scaled, dot, greatest};
 use crate::Error;
 
 /// So far a residual falls on steps of single precision before it is computed afresh: then their
@@ -23,7 +23,7 @@ pub(crate) struct LinearOutcome {
 pub(crate) struct LinearSystem<'a> {
     pub(crate) operator: &'a mut Operator,
     pub(crate) inverse: &'a mut SparseInverse,
-    pub(crate) contact: &'a ContactSet,
+    pub(crate) contact: &'a NodeSet,
     /// Greatest component that a residual may have, in the unit of b.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,

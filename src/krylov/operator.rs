@@ -1,6 +1,6 @@
 //! The influence matrix as an operator: pressures on a contact set to displacements everywhere.
 
-use super::{ContactSet, greatest, sum};
+use super::{NodeSet, greatest, sum};
 use crate::Error;
 use crate::convolution::{Convolution, SingleConvolution};
 
@@ -35,7 +35,7 @@ impl Operator {
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.convolution.memory() + self.single.memory() + 2 * size_of_val(&self.pressure[..])
+        self.convolution.bytes() + self.single.bytes() + 2 * size_of_val(&self.pressure[..])
     }
 
     /// Convolutions, of either precision, since this was last asked.
@@ -50,7 +50,7 @@ impl Operator {
     }
 
     /// Displacement of every node under the pressures of a contact set, in single precision.
-    pub(crate) fn step(&mut self, contact: &ContactSet, values: &[f64]) -> Result<&[f64], Error> {
+    pub(crate) fn step(&mut self, contact: &NodeSet, values: &[f64]) -> Result<&[f64], Error> {
         self.pressure.fill(0.0);
         contact.scatter(values, &mut self.pressure);
         self.convolutions += 1;
@@ -62,7 +62,7 @@ impl Operator {
     }
 
     /// Displacement of every node under the pressures of a contact set.
-    pub(crate) fn apply(&mut self, contact: &ContactSet, values: &[f64]) -> Result<&[f64], Error> {
+    pub(crate) fn apply(&mut self, contact: &NodeSet, values: &[f64]) -> Result<&[f64], Error> {
         self.pressure.fill(0.0);
         contact.scatter(values, &mut self.pressure);
         self.convolve(None, sum(values))

@@ -1,6 +1,6 @@
 //! A sparse inverse Cholesky factor of the influence matrix of a contact set.
 
-use super::ContactSet;
+use super::NodeSet;
 use super::lattice::{Lattice, Lattices, Neighbour};
 use crate::kernel::KernelTable;
 use crate::parallel::{for_each_chunk, vectorized};
@@ -37,7 +37,7 @@ pub(crate) struct SparseInverse<const K: usize = NEIGHBOURS> {
     unit: f64,
     rows: Vec<Row<K>>,
     /// Grid index of the node of each row, and the row of each node of the grid.
-    contact: ContactSet,
+    contact: NodeSet,
     /// Rows of the neighbours; a missing one is the row itself, with no weight.
     columns: Vec<[u32; K]>,
     /// The same by neighbour: where its entries begin, and which rows it serves with what weight.
@@ -57,7 +57,7 @@ struct Row<const K: usize> {
 
 impl<const K: usize> Row<K> {
     const EMPTY: Self = Self {
-        neighbours: [ContactSet::NONE; K],
+        neighbours: [NodeSet::NONE; K],
         weights: [0.0; K],
         precision: 1.0,
     };
@@ -70,7 +70,7 @@ impl<const K: usize> SparseInverse<K> {
             lattices: Lattices::new(table),
             unit: 1.0 / table.self_influence(),
             rows: Vec::new(),
-            contact: ContactSet::new(table.grid().nodes()),
+            contact: NodeSet::new(table.grid().nodes()),
             columns: Vec::new(),
             starts: Vec::new(),
             entries: Vec::new(),
@@ -79,14 +79,14 @@ impl<const K: usize> SparseInverse<K> {
     }
 
     /// Makes it that of another contact set. Only nodes whose neighbours change cost anything much.
-    pub(crate) fn update(&mut self, contact: &ContactSet) {
+    pub(crate) fn update(&mut self, contact: &NodeSet) {
         let mut rows = vec![Row::EMPTY; contact.len()];
         let (lattices, nodes, places) = (&self.lattices, contact.nodes(), contact.places());
         let (old_rows, old_places) = (&self.rows, self.contact.places());
         for_each_chunk(&mut rows, CHUNK, |chunk, rows| {
             for (row, &node) in rows.iter_mut().zip(&nodes[chunk * CHUNK..]) {
                 let mut found = [Neighbour::default(); K];
-                let is_in = |node: usize| places[node] != ContactSet::NONE;
+                let is_in = |node: usize| places[node] != NodeSet::NONE;
                 let (count, lattice) = lattices.earlier(node as usize, is_in, &mut found);
                 for (neighbour, found) in row.neighbours.iter_mut().zip(&found[..count]) {
                     *neighbour = found.node;

@@ -1,30 +1,14 @@
-//! What iterations need: the influence operator on a contact set, a sparse approximation of its
-//! inverse, and preconditioned conjugate gradients, all in O(grid) memory.
+//! A set of nodes, such as a contact, in the order of their indices.
 
-#[cfg(test)]
-mod comparison;
-mod directions;
-mod lattice;
-mod operator;
-mod pcg;
-mod sparse_inverse;
-mod vector;
-
-pub(crate) use directions::Directions;
-pub(crate) use operator::Operator;
-pub(crate) use pcg::LinearSystem;
-pub(crate) use sparse_inverse::SparseInverse;
-pub(crate) use vector::{add_scaled, dot, greatest, sum, sum_over};
-
-/// The contact set: nodes in the order of their indices, and where each is among them.
+/// A set of nodes in the order of their indices, and where each is among them.
 #[derive(Debug, Clone)]
-pub(crate) struct ContactSet {
+pub(crate) struct NodeSet {
     nodes: Vec<u32>,
-    /// For each node of the grid its place in `nodes`, or [`ContactSet::NONE`].
+    /// For each node of the grid its place in `nodes`, or [`NodeSet::NONE`].
     places: Vec<u32>,
 }
 
-impl ContactSet {
+impl NodeSet {
     /// Marks a node that is not in contact.
     pub(crate) const NONE: u32 = u32::MAX;
 

@@ -1,0 +1,16 @@
+//! Contact: its state, the order in which nodes joined it, how exact it is, and what can be asked of it.
+//!
+//! The path ([`LoadingSolver`](crate::LoadingSolver)) and the solver for one load
+//! ([`FixedLoadSolver`](crate::FixedLoadSolver)) speak of contact in these words, with the same names
+//! and the same scales.
+
+mod certificate;
+mod sequence;
+mod state;
+mod target;
+
+pub(crate) use certificate::Conditions;
+pub use certificate::Certificate;
+pub use sequence::ContactSequence;
+pub use state::ContactState;
+pub use target::ContactTarget;

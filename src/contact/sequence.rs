@@ -1,0 +1,189 @@
+//! The nodes in contact, in the order in which they joined.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::{Error, Grid};
+
+/// The nodes in contact, in the order in which they joined.
+///
+/// Every change gives the sequence a new [`revision`](Self::revision), a number that no other content
+/// of any sequence has had: what was computed from a sequence belongs to all that have its revision.
+///
+/// ```
+/// use asperity::contact::ContactSequence;
+/// use asperity::{Error, Grid};
+///
+/// # fn main() -> Result<(), Error> {
+/// let mut contact = ContactSequence::new(Grid::square(4, 1.0)?);
+/// contact.push(5)?;
+/// contact.push(6)?;
+/// assert_eq!(contact.order(), [5, 6]);
+/// assert!(contact.contains(6) && !contact.contains(7));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct ContactSequence {
+    grid: Grid,
+    order: Vec<usize>,
+    is_in: Vec<bool>,
+    revision: u64,
+}
+
+/// A number that was never used before.
+fn next_revision() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+impl ContactSequence {
+    /// No node in contact yet.
+    #[must_use]
+    pub fn new(grid: Grid) -> Self {
+        Self {
+            grid,
+            order: Vec::new(),
+            is_in: vec![false; grid.nodes()],
+            revision: next_revision(),
+        }
+    }
+
+    /// Node indices in the order in which they joined.
+    #[must_use]
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Number of nodes in contact.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Whether no node is in contact.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// Whether a node is in contact; false for one outside the grid.
+    #[must_use]
+    pub fn contains(&self, node: usize) -> bool {
+        self.is_in.get(node).copied().unwrap_or(false)
+    }
+
+    /// What says whether this is the same sequence as another one, or as it was before.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Adds a node.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NodeOutOfGrid`], and [`Error::AlreadyInContact`].
+    pub fn push(&mut self, node: usize) -> Result<(), Error> {
+        self.insert(self.len(), node)
+    }
+
+    /// Puts a node between others, `position` nodes before it.
+    pub(crate) fn insert(&mut self, position: usize, node: usize) -> Result<(), Error> {
+        let nodes = self.is_in.len();
+        match self.is_in.get_mut(node) {
+            None => Err(Error::NodeOutOfGrid { node, nodes }),
+            Some(true) => {
+                let (ix, iy) = self.grid.coordinates(node);
+                Err(Error::AlreadyInContact { ix, iy })
+            }
+            Some(is_in) => {
+                *is_in = true;
+                self.order.insert(position.min(self.order.len()), node);
+                self.revision = next_revision();
+                Ok(())
+            }
+        }
+    }
+
+    /// Keeps the first `count` nodes.
+    pub fn truncate(&mut self, count: usize) {
+        if count < self.order.len() {
+            for node in self.order.drain(count..) {
+                self.is_in[node] = false;
+            }
+            self.revision = next_revision();
+        }
+    }
+
+    /// Takes a node out; those after it move up by one. Returns how many were before it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NodeOutOfGrid`], and [`Error::NotInContact`].
+    pub fn remove(&mut self, node: usize) -> Result<usize, Error> {
+        let nodes = self.is_in.len();
+        if node >= nodes {
+            return Err(Error::NodeOutOfGrid { node, nodes });
+        }
+        let Some(position) = self.order.iter().position(|&other| other == node) else {
+            let (ix, iy) = self.grid.coordinates(node);
+            return Err(Error::NotInContact { ix, iy });
+        };
+        self.order.remove(position);
+        self.is_in[node] = false;
+        self.revision = next_revision();
+        Ok(position)
+    }
+
+    /// Bytes held at most.
+    pub(crate) fn bytes(&self) -> usize {
+        self.is_in.len() * (size_of::<usize>() + size_of::<bool>())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn order_and_membership_go_together() -> Result<(), Error> {
+        let mut contact = ContactSequence::new(Grid::new(3, 2, 1.0, 1.0)?);
+        for node in [4, 0, 5] {
+            contact.push(node)?;
+        }
+        assert!(matches!(
+            contact.push(0),
+            Err(Error::AlreadyInContact { ix: 0, iy: 0 })
+        ));
+        assert!(matches!(
+            contact.push(6),
+            Err(Error::NodeOutOfGrid { node: 6, nodes: 6 })
+        ));
+        assert_eq!(contact.remove(0)?, 1);
+        assert_eq!(contact.order(), [4, 5]);
+        assert!(matches!(contact.remove(0), Err(Error::NotInContact { .. })));
+        contact.insert(1, 2)?;
+        assert_eq!(contact.order(), [4, 2, 5]);
+        contact.truncate(1);
+        let members: Vec<usize> = (0..7).filter(|&node| contact.contains(node)).collect();
+        assert_eq!(members, [4]);
+        Ok(())
+    }
+
+    #[test]
+    fn a_revision_belongs_to_one_content() -> Result<(), Error> {
+        let mut contact = ContactSequence::new(Grid::square(3, 1.0)?);
+        contact.push(1)?;
+        let mut other = contact.clone();
+        assert_eq!(contact.revision(), other.revision());
+        contact.push(2)?;
+        other.push(3)?;
+        assert_ne!(contact.revision(), other.revision());
+        let before = contact.revision();
+        contact.truncate(9);
+        assert_eq!(contact.revision(), before);
+        contact.truncate(1);
+        assert_ne!(contact.revision(), before);
+        Ok(())
+    }
+}

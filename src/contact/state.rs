@@ -1,0 +1,102 @@
+//! The scalars of a state of contact.
+
+/// The scalars of one state of contact, in the units of the input; SI is given here.
+///
+/// A node whose gap is closed is in contact, with pressure or without: at the instant at which it
+/// touches it carries nothing yet. Stiffnesses are exact derivatives *on further loading* of the nodes
+/// in contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ContactState {
+    /// Number of nodes in contact, n.
+    pub contact_nodes: usize,
+    /// Normal approach δ from first touch \[m\]; of the mean planes if the half-space is periodic and
+    /// its mean displacement arbitrary.
+    pub approach: f64,
+    /// Normal load `W = ΔA Σ p` \[N\].
+    pub load: f64,
+    /// Contact area `n ΔA` \[m²\].
+    pub contact_area: f64,
+    /// Contact area over nominal area, between 0 and 1.
+    pub contact_area_fraction: f64,
+    /// Gap averaged over the nominal area \[m\].
+    pub mean_gap: f64,
+    /// Normal contact stiffness `K = dW/dδ` \[N/m\], δ being the approach of a distant point of the
+    /// half-space; `None` if there is no such point, as under a periodic half-space, every one of
+    /// which recedes without bound, and if stiffnesses were not asked for.
+    pub contact_stiffness: Option<f64>,
+    /// Interfacial stiffness `Kᵢ = −dW/dḡ` \[N/m\], ḡ being the mean gap: infinite in full contact,
+    /// where the mean gap cannot change. `None` if stiffnesses were not asked for; a path always has it.
+    pub interfacial_stiffness: Option<f64>,
+    /// Elastic energy `U = ∫ W dδ = ½ ΔA Σ p u` \[J\].
+    pub energy: f64,
+}
+
+impl ContactState {
+    /// Load over nominal area \[Pa\].
+    #[must_use]
+    pub fn mean_pressure(&self) -> f64 {
+        self.load * self.contact_area_fraction / self.contact_area
+    }
+
+    /// Whether all quantities are finite; in full contact the interfacial stiffness need not be.
+    pub(crate) fn is_finite(&self) -> bool {
+        let quantities = [
+            self.approach,
+            self.load,
+            self.contact_area,
+            self.mean_gap,
+            self.energy,
+        ];
+        let full = self.contact_area_fraction == 1.0;
+        let interfacial = self.interfacial_stiffness.unwrap_or_default();
+        quantities.iter().all(|quantity| quantity.is_finite())
+            && self.contact_stiffness.unwrap_or_default().is_finite()
+            && (interfacial.is_finite() || (full && !interfacial.is_nan()))
+    }
+
+    /// dW/dδ for the approach of this state: of the mean planes if there is no other.
+    fn load_rate(&self) -> Option<f64> {
+        self.contact_stiffness.or(self.interfacial_stiffness)
+    }
+
+    /// The state at another load with the same nodes in contact, by the exact linear relations
+    /// between two events: `W = Wₙ + K (δ − δₙ)`, `ḡ = ḡₙ − (K / Kᵢ)(δ − δₙ)`.
+    ///
+    /// `None` without stiffnesses.
+    pub(crate) fn at_load(&self, load: f64) -> Option<Self> {
+        if load == self.load {
+            return Some(*self);
+        }
+        let change = load - self.load;
+        let advance = change / self.load_rate()?;
+        Some(Self {
+            approach: self.approach + advance,
+            load,
+            mean_gap: self.mean_gap - change / self.interfacial_stiffness?,
+            energy: self.energy + 0.5 * (self.load + load) * advance,
+            ..*self
+        })
+    }
+
+    /// The same at another approach; also `None` if the approach cannot change, as in full contact of
+    /// a periodic half-space.
+    pub(crate) fn at_approach(&self, approach: f64) -> Option<Self> {
+        if approach == self.approach {
+            return Some(*self);
+        }
+        let rate = self.load_rate().filter(|rate| rate.is_finite())?;
+        let state = self.at_load(self.load + rate * (approach - self.approach))?;
+        Some(Self { approach, ..state })
+    }
+
+    /// The same at another mean gap; also `None` if the mean gap cannot change.
+    pub(crate) fn at_mean_gap(&self, mean_gap: f64) -> Option<Self> {
+        if mean_gap == self.mean_gap {
+            return Some(*self);
+        }
+        let rate = self.interfacial_stiffness.filter(|rate| rate.is_finite())?;
+        let state = self.at_load(self.load + rate * (self.mean_gap - mean_gap))?;
+        Some(Self { mean_gap, ..state })
+    }
+}

@@ -1,0 +1,25 @@
+//! What a state of contact is asked to have.
+
+/// What a state of contact is asked to have; a plain number is a load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ContactTarget {
+    /// This load \[N\].
+    Load(f64),
+    /// This approach \[m\] from first touch.
+    Approach(f64),
+    /// As many nodes in contact as fit into this fraction (above 0, at most 1) of the nominal area:
+    /// [`Grid::nodes_in`](crate::Grid::nodes_in).
+    ///
+    /// Nodes that touch at the same load, as on symmetric shapes, make some numbers unreachable: a path
+    /// then takes them one after the other, and the solver for one load the nearest number there is.
+    AreaFraction(f64),
+    /// This mean gap \[m\], below that of surfaces that just touch.
+    MeanGap(f64),
+}
+
+impl From<f64> for ContactTarget {
+    fn from(load: f64) -> Self {
+        Self::Load(load)
+    }
+}

@@ -1,0 +1,17 @@
+//! What iterations need: the influence operator on a contact set, a sparse approximation of its
+//! inverse, and preconditioned conjugate gradients, all in O(grid) memory.
+
+mod directions;
+mod lattice;
+mod node_set;
+mod operator;
+mod pcg;
+mod sparse_inverse;
+mod vector;
+
+pub(crate) use directions::Directions;
+pub(crate) use node_set::NodeSet;
+pub(crate) use operator::Operator;
+pub(crate) use pcg::LinearSystem;
+pub(crate) use sparse_inverse::SparseInverse;
+pub(crate) use vector::{add_scaled, dot, greatest, sum, sum_over};

@@ -1,0 +1,160 @@
+//! The contact problem: a surface on a half-space, before any node is in contact.
+
+use std::sync::OnceLock;
+
+use crate::convolution::Convolution;
+use crate::kernel::KernelTable;
+use crate::surface::HeightMap;
+use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
+
+/// What a contact problem consists of: influence coefficients C and initial gap g on a grid. It is
+/// made once, never changes, and all solvers and updaters read it.
+///
+/// ```
+/// use asperity::surface::Paraboloid;
+/// use asperity::{Boussinesq, Grid, Problem};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let half_space = Boussinesq::new(Grid::square(16, 1e-3)?, 100e9)?;
+/// let problem = Problem::new(&Paraboloid::new(0.1)?, &half_space)?;
+/// assert_eq!(problem.initial_gap().len(), 256);
+/// assert!(problem.coefficient(0, 1) < problem.coefficient(0, 0));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Problem {
+    table: KernelTable,
+    growth: ContactGrowth,
+    gap: Vec<f64>,
+    greatest_gap: f64,
+    rms_height: f64,
+    convolution: Convolution,
+    row_sums: OnceLock<Vec<f64>>,
+}
+
+impl Problem {
+    /// Number of right-hand sides of a path: g, the unit vector and the row sums of C.
+    pub(crate) const RHS: usize = 3;
+
+    /// Samples `surface` on the grid of `kernel`, and tabulates the kernel.
+    ///
+    /// # Errors
+    ///
+    /// Those of the surface and of [`KernelTable::new`]; [`Error::GridMismatch`] for heights of another
+    /// grid; [`Error::HeightNotFinite`]; [`Error::OutOfRange`] if differences of heights or sums of
+    /// coefficients overflow.
+    pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
+        let table = KernelTable::new(kernel)?;
+        let heights = HeightMap::sample(surface, &table.grid())?;
+        let highest = heights.max_height();
+        let greatest_gap = highest - heights.min_height();
+        if !greatest_gap.is_finite() {
+            return Err(Error::OutOfRange {
+                quantity: "difference of heights",
+                value: greatest_gap,
+                expected: "finite",
+            });
+        }
+        let gap = heights.matrix().iter().map(|height| highest - height);
+        Ok(Self {
+            gap: gap.collect(),
+            greatest_gap,
+            rms_height: heights.rms_height(),
+            growth: kernel.contact_growth(),
+            convolution: Convolution::from_table(&table)?,
+            table,
+            row_sums: OnceLock::new(),
+        })
+    }
+
+    /// The grid of surface and kernel.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.table.grid()
+    }
+
+    /// What surrounds the grid.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.table.boundary()
+    }
+
+    /// What the kernel promises of the growth of contact.
+    #[must_use]
+    pub fn growth(&self) -> ContactGrowth {
+        self.growth
+    }
+
+    /// The influence coefficients.
+    #[must_use]
+    pub fn table(&self) -> &KernelTable {
+        &self.table
+    }
+
+    /// Initial gap `g = max z − z ≥ 0` \[m\] by node index.
+    #[must_use]
+    pub fn initial_gap(&self) -> &[f64] {
+        &self.gap
+    }
+
+    /// Greatest initial gap \[m\].
+    #[must_use]
+    pub fn greatest_gap(&self) -> f64 {
+        self.greatest_gap
+    }
+
+    /// Root mean square height Sq \[m\] about the mean height.
+    #[must_use]
+    pub fn rms_height(&self) -> f64 {
+        self.rms_height
+    }
+
+    /// Displacement of node `node` under unit pressure on node `other` \[m/Pa\]; `None` if either lies
+    /// outside the grid.
+    #[must_use]
+    pub fn coefficient(&self, node: usize, other: usize) -> Option<f64> {
+        let nodes = self.gap.len();
+        (node < nodes && other < nodes).then(|| {
+            self.table
+                .between(self.table.place(node), self.table.place(other))
+        })
+    }
+
+    /// Displacement of every node under unit pressure on all of them \[m/Pa\], `sᵢ = Σⱼ Cᵢⱼ`: what turns
+    /// pressures into a mean displacement, `Σᵢ uᵢ = Σⱼ sⱼ pⱼ`. Computed when it is first asked for.
+    #[must_use]
+    pub fn row_sums(&self) -> &[f64] {
+        self.row_sums.get_or_init(|| {
+            let mut sums = vec![0.0; self.gap.len()];
+            let filled = self.convolution().apply(&vec![1.0; sums.len()], &mut sums);
+            debug_assert!(filled.is_ok(), "both have one value for each node");
+            sums
+        })
+    }
+
+    /// A convolution with the kernel: memory of its own, the transform of the kernel shared.
+    #[must_use]
+    pub fn convolution(&self) -> Convolution {
+        self.convolution.clone()
+    }
+
+    /// The right-hand sides (g, 1, s) at a node of the grid.
+    pub(crate) fn rhs(&self, node: usize) -> [f64; Self::RHS] {
+        [self.gap[node], 1.0, self.row_sums()[node]]
+    }
+
+    /// `Ok` if all nodes lie in the grid.
+    pub(crate) fn check_nodes(&self, nodes: &[usize]) -> Result<(), Error> {
+        let limit = self.gap.len();
+        match nodes.iter().find(|&&node| node >= limit) {
+            Some(&node) => Err(Error::NodeOutOfGrid { node, nodes: limit }),
+            None => Ok(()),
+        }
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        2 * size_of_val(&self.gap[..]) + self.table.bytes() + self.convolution.bytes()
+    }
+}
