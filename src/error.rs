@@ -170,6 +170,15 @@ pub enum Error {
         repeated: f64,
     },
 
+    /// A fraction of the nominal area is smaller than a node.
+    #[error("an area fraction of {fraction} is less than one node, which is {least}")]
+    LessThanOneNode {
+        /// The fraction given.
+        fraction: f64,
+        /// The fraction of one node.
+        least: f64,
+    },
+
     /// The kernel is not positive definite on the contact: no elastic body answers like this.
     #[error(
         "the kernel is not positive definite: at approach {approach} node ({ix}, {iy}) would give \
@@ -217,6 +226,13 @@ pub enum Error {
         expected: &'static str,
     },
 
+    /// A path that ended with an error cannot go on.
+    #[error("the path ended with an error after {steps} events, and cannot go on")]
+    CannotContinue {
+        /// Number of events up to there.
+        steps: usize,
+    },
+
     /// A state was asked for that the path has not reached.
     #[error("state {step} was asked for, but the path has reached {present}")]
     StateNotReached {
@@ -259,6 +275,13 @@ pub enum Error {
         ix: usize,
         /// Node index along y.
         iy: usize,
+    },
+
+    /// The end of a window contradicts its last events, and the updater cannot take nodes back.
+    #[error("the last events after {nodes} nodes have to be taken back, and this updater cannot")]
+    TruncateNotSupported {
+        /// Number of nodes that remain in contact.
+        nodes: usize,
     },
 
     /// A node was to join the contact while being in it.
@@ -325,6 +348,22 @@ pub enum Error {
         expected: usize,
         /// Number of values found.
         found: usize,
+    },
+
+    /// An updater answered something else than a dense solution: what `updater::check` reports.
+    #[error(
+        "the updater is wrong: with {contact_nodes} nodes in contact {quantity} differs from the dense \
+         answer by {error}, more than {tolerance}"
+    )]
+    UpdaterWrong {
+        /// What was compared.
+        quantity: &'static str,
+        /// Nodes in contact.
+        contact_nodes: usize,
+        /// Relative difference.
+        error: f64,
+        /// What would have been accepted.
+        tolerance: f64,
     },
 
     /// An iteration did not reach its tolerance.

@@ -151,6 +151,31 @@ impl Grid {
         (node % self.nx, node / self.nx)
     }
 
+    /// Number of nodes in contact that an area fraction (above 0, at most 1) means: as many as fit.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`], and [`Error::LessThanOneNode`].
+    pub fn nodes_in(&self, fraction: f64) -> Result<usize, Error> {
+        if !(fraction > 0.0 && fraction <= 1.0) {
+            return Err(Error::OutOfRange {
+                quantity: "area fraction",
+                value: fraction,
+                expected: "above 0 and at most 1",
+            });
+        }
+        let all = self.nodes() as f64;
+        // A fraction computed as k/M falls short of k nodes by at most three roundings.
+        let nodes = (fraction * all * (1.0 + 4.0 * f64::EPSILON)).floor();
+        if nodes < 1.0 {
+            return Err(Error::LessThanOneNode {
+                fraction,
+                least: 1.0 / all,
+            });
+        }
+        Ok((nodes as usize).min(self.nodes()))
+    }
+
     /// `Ok` if a field of the given shape lives on this grid.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ pub mod contact;
 pub mod convolution;
 mod elasticity;
 mod error;
-pub mod fixed_load;
+//pub mod fixed_load;
 mod grid;
 pub mod io;
 pub mod kernel;
@@ -26,12 +26,12 @@ pub mod updater;
 
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::Error;
-pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
+//pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
 };
-pub use loading::{ContactEvent, ContactRule, ContactState, LoadingSolver};
+pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;
 pub use surface::{HeightMap, SelfAffine, Surface};

@@ -104,6 +104,12 @@ impl Problem {
         self.greatest_gap
     }
 
+    /// Mean initial gap \[m\]: the mean gap of surfaces that just touch.
+    #[must_use]
+    pub fn mean_gap(&self) -> f64 {
+        self.gap.iter().sum::<f64>() / self.gap.len() as f64
+    }
+
     /// Root mean square height Sq \[m\] about the mean height.
     #[must_use]
     pub fn rms_height(&self) -> f64 {

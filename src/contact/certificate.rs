@@ -1,5 +1,8 @@
 //! How exact a state is.
 
+use super::ContactState;
+use crate::{Boundary, Problem};
+
 /// How well a state fulfils the conditions of contact, `gap ≥ 0`, `p ≥ 0` and `p · gap = 0`, computed
 /// afresh from its pressure with one convolution.
 ///
@@ -34,6 +37,20 @@ pub(crate) struct Conditions {
 }
 
 impl Conditions {
+    /// For a state of a problem; `None` before first touch.
+    pub(crate) fn of(problem: &Problem, state: Option<&ContactState>) -> Self {
+        let grid = problem.grid();
+        let (load, approach) = state.map_or((0.0, 0.0), |state| (state.load, state.approach));
+        let pressed = match problem.boundary() {
+            Boundary::Free => 0.0,
+            Boundary::Periodic => problem.table().self_influence() * load / grid.nominal_area(),
+        };
+        Self {
+            sum: load / grid.cell_area(),
+            length: problem.rms_height().max(approach).max(pressed),
+        }
+    }
+
     /// From (pressure, gap, in contact) of every node.
     pub(crate) fn check(self, nodes: impl Iterator<Item = (f64, f64, bool)>) -> Certificate {
         let (mut count, mut sum, mut work) = (0_usize, 0.0, 0.0);

@@ -63,7 +63,7 @@ impl Engine<f64> {
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
     pub(super) fn from_table(table: &KernelTable) -> Result<Self, Error> {
         let (grid, boundary) = (table.grid(), table.boundary());
-        let transforms = Transforms::new(&grid, boundary);
+        let transforms = Transforms::<f64>::new(&grid, boundary);
         let mut spectra = Spectra::new(&grid, &transforms);
         spectra.fill_rows(&transforms, grid.ny(), |dj, spectrum, work| {
             // Inside the grid there is always a coefficient.

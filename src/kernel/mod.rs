@@ -9,6 +9,7 @@
 mod boundary;
 mod boussinesq;
 mod even;
+mod gauge;
 mod gauss;
 mod growth;
 mod periodic;
@@ -18,6 +19,7 @@ mod table;
 
 pub use boundary::Boundary;
 pub use boussinesq::Boussinesq;
+pub(crate) use gauge::Gauge;
 pub use growth::ContactGrowth;
 pub use periodic_love::PeriodicBoussinesq;
 pub use spectral::Spectral;

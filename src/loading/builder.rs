@@ -2,63 +2,65 @@
 
 use std::collections::VecDeque;
 
-use super::fields::Fields;
-use super::limits::{ContactRule, Limits};
-use super::solver::{Front, LoadingSolver, LoadingTimings};
+use super::front::Front;
+use super::gap_field::GapField;
+use super::limits::Limits;
+use super::paper::Paper;
+use super::releases::Releases;
+use super::run::{LoadingTimings, Run};
+use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
-use super::window::Window;
-use crate::convolution::Convolution;
-use crate::initial_gap::InitialGap;
-use crate::kernel::KernelTable;
-use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, System};
-use crate::{Error, InfluenceKernel, Surface, memory};
+use super::windowed::Windowed;
+use crate::contact::{ContactSequence, ContactTarget};
+use crate::updater::{LinearUpdater, RecursiveCholesky};
+use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface, memory};
+
+/// Which node is taken to touch next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactRule {
+    /// The node whose gap closes first as the approach grows. Exact.
+    #[default]
+    FirstContact,
+    /// The node with the smallest gap at present: the paper's rule (its step 4). It is not exact: it gives
+    /// negative pressures, overlaps, and an approach that goes backwards. It is here so that the paper can be
+    /// reproduced, and implies a window of one node.
+    SmallestGap,
+}
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 #[must_use = "a builder does nothing until it is built"]
-pub struct LoadingBuilder<S, K, U = RecursiveCholesky> {
-    surface: S,
-    kernel: K,
+pub struct LoadingBuilder<'a, U = RecursiveCholesky> {
+    surface: &'a dyn Surface,
+    kernel: &'a dyn InfluenceKernel,
     updater: U,
     rule: ContactRule,
     window_size: Option<usize>,
     max_nodes: Option<usize>,
-    max_load: Option<f64>,
-    max_approach: Option<f64>,
-    max_area_fraction: Option<f64>,
+    targets: Vec<ContactTarget>,
+    max_mean_pressure: Option<f64>,
     memory_budget: Option<usize>,
 }
 
-impl<S: Surface, K: InfluenceKernel> LoadingSolver<S, K, RecursiveCholesky> {
-    /// The path of `surface` on the half-space of `kernel`, to full contact.
-    ///
-    /// # Errors
-    ///
-    /// As [`LoadingBuilder::build`].
-    pub fn new(surface: S, kernel: K) -> Result<Self, Error> {
-        Self::builder(surface, kernel).build()
-    }
-
-    /// Sets up the path of `surface` on the half-space of `kernel`.
-    pub fn builder(surface: S, kernel: K) -> LoadingBuilder<S, K> {
-        LoadingBuilder {
+impl<'a> LoadingBuilder<'a> {
+    pub(super) fn new(surface: &'a dyn Surface, kernel: &'a dyn InfluenceKernel) -> Self {
+        Self {
             surface,
             kernel,
             updater: RecursiveCholesky::new(),
             rule: ContactRule::default(),
             window_size: None,
             max_nodes: None,
-            max_load: None,
-            max_approach: None,
-            max_area_fraction: None,
+            targets: Vec::new(),
+            max_mean_pressure: None,
             memory_budget: None,
         }
     }
 }
 
-impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
-    /// Another updater, with an empty contact set.
-    pub fn updater<V: LinearUpdater>(self, updater: V) -> LoadingBuilder<S, K, V> {
+impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
+    /// Another updater, with no node in contact.
+    pub fn updater<V: LinearUpdater>(self, updater: V) -> LoadingBuilder<'a, V> {
         LoadingBuilder {
             surface: self.surface,
             kernel: self.kernel,
@@ -66,9 +68,8 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
             rule: self.rule,
             window_size: self.window_size,
             max_nodes: self.max_nodes,
-            max_load: self.max_load,
-            max_approach: self.max_approach,
-            max_area_fraction: self.max_area_fraction,
+            targets: self.targets,
+            max_mean_pressure: self.max_mean_pressure,
             memory_budget: self.memory_budget,
         }
     }
@@ -79,14 +80,47 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
         self
     }
 
-    /// How many nodes to watch at a time. By default as many as make an event cheapest; the states
-    /// do not depend on it but for rounding. With 1 the procedure is the paper's, literally: one
-    /// convolution and one row of the factor for each node. A kernel of
-    /// [`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown) is always followed one event at a
-    /// time.
+    /// How many nodes to watch at a time. By default as many as make an event cheapest; states do not
+    /// depend on it, except by rounding. With 1 every node costs one convolution and one row of the factor,
+    /// as in the paper. A kernel of [`ContactGrowth::Unknown`] is always followed one event at a time.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
         self
+    }
+
+    /// Ends the path at a target: at exactly this load, approach or mean gap, or with as many nodes in
+    /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
+    /// counts; of several of one kind the last one given.
+    pub fn until(mut self, target: impl Into<ContactTarget>) -> Self {
+        self.targets.push(target.into());
+        self
+    }
+
+    /// Ends the path at exactly this load \[N\].
+    pub fn max_load(self, load: f64) -> Self {
+        self.until(ContactTarget::Load(load))
+    }
+
+    /// Ends the path at exactly this load over the nominal area \[Pa\].
+    pub fn max_mean_pressure(mut self, mean_pressure: f64) -> Self {
+        self.max_mean_pressure = Some(mean_pressure);
+        self
+    }
+
+    /// Ends the path at exactly this approach \[m\].
+    pub fn max_approach(self, approach: f64) -> Self {
+        self.until(ContactTarget::Approach(approach))
+    }
+
+    /// Ends the path at exactly this mean gap \[m\].
+    pub fn min_mean_gap(self, mean_gap: f64) -> Self {
+        self.until(ContactTarget::MeanGap(mean_gap))
+    }
+
+    /// Ends the path before one more node would exceed this fraction (above 0, at most 1) of the nominal
+    /// area; see [`Grid::nodes_in`](crate::Grid::nodes_in).
+    pub fn max_area_fraction(self, fraction: f64) -> Self {
+        self.until(ContactTarget::AreaFraction(fraction))
     }
 
     /// Ends the path before the first event that would bring more than this many nodes into contact.
@@ -95,43 +129,21 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
         self
     }
 
-    /// Ends the path before the first event beyond this load \[N\].
-    pub fn max_load(mut self, load: f64) -> Self {
-        self.max_load = Some(load);
-        self
-    }
-
-    /// Ends the path before the first event beyond this approach \[m\].
-    pub fn max_approach(mut self, approach: f64) -> Self {
-        self.max_approach = Some(approach);
-        self
-    }
-
-    /// Ends the path when one more node would exceed this fraction (0 to 1) of the nominal area.
-    pub fn max_area_fraction(mut self, fraction: f64) -> Self {
-        self.max_area_fraction = Some(fraction);
-        self
-    }
-
-    /// Ends the path with an error before it holds more than this many bytes; every state up to
-    /// there has then been yielded. By default what the system has free when the path is built, where
-    /// it says so (Linux), and without limit elsewhere. Close to the limit windows become smaller.
+    /// Ends the path with an error before it holds more than this many bytes; every state up to there has
+    /// then been yielded. By default three quarters of the machine's memory, where the system tells it
+    /// (Linux), and without limit elsewhere. Close to the limit windows become smaller.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.memory_budget = Some(bytes);
         self
     }
 
-    /// Samples the surface, evaluates the kernel, and prepares the path before its first state.
+    /// Samples the surface, tabulates the kernel, and prepares the path before its first state.
     ///
     /// # Errors
     ///
-    /// Those of the surface and of the kernel; [`Error::HeightNotFinite`];
-    /// [`Error::GridMismatch`] if the surface returns heights of another grid;
-    /// [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no sense;
-    /// [`Error::MemoryBudget`] if not even the grid fits.
-    pub fn build(self) -> Result<LoadingSolver<S, K, U>, Error> {
-        let grid = self.kernel.grid();
-        let limits = self.limits()?;
+    /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no
+    /// sense; [`Error::MemoryBudget`] if not even the grid fits.
+    pub fn build(self) -> Result<LoadingSolver<U>, Error> {
         if self.window_size == Some(0) {
             return Err(Error::OutOfRange {
                 quantity: "window size",
@@ -139,49 +151,27 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
                 expected: "at least 1",
             });
         }
-
-        let gap = InitialGap::of(&self.surface, &grid)?;
-        let table = KernelTable::new(&self.kernel)?;
-        let mut fields = Fields::new(Convolution::from_table(&table)?, grid.nodes());
-        let row_sums = fields.displacement(&vec![1.0; grid.nodes()])?.to_vec();
-        let growth = self.kernel.contact_growth();
-        let gauge = table.gauge().unwrap_or_default() / grid.cell_area();
-        let system = System::new(table, gap.values, row_sums)?;
-        let budget = self
-            .memory_budget
-            .or_else(memory::available)
-            .unwrap_or(usize::MAX);
-        let mut path = LoadingSolver {
-            contact: Vec::with_capacity(limits.nodes),
-            in_contact: vec![false; grid.nodes()],
-            committed: 0,
-            ranking: Vec::with_capacity(grid.nodes()),
-            window: Window::default(),
-            solution: Solution::default(),
-            solved: None,
-            front: Front::default(),
-            stepwise: Stepwise::default(),
-            ahead: VecDeque::new(),
-            failure: None,
-            state: None,
-            timings: LoadingTimings::default(),
-            finished: false,
-            surface: self.surface,
-            kernel: self.kernel,
-            updater: self.updater,
-            rule: self.rule,
-            window_size: self.window_size,
-            limits,
-            memory_budget: budget,
-            grid,
-            gauge,
-            growth,
-            system,
-            fields,
-            rms_height: gap.rms_height,
-            greatest_gap: gap.greatest,
+        let problem = Problem::new(self.surface, self.kernel)?;
+        let limits = self.limits(&problem)?;
+        let growth = problem.growth();
+        let procedure = match (self.rule, growth) {
+            (ContactRule::SmallestGap, _) => Procedure::Paper(Paper::default()),
+            (_, ContactGrowth::Unknown) => Procedure::Stepwise(Stepwise::default()),
+            _ => Procedure::Windowed(Windowed::new(growth, self.window_size)),
         };
-        let needed = path.fixed_bytes();
+        let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
+        let mut run = Run {
+            contact: ContactSequence::new(problem.grid()),
+            releases: Releases::default(),
+            field: GapField::new(&problem),
+            front: Front::new(&problem),
+            problem,
+            updater: self.updater,
+            queue: VecDeque::new(),
+            memory_budget: budget,
+            timings: LoadingTimings::default(),
+        };
+        let needed = run.fixed_bytes();
         if needed > budget {
             return Err(Error::MemoryBudget {
                 needed,
@@ -189,24 +179,30 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingBuilder<S, K, U> {
                 nodes_that_fit: 0,
             });
         }
-        path.updater.set_memory_budget(budget - needed);
-        Ok(path)
+        run.updater.make_room(budget - needed);
+        Ok(LoadingSolver {
+            run,
+            procedure,
+            limits,
+            state: None,
+            failure: None,
+            end: None,
+        })
     }
 
-    fn limits(&self) -> Result<Limits, Error> {
-        let grid = self.kernel.grid();
-        let mut limits = Limits::none(&grid);
+    fn limits(&self, problem: &Problem) -> Result<Limits, Error> {
+        let grid = problem.grid();
+        let mut limits = Limits::default();
+        for &target in &self.targets {
+            limits.set(target, &grid, problem.mean_gap())?;
+        }
+        if let Some(mean_pressure) = self.max_mean_pressure {
+            let mean_pressure = Error::require_positive("greatest mean pressure", mean_pressure)?;
+            let load = ContactTarget::Load(mean_pressure * grid.nominal_area());
+            limits.set(load, &grid, problem.mean_gap())?;
+        }
         if let Some(nodes) = self.max_nodes {
-            limits.nodes = limits.nodes.min(nodes);
-        }
-        if let Some(load) = self.max_load {
-            limits.load = Error::require_positive("greatest load", load)?;
-        }
-        if let Some(approach) = self.max_approach {
-            limits.approach = Error::require_positive("greatest approach", approach)?;
-        }
-        if let Some(fraction) = self.max_area_fraction {
-            limits.area_fraction(&grid, fraction)?;
+            limits.set_nodes(nodes)?;
         }
         Ok(limits)
     }

@@ -1,19 +1,41 @@
 //! A finished path as a record that can be read at any load, approach, area or mean gap.
 
-use super::ContactState;
+use super::LoadingState;
+use crate::contact::ContactState;
 
 /// The states of a path in the order of loading, to be read at any instant between them.
 ///
-/// Between two events a path is linear in the approach, so that every reading is exact. The
-/// pressure that goes with it is
-/// [`LoadingSolver::pressure_at`](super::LoadingSolver::pressure_at).
+/// Between two events a path is linear in the approach, so that every reading is exact. The pressure that
+/// goes with it is [`LoadingSolver::pressure_at`](super::LoadingSolver::pressure_at).
+///
+/// ```
+/// use asperity::loading::History;
+/// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+/// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
+///     .max_load(1000.0)
+///     .build()?;
+/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// // Up to and at the limit:
+/// for load in [10.0, 500.0, 1000.0] {
+///     let state = history.at_load(load).ok_or(asperity::Error::NotFinite { step: 0 })?;
+///     assert_eq!(state.load, load);
+///     let pressure = path.pressure_at(&state)?;
+///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
+/// }
+/// assert!(history.at_load(1001.0).is_none());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct History {
-    states: Vec<ContactState>,
+    states: Vec<LoadingState>,
 }
 
-impl FromIterator<ContactState> for History {
-    fn from_iter<I: IntoIterator<Item = ContactState>>(states: I) -> Self {
+impl FromIterator<LoadingState> for History {
+    fn from_iter<I: IntoIterator<Item = LoadingState>>(states: I) -> Self {
         Self {
             states: states.into_iter().collect(),
         }
@@ -21,61 +43,70 @@ impl FromIterator<ContactState> for History {
 }
 
 impl History {
-    /// The states, one for each event.
+    /// The states, one for each event, and the one at the limit if the path ended at one.
     #[must_use]
-    pub fn states(&self) -> &[ContactState] {
+    pub fn states(&self) -> &[LoadingState] {
         &self.states
     }
 
-    /// The state at a load \[N\], `None` outside the path. Beyond the last event only a path that
-    /// ended in full contact can be read.
+    /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
+    /// in full contact can be read.
     #[must_use]
-    pub fn at_load(&self, load: f64) -> Option<ContactState> {
-        let last = self.last_before(|state| state.load <= load, load)?;
-        Some(last.at_load(load))
+    pub fn at_load(&self, load: f64) -> Option<LoadingState> {
+        self.read(load, |state| state.load, ContactState::at_load)
     }
 
     /// The state at an approach \[m\]; see [`Self::at_load`].
     #[must_use]
-    pub fn at_approach(&self, approach: f64) -> Option<ContactState> {
-        let last = self.last_before(|state| state.approach <= approach, approach)?;
-        Some(last.at_approach(approach))
+    pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {
+        self.read(approach, |state| state.approach, ContactState::at_approach)
     }
 
     /// The state at a mean gap \[m\]; see [`Self::at_load`].
     #[must_use]
-    pub fn at_mean_gap(&self, mean_gap: f64) -> Option<ContactState> {
-        let last = self.last_before(|state| state.mean_gap >= mean_gap, mean_gap)?;
-        Some(last.at_mean_gap(mean_gap))
+    pub fn at_mean_gap(&self, mean_gap: f64) -> Option<LoadingState> {
+        // It falls as the path goes on.
+        self.read(
+            -mean_gap,
+            |state| -state.mean_gap,
+            |state, minus| state.at_mean_gap(-minus),
+        )
     }
 
-    /// The first state with at least this fraction of the nominal area in contact.
+    /// The first state with as many nodes in contact as fit into this fraction of the nominal area (see
+    /// [`Grid::nodes_in`](crate::Grid::nodes_in)); `None` if the path has not got so far.
     #[must_use]
-    pub fn at_area_fraction(&self, fraction: f64) -> Option<ContactState> {
+    pub fn at_area_fraction(&self, fraction: f64) -> Option<LoadingState> {
+        // The same rounding as there: a fraction such as 0.1 of 10 nodes means one node.
+        let limit = fraction * (1.0 + 4.0 * f64::EPSILON);
+        let with_one_more = |state: &LoadingState| {
+            let nodes = state.contact_nodes as f64;
+            state.contact_area_fraction * ((nodes + 1.0) / nodes)
+        };
         // Not a search by halves: area shrinks where a node leaves.
         let mut states = self.states.iter();
-        let enough = |state: &&ContactState| state.contact_area_fraction >= fraction;
-        states.find(enough).copied()
+        let found = states.find(|state| with_one_more(state) > limit)?;
+        (found.contact_area_fraction <= limit).then_some(*found)
     }
 
-    /// The last state that is not beyond the target.
-    fn last_before(
+    /// The state at a target, from the last one that is not beyond it.
+    fn read(
         &self,
-        reached: impl Fn(&ContactState) -> bool,
         target: f64,
-    ) -> Option<&ContactState> {
+        quantity: impl Fn(&LoadingState) -> f64,
+        at: impl Fn(&ContactState, f64) -> Option<ContactState>,
+    ) -> Option<LoadingState> {
         if target.is_nan() {
             return None;
         }
-        let after = self.states.partition_point(reached);
+        let after = self
+            .states
+            .partition_point(|state| quantity(state) <= target);
         let last = self.states.get(after.checked_sub(1)?)?;
-        let ended = after == self.states.len();
-        let full = last.interfacial_stiffness.is_infinite();
-        (!ended || full || target_is_state(last, target)).then_some(last)
+        let is_there = after < self.states.len()
+            || last.contact_area_fraction == 1.0
+            || quantity(last) == target;
+        let contact = is_there.then(|| at(&last.contact, target))??;
+        Some(last.with(contact))
     }
-}
-
-/// Whether the target is the state itself, which may be read even at the end of a path.
-fn target_is_state(state: &ContactState, target: f64) -> bool {
-    [state.load, state.approach, state.mean_gap].contains(&target)
 }

@@ -1,36 +1,48 @@
 //! The loading path: one exact contact state per node that joins, or leaves.
 //!
-//! Between two events everything is linear in the approach δ:
+//! Between two events everything is linear in the approach δ: the pressure is `p = y₁ + δ y₂` on the
+//! contact, every gap is `r₁ − δ r₂`, and node j touches at `δⱼ = r₁ⱼ / r₂ⱼ`. A path is the sequence of
+//! these events. What a kernel promises of its contact ([`ContactGrowth`](crate::ContactGrowth)) decides how
+//! they are found:
 //!
-//! $$ p = y_1 + \delta\, y_2 \quad (\text{contact}), \qquad
-//!    \text{gap} = r_1 - \delta\, r_2 \quad (\text{everywhere}) $$
+//! * In *windows*, if contact only ever grows: a δⱼ computed earlier is then a lower bound, and only the nodes
+//!   with the smallest ones need be watched until the *horizon*, the smallest bound among all others, is
+//!   reached. If bounds may fail, a window is checked at its end.
+//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel.
 //!
-//! and node j touches at $\delta_j = r_{1j} / r_{2j}$. A path is the sequence of these events,
-//! found in *windows*: since contact only ever grows, a $\delta_j$ computed earlier is a lower
-//! bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
-//! smallest bound among all others, is reached. What a kernel promises of its contact decides
-//! whether that holds ([`ContactGrowth`](crate::ContactGrowth)): windows are checked at their ends
-//! if bounds may fail, and events are found one at a time, nodes that *leave* among them, if nothing
-//! is known.
+//! # How a window is made
+//!
+//! | | who | what |
+//! |---|---|---|
+//! | 1 | `GapField` | solves on the contact and computes all gaps as lines `a − t b` |
+//! | 2 | `Windowed` | checks them, and chooses the nodes to watch and the horizon |
+//! | 3 | [`LinearUpdater`](crate::updater::LinearUpdater) | gives the Schur complement of the watched nodes |
+//! | 4 | `Window` | plays the events among them |
+//! | 5 | [`ContactSequence`](crate::contact::ContactSequence), the updater | take in the nodes that touched |
+//! | 6 | `Windowed` | where that is needed, checks the contact at the end, and takes the last events back |
+//! | 7 | `Front` | turns the events into states, which wait in a queue |
+//! | 8 | [`LoadingSolver`] | yields them up to the limits |
 
 mod builder;
-mod certificate;
 mod cost;
-mod events;
-mod fields;
+mod front;
+mod gap_field;
 mod history;
 mod limits;
+mod paper;
 mod query;
-mod refresh;
+mod releases;
+mod run;
 mod solver;
 mod state;
 mod stepwise;
 mod sum;
 mod window;
+mod windowed;
 
-pub use builder::LoadingBuilder;
-pub use certificate::Certificate;
+pub use builder::{ContactRule, LoadingBuilder};
 pub use history::History;
-pub use limits::ContactRule;
-pub use solver::{LoadingSolver, LoadingTimings};
-pub use state::{ContactEvent, ContactState};
+pub use limits::LoadingEnd;
+pub use run::LoadingTimings;
+pub use solver::LoadingSolver;
+pub use state::{ContactEvent, LoadingState};

@@ -1,183 +1,159 @@
-//! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is
-//! known.
+//! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is known.
 
 use std::time::Instant;
 
-use super::events::CHECKED;
-use super::solver::LoadingSolver;
+use super::run::{Run, TOLERANCE};
 use super::state::ContactEvent;
-use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, Touched};
-use crate::{ContactGrowth, ContactRule, Error, InfluenceKernel, Surface};
+use super::window::Window;
+use crate::Error;
+use crate::updater::{LinearUpdater, Solution};
 
 /// Events closer than this in approach, relative to it, are taken to be simultaneous: well above the
 /// rounding errors of a ratio of two solutions, and below what a state may be off.
 const TIE: f64 = 1e-13;
 /// Events at a single approach, for each node of the grid, after which no end of them is expected.
 /// Nodes that touch and leave together are sorted out by the least index among them, which comes to
-/// an end (Murty 1974), in practice after one or two events a node.
+/// an end (Murty, Opsearch 11 (1974) 123), in practice after one or two events a node.
 const TIED_EVENTS: usize = 20;
+/// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
+/// otherwise nodes that neither gain nor lose pressure could touch and leave without end.
+const LEAST_RATE: f64 = 1e-12;
 
 /// What happens next if nothing else does.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Upcoming {
+struct Upcoming {
     approach: f64,
     node: usize,
     event: ContactEvent,
 }
 
-/// A node that left the contact.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Release {
-    /// The number of the event.
-    step: usize,
-    node: usize,
-    /// Where it was in the order of contact.
-    position: usize,
-}
-
-/// What a path that goes one event at a time keeps beside its front.
+/// Finds every event, touch or release, from a solution of its own.
 #[derive(Debug, Default)]
 pub(super) struct Stepwise {
     upcoming: Option<Upcoming>,
-    /// All nodes that left, in the order in which they did.
-    releases: Vec<Release>,
-    /// The contact of this and all later steps is a prefix of what the updater holds.
-    updater_since: usize,
+    window: Window,
+    /// (approach, node) of the nodes out of contact whose gap closes.
+    touches: Vec<(f64, usize)>,
     /// Events so far at the approach of the front.
     tied: usize,
 }
 
-impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
-    /// Whether nodes may leave the contact, so that every event needs a solution of its own.
-    pub(super) fn is_stepwise(&self) -> bool {
-        self.growth == ContactGrowth::Unknown && self.rule == ContactRule::FirstContact
-    }
-
-    /// Number of events up to the front.
-    pub(super) fn steps(&self) -> usize {
-        // A node that touched and left is two events, and not in contact.
-        self.contact.len() + 2 * self.stepwise.releases.len()
-    }
-
-    /// Computes the next state, unless the path is at its end.
-    pub(super) fn step(&mut self) -> Result<(), Error> {
-        if self.steps() == 0 {
-            self.survey()?;
+impl Stepwise {
+    /// Computes one state, unless there is none with at most `most_nodes` in contact.
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut Run<U>,
+        most_nodes: usize,
+    ) -> Result<(), Error> {
+        if run.steps() == 0 {
+            self.survey(run)?;
         }
-        let Some(next) = self.stepwise.upcoming.take() else {
+        let enough = run.contact.len() >= most_nodes;
+        let within = |next: &Upcoming| next.event == ContactEvent::Release || !enough;
+        let Some(next) = self.upcoming.filter(within) else {
             return Ok(());
         };
-        let approach = next.approach.max(self.front.approach);
-        let touches = next.event == ContactEvent::Touch;
-        if touches && self.contact.len() >= self.limits.nodes {
-            return Ok(());
+        if !next.approach.is_finite() {
+            return Err(run.not_finite());
         }
-        let Some(load) = self.load_within_limits(approach)? else {
-            return Ok(());
-        };
-        self.count_tie(approach)?;
-        if touches {
-            self.touch(next.node, approach)?;
+        self.count_tie(run, next.approach)?;
+        let step = run.steps() + 1;
+        if next.event == ContactEvent::Touch {
+            self.touch(run, next)?;
         } else {
-            self.release(next.node)?;
-        }
-        self.advance_front(approach, load);
-        let checked = self
-            .survey()
-            .and_then(|()| self.state_of(next.node, next.event));
-        match checked {
-            Ok(state) => self.ahead.push_back(state),
-            Err(error) => {
-                self.undo(next.event);
+            let position = run.contact.remove(next.node)?;
+            let released = run
+                .updater
+                .release(&run.problem, &run.contact, next.node, position);
+            if let Err(error) = released {
+                run.contact.insert(position, next.node)?;
                 return Err(error);
             }
+            run.releases.push(step, next.node, position);
         }
-        Ok(())
-    }
-
-    /// Refuses to go on for ever at one approach.
-    fn count_tie(&mut self, approach: f64) -> Result<(), Error> {
-        if approach > self.front.approach {
-            self.stepwise.tied = 0;
-        }
-        self.stepwise.tied += 1;
-        let events = self.stepwise.tied;
-        if events > TIED_EVENTS * (self.grid.nodes() + 1) {
-            return Err(Error::Cycling { approach, events });
-        }
-        Ok(())
-    }
-
-    /// Adds a node to the contact and to the updater.
-    fn touch(&mut self, node: usize, approach: f64) -> Result<(), Error> {
-        self.affordable(self.contact.len(), 1)?;
-        self.ranking.clear();
-        self.ranking.push((approach, node));
-        self.watch(1, f64::INFINITY)?;
-        self.touch_watched(0, approach)?;
-        self.commit()
-    }
-
-    /// Takes a node out of the contact and out of the updater.
-    fn release(&mut self, node: usize) -> Result<(), Error> {
-        let Some(position) = self.contact.iter().position(|&other| other == node) else {
-            return Ok(());
-        };
-        let step = self.steps() + 1;
-        self.updater.release(&self.system, node)?;
-        self.contact.remove(position);
-        self.in_contact[node] = false;
-        self.committed -= 1;
-        self.solved = None;
-        self.stepwise.updater_since = step;
-        self.stepwise.releases.push(Release {
-            step,
-            node,
-            position,
-        });
-        Ok(())
-    }
-
-    /// Takes a node that left back into the order of contact, so that states before are found there.
-    /// The updater stays without it. A node that touched may stay where it is: behind all others.
-    fn undo(&mut self, event: ContactEvent) {
-        if event == ContactEvent::Release
-            && let Some(Release { node, position, .. }) = self.stepwise.releases.pop()
+        run.front.advance(next.approach);
+        let contact_nodes = run.contact.len();
+        let checked = self
+            .survey(run)
+            .and_then(|()| run.enqueue(step, next.event, next.node, contact_nodes));
+        // The order of contact must be that of the states before; the updater stays without the node. One
+        // that touched may stay where it is: behind all others.
+        if checked.is_err()
+            && next.event == ContactEvent::Release
+            && let Some((position, node)) = run.releases.pop()
         {
-            self.contact.insert(position, node);
-            self.in_contact[node] = true;
+            run.contact.insert(position, node)?;
         }
+        checked
+    }
+
+    /// Refuses to go on without end at one approach.
+    fn count_tie<U>(&mut self, run: &Run<U>, approach: f64) -> Result<(), Error> {
+        if approach > run.front.approach() {
+            self.tied = 0;
+        }
+        self.tied += 1;
+        if self.tied > TIED_EVENTS * (run.problem.grid().nodes() + 1) {
+            return Err(Error::Cycling {
+                approach,
+                events: self.tied,
+            });
+        }
+        Ok(())
+    }
+
+    /// Adds a node to the contact.
+    fn touch<U: LinearUpdater>(&mut self, run: &mut Run<U>, next: Upcoming) -> Result<(), Error> {
+        run.affordable(1)?;
+        let line = run
+            .field
+            .line(&run.problem, next.node, run.front.approach());
+        run.watch(&mut self.window, std::iter::once(line), f64::INFINITY)?;
+        let time = next.approach - run.front.approach();
+        let touched = self.window.touch(0, time);
+        touched.map_err(|bad| run.not_positive_definite(bad))?;
+        run.join(&self.window)
     }
 
     /// Solves at the front, checks the conditions of contact there, and finds the next event.
-    fn survey(&mut self) -> Result<(), Error> {
-        self.solve(self.contact.len())?;
-        if let Some((node, value)) = self.negative_pressure(CHECKED) {
-            return Err(self.not_monotone("pressure", node, value));
+    fn survey<U: LinearUpdater>(&mut self, run: &mut Run<U>) -> Result<(), Error> {
+        self.upcoming = None;
+        run.renew_field()?;
+        let approach = run.front.approach();
+        if let Some((node, value)) = run.negative_pressure(approach, TOLERANCE) {
+            return Err(run.not_monotone("pressure", node, value));
         }
-        self.renew_stiffness();
-        self.rank()?;
+        run.front.renew_stiffness(run.field.solution());
         let start = Instant::now();
-        self.stepwise.upcoming = self.first_event();
-        self.timings.choice += start.elapsed();
-        self.timings.windows += 1;
+        self.touches.clear();
+        self.touches.reserve(run.problem.grid().nodes());
+        run.survey(true, |line| {
+            if line.closing > LEAST_RATE {
+                let time = line.gap / line.closing;
+                self.touches.push((approach + time, line.node));
+            }
+        })?;
+        self.upcoming = self.first_event(run);
+        run.timings.choice += start.elapsed();
         Ok(())
     }
 
-    /// The next event: of all that would come first, or within rounding of it, that of the node of
-    /// lowest index.
-    fn first_event(&self) -> Option<Upcoming> {
-        let front = self.front.approach;
+    /// The next event: of all that would come first, or within rounding of it, the one of the node of lowest
+    /// index.
+    fn first_event<U: LinearUpdater>(&self, run: &Run<U>) -> Option<Upcoming> {
+        let front = run.front.approach();
         let upcoming = |event, node, approach: f64| Upcoming {
             approach: approach.max(front),
             node,
             event,
         };
-        let touches = self.ranking.iter();
-        let touches = touches.map(|&(key, node)| upcoming(ContactEvent::Touch, node, key));
-        let Solution { y1, y2 } = &self.solution;
-        let slowest = self.slowest_release();
-        let releases = self.contact.iter().zip(y1).zip(y2);
+        let touches = self.touches.iter();
+        let touches =
+            touches.map(|&(approach, node)| upcoming(ContactEvent::Touch, node, approach));
+        let Solution { y1, y2 } = run.field.solution();
+        // What y₂ has to be below for a node to lose its pressure.
+        let slowest = -LEAST_RATE * run.greatest_rate();
+        let releases = run.contact.order().iter().zip(y1).zip(y2);
         let releases = releases
             .filter(|(_, y2)| **y2 < slowest)
             .map(|((&node, y1), y2)| upcoming(ContactEvent::Release, node, -y1 / y2));
@@ -190,47 +166,5 @@ impl<S: Surface, K: InfluenceKernel, U: LinearUpdater> LoadingSolver<S, K, U> {
         events
             .filter(|event| event.approach <= tied && event.approach < f64::INFINITY)
             .min_by_key(|event| event.node)
-    }
-
-    /// The contact nodes at a step up to the front, in the order in which they touched.
-    fn contact_at(&self, step: usize) -> Vec<usize> {
-        let mut contact = self.contact.clone();
-        let mut last = self.steps();
-        let releases = self.stepwise.releases.iter().rev();
-        for release in releases.take_while(|release| release.step > step) {
-            // Those that touched after it.
-            contact.truncate(contact.len() + release.step - last);
-            contact.insert(release.position, release.node);
-            last = release.step - 1;
-        }
-        contact.truncate((contact.len() + step).saturating_sub(last));
-        contact
-    }
-
-    /// Solves at a step up to the front; returns the nodes in contact there.
-    pub(super) fn solve_at(&mut self, step: usize) -> Result<Vec<usize>, Error> {
-        let contact = self.contact_at(step);
-        if step >= self.stepwise.updater_since {
-            self.solve(contact.len())?;
-            return Ok(contact);
-        }
-        // Nodes of that contact have left the updater since.
-        self.solved = None;
-        let count = contact.len();
-        let own = self.updater.bytes(self.contact.len(), 0);
-        let rebuilt = RecursiveCholesky::bytes_of(count);
-        let needed = self.fixed_bytes().saturating_add(own);
-        let needed = needed.saturating_add(rebuilt);
-        if needed > self.memory_budget {
-            return Err(Error::MemoryBudget {
-                needed,
-                budget: self.memory_budget,
-                nodes_that_fit: self.contact.len(),
-            });
-        }
-        let mut updater = RecursiveCholesky::of(&self.system, &contact)?;
-        let none = Touched::default();
-        updater.solve(&self.system, &none, count, &mut self.solution)?;
-        Ok(contact)
     }
 }

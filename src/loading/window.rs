@@ -1,156 +1,280 @@
 //! The watched nodes and the events among them.
 
-use crate::updater::{Schur, System, Touched};
+use super::gap_field::Line;
+use crate::updater::{Schur, Touched};
 
-/// A watched node that touches next.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Candidate {
-    /// Its place in the window.
-    pub(super) position: usize,
-    /// The approach at which it touches.
-    pub(super) approach: f64,
+/// A watched node that touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct WindowEvent {
+    pub(super) node: usize,
+    /// The approach at which it touches, from where the window began.
+    pub(super) time: f64,
+    /// What it adds to `eᵀ C_II⁻¹ e`.
+    pub(super) unit_stiffness: f64,
+    /// What it takes off the sum of closing rates.
+    pub(super) closing: f64,
+    /// How fast its gap closed when it touched.
+    rate: f64,
+    /// How much the events before it have changed its gap at the window's beginning, and its rate.
+    change: [f64; 2],
 }
 
-/// The nodes that may touch before any other, with all that decides among them.
+impl WindowEvent {
+    /// How much the events before it have changed the approach at which the node touches, relative to that
+    /// approach: what of it rests on the Schur complement. The window began at the approach `start`.
+    pub(super) fn drift(&self, start: f64) -> f64 {
+        let [gap, rate] = self.change;
+        let approach = start + self.time;
+        ((gap + start * rate).abs() + approach * rate.abs()) / (self.rate * approach)
+    }
+}
+
+/// A node that cannot touch: its pivot is not positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BadPivot {
+    pub(super) node: usize,
+    pub(super) time: f64,
+    pub(super) pivot: f64,
+}
+
+/// The nodes that may touch before any other, and all that decides among them: the lines `a − t b` of their
+/// gaps, and the Schur complement S, by which a node that touches changes the lines of the others.
 ///
-/// Everything here is small and dense: the Schur complement S of the watched nodes, and their
-/// reduced right-hand sides, of which the first two give the gap $r_1 - \delta r_2$.
+/// Everything here is small and dense; it knows nothing of the grid, the updater, or the path.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Window {
     nodes: Vec<usize>,
     schur: Schur,
-    reduced: Vec<[f64; System::RHS]>,
+    /// (a, b, σ) of each node, from which the events so far are eliminated.
+    lines: Vec<[f64; 3]>,
+    /// (a, b) before the first event.
+    opened: Vec<[f64; 2]>,
     open: Vec<bool>,
     touched: Touched,
+    events: Vec<WindowEvent>,
     horizon: f64,
-    /// The right-hand sides when the window was opened.
-    opened: Vec<[f64; System::RHS]>,
 }
 
 impl Window {
-    /// The watched nodes.
-    pub(super) fn nodes(&self) -> &[usize] {
-        &self.nodes
-    }
-
-    /// Nodes that touched since the window was opened.
-    pub(super) fn touched(&self) -> &Touched {
-        &self.touched
-    }
-
-    /// Watched nodes that have not touched, in the order of the window.
-    pub(super) fn untouched(&self) -> impl Iterator<Item = usize> {
-        self.nodes
-            .iter()
-            .zip(&self.open)
-            .filter(|(_, open)| **open)
-            .map(|(&node, _)| node)
-    }
-
-    /// Opens a window on `nodes`; no other node touches before the approach `horizon`. The caller
-    /// fills the Schur complement and then calls [`Self::start`].
+    /// Opens a window on nodes; no other node touches before the time `horizon`. The caller fills the Schur
+    /// complement and then plays.
     pub(super) fn open(
         &mut self,
-        nodes: impl Iterator<Item = usize>,
+        lines: impl Iterator<Item = Line>,
         horizon: f64,
     ) -> (&[usize], &mut Schur) {
         self.nodes.clear();
-        self.nodes.extend(nodes);
+        self.opened.clear();
+        for line in lines {
+            self.nodes.push(line.node);
+            self.opened.push([line.gap, line.closing]);
+        }
+        self.lines.clear();
         self.open.clear();
         self.open.resize(self.nodes.len(), true);
         self.touched.reset(self.nodes.len());
+        self.events.clear();
+        // So that no event ever allocates.
+        self.events.reserve(self.nodes.len());
         self.horizon = horizon;
         (&self.nodes, &mut self.schur)
     }
 
-    /// Takes over the right-hand sides of the Schur complement.
-    pub(super) fn start(&mut self) {
-        self.reduced.clear();
-        self.reduced.extend_from_slice(self.schur.rhs());
-        self.opened.clear();
-        self.opened.extend_from_slice(self.schur.rhs());
+    /// Watched nodes that have not touched, in the order of the window.
+    pub(super) fn untouched(&self) -> impl Iterator<Item = usize> {
+        let nodes = self.nodes.iter().zip(&self.open);
+        nodes.filter(|(_, open)| **open).map(|(&node, _)| node)
     }
 
-    /// The node with the smallest ratio $r_1 / r_2$, if it touches before the horizon. Ties go to
-    /// the node of the lowest index.
+    /// The events, in their order.
+    pub(super) fn events(&self) -> &[WindowEvent] {
+        &self.events
+    }
+
+    /// The factor of the Schur complement.
+    pub(super) fn touched(&self) -> &Touched {
+        &self.touched
+    }
+
+    /// Plays up to `most` events: the gap that closes first, again and again, until the horizon. Ties go to
+    /// the node of the lowest index. Returns what ended it if that is a pivot.
     ///
-    /// The first node of a window always counts: the horizon is the bound of a node that was
-    /// later, so that anything else is rounding.
-    pub(super) fn first_contact(&self) -> Option<Candidate> {
-        let ratios = self
-            .reduced
-            .iter()
-            .map(|[r1, r2, _]| if *r2 > 0.0 { r1 / r2 } else { f64::INFINITY });
-        let candidate = self.smallest(ratios)?;
-        let finite = candidate.approach < f64::INFINITY;
-        let within = candidate.approach <= self.horizon || self.touched.is_empty();
-        (finite && within).then_some(candidate)
-    }
-
-    /// The node with the smallest gap at the present approach, and the approach that closes it.
-    pub(super) fn smallest_gap(&self, approach: f64) -> Option<Candidate> {
-        if !self.touched.is_empty() {
-            return None;
+    /// The first event always counts: the horizon is the bound of a node that was later, so that anything
+    /// else is rounding; and so is a time before that of the last event.
+    pub(super) fn play(&mut self, most: usize) -> Option<BadPivot> {
+        while self.events.len() < most {
+            let (position, time) = self.first_contact()?;
+            if time == f64::INFINITY || (time > self.horizon && !self.events.is_empty()) {
+                return None;
+            }
+            let last = self.events.last().map_or(0.0, |event| event.time);
+            if let Err(bad) = self.touch(position, time.max(last)) {
+                return Some(bad);
+            }
         }
-        let gaps = self.reduced.iter().map(|[r1, r2, _]| r1 - approach * r2);
-        let Candidate { position, .. } = self.smallest(gaps)?;
-        let [r1, r2, _] = self.reduced[position];
-        Some(Candidate {
-            position,
-            approach: r1 / r2,
-        })
+        None
     }
 
-    /// How much the events of this window have changed the approach at which a node touches,
-    /// relative to that approach: what of it rests on the Schur complement.
-    pub(super) fn drift(&self, candidate: Candidate) -> f64 {
-        let Candidate { position, approach } = candidate;
-        let ([r1, r2, _], [first1, first2, _]) = (self.reduced[position], self.opened[position]);
-        ((r1 - first1).abs() + approach * (r2 - first2).abs()) / (r2 * approach)
-    }
-
-    /// Takes back the last events, and knows no further ones.
-    pub(super) fn give_up(&mut self, events: usize) {
-        let left = self.touched.len().saturating_sub(events);
-        for &position in &self.touched.positions()[left..] {
-            self.open[position] = true;
-        }
-        self.touched.truncate(&mut self.schur, left);
-        self.horizon = f64::NEG_INFINITY;
-    }
-
-    /// The open node with the smallest value.
-    fn smallest(&self, values: impl Iterator<Item = f64>) -> Option<Candidate> {
-        let mut best: Option<Candidate> = None;
-        for (position, value) in values.enumerate() {
+    /// The open node whose gap closes first, and when.
+    fn first_contact(&mut self) -> Option<(usize, f64)> {
+        self.start();
+        let mut best: Option<(usize, f64)> = None;
+        for (position, [gap, rate, _]) in self.lines.iter().enumerate() {
             if !self.open[position] {
                 continue;
             }
-            let better = best.is_none_or(|best| {
-                value < best.approach
-                    || (value == best.approach && self.nodes[position] < self.nodes[best.position])
+            let time = if *rate > 0.0 {
+                gap / rate
+            } else {
+                f64::INFINITY
+            };
+            let better = best.is_none_or(|(other, earliest)| {
+                time < earliest || (time == earliest && self.nodes[position] < self.nodes[other])
             });
             if better {
-                best = Some(Candidate {
-                    position,
-                    approach: value,
-                });
+                best = Some((position, time));
             }
         }
         best
     }
 
-    /// Lets a watched node touch. Returns the entries it adds to $L^{-1}B$.
+    /// Puts the lines together, unless that is done.
+    fn start(&mut self) {
+        if self.lines.is_empty() {
+            let lines = self.opened.iter().zip(self.schur.row_sums());
+            self.lines
+                .extend(lines.map(|([gap, rate], sum)| [*gap, *rate, *sum]));
+        }
+    }
+
+    /// Lets the node at `position` touch at `time`.
     ///
     /// # Errors
     ///
-    /// The pivot, if it is not positive.
-    pub(super) fn touch(&mut self, position: usize) -> Result<[f64; System::RHS], f64> {
+    /// Its pivot, if that is not positive; then nothing has changed.
+    pub(super) fn touch(&mut self, position: usize, time: f64) -> Result<(), BadPivot> {
+        self.start();
         let node = self.nodes[position];
-        let entries = self
-            .touched
-            .push(&mut self.schur, node, position, &mut self.reduced)?;
+        let column = match self.touched.push(&mut self.schur, position) {
+            Ok(column) => column,
+            Err(pivot) => return Err(BadPivot { node, time, pivot }),
+        };
+        let [gap, rate, _] = self.lines[position];
+        let [first_gap, first_rate] = self.opened[position];
+        let entries = self.lines[position].map(|value| value / column[position]);
+        for (line, factor) in self.lines.iter_mut().zip(column) {
+            for (value, entry) in line.iter_mut().zip(entries) {
+                *value -= factor * entry;
+            }
+        }
         self.open[position] = false;
-        Ok(entries)
+        let [_, unit, sum] = entries;
+        self.events.push(WindowEvent {
+            node,
+            time,
+            unit_stiffness: unit * unit,
+            closing: sum * unit,
+            rate,
+            change: [gap - first_gap, rate - first_rate],
+        });
+        Ok(())
+    }
+
+    /// Forgets all but the first events. Their nodes are not watched any more.
+    pub(super) fn truncate(&mut self, events: usize) {
+        self.events.truncate(events);
+        self.touched.truncate(events);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes 7, 8 and 9 with S = C and σ = row sums of C, before any contact.
+    fn window(c: [[f64; 3]; 3], lines: [(f64, f64); 3], horizon: f64) -> Window {
+        let mut window = Window::default();
+        let lines = lines.into_iter().zip(7..);
+        let lines = lines.map(|((gap, closing), node)| Line { node, gap, closing });
+        let (nodes, schur) = window.open(lines, horizon);
+        assert_eq!(nodes, [7, 8, 9]);
+        schur.resize(3);
+        for (i, row) in c.iter().enumerate() {
+            schur.row_sums_mut()[i] = row.iter().sum();
+            for (j, value) in row.iter().enumerate() {
+                schur.matrix_mut()[(i, j)] = *value;
+            }
+        }
+        window
+    }
+
+    const C: [[f64; 3]; 3] = [[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]];
+
+    #[test]
+    fn a_node_that_touches_delays_its_neighbour() {
+        // Node 7 touches at 0; then node 8 rises by half of the approach, and touches at 2 instead of 1.
+        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 10.0);
+        assert_eq!(window.play(2), None);
+        let found: Vec<_> = window.events().iter().map(|e| (e.node, e.time)).collect();
+        // A few roundings of numbers near 1.
+        assert_eq!(found[0], (7, 0.0));
+        assert!(
+            found[1].0 == 8 && (found[1].1 - 2.0).abs() < 1e-14,
+            "{found:?}"
+        );
+        let [first, second] = window.events() else {
+            unreachable!("two were asked for");
+        };
+        // eᵀ C⁻¹ e of the first node alone, and of the first two: 1/2 and 2/3.
+        assert!((first.unit_stiffness - 0.5).abs() < 1e-15);
+        assert!((first.unit_stiffness + second.unit_stiffness - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
+    }
+
+    #[test]
+    fn the_horizon_ends_a_window_but_not_before_its_first_event() {
+        let mut early = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 0.1);
+        assert_eq!(early.play(3), None);
+        assert_eq!(early.events().len(), 1);
+        let mut late = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0);
+        assert_eq!(late.play(3), None);
+        assert_eq!(late.events().len(), 3);
+    }
+
+    #[test]
+    fn ties_go_to_the_lowest_index_and_times_never_fall() {
+        let mut window = window(C, [(1.0, 1.0), (0.0, 1.0), (0.0, 1.0)], 100.0);
+        assert_eq!(window.play(3), None);
+        let nodes: Vec<_> = window.events().iter().map(|e| e.node).collect();
+        assert_eq!(nodes, [8, 9, 7]);
+        assert!(window.events().is_sorted_by(|a, b| a.time <= b.time));
+    }
+
+    #[test]
+    fn a_pivot_that_is_not_positive_ends_the_window() {
+        let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut window = window(singular, [(0.0, 1.0), (0.0, 2.0), (9.0, 1.0)], 100.0);
+        let bad = window.play(3);
+        assert!(
+            matches!(
+                bad,
+                Some(BadPivot {
+                    node: 8,
+                    pivot: 0.0,
+                    ..
+                })
+            ),
+            "{bad:?}"
+        );
+        assert_eq!(window.events().len(), 1);
+    }
+
+    #[test]
+    fn nodes_of_forgotten_events_are_not_watched_any_more() {
+        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0);
+        window.play(2);
+        window.truncate(1);
+        assert_eq!((window.events().len(), window.touched().len()), (1, 1));
+        assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
     }
 }

@@ -2,47 +2,44 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-use super::{LinearUpdater, Schur, Solution, System, Touched};
-use crate::Error;
+use super::{LinearUpdater, Schur, Solution, Touched};
+use crate::contact::ContactSequence;
+use crate::{Error, Problem};
 
-/// Assembles and factors the whole influence matrix of the contact set whenever it is asked.
+/// Assembles and factors the whole influence matrix of the contact whenever it is asked.
 ///
-/// O(n³) for every call: primarily for testing other updaters. It shares no code with
-/// [`RecursiveCholesky`](super::RecursiveCholesky) and ignores the factor in [`Touched`].
-#[derive(Debug, Clone, Default)]
-pub struct Dense {
-    contact: Vec<usize>,
-}
+/// O(n³) for every call: for testing other updaters, see [`check`](super::check). It keeps nothing, shares
+/// no code with [`RecursiveCholesky`](super::RecursiveCholesky), and ignores the factor in [`Touched`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Dense;
 
 impl Dense {
-    /// An empty contact set.
+    /// The updater, which has no state.
     #[must_use]
     pub fn new() -> Self {
-        Self::default()
+        Self
     }
 
     /// Influence coefficients between two sets of nodes.
     fn influence(
-        system: &System,
+        problem: &Problem,
         rows: &[usize],
         columns: &[usize],
     ) -> Result<DMatrix<f64>, Error> {
-        system.check_nodes(rows)?;
-        system.check_nodes(columns)?;
+        problem.check_nodes(rows)?;
+        problem.check_nodes(columns)?;
         Ok(DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
-            system.coefficient(rows[i], columns[j]).unwrap_or_default()
+            problem.coefficient(rows[i], columns[j]).unwrap_or_default()
         }))
     }
 
     /// Right-hand sides of a set of nodes.
-    fn rhs(system: &System, nodes: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(nodes.len(), System::RHS, |i, c| {
-            system.rhs(nodes[i]).unwrap_or_default()[c]
-        })
+    fn rhs(problem: &Problem, nodes: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(nodes.len(), Problem::RHS, |i, c| problem.rhs(nodes[i])[c])
     }
 
-    fn factor(system: &System, contact: &[usize]) -> Result<Cholesky<f64, Dyn>, Error> {
-        let matrix = Self::influence(system, contact, contact)?;
+    fn factor(problem: &Problem, contact: &[usize]) -> Result<Cholesky<f64, Dyn>, Error> {
+        let matrix = Self::influence(problem, contact, contact)?;
         Cholesky::new(matrix).ok_or(Error::FactorizationFailed {
             nodes: contact.len(),
         })
@@ -50,48 +47,60 @@ impl Dense {
 }
 
 impl LinearUpdater for Dense {
-    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        let contact = contact.order();
+        let coupling = Self::influence(problem, contact, nodes)?;
+        let solved = Self::factor(problem, contact)?.solve(&coupling);
         schur.resize(nodes.len());
-        let inside = Self::factor(system, &self.contact)?;
-        let coupling = Self::influence(system, &self.contact, nodes)?;
-        let own = Self::influence(system, nodes, nodes)?;
-        let complement = own - coupling.transpose() * inside.solve(&coupling);
+        let complement = Self::influence(problem, nodes, nodes)? - coupling.transpose() * &solved;
         schur.matrix_mut().copy_from(&complement);
-        let eliminated = coupling.transpose() * inside.solve(&Self::rhs(system, &self.contact));
-        let reduced = Self::rhs(system, nodes) - eliminated;
-        for (target, row) in schur.rhs_mut().iter_mut().zip(reduced.row_iter()) {
-            for (target, value) in target.iter_mut().zip(row.iter()) {
-                *target = *value;
-            }
+        let sums = Self::rhs(problem, nodes) - solved.transpose() * Self::rhs(problem, contact);
+        for (target, sum) in schur.row_sums_mut().iter_mut().zip(sums.column(2).iter()) {
+            *target = *sum;
         }
         Ok(())
     }
 
-    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
-        system.check_nodes(touched.nodes())?;
-        self.contact.extend_from_slice(touched.nodes());
-        Ok(())
-    }
-
-    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
-        system.check_nodes(&[node])?;
-        let position = self.contact.iter().position(|&other| other == node);
-        let position = position.ok_or_else(|| system.not_in_contact(node))?;
-        self.contact.remove(position);
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
         Ok(())
     }
 
     fn solve(
         &mut self,
-        system: &System,
-        touched: &Touched,
+        problem: &Problem,
+        contact: &ContactSequence,
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let contact = touched.sequence(&self.contact, count)?;
-        let solved = Self::factor(system, &contact)?.solve(&Self::rhs(system, &contact));
+        let Some(contact) = contact.order().get(..count) else {
+            return Err(Error::LengthMismatch {
+                expected: contact.len(),
+                found: count,
+            });
+        };
+        let solved = Self::factor(problem, contact)?.solve(&Self::rhs(problem, contact));
         solution.y1 = solved.column(0).iter().map(|value| -value).collect();
         solution.y2 = solved.column(1).iter().copied().collect();
+        Ok(())
+    }
+
+    fn truncate(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn release(
+        &mut self,
+        _: &Problem,
+        _: &ContactSequence,
+        _: usize,
+        _: usize,
+    ) -> Result<(), Error> {
         Ok(())
     }
 

@@ -1,10 +1,10 @@
 //! A factor as long as it fits, iterations after.
 
 use super::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, System, Touched,
-    WindowCost,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched, UpdaterProfile,
 };
-use crate::Error;
+use crate::contact::ContactSequence;
+use crate::{Error, Problem};
 
 /// Watched nodes for which the factor must have room. With fewer, its solutions would be shared by
 /// so few events that iterations are no slower.
@@ -27,7 +27,7 @@ const LEAST_WINDOW: usize = 64;
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let kernel = Boussinesq::new(Grid::square(32, 1.0)?, 1.0)?;
-/// let mut path = LoadingSolver::builder(Paraboloid::new(10.0)?, kernel)
+/// let mut path = LoadingSolver::builder(&Paraboloid::new(10.0)?, &kernel)
 ///     .updater(Handover::new())
 ///     .memory_budget(2_000_000)
 ///     .max_nodes(400)
@@ -44,8 +44,6 @@ pub struct Handover {
     stage: Stage,
     /// What the updater may hold, in bytes.
     budget: usize,
-    /// Committed nodes of the factor.
-    order: Vec<usize>,
     handed_over_at: Option<usize>,
 }
 
@@ -62,13 +60,12 @@ impl Default for Handover {
 }
 
 impl Handover {
-    /// An empty contact set, and no bound on memory before the path sets its own.
+    /// No node in contact, and no bound on memory before the path sets its own.
     #[must_use]
     pub fn new() -> Self {
         Self {
             stage: Stage::Factor(Box::default()),
             budget: usize::MAX,
-            order: Vec::new(),
             handed_over_at: None,
         }
     }
@@ -93,86 +90,95 @@ impl Handover {
         }
     }
 
-    /// Whether a factor of the committed nodes leaves room for one more window.
-    fn factor_fits(&self, factor: &RecursiveCholesky) -> bool {
-        let needed = factor.bytes(self.order.len() + LEAST_WINDOW, LEAST_WINDOW);
-        let window = 2 * size_of::<f64>() * LEAST_WINDOW * LEAST_WINDOW;
-        needed.saturating_add(window) <= self.budget
+    /// Whether a factor of `contact` nodes leaves room for one more window.
+    fn factor_fits(&self, factor: &RecursiveCholesky, contact: usize) -> bool {
+        let needed = factor.bytes(contact + LEAST_WINDOW, LEAST_WINDOW);
+        needed.saturating_add(Touched::bytes(LEAST_WINDOW)) <= self.budget
     }
 
     /// Gives up a factor that leaves no room.
-    fn hand_over(&mut self, system: &System) -> Result<(), Error> {
-        let order = std::mem::take(&mut self.order);
+    fn hand_over(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let mut solution = Solution::default();
-        let none = Touched::default();
-        self.updater_mut()
-            .solve(system, &none, order.len(), &mut solution)?;
+        let factor = self.updater_mut();
+        factor.solve(problem, contact, contact.len(), &mut solution)?;
         log::info!(
             "{} nodes in contact: the factor would exceed {} bytes, conjugate gradients from here",
-            order.len(),
+            contact.len(),
             self.budget
         );
-        self.handed_over_at = Some(order.len());
+        self.handed_over_at = Some(contact.len());
         // The factor goes before anything takes its place.
         self.stage = Stage::Iterations(Box::default());
         if let Stage::Iterations(iterations) = &mut self.stage {
-            iterations.take_over(system, order, &solution)?;
+            iterations.take_over(problem, contact, &solution)?;
         }
         Ok(())
     }
 }
 
 impl LinearUpdater for Handover {
-    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
-        self.updater_mut().schur(system, nodes, schur)
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.updater_mut().watch(problem, contact, nodes, schur)
     }
 
     /// Gives up the factor if it leaves no room for another window.
-    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
-        self.updater_mut().commit(system, touched)?;
-        if let Stage::Factor(_) = self.stage {
-            self.order.extend_from_slice(touched.nodes());
-        }
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error> {
+        self.updater_mut().join(problem, contact, touched)?;
         match &self.stage {
-            Stage::Factor(factor) if !self.factor_fits(factor) => self.hand_over(system),
+            Stage::Factor(factor) if !self.factor_fits(factor, contact.len()) => {
+                self.hand_over(problem, contact)
+            }
             _ => Ok(()),
         }
     }
 
-    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
-        self.updater_mut().release(system, node)?;
-        self.order.retain(|committed| *committed != node);
-        Ok(())
-    }
-
     fn solve(
         &mut self,
-        system: &System,
-        touched: &Touched,
+        problem: &Problem,
+        contact: &ContactSequence,
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.updater_mut().solve(system, touched, count, solution)
+        self.updater_mut().solve(problem, contact, count, solution)
     }
 
-    fn window_cost(&self) -> WindowCost {
-        self.updater().window_cost()
+    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        self.updater_mut().truncate(problem, contact)
     }
 
-    fn is_exact(&self) -> bool {
-        self.updater().is_exact()
+    fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        node: usize,
+        position: usize,
+    ) -> Result<(), Error> {
+        self.updater_mut().release(problem, contact, node, position)
+    }
+
+    fn profile(&self) -> UpdaterProfile {
+        self.updater().profile()
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
-        let order = self.order.capacity() * size_of::<usize>();
-        self.updater().bytes(contact, watched).saturating_add(order)
+        self.updater().bytes(contact, watched)
     }
 
-    fn set_memory_budget(&mut self, bytes: usize) {
+    fn make_room(&mut self, bytes: usize) {
         self.budget = bytes;
         if let Stage::Factor(factor) = &self.stage
-            && self.order.is_empty()
-            && !self.factor_fits(factor)
+            && !self.factor_fits(factor, 0)
         {
             self.handed_over_at = Some(0);
             self.stage = Stage::Iterations(Box::default());

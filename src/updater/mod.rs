@@ -1,53 +1,62 @@
-//! The contact set and the inverse of its influence matrix.
+//! The inverse of the influence matrix of the contact.
 //!
-//! With the contact set I (n nodes) and its influence matrix $C_{II}$, the path needs three things
-//! again and again, and they are the three verbs of [`LinearUpdater`]: the Schur complement of
-//! nodes that may touch next, adding those that did touch, and the solution on the present set.
-//! The window and the event loop of [`LoadingSolver`](crate::LoadingSolver) know nothing else, so
-//! updaters are interchangeable.
+//! With n nodes in contact and their influence matrix `C_II`, a path needs three things again and again,
+//! the three verbs of [`LinearUpdater`]: it *watches* nodes that may touch next, lets those that touched
+//! *join*, and *solves* on the contact. The path knows nothing else of an updater, and an updater nothing
+//! of windows and events: any of them serves any path.
+//!
+//! | updater | memory for n nodes in contact | |
+//! |---|---|---|
+//! | [`RecursiveCholesky`] | 4n² bytes | exact; the default |
+//! | [`MixedCholesky`] | 2n² bytes | its factor in single precision, solutions refined to double |
+//! | [`ConjugateGradient`] | in proportion to the grid | iterations by fast Fourier transform |
+//! | [`Handover`] | a budget | a factor while it fits, iterations afterwards |
+//! | [`Dense`] | 16n² bytes | for tests: assembles and factors everything anew |
 
+mod check;
 mod cholesky;
-mod columns;
 mod conjugate_gradient;
 mod dense;
-mod factor;
 mod handover;
-mod mixed;
-mod panels;
-mod precision;
-mod products;
-mod residual;
 mod schur;
-mod substitution;
-mod system;
 mod touched;
 
-pub use cholesky::RecursiveCholesky;
+pub use check::{UpdaterReport, check};
+pub use cholesky::{CholeskyTimings, MixedCholesky, RecursiveCholesky};
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
-pub use factor::CholeskyTimings;
 pub use handover::Handover;
-pub use mixed::MixedCholesky;
 pub use schur::Schur;
-pub use system::System;
 pub use touched::Touched;
 
-use crate::Error;
+use crate::contact::ContactSequence;
+use crate::{Error, Problem};
 
-/// Pressures on the contact nodes, in the order in which they touched:
-/// $p = y_1 + \delta\, y_2$ (paper, eq. 5 with $\delta$ in place of $h_0$).
+/// Pressures on the contact nodes, in the order in which they joined: `p = y₁ + δ y₂` (paper, eq. 5, with
+/// δ in place of h₀).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Solution {
-    /// $y_1 = -C_{II}^{-1} g_I$ \[Pa\].
+    /// `y₁ = −C_II⁻¹ g_I` \[Pa\].
     pub y1: Vec<f64>,
-    /// $y_2 = C_{II}^{-1} e$ \[Pa/m\], the pressure per unit of approach.
+    /// `y₂ = C_II⁻¹ e` \[Pa/m\], the pressure per unit of approach.
     pub y2: Vec<f64>,
+}
+
+/// What a path should know of an updater.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UpdaterProfile {
+    /// Whether Schur complements are exact to rounding in double precision. If they are not, solutions
+    /// must still be: the path then verifies every window before it yields its states, and takes its
+    /// sums from the solution at the window's end.
+    pub exact: bool,
+    /// What the work of a window costs.
+    pub cost: WindowCost,
 }
 
 /// What the work of a window costs, in nanoseconds: from it the path chooses how many nodes to watch.
 ///
-/// Constants and not measurements, so that the same input gives the same windows, and the same bits,
-/// on every run. A wrong one costs time and nothing else, and the optimum is flat.
+/// They are constants and not measurements, so that the same input gives the same windows, and the same
+/// bits, on every run. States do not depend on them; only time does, and not by much near the best window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowCost {
     /// A solution on n contact nodes, per n².
@@ -59,14 +68,14 @@ pub struct WindowCost {
     /// Greatest number of watched nodes, as a fraction of the contact nodes: their columns must stay
     /// small beside the factor.
     pub most_watched: f64,
-    /// Nodes that were not watched before come in multiples of this if there are more: widths that
-    /// suit the matrix product.
+    /// Nodes that were not watched before come in multiples of this if there are more: widths that suit
+    /// the matrix product.
     pub multiple: usize,
 }
 
 impl Default for WindowCost {
-    /// A factor in double precision: a solution reads its 4n² bytes, a Schur complement runs at the
-    /// speed of a matrix product, and a refresh needs the displacements of two fields.
+    /// A factor in double precision: a solution reads its 4n² bytes, a Schur complement runs at the speed
+    /// of a matrix product, and the gaps at a window's end need the displacements of two fields.
     fn default() -> Self {
         Self {
             solve: 0.3,
@@ -78,72 +87,182 @@ impl Default for WindowCost {
     }
 }
 
-/// A contact set that grows, and rarely shrinks, and the inverse of its influence matrix.
+/// A contact that grows, and rarely shrinks, and the inverse of its influence matrix.
 ///
-/// An updater starts with an empty contact set. It is told of nodes in the order in which they
-/// touch, in two stages: first they are *watched* ([`schur`](Self::schur)), then those that
-/// *touched* are committed. Between two commits the updater's own contact set does not change;
-/// nodes that touched since are passed along as [`Touched`].
+/// The path owns the order of contact and passes it along; an updater keeps whatever it needs to answer
+/// quickly. [`ContactSequence::revision`] says whether a cache still belongs to it. An updater starts with
+/// no node in contact.
+///
+/// Here is one that keeps nothing and factors the whole matrix whenever it is asked:
+///
+/// ```
+/// use asperity::contact::ContactSequence;
+/// use asperity::updater::{self, LinearUpdater, Schur, Solution, Touched};
+/// use asperity::{Boussinesq, Error, Grid, LoadingSolver, Problem, SelfAffine};
+/// use nalgebra::{DMatrix, DVector};
+///
+/// struct Plain;
+///
+/// /// C between two sets of nodes.
+/// fn influence(problem: &Problem, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+///     DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+///         problem.coefficient(rows[i], columns[j]).unwrap_or(f64::NAN)
+///     })
+/// }
+///
+/// /// C_II⁻¹ times some columns.
+/// fn solve(problem: &Problem, contact: &[usize], b: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+///     let factor = influence(problem, contact, contact).cholesky();
+///     let factor = factor.ok_or(Error::FactorizationFailed { nodes: contact.len() })?;
+///     Ok(factor.solve(&b))
+/// }
+///
+/// impl LinearUpdater for Plain {
+///     fn watch(
+///         &mut self,
+///         problem: &Problem,
+///         contact: &ContactSequence,
+///         nodes: &[usize],
+///         schur: &mut Schur,
+///     ) -> Result<(), Error> {
+///         let coupling = influence(problem, contact.order(), nodes);
+///         let solved = solve(problem, contact.order(), coupling.clone())?;
+///         schur.resize(nodes.len());
+///         let complement = influence(problem, nodes, nodes) - coupling.transpose() * &solved;
+///         schur.matrix_mut().copy_from(&complement);
+///         for (j, &node) in nodes.iter().enumerate() {
+///             let inside = contact.order().iter().zip(&solved.column(j));
+///             let explained: f64 = inside.map(|(&i, x)| problem.row_sums()[i] * x).sum();
+///             schur.row_sums_mut()[j] = problem.row_sums()[node] - explained;
+///         }
+///         Ok(())
+///     }
+///
+///     fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+///         Ok(())
+///     }
+///
+///     fn solve(
+///         &mut self,
+///         problem: &Problem,
+///         contact: &ContactSequence,
+///         count: usize,
+///         solution: &mut Solution,
+///     ) -> Result<(), Error> {
+///         let contact = &contact.order()[..count];
+///         let gap = contact.iter().map(|&node| problem.initial_gap()[node]);
+///         let rhs = [DVector::from_iterator(count, gap), DVector::from_element(count, 1.0)];
+///         let solved = solve(problem, contact, DMatrix::from_columns(&rhs))?;
+///         solution.y1 = solved.column(0).iter().map(|value| -value).collect();
+///         solution.y2 = solved.column(1).iter().copied().collect();
+///         Ok(())
+///     }
+/// }
+///
+/// # fn main() -> Result<(), Error> {
+/// let half_space = Boussinesq::new(Grid::square(16, 1e-2)?, 1.0)?;
+/// let surface = SelfAffine::new(
+///     0.8,
+///     5e-3,
+///     2.5e-3,
+///     asperity::surface::Amplitude::RmsHeight(1e-4),
+///     1,
+/// )?;
+/// // The checker first, which compares every verb with a dense solution; then a path.
+/// updater::check(&mut Plain, &Problem::new(&surface, &half_space)?)?;
+/// let path = LoadingSolver::builder(&surface, &half_space).updater(Plain).max_nodes(40).build()?;
+/// assert_eq!(path.count(), 40);
+/// # Ok(())
+/// # }
+/// ```
 pub trait LinearUpdater {
-    /// Eliminates the contact set from the system bordered by `nodes`:
+    /// Eliminates the contact I from the system bordered by the watched nodes P, none of them in contact:
     ///
-    /// $$ S = C_{PP} - C_{PI} C_{II}^{-1} C_{IP}, \qquad
-    ///    R = B_P - C_{PI} C_{II}^{-1} B_I $$
+    /// ```math
+    /// S = C_{PP} - C_{PI} C_{II}^{-1} C_{IP}, \qquad
+    /// \sigma = s_P - C_{PI} C_{II}^{-1} s_I
+    /// ```
     ///
-    /// with P the given nodes, none of them in contact, and B the right-hand sides of `system`.
-    /// Only the lower triangle of S need be written.
+    /// with the row sums s of [`Problem::row_sums`]. Only the lower triangle of S need be written.
     ///
     /// # Errors
     ///
     /// Whatever keeps the updater from answering.
-    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error>;
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error>;
 
-    /// Adds the nodes that touched, in that order. They are among the nodes of the last call of
-    /// [`schur`](Self::schur), of whose Schur complement `touched` holds the Cholesky factor.
+    /// Takes note of the nodes that joined, the last ones of `contact`. They are among the nodes of the
+    /// last call of [`watch`](Self::watch), of whose Schur complement `touched` holds the Cholesky factor.
     ///
     /// # Errors
     ///
     /// Whatever keeps the updater from growing.
-    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error>;
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error>;
 
-    /// Takes a committed node out of the contact set: those after it move up by one. No node is
-    /// watched afterwards. Called only if the pressure of a node falls to zero, which some kernels
-    /// never let happen.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotInContact`], and whatever keeps the updater from shrinking; then nothing has
-    /// changed. By default [`Error::ReleaseNotSupported`].
-    fn release(&mut self, system: &System, node: usize) -> Result<(), Error> {
-        system.check_nodes(&[node])?;
-        let (ix, iy) = system.table().grid().coordinates(node);
-        Err(Error::ReleaseNotSupported { ix, iy })
-    }
-
-    /// Solves for the first `count` nodes of the sequence that consists of the committed nodes and,
-    /// after them, those of `touched` (which are not committed yet).
+    /// Solves on the first `count` nodes of `contact`: on all of them while the path advances, on fewer
+    /// for the pressure of an earlier state. A later call must not depend on that.
     ///
     /// # Errors
     ///
     /// Whatever keeps the updater from answering.
     fn solve(
         &mut self,
-        system: &System,
-        touched: &Touched,
+        problem: &Problem,
+        contact: &ContactSequence,
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), Error>;
 
-    /// What a window costs with this updater.
-    fn window_cost(&self) -> WindowCost {
-        WindowCost::default()
+    /// Forgets the last nodes: `contact` has been cut. Called only if the end of a window contradicts its
+    /// last events, which takes a kernel whose growth is not convex or an updater that is not exact.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the updater from shrinking; by default [`Error::TruncateNotSupported`].
+    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        let _ = problem;
+        Err(Error::TruncateNotSupported {
+            nodes: contact.len(),
+        })
     }
 
-    /// Whether Schur complements are exact but for rounding in double precision. If not, solutions
-    /// and right-hand sides must still be; the path then verifies every window before it yields
-    /// its states, and takes its sums from the solution at every refresh.
-    fn is_exact(&self) -> bool {
-        true
+    /// Forgets a node that left the contact, in which it was number `position` from 0: `contact` is
+    /// without it already. No node is watched afterwards. Called only if a pressure falls to zero, which
+    /// takes a kernel of unknown growth.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the updater from shrinking; by default [`Error::ReleaseNotSupported`].
+    fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        node: usize,
+        position: usize,
+    ) -> Result<(), Error> {
+        let _ = (contact, position);
+        problem.check_nodes(&[node])?;
+        let (ix, iy) = problem.grid().coordinates(node);
+        Err(Error::ReleaseNotSupported { ix, iy })
+    }
+
+    /// How exact the updater is, and what its work costs; by default exact, at the cost of a factor in
+    /// double precision.
+    fn profile(&self) -> UpdaterProfile {
+        UpdaterProfile {
+            exact: true,
+            cost: WindowCost::default(),
+        }
     }
 
     /// Bytes this updater holds when `contact` nodes are in contact and `watched` are watched.
@@ -152,11 +271,79 @@ pub trait LinearUpdater {
         0
     }
 
-    /// Tells the updater how many bytes are left for it, before the first node is in contact. What
-    /// [`bytes`](Self::bytes) says is held to that by the path; an updater need not do anything.
-    fn set_memory_budget(&mut self, bytes: usize) {
+    /// Tells the updater how many bytes are left for it, before the first node is in contact. The path
+    /// holds what [`bytes`](Self::bytes) says to that; an updater need not do anything.
+    fn make_room(&mut self, bytes: usize) {
         let _ = bytes;
     }
+}
+
+impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        (**self).watch(problem, contact, nodes, schur)
+    }
+
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error> {
+        (**self).join(problem, contact, touched)
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        (**self).solve(problem, contact, count, solution)
+    }
+
+    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        (**self).truncate(problem, contact)
+    }
+
+    fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        node: usize,
+        position: usize,
+    ) -> Result<(), Error> {
+        (**self).release(problem, contact, node, position)
+    }
+
+    fn profile(&self) -> UpdaterProfile {
+        (**self).profile()
+    }
+
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
+        (**self).bytes(contact, watched)
+    }
+
+    fn make_room(&mut self, bytes: usize) {
+        (**self).make_room(bytes);
+    }
+}
+
+/// `Ok` if an updater that holds `held` nodes is asked about a contact of `found`.
+fn check_count(held: usize, found: usize) -> Result<(), Error> {
+    if held == found {
+        return Ok(());
+    }
+    Err(Error::LengthMismatch {
+        expected: held,
+        found,
+    })
 }
 
 /// A symmetric matrix whose rows are dominated by their diagonals.

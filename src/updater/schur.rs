@@ -4,7 +4,6 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrixView, DMatrixViewMut};
 
-use super::System;
 use crate::parallel;
 
 /// Columns that a thread changes at a time.
@@ -12,16 +11,13 @@ const TILE: usize = 144;
 /// Watched nodes from which waking threads costs less than it saves.
 const PARALLEL: usize = 400;
 
-/// What remains of the system for the watched nodes once the contact set is eliminated:
-/// the Schur complement S (k × k, lower triangle) and the reduced right-hand sides R, three for each
-/// watched node.
-///
-/// The three are $r_1$, $r_2$ (gap $= r_1 - \delta\, r_2$) and the reduced row sum.
+/// What remains of the system for k watched nodes once the contact is eliminated: the Schur complement S
+/// (k × k, lower triangle) and the reduced row sums σ.
 #[derive(Debug, Clone, Default)]
 pub struct Schur {
     size: usize,
     matrix: Vec<f64>,
-    rhs: Vec<[f64; System::RHS]>,
+    row_sums: Vec<f64>,
 }
 
 impl Schur {
@@ -35,7 +31,7 @@ impl Schur {
     pub fn resize(&mut self, size: usize) {
         self.size = size;
         self.matrix.resize(size * size, 0.0);
-        self.rhs.resize(size, [0.0; System::RHS]);
+        self.row_sums.resize(size, 0.0);
     }
 
     /// The Schur complement S, of which only the lower triangle means anything.
@@ -49,15 +45,15 @@ impl Schur {
         DMatrixViewMut::from_slice(&mut self.matrix, self.size, self.size)
     }
 
-    /// The reduced right-hand sides R, by watched node.
+    /// The reduced row sums σ, by watched node.
     #[must_use]
-    pub fn rhs(&self) -> &[[f64; System::RHS]] {
-        &self.rhs
+    pub fn row_sums(&self) -> &[f64] {
+        &self.row_sums
     }
 
-    /// The reduced right-hand sides R to write to.
-    pub fn rhs_mut(&mut self) -> &mut [[f64; System::RHS]] {
-        &mut self.rhs
+    /// The reduced row sums σ to write to.
+    pub fn row_sums_mut(&mut self) -> &mut [f64] {
+        &mut self.row_sums
     }
 
     /// The columns of S as stored.

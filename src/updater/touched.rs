@@ -1,26 +1,23 @@
 //! The nodes of the window that touched, and the Cholesky factor of their Schur complement.
 
-use super::{Schur, System};
+use super::Schur;
 use crate::Error;
 use crate::parallel::vectorized;
 
-/// The nodes of the present window that touched, in that order, with the partial Cholesky factor
-/// of the Schur complement S of the watched nodes, pivots in the same order.
+/// The watched nodes that touched, in that order, with the partial Cholesky factor of the Schur complement
+/// S, pivots in the same order.
 ///
-/// With the watched nodes i and the events t, $S = R R^T$ on the nodes that touched;
-/// [`factor`](Self::factor)`(i, t)` is $R_{it}$. Appended to the forward-substituted columns
-/// $F = L^{-1} C_{IP}$, row i of R completes the row of node i in the factor of the grown contact
-/// set if the node touched, and its forward-substituted column if it did not. This is eqs. (15)-(16)
-/// of the paper, for a block of nodes.
+/// With the watched nodes i and the events t, `S = R Rᵀ` on the nodes that touched;
+/// [`factor`](Self::factor)`(i, t)` is `R_it`. Appended to the forward-substituted columns
+/// `F = L⁻¹ C_IP`, row i of R completes the row of node i in the factor of the grown contact if the node
+/// touched, and its forward-substituted column if it did not: eqs. (15)-(16) of the paper, for a block of
+/// nodes.
 #[derive(Debug, Clone, Default)]
 pub struct Touched {
     watched: usize,
-    nodes: Vec<usize>,
     positions: Vec<usize>,
     /// R, `watched` rows, one column for each event.
     factor: Vec<f64>,
-    /// The reduced right-hand sides at the moment of each event, divided by its pivot's root.
-    rhs: Vec<[f64; System::RHS]>,
     /// Events that are subtracted from the Schur complement already.
     subtracted: usize,
 }
@@ -31,50 +28,57 @@ pub struct Touched {
 const BLOCK: usize = 32;
 
 impl Touched {
+    /// Lets the watched nodes at `positions` touch in that order, one after the other.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::FactorizationFailed`] if a pivot is not positive, and [`Error::LengthMismatch`] for a
+    /// position that is not there or comes twice.
+    pub fn of(mut schur: Schur, positions: &[usize]) -> Result<Self, Error> {
+        let mut touched = Self::default();
+        touched.reset(schur.size());
+        for &position in positions {
+            if position >= schur.size() || touched.has_touched(position) {
+                return Err(Error::LengthMismatch {
+                    expected: schur.size(),
+                    found: position,
+                });
+            }
+            let pushed = touched.push(&mut schur, position);
+            pushed.map_err(|_| Error::FactorizationFailed {
+                nodes: positions.len(),
+            })?;
+        }
+        Ok(touched)
+    }
+
     /// Number of nodes that touched.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.nodes.len()
+        self.positions.len()
     }
 
-    /// Whether no watched node has touched yet.
+    /// Whether no watched node has touched.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
+        self.positions.is_empty()
     }
 
-    /// Node indices, in the order in which they touched.
-    #[must_use]
-    pub fn nodes(&self) -> &[usize] {
-        &self.nodes
-    }
-
-    /// Their places among the watched nodes.
+    /// The places of the nodes that touched among the watched ones, in the order of touching.
     #[must_use]
     pub fn positions(&self) -> &[usize] {
         &self.positions
     }
 
-    /// The first `count` of the committed nodes and, after them, those that touched.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::LengthMismatch`] if there are fewer.
-    pub(crate) fn sequence(&self, committed: &[usize], count: usize) -> Result<Vec<usize>, Error> {
-        let expected = committed.len() + self.len();
-        if count > expected {
-            return Err(Error::LengthMismatch {
-                expected,
-                found: count,
-            });
-        }
-        let nodes = committed.iter().chain(&self.nodes);
-        Ok(nodes.copied().take(count).collect())
-    }
-
     /// Whether the watched node at `position` touched.
     pub(crate) fn has_touched(&self, position: usize) -> bool {
         self.positions.contains(&position)
+    }
+
+    /// Bytes of a Schur complement of `watched` nodes and of its factor.
+    pub(crate) fn bytes(watched: usize) -> usize {
+        let matrix = watched.saturating_mul(watched);
+        matrix.saturating_mul(2 * size_of::<f64>())
     }
 
     /// Number of watched nodes.
@@ -99,42 +103,23 @@ impl Touched {
             .unwrap_or(0.0)
     }
 
-    /// The entries that event t adds to $L^{-1} B$, for each right-hand side.
-    #[must_use]
-    pub fn rhs(&self, event: usize) -> Option<[f64; System::RHS]> {
-        self.rhs.get(event).copied()
-    }
-
     /// Forgets all events and prepares for a window of `watched` nodes.
     pub(crate) fn reset(&mut self, watched: usize) {
         self.watched = watched;
-        self.nodes.clear();
         self.positions.clear();
         self.factor.clear();
-        self.rhs.clear();
         self.subtracted = 0;
         // So that no event ever allocates.
-        self.nodes.reserve(watched);
         self.positions.reserve(watched);
-        self.rhs.reserve(watched);
         self.factor.reserve(watched * watched);
     }
 
-    /// Eliminates the node at `position`: appends its column of R.
-    ///
-    /// `reduced` are the right-hand sides of the watched nodes, from which the node is eliminated too.
-    /// Returns the entries that the event adds to $L^{-1} B$.
+    /// Eliminates the node at `position`, and returns its column of R.
     ///
     /// # Errors
     ///
     /// The pivot, if it is not positive; then nothing has changed.
-    pub(crate) fn push(
-        &mut self,
-        schur: &mut Schur,
-        node: usize,
-        position: usize,
-        reduced: &mut [[f64; System::RHS]],
-    ) -> Result<[f64; System::RHS], f64> {
+    pub(crate) fn push(&mut self, schur: &mut Schur, position: usize) -> Result<&[f64], f64> {
         let k = self.watched;
         let start = self.factor.len();
         self.factor.resize(start + k, 0.0);
@@ -154,36 +139,21 @@ impl Touched {
             *value /= root;
         }
         column[position] = root;
-        self.nodes.push(node);
         self.positions.push(position);
-        let entries = reduced[position].map(|value| value / root);
-        self.rhs.push(entries);
-        for (reduced, factor) in reduced.iter_mut().zip(&*column) {
-            for (value, entry) in reduced.iter_mut().zip(entries) {
-                *value -= factor * entry;
-            }
-        }
         if self.len() - self.subtracted == BLOCK {
             schur.add_gram(-1.0, &self.factor[self.subtracted * k..]);
             self.subtracted = self.len();
         }
-        Ok(entries)
+        Ok(&self.factor[start..])
     }
 
-    /// Forgets all but the first events, which `schur` does as well.
-    pub(crate) fn truncate(&mut self, schur: &mut Schur, events: usize) {
-        if events < self.subtracted {
-            let forgotten = events * self.watched..self.subtracted * self.watched;
-            schur.add_gram(1.0, &self.factor[forgotten]);
-            self.subtracted = events;
-        }
-        self.nodes.truncate(events);
+    /// Forgets all but the first events. The Schur complement may be that of more.
+    pub(crate) fn truncate(&mut self, events: usize) {
         self.positions.truncate(events);
-        self.rhs.truncate(events);
         self.factor.truncate(events * self.watched);
     }
 
-    /// $x \leftarrow R_{tt}^{-1} x$ on the first events.
+    /// `x ← R_tt⁻¹ x` on the first events.
     pub(crate) fn solve<const N: usize>(&self, x: &mut [[f64; N]]) {
         for t in 0..x.len() {
             let column = self.column(t);
@@ -195,21 +165,6 @@ impl Touched {
                     *value -= column[position] * here;
                 }
             }
-        }
-    }
-
-    /// $x \leftarrow R_{tt}^{-T} x$ on the first events.
-    pub(crate) fn solve_transposed<const N: usize>(&self, x: &mut [[f64; N]]) {
-        for t in (0..x.len()).rev() {
-            let column = self.column(t);
-            let (earlier, later) = x.split_at_mut(t + 1);
-            let here = &mut earlier[t];
-            for (&position, later) in self.positions[t + 1..].iter().zip(later) {
-                for (value, later) in here.iter_mut().zip(later) {
-                    *value -= column[position] * *later;
-                }
-            }
-            *here = here.map(|value| value / column[self.positions[t]]);
         }
     }
 
@@ -264,39 +219,26 @@ mod tests {
         schur
     }
 
-    fn push(touched: &mut Touched, schur: &mut Schur, positions: &[usize]) {
-        let mut reduced = [[1.0; System::RHS]; WATCHED];
-        for &position in positions {
-            touched
-                .push(schur, position, position, &mut reduced)
-                .unwrap();
+    #[test]
+    fn the_factor_is_that_of_the_schur_complement() {
+        // All positions, in an order without order.
+        let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
+        let touched = Touched::of(schur(), &order).unwrap();
+        for (last, &i) in order.iter().enumerate() {
+            for (events, &j) in order.iter().enumerate() {
+                let both = 0..=last.min(events);
+                let products = both.map(|t| touched.factor(i, t) * touched.factor(j, t));
+                // A few dozen roundings of numbers up to 400.
+                let error = products.sum::<f64>() - dominant(i, j);
+                assert!(error.abs() < 1e-12, "{i} {j} {error}");
+            }
         }
     }
 
     #[test]
-    fn the_factor_is_that_of_the_schur_complement_also_after_events_are_forgotten() {
-        // All positions, in an order without order.
-        let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
-        let other: Vec<usize> = order[..10]
-            .iter()
-            .chain(order[10..].iter().rev())
-            .copied()
-            .collect();
-        let (mut touched, mut schur) = (Touched::default(), schur());
-        touched.reset(WATCHED);
-        push(&mut touched, &mut schur, &order);
-        for (events, order) in [(WATCHED, &order), (10, &other)] {
-            touched.truncate(&mut schur, events);
-            push(&mut touched, &mut schur, &order[events..]);
-            for (last, &i) in order.iter().enumerate() {
-                for (events, &j) in order.iter().enumerate() {
-                    let both = 0..=last.min(events);
-                    let products = both.map(|t| touched.factor(i, t) * touched.factor(j, t));
-                    // A few dozen roundings of numbers up to 400.
-                    let error = products.sum::<f64>() - dominant(i, j);
-                    assert!(error.abs() < 1e-12, "{i} {j} {error}");
-                }
-            }
+    fn positions_that_cannot_be_are_refused() {
+        for positions in [vec![WATCHED], vec![3, 3]] {
+            assert!(Touched::of(schur(), &positions).is_err());
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Right-hand sides under forward substitution.
 
-use std::array;
 use std::mem;
 use std::ops::Range;
 use std::ptr;
@@ -10,9 +9,9 @@ use faer::{MatMut, MatRef, Par};
 
 use super::panels::{Panels, ROWS};
 use super::precision::Precision;
-use super::products::{add_products, subtract_transposed};
-use super::touched::Touched;
+use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
+use crate::updater::Touched;
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
 /// that there are several to share among threads: each block reads all of L.
@@ -21,7 +20,7 @@ const WIDTH: usize = 144;
 /// Columns of a block come in so many: the matrix product is slower by a fifth for other widths.
 const UNIT: usize = 48;
 
-/// The forward-substituted columns $F = L^{-1}C_{IP}$ of the watched nodes P, which grow with the
+/// The forward-substituted columns `F = L⁻¹C_IP` of the watched nodes P, which grow with the
 /// factor L.
 ///
 /// The columns come in blocks, of which the first holds those that were watched before. A block is
@@ -128,7 +127,7 @@ impl<T: Precision> Columns<T> {
     }
 
     /// Fills the columns from `first` on (the beginning of a block) with right-hand sides and solves
-    /// $L F = B$ for them. `fill(row, c, values)` writes a row of the right-hand sides from
+    /// `L F = B` for them. `fill(row, c, values)` writes a row of the right-hand sides from
     /// column `c` on.
     ///
     /// Blocks are independent, so that the result does not depend on how many threads share them.
@@ -326,44 +325,18 @@ impl<T: Precision> Columns<T> {
         self.rows = before + touched.len();
     }
 
+    /// Keeps the first `rows` rows, of the columns of nodes that did not touch.
+    pub(super) fn truncate(&mut self, rows: usize) {
+        self.rows = rows;
+        for block in &mut self.blocks {
+            block.values.truncate(rows * block.width);
+        }
+    }
+
     /// Forgets all columns, of a factor that has `rows` rows now.
     pub(super) fn forget(&mut self, rows: usize) {
         self.rows = rows;
         self.blocks.clear();
-    }
-
-    /// target −= column of `position` × values, for each (position, values).
-    pub(super) fn subtract<const N: usize>(
-        &self,
-        terms: &[(usize, [T; N])],
-        target: [&mut [T]; N],
-    ) {
-        let rows = target.iter().map(|x| x.len()).min().unwrap_or_default();
-        if terms.is_empty() || rows == 0 {
-            return;
-        }
-        let watched = self.blocks.iter().map(|block| block.width).sum();
-        let mut factors: [Vec<T>; N] = array::from_fn(|_| vec![T::default(); watched]);
-        for (position, values) in terms {
-            for (factors, value) in factors.iter_mut().zip(values) {
-                factors[*position] = *value;
-            }
-        }
-        let mut products = vec![[T::default(); N]; rows];
-        parallel::for_each_chunk(&mut products, ROWS, |chunk, products| {
-            let mut first = 0;
-            for block in &self.blocks {
-                let factors = factors.each_ref().map(|x| &x[first..][..block.width]);
-                first += block.width;
-                let values = &block.values[chunk * ROWS * block.width..];
-                add_products(values, block.width, factors, products);
-            }
-        });
-        for (i, target) in target.into_iter().enumerate() {
-            for (target, product) in target.iter_mut().zip(&products) {
-                *target -= product[i];
-            }
-        }
     }
 }
 

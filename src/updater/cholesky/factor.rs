@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 use super::columns::Columns;
 use super::panels::{Panels, Rotations};
 use super::precision::Precision;
-use super::{Schur, System, Touched};
-use crate::Error;
+use crate::contact::ContactSequence;
+use crate::updater::{Schur, Touched, check_count};
+use crate::{Error, Problem};
 
 /// Where a Cholesky updater spent its time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -24,14 +25,12 @@ pub struct CholeskyTimings {
     pub solve: Duration,
 }
 
-/// The factor $C_{II} = L L^T$ and the columns $F = L^{-1} C_{IP}$ of the watched nodes P, both
-/// divided by `scale`.
+/// The factor `C_II = L Lᵀ` and the columns `F = L⁻¹ C_IP` of the watched nodes P, both divided by
+/// `scale`.
 #[derive(Debug, Clone)]
 pub(super) struct Factor<T> {
     pub(super) panels: Panels<T>,
     pub(super) columns: Columns<T>,
-    /// Places of the contact nodes in the table of coefficients.
-    places: Vec<usize>,
     watched: Vec<usize>,
     pub(super) scale: f64,
     pub(super) timings: CholeskyTimings,
@@ -42,7 +41,6 @@ impl<T: Precision> Factor<T> {
         Self {
             panels: Panels::default(),
             columns: Columns::default(),
-            places: Vec::new(),
             watched: Vec::new(),
             scale: 1.0,
             timings: CholeskyTimings::default(),
@@ -60,16 +58,20 @@ impl<T: Precision> Factor<T> {
     /// the others cost a forward substitution.
     pub(super) fn eliminate(
         &mut self,
-        system: &System,
+        problem: &Problem,
+        contact: &ContactSequence,
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        system.check_nodes(nodes)?;
+        problem.check_nodes(nodes)?;
+        check_count(self.len(), contact.len())?;
         let start = Instant::now();
         let kept = self.watch(nodes);
-        let table = system.table();
-        let places: Vec<usize> = nodes.iter().map(|&node| table.place(node)).collect();
-        let contact = &self.places;
+        let table = problem.table();
+        let places_of = |nodes: &[usize]| -> Vec<usize> {
+            nodes.iter().map(|&node| table.place(node)).collect()
+        };
+        let (places, contact) = (places_of(nodes), places_of(contact.order()));
         let square = self.scale * self.scale;
         let unit = 1.0 / square;
         self.columns
@@ -107,14 +109,15 @@ impl<T: Precision> Factor<T> {
     }
 
     /// Adds the watched nodes that touched.
-    pub(super) fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
-        if touched.watched() != self.watched.len() {
-            return Err(Error::LengthMismatch {
-                expected: self.watched.len(),
-                found: touched.watched(),
-            });
-        }
-        system.check_nodes(touched.nodes())?;
+    pub(super) fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error> {
+        check_count(self.watched.len(), touched.watched())?;
+        check_count(self.len() + touched.len(), contact.len())?;
+        problem.check_nodes(contact.order())?;
         let start = Instant::now();
         let mut untouched: Vec<usize> = (0..self.watched.len()).collect();
         untouched.retain(|position| !touched.has_touched(*position));
@@ -124,22 +127,27 @@ impl<T: Precision> Factor<T> {
             .iter()
             .map(|&position| self.watched[position])
             .collect();
-        let table = system.table();
-        self.places
-            .extend(touched.nodes().iter().map(|&node| table.place(node)));
         self.timings.commit += start.elapsed();
         Ok(())
     }
 
-    /// Removes a node from the contact set, and forgets the watched ones. Returns what removes its
-    /// entry from $L^{-1} B$.
-    pub(super) fn release(&mut self, system: &System, node: usize) -> Result<Rotations<T>, Error> {
-        system.check_nodes(&[node])?;
+    /// Keeps the first `rows` nodes. Nodes that were watched and did not touch stay watched.
+    pub(super) fn truncate(&mut self, rows: usize) {
+        if rows < self.len() {
+            self.panels.truncate(rows);
+            self.columns.truncate(rows);
+        }
+    }
+
+    /// Removes the node at `position` from the contact, which is `contact` now, and forgets the watched
+    /// ones. Returns what removes its entry from L⁻¹B.
+    pub(super) fn release(
+        &mut self,
+        contact: &ContactSequence,
+        position: usize,
+    ) -> Result<Rotations<T>, Error> {
+        check_count(self.len(), contact.len() + 1)?;
         let start = Instant::now();
-        let place = system.table().place(node);
-        let position = self.places.iter().position(|&other| other == place);
-        let position = position.ok_or_else(|| system.not_in_contact(node))?;
-        self.places.remove(position);
         self.watched.clear();
         let rotations = self.panels.remove(position);
         self.columns.forget(self.panels.rows());
@@ -149,21 +157,7 @@ impl<T: Precision> Factor<T> {
 
     /// Bytes held with `contact` nodes in contact and `watched` watched.
     pub(super) fn bytes(contact: usize, watched: usize) -> usize {
-        Panels::<T>::bytes(contact)
-            .saturating_add(Columns::<T>::bytes(contact, watched))
-            .saturating_add(contact.saturating_mul(size_of::<usize>()))
-    }
-
-    /// `Ok` if the first `count` nodes of the committed ones and those of `touched` exist.
-    pub(super) fn check_count(&self, touched: &Touched, count: usize) -> Result<(), Error> {
-        let expected = self.len() + touched.len();
-        if count > expected {
-            return Err(Error::LengthMismatch {
-                expected,
-                found: count,
-            });
-        }
-        Ok(())
+        Panels::<T>::bytes(contact).saturating_add(Columns::<T>::bytes(contact, watched))
     }
 }
 
@@ -174,7 +168,6 @@ impl Factor<f64> {
         Factor {
             panels: self.panels.map(round),
             columns: self.columns.map(round),
-            places: self.places,
             watched: self.watched,
             scale: self.scale * scale,
             timings: self.timings,

@@ -57,6 +57,12 @@ impl<T: Precision> Panels<T> {
         }
     }
 
+    /// Keeps the first `rows` rows.
+    pub(super) fn truncate(&mut self, rows: usize) {
+        self.rows = self.rows.min(rows);
+        self.panels.truncate(self.rows.div_ceil(ROWS));
+    }
+
     /// The rows from `first` on, each up to the end of the diagonal block.
     pub(super) fn rows_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [T]> {
         let panels = self.panels.iter_mut().enumerate().skip(first / ROWS);

@@ -2,21 +2,21 @@
 
 use super::Panels;
 use crate::parallel::vectorized;
-use crate::updater::precision::Precision;
+use crate::updater::cholesky::precision::Precision;
 
 /// Rows that are rotated together, so that a rotation is one vector operation.
 const BLOCK: usize = 16;
 
 /// The plane rotations (c, s) that take a removed column of L into its place.
 #[derive(Debug)]
-pub(in crate::updater) struct Rotations<T> {
+pub(in crate::updater::cholesky) struct Rotations<T> {
     first: usize,
     rotations: Vec<(T, T)>,
 }
 
 impl<T: Precision> Rotations<T> {
     /// Removes the entry of the removed row from $x = L^{-1} b$.
-    pub(in crate::updater) fn remove<const N: usize>(&self, x: &mut Vec<[T; N]>) {
+    pub(in crate::updater::cholesky) fn remove<const N: usize>(&self, x: &mut Vec<[T; N]>) {
         if self.first >= x.len() {
             return;
         }
@@ -44,7 +44,7 @@ impl<T: Precision> Panels<T> {
     /// $L L^T + x x^T$ to be factored: one rotation for each remaining column makes x vanish
     /// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
     /// accurate as the old one. Some 3 (n − k)² flops.
-    pub(in crate::updater) fn remove(&mut self, k: usize) -> Rotations<T> {
+    pub(in crate::updater::cholesky) fn remove(&mut self, k: usize) -> Rotations<T> {
         let rows = self.rows;
         let mut rotations = Vec::with_capacity(rows.saturating_sub(k + 1));
         // Some rows side by side, from their new column k on.
@@ -90,8 +90,7 @@ impl<T: Precision> Panels<T> {
                 }
             }
         }
-        self.rows -= 1;
-        self.panels.truncate(self.rows.div_ceil(super::ROWS));
+        self.truncate(rows.saturating_sub(1));
         Rotations {
             first: k,
             rotations,

@@ -1,0 +1,91 @@
+//! Nodes that left the contact, and the contact before they did.
+
+/// A node that left the contact.
+#[derive(Debug, Clone, Copy)]
+struct Release {
+    /// The number of the event.
+    step: usize,
+    node: usize,
+    /// Where it was in the order of contact.
+    position: usize,
+}
+
+/// All nodes that left, in the order in which they did.
+#[derive(Debug, Default)]
+pub(super) struct Releases {
+    log: Vec<Release>,
+    /// From this step on, contacts are prefixes of what the updater holds.
+    prefix_since: usize,
+}
+
+impl Releases {
+    /// Number of events up to a contact of so many nodes.
+    pub(super) fn steps(&self, contact_nodes: usize) -> usize {
+        // A node that touched and left is two events, and not in contact.
+        contact_nodes + 2 * self.log.len()
+    }
+
+    /// Notes that a node left at the event number `step`.
+    pub(super) fn push(&mut self, step: usize, node: usize, position: usize) {
+        self.prefix_since = step;
+        self.log.push(Release {
+            step,
+            node,
+            position,
+        });
+    }
+
+    /// Takes back the last one; returns its place and node. The updater stays without it.
+    pub(super) fn pop(&mut self) -> Option<(usize, usize)> {
+        let last = self.log.pop()?;
+        Some((last.position, last.node))
+    }
+
+    /// Whether the contact after `step` events is a prefix of what the updater holds.
+    pub(super) fn is_prefix(&self, step: usize) -> bool {
+        step >= self.prefix_since
+    }
+
+    /// The contact after `step` events, in the order of joining, from the present one.
+    pub(super) fn contact_at(&self, present: &[usize], step: usize) -> Vec<usize> {
+        let mut contact = present.to_vec();
+        let mut last = self.steps(present.len());
+        let later = self.log.iter().rev();
+        for release in later.take_while(|release| release.step > step) {
+            // Those that touched after it.
+            contact.truncate(contact.len() + release.step - last);
+            contact.insert(release.position, release.node);
+            last = release.step - 1;
+        }
+        contact.truncate((contact.len() + step).saturating_sub(last));
+        contact
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contacts_before_releases_are_found_again() {
+        // Touch 4, 5, 6, release 5, touch 7, release 4, touch 5.
+        let mut releases = Releases::default();
+        releases.push(4, 5, 1);
+        releases.push(6, 4, 0);
+        let present = [6, 7, 5];
+        assert_eq!(releases.steps(present.len()), 7);
+        let contacts: Vec<_> = (0..=7).map(|k| releases.contact_at(&present, k)).collect();
+        let expected: [&[usize]; 8] = [
+            &[],
+            &[4],
+            &[4, 5],
+            &[4, 5, 6],
+            &[4, 6],
+            &[4, 6, 7],
+            &[6, 7],
+            &[6, 7, 5],
+        ];
+        assert_eq!(contacts, expected);
+        assert!(releases.is_prefix(6) && !releases.is_prefix(5));
+    }
+}

@@ -1,0 +1,255 @@
+//! A path under way: what its procedures share.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::front::Front;
+use super::gap_field::{self, GapField, Line};
+use super::releases::Releases;
+use super::state::{ContactEvent, LoadingState};
+use super::sum::Sum;
+use super::window::{BadPivot, Window};
+use crate::contact::ContactSequence;
+use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, Touched};
+use crate::{Error, Problem};
+
+/// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
+/// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
+/// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the
+/// influence matrix grows with the side of the grid only, so that pressures lose two or three digits.
+pub(super) const TOLERANCE: f64 = 1e-10;
+
+/// Where a path spent its time, besides its updater.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LoadingTimings {
+    /// Number of windows.
+    pub windows: usize,
+    /// Number of events that were computed and then taken back, because a state did not stand the check at
+    /// the end of its window.
+    pub taken_back: usize,
+    /// Displacements of all nodes at the ends of windows.
+    pub convolution: Duration,
+    /// Choice of the nodes to watch, once all displacements are known.
+    pub choice: Duration,
+    /// Events inside the windows.
+    pub events: Duration,
+}
+
+/// The rooms of a path: each holds one thing, and procedures go from one to the next.
+#[derive(Debug)]
+pub(super) struct Run<U> {
+    pub(super) problem: Problem,
+    pub(super) contact: ContactSequence,
+    pub(super) releases: Releases,
+    pub(super) updater: U,
+    pub(super) field: GapField,
+    pub(super) front: Front,
+    /// States that are computed and not yielded yet.
+    pub(super) queue: VecDeque<LoadingState>,
+    pub(super) memory_budget: usize,
+    pub(super) timings: LoadingTimings,
+}
+
+impl<U: LinearUpdater> Run<U> {
+    /// Number of events so far, those in the queue included.
+    pub(super) fn steps(&self) -> usize {
+        self.releases.steps(self.contact.len())
+    }
+
+    /// Makes the gap field that of the present contact.
+    pub(super) fn renew_field(&mut self) -> Result<(), Error> {
+        self.field
+            .renew(&self.problem, &self.contact, &mut self.updater)?;
+        self.timings.convolution = self.field.time();
+        Ok(())
+    }
+
+    /// Visits all gaps out of contact, and takes the mean gap from them. With `check` an overlap is an
+    /// error.
+    pub(super) fn survey(&mut self, check: bool, mut visit: impl FnMut(Line)) -> Result<(), Error> {
+        let approach = self.front.approach();
+        let least = -TOLERANCE * (self.problem.greatest_gap() + approach);
+        let (mut mean_gap, mut closing) = (Sum::default(), Sum::default());
+        for line in self.field.lines(&self.problem, &self.contact, approach) {
+            if line.gap.is_nan() {
+                return Err(self.not_finite());
+            }
+            if check && line.gap < least {
+                return Err(self.not_monotone("gap", line.node, line.gap));
+            }
+            closing.add(line.closing);
+            mean_gap.add(line.gap);
+            visit(line);
+        }
+        self.front.renew_gap(mean_gap, closing);
+        Ok(())
+    }
+
+    /// Opens a window on nodes.
+    pub(super) fn watch(
+        &mut self,
+        window: &mut Window,
+        lines: impl Iterator<Item = Line>,
+        horizon: f64,
+    ) -> Result<(), Error> {
+        let (nodes, schur) = window.open(lines, horizon);
+        self.updater
+            .watch(&self.problem, &self.contact, nodes, schur)?;
+        if schur.size() != nodes.len() {
+            return Err(Error::UpdaterMismatch {
+                quantity: "the Schur complement",
+                expected: nodes.len(),
+                found: schur.size(),
+            });
+        }
+        self.timings.windows += 1;
+        Ok(())
+    }
+
+    /// Lets the nodes of a window's events join the contact.
+    pub(super) fn join(&mut self, window: &Window) -> Result<(), Error> {
+        let before = self.contact.len();
+        let joined = window
+            .events()
+            .iter()
+            .try_for_each(|event| self.contact.push(event.node))
+            .and_then(|()| {
+                self.updater
+                    .join(&self.problem, &self.contact, window.touched())
+            });
+        if joined.is_err() {
+            self.contact.truncate(before);
+        }
+        joined
+    }
+
+    /// Cuts the contact to its first `count` nodes.
+    pub(super) fn truncate(&mut self, count: usize) -> Result<(), Error> {
+        self.contact.truncate(count);
+        self.updater.truncate(&self.problem, &self.contact)
+    }
+
+    /// Puts the state at the front into the queue, after something happened to a node there.
+    pub(super) fn enqueue(
+        &mut self,
+        step: usize,
+        event: ContactEvent,
+        node: usize,
+        contact_nodes: usize,
+    ) -> Result<(), Error> {
+        let contact = self.front.state(contact_nodes);
+        if !self.front.is_sound(&contact) {
+            return Err(Error::NotFinite { step });
+        }
+        self.queue.push_back(LoadingState {
+            step,
+            event,
+            node: self.problem.grid().coordinates(node),
+            contact,
+        });
+        Ok(())
+    }
+
+    /// Solves on the contact after `step` events, and returns it.
+    pub(super) fn solve_at(
+        &mut self,
+        step: usize,
+        solution: &mut Solution,
+    ) -> Result<Vec<usize>, Error> {
+        let nodes = self.releases.contact_at(self.contact.order(), step);
+        if self.releases.is_prefix(step) {
+            let (problem, contact) = (&self.problem, &self.contact);
+            gap_field::solve(problem, contact, nodes.len(), &mut self.updater, solution)?;
+            return Ok(nodes);
+        }
+        // Nodes of that contact have left the updater since.
+        let own = self.updater.bytes(self.contact.len(), 0);
+        let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
+        let needed = self.fixed_bytes().saturating_add(own);
+        let needed = needed.saturating_add(rebuilt);
+        if needed > self.memory_budget {
+            return Err(Error::MemoryBudget {
+                needed,
+                budget: self.memory_budget,
+                nodes_that_fit: self.contact.len(),
+            });
+        }
+        let (mut updater, contact) = RecursiveCholesky::of(&self.problem, &nodes)?;
+        updater.solve(&self.problem, &contact, nodes.len(), solution)?;
+        Ok(nodes)
+    }
+
+    /// Bytes held whatever the number of nodes in contact, in proportion to the grid.
+    pub(super) fn fixed_bytes(&self) -> usize {
+        let ranking = self.problem.grid().nodes() * size_of::<(f64, usize)>();
+        ranking + self.contact.bytes() + self.problem.bytes() + self.field.bytes()
+    }
+
+    /// The greatest window up to `size` that stays within the memory budget.
+    pub(super) fn affordable(&self, mut size: usize) -> Result<usize, Error> {
+        let (count, budget) = (self.contact.len(), self.memory_budget);
+        loop {
+            let needed = self
+                .updater
+                .bytes(count + size, size)
+                .saturating_add(Touched::bytes(size))
+                .saturating_add(self.fixed_bytes());
+            if needed <= budget {
+                return Ok(size);
+            }
+            if size <= 1 {
+                return Err(Error::MemoryBudget {
+                    needed,
+                    budget,
+                    nodes_that_fit: count,
+                });
+            }
+            size /= 2;
+        }
+    }
+
+    /// The first node in contact whose pressure at an approach is negative, relative to the greatest one,
+    /// by more than `tolerance`, or not a number.
+    pub(super) fn negative_pressure(&self, approach: f64, tolerance: f64) -> Option<(usize, f64)> {
+        let mut pressures = self.field.pressures(&self.contact, approach);
+        let greatest = pressures.clone().map(|(_, p)| p).fold(0.0, f64::max);
+        pressures.find(|(_, p)| p.is_nan() || *p < -tolerance * greatest)
+    }
+
+    /// The greatest y₂.
+    pub(super) fn greatest_rate(&self) -> f64 {
+        let rates = self.field.solution().y2.iter();
+        rates.copied().fold(0.0, f64::max)
+    }
+
+    /// That a quantity of a node has the wrong sign at the front.
+    pub(super) fn not_monotone(&self, quantity: &'static str, node: usize, value: f64) -> Error {
+        let (ix, iy) = self.problem.grid().coordinates(node);
+        Error::NotMonotone {
+            quantity,
+            ix,
+            iy,
+            approach: self.front.approach(),
+            value,
+        }
+    }
+
+    /// That a node cannot touch, in a window that began at the front.
+    pub(super) fn not_positive_definite(&self, bad: BadPivot) -> Error {
+        let (ix, iy) = self.problem.grid().coordinates(bad.node);
+        Error::NotPositiveDefinite {
+            ix,
+            iy,
+            approach: self.front.approach() + bad.time,
+            pivot: bad.pivot,
+        }
+    }
+
+    /// That the next state would not be finite.
+    pub(super) fn not_finite(&self) -> Error {
+        Error::NotFinite {
+            step: self.steps() + 1,
+        }
+    }
+}

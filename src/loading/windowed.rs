@@ -1,0 +1,275 @@
+//! Events in windows, of kernels whose contact only grows.
+
+use std::time::Instant;
+
+use super::cost::{automatic_window, watched_for};
+use super::gap_field::Line;
+use super::run::{Run, TOLERANCE};
+use super::state::ContactEvent;
+use super::window::Window;
+use crate::updater::LinearUpdater;
+use crate::{ContactGrowth, Error};
+
+/// How far pressures and gaps may lie below zero, relative to the greatest ones, for a window of an
+/// updater that is not exact to be accepted: its order of events is then right except among nodes whose
+/// contact differs in approach by some 1e-8.
+const VERIFIED: f64 = 1e-7;
+
+/// Greatest change of the approach at which a node touches, relative to it, that may rest on a Schur
+/// complement that is not exact. Only nodes between others in contact change so much; measured, the states
+/// of 256² surfaces then stay within 2e-8.
+const MOST_DRIFT: f64 = 3.0;
+
+/// What must be left of the mean gap, and of its rate, of what they were after the first event of a window
+/// that is not exact: changes carry errors of single precision, which must stay small beside the rest.
+const LEAST_LEFT: f64 = 0.9;
+
+/// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
+/// did is a lower bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
+/// smallest bound among all others.
+#[derive(Debug)]
+pub(super) struct Windowed {
+    growth: ContactGrowth,
+    /// How many nodes to watch, if the user says so.
+    size: Option<usize>,
+    window: Window,
+    /// The nodes out of contact by the time at which they would touch.
+    ranking: Vec<(f64, usize)>,
+}
+
+impl Windowed {
+    pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
+        Self {
+            growth,
+            size,
+            window: Window::default(),
+            ranking: Vec::new(),
+        }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact. Returns what went wrong
+    /// after them.
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut Run<U>,
+        most_nodes: usize,
+    ) -> Result<Option<Error>, Error> {
+        let count = run.contact.len();
+        let size = run.affordable(self.next_size(run, most_nodes))?;
+        run.renew_field()?;
+        let exact = run.updater.profile().exact;
+        if !exact {
+            let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
+            run.front.renew_load(problem, contact, field);
+        }
+        self.rank(run)?;
+        let start = Instant::now();
+        let (size, horizon) = self.choose(size, self.multiple(run));
+        run.timings.choice += start.elapsed();
+        let (problem, approach) = (&run.problem, run.front.approach());
+        let chosen: Vec<Line> = self.ranking[..size]
+            .iter()
+            .map(|&(_, node)| run.field.line(problem, node, approach))
+            .collect();
+        run.watch(&mut self.window, chosen.into_iter(), horizon)?;
+
+        let start = Instant::now();
+        let bad_pivot = self.window.play(most_nodes - count);
+        run.timings.events += start.elapsed();
+        let mut failure = bad_pivot.map(|bad| run.not_positive_definite(bad));
+        let played = self.window.events().len();
+        if played == 0 {
+            return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
+        }
+        if !exact {
+            self.window.truncate(self.trusted(run));
+        }
+        run.join(&self.window)?;
+        if !exact {
+            self.verify(run, VERIFIED, |_, events| events.div_ceil(2))?;
+        } else if self.growth == ContactGrowth::Monotone {
+            // An estimate that keeps failing must not make the search long.
+            let mut fewest = 1;
+            self.verify(run, TOLERANCE, |later, _| {
+                let dropped = later.max(fewest);
+                fewest *= 2;
+                dropped
+            })?;
+        }
+        if self.window.events().len() < played {
+            failure = None;
+        }
+        let start = Instant::now();
+        let queued = self.enqueue(run, count);
+        run.timings.events += start.elapsed();
+        Ok(queued.err().or(failure))
+    }
+
+    /// How many nodes to watch.
+    fn next_size<U: LinearUpdater>(&self, run: &Run<U>, most_nodes: usize) -> usize {
+        let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
+        let size = self.size.unwrap_or_else(|| {
+            automatic_window(count, nodes, run.updater.profile().cost)
+                .min(watched_for(most_nodes - count))
+        });
+        size.min(nodes - count)
+    }
+
+    /// Nodes that were not watched before come in multiples of this.
+    fn multiple<U: LinearUpdater>(&self, run: &Run<U>) -> usize {
+        match self.size {
+            Some(_) => 1,
+            None => run.updater.profile().cost.multiple.max(1),
+        }
+    }
+
+    /// Ranks the nodes out of contact by the time at which they would touch if no other did, after
+    /// checking that contact still grows.
+    fn rank<U: LinearUpdater>(&mut self, run: &mut Run<U>) -> Result<(), Error> {
+        let start = Instant::now();
+        let least = -TOLERANCE * run.greatest_rate();
+        let rates = run.contact.order().iter().zip(&run.field.solution().y2);
+        for (&node, &y2) in rates {
+            if y2.is_nan() || y2 < least {
+                return Err(run.not_monotone("pressure per unit of approach", node, y2));
+            }
+        }
+        self.ranking.clear();
+        self.ranking.reserve(run.problem.grid().nodes());
+        run.survey(true, |line| {
+            let time = if line.closing > 0.0 {
+                line.gap / line.closing
+            } else {
+                f64::INFINITY
+            };
+            self.ranking.push((time, line.node));
+        })?;
+        run.timings.choice += start.elapsed();
+        Ok(())
+    }
+
+    /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
+    /// number, `size` or a little less, and the horizon, the smallest time among the others.
+    fn choose(&mut self, mut size: usize, multiple: usize) -> (usize, f64) {
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut horizon = f64::INFINITY;
+        let mut among = self.ranking.len();
+        loop {
+            if size < among {
+                let ranking = &mut self.ranking[..among];
+                horizon = ranking.select_nth_unstable_by(size, order).1.0;
+            }
+            let chosen = &mut self.ranking[..size];
+            chosen.sort_unstable_by_key(|&(_, node)| node);
+            let again = |node: &usize| chosen.binary_search_by_key(node, |&(_, node)| node).is_ok();
+            let new = size - self.window.untouched().filter(again).count();
+            if new <= multiple || new.is_multiple_of(multiple) {
+                break;
+            }
+            among = size;
+            size -= new % multiple;
+        }
+        let chosen = &mut self.ranking[..size];
+        let mut front = 0;
+        // Nodes watched before keep their order, so that the updater knows them again.
+        for node in self.window.untouched() {
+            if let Ok(found) = chosen[front..].binary_search_by_key(&node, |&(_, node)| node) {
+                chosen[front..=front + found].rotate_right(1);
+                front += 1;
+            }
+        }
+        (size, horizon)
+    }
+
+    /// How many events of the window may rest on a Schur complement that is not exact.
+    fn trusted<U>(&self, run: &Run<U>) -> usize {
+        let (start, count) = (run.front.approach(), run.contact.len());
+        let mut front = run.front;
+        let mut left: Option<[f64; 2]> = None;
+        for (k, event) in self.window.events().iter().enumerate() {
+            if let Some([mean_gap, closing]) = left {
+                let ended = front.mean_gap() < LEAST_LEFT * mean_gap
+                    || front.closing() < LEAST_LEFT * closing;
+                if ended || event.drift(start) > MOST_DRIFT {
+                    return k;
+                }
+            }
+            front.advance(start + event.time);
+            front.touch(event.unit_stiffness, event.closing, count + k + 1);
+            left = left.or(Some([front.mean_gap(), front.closing()]));
+        }
+        self.window.events().len()
+    }
+
+    /// Checks the contact after the window from a solution there, and takes back its last events as long as
+    /// that contradicts them: `how_many(later, events)` of them, of which `later` come after the first
+    /// contradiction. Gaps only close, so that none has overlapped where none does at the end; and the
+    /// first event follows from a solution, and needs no check.
+    ///
+    /// The next window needs the same solution and the same displacements, and finds them.
+    fn verify<U: LinearUpdater>(
+        &mut self,
+        run: &mut Run<U>,
+        tolerance: f64,
+        mut how_many: impl FnMut(usize, usize) -> usize,
+    ) -> Result<(), Error> {
+        let start = run.front.approach();
+        while let [_, .., last] = self.window.events() {
+            let end = start + last.time;
+            run.renew_field()?;
+            let Some(until) = contradiction(run, end, tolerance) else {
+                return Ok(());
+            };
+            let events = self.window.events();
+            let later = events.iter().rev();
+            let later = later.take_while(|event| start + event.time > until).count();
+            let dropped = how_many(later, events.len()).clamp(1, events.len() - 1);
+            self.window.truncate(events.len() - dropped);
+            run.truncate(run.contact.len() - dropped)?;
+            run.timings.taken_back += dropped;
+        }
+        Ok(())
+    }
+
+    /// Turns the events of the window, which began with `count` nodes in contact, into states.
+    fn enqueue<U: LinearUpdater>(&self, run: &mut Run<U>, count: usize) -> Result<(), Error> {
+        let start = run.front.approach();
+        for (k, event) in self.window.events().iter().enumerate() {
+            let contact_nodes = count + k + 1;
+            run.front.advance(start + event.time);
+            run.front
+                .touch(event.unit_stiffness, event.closing, contact_nodes);
+            run.front.clamp_mean_gap();
+            let step = run.releases.steps(contact_nodes);
+            run.enqueue(step, ContactEvent::Touch, event.node, contact_nodes)?;
+        }
+        Ok(())
+    }
+
+    /// The path cannot go on although nodes are left: none of their gaps closes.
+    fn growth_stopped<U: LinearUpdater>(&self, run: &Run<U>) -> Error {
+        let node = self.ranking.iter().map(|&(_, node)| node).min();
+        run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+    }
+}
+
+/// Whether a pressure or a gap at an approach is negative by more than `tolerance`, relative to the greatest
+/// pressure and to the lengths of the problem. Returns the approach until which none was, as far as the
+/// rates tell.
+fn contradiction<U: LinearUpdater>(run: &Run<U>, approach: f64, tolerance: f64) -> Option<f64> {
+    if run.negative_pressure(approach, tolerance).is_some() {
+        return Some(f64::NEG_INFINITY);
+    }
+    let overlap = -tolerance * (run.problem.greatest_gap() + approach);
+    let lines = run.field.lines(&run.problem, &run.contact, approach);
+    lines
+        .filter(|line| line.gap < overlap)
+        .map(|line| {
+            if line.closing > 0.0 {
+                approach + line.gap / line.closing
+            } else {
+                f64::NEG_INFINITY
+            }
+        })
+        .reduce(f64::min)
+}

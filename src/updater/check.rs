@@ -1,0 +1,324 @@
+//! Holds an updater to what a path asks of it.
+
+use super::{Dense, LinearUpdater, Schur, Solution, Touched};
+use crate::contact::ContactSequence;
+use crate::{Error, Problem};
+
+/// Nodes that are watched at a time, of which all but the last join.
+const WATCHED: usize = 6;
+/// Most nodes that are let into contact: a dense solution for each of them takes n³ operations.
+const MOST: usize = 150;
+/// Greatest difference from a dense solution, relative to the greatest value: influence matrices of so
+/// few nodes lose some three digits.
+const TOLERANCE: f64 = 1e-9;
+/// The same for Schur complements of an updater that says it is not exact.
+const ROUNDED: f64 = 1e-3;
+
+/// What [`check`] found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct UpdaterReport {
+    /// Nodes that were in contact at the end.
+    pub contact_nodes: usize,
+    /// Greatest difference between a Schur complement and a dense one, relative to C(0, 0).
+    pub schur_error: f64,
+    /// Greatest difference between a solution and a dense one, relative to its greatest value.
+    pub solution_error: f64,
+    /// Whether the updater takes nodes back.
+    pub truncates: bool,
+    /// Whether the updater lets a node in the middle of the contact go.
+    pub releases: bool,
+}
+
+/// Goes through all verbs of an updater that has no node in contact yet, in the order in which a path
+/// would call them, and compares every answer with [`Dense`]. The updater is of no further use.
+///
+/// The contact grows by nodes in the order of their initial gaps, with windows in which some nodes are
+/// watched and do not join. See [`LinearUpdater`] for an example.
+///
+/// # Errors
+///
+/// Those of the updater; [`Error::UpdaterMismatch`] for an answer of the wrong length;
+/// [`Error::UpdaterWrong`] for one that differs from the dense answer.
+pub fn check<U: LinearUpdater + ?Sized>(
+    updater: &mut U,
+    problem: &Problem,
+) -> Result<UpdaterReport, Error> {
+    let mut nodes: Vec<usize> = (0..problem.grid().nodes()).collect();
+    let gap = problem.initial_gap();
+    nodes.sort_by(|&a, &b| gap[a].total_cmp(&gap[b]).then(a.cmp(&b)));
+    nodes.truncate(MOST);
+    let mut examiner = Examiner {
+        updater,
+        problem,
+        contact: ContactSequence::new(problem.grid()),
+        schur_error: 0.0,
+        solution_error: 0.0,
+    };
+    let mut left = &nodes[..];
+    let mut repeated = None;
+    while !left.is_empty() {
+        // The node that was watched before and did not join comes first.
+        let new = WATCHED.min(left.len());
+        let watched: Vec<usize> = repeated.into_iter().chain(left[..new].to_vec()).collect();
+        left = &left[new..];
+        repeated = examiner.window(&watched)?;
+        if !left.is_empty() {
+            examiner.solution(examiner.contact.len())?;
+        }
+    }
+    let contact_nodes = examiner.contact.len();
+    for count in [contact_nodes / 2, contact_nodes] {
+        examiner.solution(count)?;
+    }
+    let truncates = examiner.truncate(contact_nodes - contact_nodes / 3)?;
+    let releases = truncates && examiner.release()?;
+    Ok(UpdaterReport {
+        contact_nodes,
+        schur_error: examiner.schur_error,
+        solution_error: examiner.solution_error,
+        truncates,
+        releases,
+    })
+}
+
+/// An updater under examination.
+struct Examiner<'a, U: ?Sized> {
+    updater: &'a mut U,
+    problem: &'a Problem,
+    contact: ContactSequence,
+    schur_error: f64,
+    solution_error: f64,
+}
+
+impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
+    /// Watches nodes, and lets all but the last join; returns that one.
+    fn window(&mut self, watched: &[usize]) -> Result<Option<usize>, Error> {
+        let (mut schur, mut expected) = (Schur::default(), Schur::default());
+        let Self {
+            updater,
+            problem,
+            contact,
+            ..
+        } = self;
+        updater.watch(problem, contact, watched, &mut schur)?;
+        Dense.watch(problem, contact, watched, &mut expected)?;
+        check_length("the Schur complement", watched.len(), schur.size())?;
+        let exact = updater.profile().exact;
+        let tolerance = if exact { TOLERANCE } else { ROUNDED };
+        let own = problem.table().self_influence();
+        for j in 0..watched.len() {
+            for i in j..watched.len() {
+                let error = (schur.matrix()[(i, j)] - expected.matrix()[(i, j)]).abs() / own;
+                self.schur_error = self.schur_error.max(error);
+                check_error("the Schur complement", contact.len(), error, tolerance)?;
+            }
+        }
+        let sums = schur.row_sums().iter().zip(expected.row_sums());
+        let scale = greatest(problem.row_sums());
+        for (found, expected) in sums {
+            let error = (found - expected).abs() / scale;
+            check_error("the reduced row sums", contact.len(), error, TOLERANCE)?;
+        }
+        // Not in the order in which they are watched.
+        let joining = watched.len().saturating_sub(1).max(1);
+        let positions: Vec<usize> = (0..joining).rev().collect();
+        let touched = Touched::of(expected, &positions)?;
+        for &position in &positions {
+            contact.push(watched[position])?;
+        }
+        updater.join(problem, contact, &touched)?;
+        Ok(watched.get(joining).copied())
+    }
+
+    /// Solves on the first `count` nodes.
+    fn solution(&mut self, count: usize) -> Result<(), Error> {
+        let (mut found, mut expected) = (Solution::default(), Solution::default());
+        let (problem, contact) = (self.problem, &self.contact);
+        self.updater.solve(problem, contact, count, &mut found)?;
+        Dense.solve(problem, contact, count, &mut expected)?;
+        for (quantity, found, expected) in [
+            ("y1", &found.y1, &expected.y1),
+            ("y2", &found.y2, &expected.y2),
+        ] {
+            check_length(quantity, expected.len(), found.len())?;
+            let scale = greatest(expected);
+            for (found, expected) in found.iter().zip(expected) {
+                let error = (found - expected).abs() / scale;
+                self.solution_error = self.solution_error.max(error);
+                check_error(quantity, count, error, TOLERANCE)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Cuts the contact; false if the updater cannot follow.
+    fn truncate(&mut self, count: usize) -> Result<bool, Error> {
+        self.contact.truncate(count);
+        match self.updater.truncate(self.problem, &self.contact) {
+            Err(Error::TruncateNotSupported { .. }) => Ok(false),
+            done => done.and_then(|()| self.solution(count)).map(|()| true),
+        }
+    }
+
+    /// Lets the node in the middle go; false if the updater cannot follow.
+    fn release(&mut self) -> Result<bool, Error> {
+        let Some(&node) = self.contact.order().get(self.contact.len() / 2) else {
+            return Ok(true);
+        };
+        let position = self.contact.remove(node)?;
+        let (problem, contact) = (self.problem, &self.contact);
+        match self.updater.release(problem, contact, node, position) {
+            Err(Error::ReleaseNotSupported { .. }) => Ok(false),
+            done => {
+                let count = self.contact.len();
+                done.and_then(|()| self.solution(count)).map(|()| true)
+            }
+        }
+    }
+}
+
+/// The greatest absolute value, 1 if there is none.
+fn greatest(values: &[f64]) -> f64 {
+    let greatest = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    if greatest > 0.0 { greatest } else { 1.0 }
+}
+
+fn check_length(quantity: &'static str, expected: usize, found: usize) -> Result<(), Error> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(Error::UpdaterMismatch {
+        quantity,
+        expected,
+        found,
+    })
+}
+
+/// NaN is wrong as well.
+fn check_error(
+    quantity: &'static str,
+    contact_nodes: usize,
+    error: f64,
+    tolerance: f64,
+) -> Result<(), Error> {
+    if error <= tolerance {
+        return Ok(());
+    }
+    Err(Error::UpdaterWrong {
+        quantity,
+        contact_nodes,
+        error,
+        tolerance,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::updater::{ConjugateGradient, Handover, MixedCholesky, RecursiveCholesky};
+    use crate::{Boussinesq, Grid};
+
+    fn problem() -> Result<Problem, Error> {
+        let grid = Grid::new(16, 12, 1.0, 1.5)?;
+        let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+        Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)
+    }
+
+    #[test]
+    fn all_updaters_pass() -> Result<(), Error> {
+        let problem = problem()?;
+        let updaters: [(&str, Box<dyn LinearUpdater>); 6] = [
+            ("dense", Box::new(Dense)),
+            ("cholesky", Box::new(RecursiveCholesky::new())),
+            ("mixed", Box::new(MixedCholesky::single_from(0))),
+            ("mixed from 40", Box::new(MixedCholesky::single_from(40))),
+            ("iterations", Box::new(ConjugateGradient::new())),
+            ("handover", Box::new(Handover::new())),
+        ];
+        for (name, mut updater) in updaters {
+            let report = check(&mut updater, &problem)?;
+            assert!(report.truncates && report.releases, "{name}: {report:?}");
+            assert!(report.contact_nodes > 100, "{name}: {report:?}");
+        }
+        Ok(())
+    }
+
+    /// An updater that is right in all but one thing.
+    struct Lying {
+        inner: RecursiveCholesky,
+        lie: &'static str,
+    }
+
+    impl LinearUpdater for Lying {
+        fn watch(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+            schur: &mut Schur,
+        ) -> Result<(), Error> {
+            self.inner.watch(problem, contact, nodes, schur)?;
+            match self.lie {
+                "matrix" => schur.matrix_mut()[(0, 0)] *= 1.0 + 1e-6,
+                "row sums" => schur.row_sums_mut()[0] *= 2.0,
+                "size" => schur.resize(nodes.len() + 1),
+                _ => {}
+            }
+            Ok(())
+        }
+
+        fn join(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            touched: &Touched,
+        ) -> Result<(), Error> {
+            self.inner.join(problem, contact, touched)
+        }
+
+        fn solve(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            count: usize,
+            solution: &mut Solution,
+        ) -> Result<(), Error> {
+            self.inner.solve(problem, contact, count, solution)?;
+            match self.lie {
+                "y1" => solution.y1[0] = f64::NAN,
+                "y2" => solution.y2.reverse(),
+                "length" => solution.y2.clear(),
+                _ => {}
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn lies_are_found() -> Result<(), Error> {
+        let problem = problem()?;
+        let checked = |lie| {
+            let inner = RecursiveCholesky::new();
+            check(&mut Lying { inner, lie }, &problem)
+        };
+        for lie in ["matrix", "row sums", "y1", "y2"] {
+            let found = checked(lie);
+            assert!(
+                matches!(found, Err(Error::UpdaterWrong { .. })),
+                "{lie}: {found:?}"
+            );
+        }
+        for lie in ["size", "length"] {
+            let found = checked(lie);
+            assert!(
+                matches!(found, Err(Error::UpdaterMismatch { .. })),
+                "{lie}: {found:?}"
+            );
+        }
+        let honest = checked("nothing")?;
+        assert!(!honest.truncates && !honest.releases);
+        Ok(())
+    }
+}

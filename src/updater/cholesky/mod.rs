@@ -1,0 +1,190 @@
+//! The recursive Cholesky factorisation.
+
+mod columns;
+mod factor;
+mod mixed;
+mod panels;
+mod precision;
+mod products;
+mod refinement;
+mod substitution;
+
+pub use factor::CholeskyTimings;
+pub use mixed::MixedCholesky;
+
+use std::time::Instant;
+
+use super::{LinearUpdater, Schur, Solution, Touched, check_count};
+use crate::contact::ContactSequence;
+use crate::{Error, Problem, parallel};
+use factor::Factor;
+use panels::ROWS;
+
+/// The Cholesky factor of the contact's influence matrix, grown by one row for each node that touches
+/// (paper, eqs. 14-19), in blocks.
+///
+/// The factor `C_II = L Lᵀ` is stored as its lower half, 4n² bytes for n nodes. With it grow the
+/// forward-substituted right-hand sides `L⁻¹B` and the columns `F = L⁻¹C_IP` of the watched nodes P, so
+/// that
+///
+/// * the Schur complement is `C_PP − FᵀF`, and only nodes that were not watched before cost a forward
+///   substitution (n² flops each);
+/// * a node that touches has its row of L ready, `[F_jᵀ, …]`: the paper's lⁿ (eq. 16);
+/// * a solution costs one backward substitution (eq. 17).
+///
+/// [`timings`](Self::timings) says where the time went.
+#[derive(Debug, Clone)]
+pub struct RecursiveCholesky {
+    factor: Factor<f64>,
+    /// L⁻¹B, row by row.
+    border: Vec<[f64; Problem::RHS]>,
+    /// Reduced right-hand sides of the watched nodes.
+    reduced: Vec<[f64; Problem::RHS]>,
+}
+
+impl Default for RecursiveCholesky {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl RecursiveCholesky {
+    /// No node in contact.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            factor: Factor::new(),
+            border: Vec::new(),
+            reduced: Vec::new(),
+        }
+    }
+
+    /// The same with a factor in single precision: half the memory, twice the speed; see
+    /// [`MixedCholesky`] for what remains exact.
+    #[must_use]
+    pub fn mixed() -> MixedCholesky {
+        MixedCholesky::new()
+    }
+
+    /// The factor of a contact that is known as a whole, and the contact.
+    pub(crate) fn of(problem: &Problem, nodes: &[usize]) -> Result<(Self, ContactSequence), Error> {
+        let mut updater = Self::new();
+        let mut contact = ContactSequence::new(problem.grid());
+        for block in nodes.chunks(ROWS) {
+            let mut schur = Schur::default();
+            updater.watch(problem, &contact, block, &mut schur)?;
+            let positions: Vec<usize> = (0..block.len()).collect();
+            let touched = Touched::of(schur, &positions)?;
+            for &node in block {
+                contact.push(node)?;
+            }
+            updater.join(problem, &contact, &touched)?;
+        }
+        Ok((updater, contact))
+    }
+
+    /// Bytes held at most while [`Self::of`] factors `contact` nodes.
+    pub(crate) fn bytes_of(contact: usize) -> usize {
+        let updater = Self::new().bytes(contact, ROWS);
+        updater.saturating_add(Touched::bytes(ROWS))
+    }
+
+    /// Where the time went so far.
+    #[must_use]
+    pub fn timings(&self) -> CholeskyTimings {
+        self.factor.timings
+    }
+}
+
+impl LinearUpdater for RecursiveCholesky {
+    /// Nodes that were watched before are recognised if they come first and in the same order;
+    /// only the others cost a forward substitution.
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.factor.eliminate(problem, contact, nodes, schur)?;
+        let start = Instant::now();
+        self.reduced.clear();
+        self.reduced
+            .extend(nodes.iter().map(|&node| problem.rhs(node)));
+        let columns = &self.factor.columns;
+        columns.subtract_products(&self.border, &mut self.reduced);
+        for (sum, [_, _, reduced]) in schur.row_sums_mut().iter_mut().zip(&self.reduced) {
+            *sum = *reduced;
+        }
+        self.factor.timings.schur += start.elapsed();
+        Ok(())
+    }
+
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error> {
+        self.factor.join(problem, contact, touched)?;
+        let positions = touched.positions().iter();
+        let mut rows: Vec<_> = positions
+            .filter_map(|&position| self.reduced.get(position).copied())
+            .collect();
+        touched.solve(&mut rows);
+        self.border.append(&mut rows);
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        _problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        check_count(self.factor.len(), contact.len())?;
+        let start = Instant::now();
+        let Some(border) = self.border.get(..count) else {
+            return check_count(self.border.len(), count);
+        };
+        let Solution { y1, y2 } = solution;
+        for (y, rhs) in [(&mut *y1, 0), (&mut *y2, 1)] {
+            y.clear();
+            y.extend(border.iter().map(|values| values[rhs]));
+        }
+        let panels = &self.factor.panels;
+        parallel::inside(|| panels.solve_transposed([&mut y1[..], &mut y2[..]]));
+        for value in y1 {
+            *value = -*value;
+        }
+        self.factor.timings.solve += start.elapsed();
+        Ok(())
+    }
+
+    fn truncate(&mut self, _problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        self.factor.truncate(contact.len());
+        self.border.truncate(contact.len());
+        Ok(())
+    }
+
+    /// The rows of later nodes are rotated into place, n² of them at most: much less than a new factor,
+    /// and as accurate.
+    fn release(
+        &mut self,
+        _problem: &Problem,
+        contact: &ContactSequence,
+        _node: usize,
+        position: usize,
+    ) -> Result<(), Error> {
+        let rotations = self.factor.release(contact, position)?;
+        rotations.remove(&mut self.border);
+        Ok(())
+    }
+
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
+        let rows = contact.saturating_add(watched);
+        Factor::<f64>::bytes(contact, watched)
+            .saturating_add(rows.saturating_mul(size_of::<[f64; Problem::RHS]>()))
+    }
+}
