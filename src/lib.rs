@@ -28,7 +28,8 @@ pub use error::Error;
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use grid::Grid;
 pub use kernel::{
-    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
+    PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, ContactState, LoadingSolver};
 pub use surface::{HeightMap, SelfAffine, Surface};
