@@ -2,7 +2,7 @@
 
 use crate::Error;
 
-/// Plane-strain modulus of one body against a rigid one, $E^* = E / (1 - \nu^2)$ \[Pa\].
+/// Plane-strain modulus of one body against a rigid one, $`E^* = E / (1 - \nu^2)`$ \[Pa\].
 ///
 /// # Errors
 ///
@@ -23,7 +23,7 @@ pub fn plane_strain_modulus(youngs_modulus: f64, poissons_ratio: f64) -> Result<
 }
 
 /// Composite modulus of two bodies, each given by (E, ν):
-/// $1/E^* = (1-\nu_1^2)/E_1 + (1-\nu_2^2)/E_2$ \[Pa\].
+/// `1/E* = (1-ν₁²)/E₁ + (1-ν₂²)/E₂` \[Pa\].
 ///
 /// No factor 2: the E′ of elastohydrodynamics is 2 E*.
 ///

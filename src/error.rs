@@ -1,5 +1,7 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 /// What went wrong, with the numbers that say so.
@@ -168,6 +170,48 @@ pub enum Error {
         image_dj: isize,
         /// The coefficient there.
         repeated: f64,
+    },
+
+    /// The symbol of a kernel is not positive and finite: no elastic body answers a wave like this.
+    #[error("the symbol at the wavevector {q:?} rad/m is {value}, not positive and finite")]
+    SymbolNotPositive {
+        /// Wavevector along x and y \[rad/m\].
+        q: (f64, f64),
+        /// The symbol \[m/Pa\].
+        value: f64,
+    },
+
+    /// Maxwell-Betti reciprocity is broken: the symbol at q differs from that at −q.
+    #[error(
+        "the symbols at the wavevector {q:?} rad/m and at its opposite differ: \
+         {value} and {opposite}"
+    )]
+    SymbolNotEven {
+        /// Wavevector along x and y \[rad/m\].
+        q: (f64, f64),
+        /// The symbol there \[m/Pa\].
+        value: f64,
+        /// The symbol at -q \[m/Pa\].
+        opposite: f64,
+    },
+
+    /// A kernel does not keep a promise, as [`kernel::check`](crate::kernel::check()) has found.
+    #[error(
+        "the kernel is not what it promises to be, {promise}: with {} nodes in contact the \
+         {quantity} at node {node:?} is {value}",
+        contact.len()
+    )]
+    BrokenPromise {
+        /// The promise.
+        promise: &'static str,
+        /// What has the wrong sign.
+        quantity: &'static str,
+        /// Indices of the nodes in contact, as by [`Grid::coordinates`](crate::Grid::coordinates).
+        contact: Vec<usize>,
+        /// The node at which it shows, (ix, iy).
+        node: (usize, usize),
+        /// The offending value.
+        value: f64,
     },
 
     /// A fraction of the nominal area is smaller than a node.
@@ -380,12 +424,19 @@ pub enum Error {
     },
 
     /// A file could not be read or written.
-    #[error("input or output failed")]
-    Io(#[from] std::io::Error),
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
 
-    /// A `.npy` file holds something that is not a height map.
-    #[error("not a height map: {reason}")]
+    /// A file holds something that is not a height map in NumPy's `.npy` format.
+    #[error("{} is not a height map: {reason}", path.display())]
     BadNpy {
+        /// The file.
+        path: PathBuf,
         /// What was found, and what would have been accepted.
         reason: String,
     },

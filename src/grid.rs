@@ -5,9 +5,9 @@ use crate::Error;
 /// An nx × ny grid of nodes, each at the centre of a cell of dx × dy.
 ///
 /// Node (ix, iy) sits at x = (ix + ½) dx, y = (iy + ½) dy; the nominal area is (nx dx) × (ny dy),
-/// so the spacing is side / nodes, without an end point. Its index is `ix + nx * iy`, which is
-/// also the place of element `[(ix, iy)]` in the storage of a nalgebra `DMatrix` with nx rows:
-/// x runs along the rows of every field of this crate.
+/// so the spacing is side / nodes, without an end point. The index of a node is `ix + nx * iy`, which
+/// is also the place of element `[(ix, iy)]` in the storage of a nalgebra `DMatrix`. In every field of
+/// this crate x is the first index; an image `[row, column]` must be transposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     nx: usize,
@@ -139,9 +139,14 @@ impl Grid {
         ((ix as f64 + 0.5) * self.dx, (iy as f64 + 0.5) * self.dy)
     }
 
-    /// Index of node (ix, iy): its place in the storage of a field.
+    /// Index of node (ix, iy), its place in the storage of a field; `None` if it lies outside.
     #[must_use]
-    pub fn index(&self, ix: usize, iy: usize) -> usize {
+    pub fn node(&self, ix: usize, iy: usize) -> Option<usize> {
+        (ix < self.nx && iy < self.ny).then(|| self.index(ix, iy))
+    }
+
+    /// [`Grid::node`] of a node that is known to be on the grid.
+    pub(crate) fn index(&self, ix: usize, iy: usize) -> usize {
         ix + self.nx * iy
     }
 
@@ -151,11 +156,13 @@ impl Grid {
         (node % self.nx, node / self.nx)
     }
 
-    /// Number of nodes in contact that an area fraction (above 0, at most 1) means: as many as fit.
+    /// The number of nodes whose cells make up at most `fraction` (above 0, up to 1) of the nominal
+    /// area: ⌊fraction M⌋, where 0.1 of 10 nodes is one node whatever the last bit of the product.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`], and [`Error::LessThanOneNode`].
+    /// [`Error::OutOfRange`] for a fraction that is not above 0 and at most 1, and
+    /// [`Error::LessThanOneNode`] for one that is smaller than 1/M.
     pub fn nodes_in(&self, fraction: f64) -> Result<usize, Error> {
         if !(fraction > 0.0 && fraction <= 1.0) {
             return Err(Error::OutOfRange {
@@ -190,5 +197,58 @@ impl Grid {
                 found,
             })
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_node_is_where_its_index_says() -> Result<(), Error> {
+        let grid = Grid::new(3, 4, 1.0, 1.0)?;
+        for node in 0..grid.nodes() {
+            let (ix, iy) = grid.coordinates(node);
+            assert_eq!(grid.node(ix, iy), Some(node));
+        }
+        for (ix, iy) in [(3, 0), (0, 4), (3, usize::MAX), (usize::MAX, usize::MAX)] {
+            assert_eq!(grid.node(ix, iy), None);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_fraction_of_k_nodes_is_k_nodes() -> Result<(), Error> {
+        for (nx, ny) in [(1, 1), (10, 1), (7, 7), (49, 3), (1000, 999)] {
+            let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+            let all = grid.nodes();
+            for k in (1..=all).step_by(1 + all / 1000) {
+                assert_eq!(grid.nodes_in(k as f64 / all as f64)?, k);
+                // In two steps, and a little more and less than k nodes.
+                assert_eq!(grid.nodes_in(k as f64 * (1.0 / all as f64))?, k);
+                assert_eq!(grid.nodes_in(((k as f64 + 0.9) / all as f64).min(1.0))?, k);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn fractions_without_a_node_are_refused() -> Result<(), Error> {
+        let grid = Grid::new(10, 10, 1.0, 1.0)?;
+        for fraction in [0.0, -0.1, 1.0 + 1e-12, f64::NAN, f64::INFINITY] {
+            let refused = grid.nodes_in(fraction);
+            assert!(
+                matches!(refused, Err(Error::OutOfRange { .. })),
+                "{fraction}"
+            );
+        }
+        for fraction in [0.0099, 1e-300] {
+            let refused = grid.nodes_in(fraction);
+            assert!(matches!(
+                refused,
+                Err(Error::LessThanOneNode { least: 0.01, .. })
+            ));
+        }
+        Ok(())
     }
 }

@@ -30,7 +30,8 @@ pub use error::Error;
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use grid::Grid;
 pub use kernel::{
-    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, PeriodicBoussinesq, Spectral,
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
+    PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;

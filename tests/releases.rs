@@ -109,7 +109,7 @@ impl Table {
         updater: U,
     ) -> LoadingSolver<HeightMap, Self, U> {
         let (nx, ny) = self.grid.shape();
-        let heights = DMatrix::from_fn(nx, ny, |ix, iy| -gaps[self.grid.index(ix, iy)]);
+        let heights = DMatrix::from_fn(nx, ny, |ix, iy| -gaps[self.grid.node(ix, iy).unwrap()]);
         LoadingSolver::builder(HeightMap::new(heights).unwrap(), self.clone())
             .updater(updater)
             .build()
@@ -215,7 +215,7 @@ fn check<U: LinearUpdater>(
     };
     while let Some(state) = path.next() {
         let state = state.unwrap();
-        let node = kernel.grid.index(state.node.0, state.node.1);
+        let node = kernel.grid.node(state.node.0, state.node.1).unwrap();
         match state.event {
             ContactEvent::Touch => assert!(contact.insert(node), "{state:?}"),
             ContactEvent::Release => assert!(contact.remove(&node), "{state:?}"),
@@ -577,7 +577,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
         let matrix = kernel.matrix();
         let mut order = Vec::new();
         let monotone = expected.iter().all(|state| {
-            order.push(kernel.grid.index(state.node.0, state.node.1));
+            order.push(kernel.grid.node(state.node.0, state.node.1).unwrap());
             let own = restrict(&matrix, &order).cholesky();
             let y2 = own.map(|own| own.solve(&DVector::from_element(order.len(), 1.0)));
             let rates = y2.map(|y2| {
@@ -597,7 +597,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
         }
         kernel.growth = ContactGrowth::Monotone;
         for window in [None, Some(1), Some(3), Some(8)] {
-            let heights = DMatrix::from_fn(6, 4, |ix, iy| -gaps[kernel.grid.index(ix, iy)]);
+            let heights = DMatrix::from_fn(6, 4, |ix, iy| -gaps[kernel.grid.node(ix, iy).unwrap()]);
             let builder = LoadingSolver::builder(HeightMap::new(heights).unwrap(), &kernel);
             let builder = match window {
                 Some(size) => builder.window_size(size),

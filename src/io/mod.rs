@@ -1,7 +1,5 @@
-//! Files.
+//! Files of heights and other fields.
 
-#[cfg(feature = "npy")]
 mod npy;
 
-#[cfg(feature = "npy")]
 pub use npy::{read_npy, write_npy};

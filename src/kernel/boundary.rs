@@ -2,18 +2,17 @@
 
 /// What surrounds the grid: nothing, or itself.
 ///
-/// It is a property of the kernel, which alone knows how far a displacement reaches, and it is
-/// never assumed: every [`InfluenceKernel`](super::InfluenceKernel) states it.
+/// It belongs to the kernel, which alone knows how far a displacement reaches, and it has no default:
+/// every [`InfluenceKernel`](super::InfluenceKernel) states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Boundary {
     /// The grid lies on an unbounded half-space without pressure outside; the displacement at
     /// infinity is zero, and the approach is measured from there.
     Free,
     /// Surface, pressure and displacement repeat with the sides of the grid, and the coefficients
-    /// with its nodes: $C(d_i \pm n_x, d_j) = C(d_i, d_j \pm n_y) = C(d_i, d_j)$.
+    /// with its nodes: `C(di ± nx, dj) = C(di, dj ± ny) = C(di, dj)`.
     ///
-    /// The mean displacement of a periodic half-space under a net load is arbitrary (it grows
-    /// without bound with the depth from which it is counted). A kernel settles it by its *gauge*,
-    /// see [`PeriodicBoussinesq`](super::PeriodicBoussinesq).
+    /// The mean displacement of a periodic half-space under a net load is arbitrary, that of a layer
+    /// on a rigid base is not: see [`MeanDisplacement`](super::MeanDisplacement).
     Periodic,
 }

@@ -3,21 +3,22 @@
 /// How the contact changes while the approach grows, as far as it is known of a kernel for *every*
 /// contact set I that can occur.
 ///
-/// With $y_2 = C_{II}^{-1} e$ the growth of pressure and $r_2 = 1 - C_{:,I}\, y_2$ the rate at which
-/// gaps close, each level promises what those before it do, and makes long paths cheaper.
+/// Two rates say it: `y₂ = C_II⁻¹ e`, the growth of the pressures with the approach, and
+/// `r₂ = 1 − C_:I y₂`, the rate at which the gaps close. Each level promises what those before it do,
+/// and makes long paths cheaper. [`check`](super::check()) tests a promise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum ContactGrowth {
-    /// Nothing is known: pressures may fall, and nodes leave the contact. A path finds every event,
+    /// Nothing is known: pressures may fall, and nodes may leave the contact. A path finds every event,
     /// touch or release, from a solution of its own.
     #[default]
     Unknown,
-    /// $y_2 \ge 0$ and $r_2 \ge 0$: no node ever leaves the contact, and no gap opens; but a gap may
-    /// close the faster the more other nodes are in contact. Many events are computed together, and
-    /// given up from the first one on that a gap contradicts afterwards.
+    /// `y₂ ≥ 0` and `r₂ ≥ 0`: no node ever leaves the contact, and no gap opens. But nodes that join
+    /// may make another gap close faster. A path therefore computes many events together, and gives
+    /// up those after the first one that a gap contradicts.
     Monotone,
-    /// Moreover gaps are convex in the approach: each closes the slower the more others are in
-    /// contact. It holds if the influence matrix is an inverse M-matrix (no off-diagonal of the
-    /// inverse positive, no row sum negative), as Love's is. Many events are computed together, and
-    /// need no check.
+    /// Moreover gaps are convex in the approach: nodes that join only make the others close more
+    /// slowly. It holds if the influence matrix is an inverse M-matrix (no off-diagonal of the inverse
+    /// positive, no row sum negative), as Love's is. A path computes many events together, and need not
+    /// check them.
     Convex,
 }

@@ -5,10 +5,12 @@ use crate::Error;
 
 /// Laws of contact area against load for a randomly rough surface of large nominal area.
 ///
-/// With the root-mean-square gradient $h' = \sqrt{\langle |\nabla h|^2 \rangle}$ of the surface (Sdq; of both
-/// directions together, $\sqrt2$ times that of a profile) every one of them is a function of
-/// $\bar p / E^\ast h'$ alone, and at light load a straight line of slope $\kappa$:
-/// $$\frac{A}{A_0} = \kappa \frac{\bar p}{E^\ast h'}$$
+/// With the root-mean-square gradient $`h' = \sqrt{\langle |\nabla h|^2 \rangle}`$ of the surface (Sdq; of both
+/// directions together, $`\sqrt2`$ times that of a profile) every one of them is a function of
+/// $`\bar p / (E^\ast h')`$ alone, and at light load a straight line of slope `κ`:
+/// ```math
+/// \frac{A}{A_0} = \kappa \frac{\bar p}{E^\ast h'}
+/// ```
 /// The theories are for surfaces without an edge, Gaussian and isotropic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaLoadLaw {
@@ -17,13 +19,13 @@ pub struct AreaLoadLaw {
 }
 
 impl AreaLoadLaw {
-    /// $\kappa = \sqrt{2\pi}$ of the asperity theory of Bush, Gibson & Thomas, Wear 35 (1975) 87.
+    /// $`\kappa = \sqrt{2\pi}`$ of the asperity theory of Bush, Gibson & Thomas, Wear 35 (1975) 87.
     pub const BUSH_GIBSON_THOMAS: f64 = 2.506_628_274_631_000_7;
 
-    /// $\kappa = \sqrt{8/\pi}$ of Persson's theory at light load, J. Chem. Phys. 115 (2001) 3840.
+    /// $`\kappa = \sqrt{8/\pi}`$ of Persson's theory at light load, J. Chem. Phys. 115 (2001) 3840.
     pub const PERSSON: f64 = 1.595_769_121_605_731;
 
-    /// $\kappa = 2$: finite-element results of Hyun, Pei, Molinari & Robbins, Phys. Rev. E 70 (2004)
+    /// `κ = 2`: finite-element results of Hyun, Pei, Molinari & Robbins, Phys. Rev. E 70 (2004)
     /// 026117, rounded as in Zhang, Zhang & Jin, Friction 8 (2020) 970.
     pub const HYUN: f64 = 2.0;
 
@@ -57,10 +59,10 @@ impl AreaLoadLaw {
         positive_part(mean_pressure) / (self.e_star * self.rms_gradient)
     }
 
-    /// Contact area over nominal area, $\kappa \bar p / E^\ast h'$, but at most 1.
+    /// Contact area over nominal area, $`\kappa \bar p / (E^\ast h')`$, but at most 1.
     ///
     /// `kappa` is one of the constants of this type or a number of the caller's. The line is meant
-    /// for light loads, $A/A_0$ up to about 0.1.
+    /// for light loads, `A/A₀` up to about 0.1.
     #[must_use]
     pub fn proportional(&self, kappa: f64, mean_pressure: f64) -> f64 {
         let fraction = positive_part(kappa) * self.reduced(mean_pressure);
@@ -68,7 +70,7 @@ impl AreaLoadLaw {
     }
 
     /// Contact area over nominal area at any load, Persson's
-    /// $\operatorname{erf}(\sqrt2 \bar p / E^\ast h')$.
+    /// $`\operatorname{erf}(\sqrt2 \bar p / (E^\ast h'))`$.
     ///
     /// Persson, J. Chem. Phys. 115 (2001) 3840, in the form of Manners & Greenwood, Wear 261 (2006) 600.
     #[must_use]

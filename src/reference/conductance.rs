@@ -3,10 +3,12 @@
 use crate::Error;
 
 /// Electrical conductance of a contact, from its stiffness:
-/// $$\frac{1}{R} = \frac{2}{\rho E^\ast} \frac{\mathrm{d}W}{\mathrm{d}\delta}$$
+/// ```math
+/// \frac{1}{R} = \frac{2}{\rho E^\ast} \frac{\mathrm{d}W}{\mathrm{d}\delta}
+/// ```
 ///
-/// `contact_stiffness` is $\mathrm{d}W/\mathrm{d}\delta$ \[N/m\] and `e_star` the composite modulus
-/// \[Pa\]; `resistivity` is $\rho = \rho_1 + \rho_2$, the *sum* over both bodies \[Ω m\]. The result \[S\] is
+/// `contact_stiffness` is `dW/dδ` \[N/m\] and `e_star` the composite modulus
+/// \[Pa\]; `resistivity` is `ρ = ρ₁ + ρ₂`, the *sum* over both bodies \[Ω m\]. The result \[S\] is
 /// that of the constriction alone, between half-spaces without films, at any shape of contact: the
 /// potential under a current and the displacement under a further load solve the same problem.
 /// With thermal resistivities \[m K/W\] the result is the thermal conductance \[W/K\]. A stiffness per

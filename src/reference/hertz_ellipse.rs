@@ -5,13 +5,15 @@ use super::positive_part;
 use crate::Error;
 use std::f64::consts::PI;
 
-/// Hertz contact of the elliptic paraboloid $g(x,y) = x^2/2R_x + y^2/2R_y$.
+/// Hertz contact of the elliptic paraboloid $`g(x,y) = x^2/(2R_x) + y^2/(2R_y)`$.
 ///
 /// The contact is an ellipse, longer along the larger radius, whose axis ratio
-/// $b/a = \sqrt{1-e^2}$ depends on the radii alone:
-/// $$\frac{R_{\min}}{R_{\max}} = \frac{b^2}{a^2}
-///   \frac{K(e) - E(e)}{E(e) - (b^2/a^2) K(e)}$$
-/// with the complete elliptic integrals of modulus $e$. Equal radii give [`HertzSphere`](super::HertzSphere).
+/// $`b/a = \sqrt{1-e^2}`$ depends on the radii alone:
+/// ```math
+/// \frac{R_{\min}}{R_{\max}} = \frac{b^2}{a^2}
+///   \frac{K(e) - E(e)}{E(e) - (b^2/a^2) K(e)}
+/// ```
+/// with the complete elliptic integrals of modulus `e`. Equal radii give [`HertzSphere`](super::HertzSphere).
 ///
 /// Johnson, *Contact Mechanics*, §4.2(b).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,13 +84,13 @@ impl HertzEllipse {
         self.e_star
     }
 
-    /// Shorter over longer semi-axis of the contact, $b/a$: the same at every load.
+    /// Shorter over longer semi-axis of the contact, `b/a`: the same at every load.
     #[must_use]
     pub fn axis_ratio(&self) -> f64 {
         self.axis_ratio
     }
 
-    /// Eccentricity of the contact, $e = \sqrt{1 - b^2/a^2}$.
+    /// Eccentricity of the contact, $`e = \sqrt{1 - b^2/a^2}`$.
     #[must_use]
     pub fn eccentricity(&self) -> f64 {
         self.eccentricity
@@ -105,7 +107,9 @@ impl HertzEllipse {
     }
 
     /// Semi-axes of the contact along x and along y \[m\]; the shorter one is
-    /// $$b = \sqrt{\frac{2 \delta}{1/R_x + 1/R_y} \frac{E(e)}{K(e)}}$$
+    /// ```math
+    /// b = \sqrt{\frac{2 \delta}{1/R_x + 1/R_y} \frac{E(e)}{K(e)}}
+    /// ```
     #[must_use]
     pub fn semi_axes(&self, approach: f64) -> (f64, f64) {
         let minor = self.minor_semi_axis(approach);
@@ -117,27 +121,27 @@ impl HertzEllipse {
         }
     }
 
-    /// Contact area $\pi a b$ \[m²\].
+    /// Contact area `πab` \[m²\].
     #[must_use]
     pub fn contact_area(&self, approach: f64) -> f64 {
         let (along_x, along_y) = self.semi_axes(approach);
         PI * along_x * along_y
     }
 
-    /// Pressure at the centre, $p_0 = E^\ast \delta / b K(e)$ \[Pa\].
+    /// Pressure at the centre, $`p_0 = E^\ast \delta / (b K(e))`$ \[Pa\].
     #[must_use]
     pub fn max_pressure(&self, approach: f64) -> f64 {
         // With δ eliminated in favour of b, nothing is divided by zero at first touch.
         self.e_star * self.curvature() * self.minor_semi_axis(approach) / self.second
     }
 
-    /// Mean pressure over the contact, $\frac23 p_0$ \[Pa\].
+    /// Mean pressure over the contact, $`\frac23 p_0`$ \[Pa\].
     #[must_use]
     pub fn mean_pressure(&self, approach: f64) -> f64 {
         2.0 / 3.0 * self.max_pressure(approach)
     }
 
-    /// Load $W = \frac23 \pi a b p_0$, which grows as $\delta^{3/2}$ \[N\].
+    /// Load $`W = \frac23 \pi a b p_0`$, which grows as $`\delta^{3/2}`$ \[N\].
     #[must_use]
     pub fn load(&self, approach: f64) -> f64 {
         self.mean_pressure(approach) * self.contact_area(approach)
@@ -153,21 +157,21 @@ impl HertzEllipse {
         minor * minor * self.curvature() * self.first / self.second
     }
 
-    /// Contact stiffness $\mathrm{d}W/\mathrm{d}\delta = \frac32 W/\delta = \pi E^\ast a / K(e)$
+    /// Contact stiffness $`\mathrm{d}W/\mathrm{d}\delta = \frac32 W/\delta = \pi E^\ast a / K(e)`$
     /// \[N/m\].
     #[must_use]
     pub fn contact_stiffness(&self, approach: f64) -> f64 {
         PI * self.e_star * self.minor_semi_axis(approach) / (self.axis_ratio * self.first)
     }
 
-    /// Elastic energy $U = \frac25 W \delta$ \[J\].
+    /// Elastic energy $`U = \frac25 W \delta`$ \[J\].
     #[must_use]
     pub fn energy(&self, approach: f64) -> f64 {
         0.4 * self.load(approach) * positive_part(approach)
     }
 
     /// Pressure at (`x`, `y`) from the centre,
-    /// $p_0 \sqrt{1 - x^2/a_x^2 - y^2/a_y^2}$ with the semi-axes $a_x$, $a_y$ \[Pa\].
+    /// $`p_0 \sqrt{1 - x^2/a_x^2 - y^2/a_y^2}`$ with the semi-axes $`a_x`$, $`a_y`$ \[Pa\].
     #[must_use]
     pub fn pressure(&self, x: f64, y: f64, approach: f64) -> f64 {
         let (along_x, along_y) = self.semi_axes(approach);

@@ -4,7 +4,7 @@ use super::positive_part;
 use crate::Error;
 use std::f64::consts::PI;
 
-/// Hertz contact of a sphere of radius $R$, that is of the paraboloid $g(r) = r^2/2R$.
+/// Hertz contact of a sphere of radius `R`, that is of the paraboloid $`g(r) = r^2/(2R)`$.
 ///
 /// Johnson, *Contact Mechanics*, §3.4 and §4.2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,56 +38,56 @@ impl HertzSphere {
         self.e_star
     }
 
-    /// Contact radius $a = \sqrt{R\delta}$ \[m\].
+    /// Contact radius $`a = \sqrt{R\delta}`$ \[m\].
     #[must_use]
     pub fn contact_radius(&self, approach: f64) -> f64 {
         (self.radius * positive_part(approach)).sqrt()
     }
 
-    /// Contact area $\pi R \delta$ \[m²\].
+    /// Contact area `π R δ` \[m²\].
     #[must_use]
     pub fn contact_area(&self, approach: f64) -> f64 {
         PI * self.radius * positive_part(approach)
     }
 
-    /// Load $W = \frac43 E^\ast \sqrt{R} \delta^{3/2}$ \[N\].
+    /// Load $`W = \frac43 E^\ast \sqrt{R} \delta^{3/2}`$ \[N\].
     #[must_use]
     pub fn load(&self, approach: f64) -> f64 {
         4.0 / 3.0 * self.e_star * self.contact_radius(approach) * positive_part(approach)
     }
 
-    /// Approach under a load, $\delta = a^2/R$ with $a^3 = 3WR/4E^\ast$ \[m\].
+    /// Approach under a load, `δ = a²/R` with $`a^3 = 3WR/(4E^\ast)`$ \[m\].
     #[must_use]
     pub fn approach_at_load(&self, load: f64) -> f64 {
         let a = (0.75 * positive_part(load) / self.e_star * self.radius).cbrt();
         a * a / self.radius
     }
 
-    /// Pressure at the centre, $p_0 = \frac{2E^\ast}{\pi} \sqrt{\delta/R}$ \[Pa\].
+    /// Pressure at the centre, $`p_0 = \frac{2E^\ast}{\pi} \sqrt{\delta/R}`$ \[Pa\].
     #[must_use]
     pub fn max_pressure(&self, approach: f64) -> f64 {
         2.0 / PI * self.e_star * (positive_part(approach) / self.radius).sqrt()
     }
 
-    /// Mean pressure over the contact, $\frac23 p_0$ \[Pa\].
+    /// Mean pressure over the contact, $`\frac23 p_0`$ \[Pa\].
     #[must_use]
     pub fn mean_pressure(&self, approach: f64) -> f64 {
         2.0 / 3.0 * self.max_pressure(approach)
     }
 
-    /// Contact stiffness $\mathrm{d}W/\mathrm{d}\delta = 2E^\ast a$ \[N/m\].
+    /// Contact stiffness `dW/dδ = 2E* a` \[N/m\].
     #[must_use]
     pub fn contact_stiffness(&self, approach: f64) -> f64 {
         2.0 * self.e_star * self.contact_radius(approach)
     }
 
-    /// Elastic energy $U = \frac{8}{15} E^\ast \sqrt{R} \delta^{5/2}$ \[J\].
+    /// Elastic energy $`U = \frac{8}{15} E^\ast \sqrt{R} \delta^{5/2}`$ \[J\].
     #[must_use]
     pub fn energy(&self, approach: f64) -> f64 {
         0.4 * self.load(approach) * positive_part(approach)
     }
 
-    /// Pressure at distance `r` from the centre, $p_0 \sqrt{1 - r^2/a^2}$ \[Pa\].
+    /// Pressure at distance `r` from the centre, $`p_0 \sqrt{1 - r^2/a^2}`$ \[Pa\].
     #[must_use]
     pub fn pressure(&self, r: f64, approach: f64) -> f64 {
         let (r, a) = (r.abs(), self.contact_radius(approach));
@@ -99,9 +99,9 @@ impl HertzSphere {
 
     /// Displacement of the surface at distance `r` from the centre \[m\].
     ///
-    /// Inside the contact $\delta - r^2/2R$; outside
-    /// $\frac{1}{\pi R} \left( (2a^2 - r^2) \arcsin\frac{a}{r} + a \sqrt{r^2 - a^2} \right)$,
-    /// which tends to that of a point load, $W / \pi E^\ast r$.
+    /// Inside the contact $`\delta - r^2/(2R)`$; outside
+    /// $`\frac{1}{\pi R} \left( (2a^2 - r^2) \arcsin\frac{a}{r} + a \sqrt{r^2 - a^2} \right)`$,
+    /// which tends to that of a point load, $`W / (\pi E^\ast r)`$.
     #[must_use]
     pub fn displacement(&self, r: f64, approach: f64) -> f64 {
         let (r, approach) = (r.abs(), positive_part(approach));

@@ -2,12 +2,12 @@
 //!
 //! They share no code with the solver, so that each can check the other. Conventions:
 //!
-//! * A rigid shape is pressed by the *approach* $\delta$ \[m\], measured from first touch, into an
-//!   elastic half-space of plane-strain modulus $E^\ast = E/(1-\nu^2)$ \[Pa\]
+//! * A rigid shape is pressed by the *approach* `δ` \[m\], measured from first touch, into an
+//!   elastic half-space of plane-strain modulus `E* = E/(1-ν²)` \[Pa\]
 //!   (see [`plane_strain_modulus`](crate::plane_strain_modulus)).
-//! * Pressure is positive in compression; the displacement $u$ of the surface is positive into the
-//!   half-space. With the shape's initial gap $g$ at first touch, the gap is $g + u - \delta \ge 0$.
-//! * The energy is the elastic energy stored, $U = \int_0^\delta W \mathrm{d}\delta$ \[J\].
+//! * Pressure is positive in compression; the displacement `u` of the surface is positive into the
+//!   half-space. With the shape's initial gap `g` at first touch, the gap is `g + u - δ ≥ 0`.
+//! * The energy is the elastic energy stored, $`U = \int_0^\delta W \mathrm{d}\delta`$ \[J\].
 //! * Outside the contact the pressure is zero. A negative approach, load or mean pressure means no
 //!   contact and counts as zero; NaN in gives NaN out.
 //!

@@ -4,16 +4,16 @@ use super::positive_part;
 use crate::Error;
 use std::f64::consts::PI;
 
-/// Contact stiffness of a rigid square punch of side $L$, divided by $E^\ast L$.
+/// Contact stiffness of a rigid square punch of side `L`, divided by `E* L`.
 ///
-/// $K = 1.15230 E^\ast L$: in the units where a disc of radius $a$ has the electrostatic capacity
-/// $2a/\pi$, the stiffness of a punch is $\pi E^\ast$ times the capacity of its face, and that of the
+/// `K = 1.15230 E* L`: in the units where a disc of radius `a` has the electrostatic capacity
+/// `2a/π`, the stiffness of a punch is `π E*` times the capacity of its face, and that of the
 /// unit square is 0.36679. No closed form is known; all the digits given are right, to within one
 /// unit of the fifth decimal. This is where the stiffness of *any* surface on a square nominal
 /// area ends when contact is complete.
 pub const SQUARE_PUNCH_STIFFNESS: f64 = 1.15230;
 
-/// Contact of a rigid cylinder's flat end of radius $a$.
+/// Contact of a rigid cylinder's flat end of radius `a`.
 ///
 /// The contact is complete from first touch on, and everything is proportional to the approach.
 ///
@@ -49,45 +49,45 @@ impl CircularPunch {
         self.e_star
     }
 
-    /// Contact area $\pi a^2$ \[m²\].
+    /// Contact area `πa²` \[m²\].
     #[must_use]
     pub fn contact_area(&self) -> f64 {
         PI * self.radius * self.radius
     }
 
-    /// Contact stiffness $\mathrm{d}W/\mathrm{d}\delta = 2 E^\ast a$ \[N/m\].
+    /// Contact stiffness `dW/dδ = 2 E* a` \[N/m\].
     #[must_use]
     pub fn contact_stiffness(&self) -> f64 {
         2.0 * self.e_star * self.radius
     }
 
-    /// Load $W = 2E^\ast a \delta$ \[N\].
+    /// Load `W = 2E* a δ` \[N\].
     #[must_use]
     pub fn load(&self, approach: f64) -> f64 {
         self.contact_stiffness() * positive_part(approach)
     }
 
-    /// Approach under a load, $W/2E^\ast a$ \[m\].
+    /// Approach under a load, $`W/(2E^\ast a)`$ \[m\].
     #[must_use]
     pub fn approach_at_load(&self, load: f64) -> f64 {
         positive_part(load) / self.contact_stiffness()
     }
 
-    /// Mean pressure over the face, $2 E^\ast \delta / \pi a$ \[Pa\].
+    /// Mean pressure over the face, $`2 E^\ast \delta / (\pi a)`$ \[Pa\].
     #[must_use]
     pub fn mean_pressure(&self, approach: f64) -> f64 {
         2.0 / PI * self.e_star * positive_part(approach) / self.radius
     }
 
-    /// Elastic energy $U = E^\ast a \delta^2$ \[J\].
+    /// Elastic energy `U = E* a δ²` \[J\].
     #[must_use]
     pub fn energy(&self, approach: f64) -> f64 {
         0.5 * self.load(approach) * positive_part(approach)
     }
 
-    /// Pressure at distance `r` from the axis, $E^\ast \delta / \pi \sqrt{a^2 - r^2}$ \[Pa\].
+    /// Pressure at distance `r` from the axis, $`E^\ast \delta / (\pi \sqrt{a^2 - r^2})`$ \[Pa\].
     ///
-    /// Infinite on the edge, `r` = $a$, of a loaded punch; least, half the mean, at the centre.
+    /// Infinite on the edge, `r` = `a`, of a loaded punch; least, half the mean, at the centre.
     #[must_use]
     pub fn pressure(&self, r: f64, approach: f64) -> f64 {
         let (r, a, approach) = (r.abs(), self.radius, positive_part(approach));
@@ -97,8 +97,8 @@ impl CircularPunch {
         self.e_star * approach / (PI * ((a - r) * (a + r)).sqrt())
     }
 
-    /// Displacement of the surface at distance `r` from the axis: $\delta$ under the punch,
-    /// $\frac{2\delta}{\pi} \arcsin\frac{a}{r}$ outside \[m\].
+    /// Displacement of the surface at distance `r` from the axis: `δ` under the punch,
+    /// $`\frac{2\delta}{\pi} \arcsin\frac{a}{r}`$ outside \[m\].
     #[must_use]
     pub fn displacement(&self, r: f64, approach: f64) -> f64 {
         let (r, approach) = (r.abs(), positive_part(approach));

@@ -4,17 +4,17 @@ use super::positive_part;
 use crate::Error;
 use std::f64::consts::PI;
 
-/// Contact of the wavy surface $g(x) = D (1 - \cos 2\pi x/\lambda)$, in plane strain.
+/// Contact of the wavy surface $`g(x) = D (1 - \cos 2\pi x/\lambda)`$, in plane strain.
 ///
-/// Crests touch at multiples of the wavelength $\lambda$. Everything is given by the mean pressure
-/// $\bar p$ over the nominal area, which is in the ratio
-/// $P = \bar p / p^\ast = \sin^2(\pi a/\lambda)$ to that of complete contact; $a$ is the half-width
-/// of each contact. Beyond complete contact, $P > 1$, the solution goes on: the gap stays closed
-/// and the pressure rises evenly. Amplitude means $D$, half the height from valley to crest.
+/// Crests touch at multiples of the wavelength `λ`. Everything is given by the mean pressure
+/// `p̄` over the nominal area, which is in the ratio
+/// $`P = \bar p / p^\ast = \sin^2(\pi a/\lambda)`$ to that of complete contact; `a` is the half-width
+/// of each contact. Beyond complete contact, `P > 1`, the solution goes on: the gap stays closed
+/// and the pressure rises evenly. Amplitude means `D`, half the height from valley to crest.
 ///
 /// Westergaard, J. Appl. Mech. 6 (1939) A49; Johnson, *Contact Mechanics*, §13.2; eq. (21) of Zhang,
-/// Zhang & Jin, Friction 8 (2020) 970, whose $\Delta$ is this $D$ and whose
-/// $p_0 = p^\ast \sin^2(\pi a/\lambda)$.
+/// Zhang & Jin, Friction 8 (2020) 970, whose `Δ` is this `D` and whose
+/// $`p_0 = p^\ast \sin^2(\pi a/\lambda)`$.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Westergaard {
     amplitude: f64,
@@ -37,13 +37,13 @@ impl Westergaard {
         })
     }
 
-    /// Amplitude $D$ \[m\].
+    /// Amplitude `D` \[m\].
     #[must_use]
     pub fn amplitude(&self) -> f64 {
         self.amplitude
     }
 
-    /// Wavelength $\lambda$ \[m\].
+    /// Wavelength `λ` \[m\].
     #[must_use]
     pub fn wavelength(&self) -> f64 {
         self.wavelength
@@ -55,7 +55,7 @@ impl Westergaard {
         self.e_star
     }
 
-    /// Mean pressure of complete contact, $p^\ast = \pi E^\ast D/\lambda$ \[Pa\].
+    /// Mean pressure of complete contact, `p* = π E* D/λ` \[Pa\].
     #[must_use]
     pub fn full_contact_pressure(&self) -> f64 {
         PI * self.e_star * self.amplitude / self.wavelength
@@ -67,21 +67,21 @@ impl Westergaard {
         if ratio > 1.0 { 1.0 } else { ratio }
     }
 
-    /// Contact area over nominal area, $2a/\lambda = \frac{2}{\pi} \arcsin\sqrt{P}$.
+    /// Contact area over nominal area, $`2a/\lambda = \frac{2}{\pi} \arcsin\sqrt{P}`$.
     #[must_use]
     pub fn contact_area_fraction(&self, mean_pressure: f64) -> f64 {
         2.0 / PI * self.ratio(mean_pressure).sqrt().asin()
     }
 
-    /// Half the width of each contact, $a$ \[m\]: from 0 to $\lambda/2$.
+    /// Half the width of each contact, `a` \[m\]: from 0 to `λ/2`.
     #[must_use]
     pub fn contact_half_width(&self, mean_pressure: f64) -> f64 {
         0.5 * self.wavelength * self.contact_area_fraction(mean_pressure)
     }
 
-    /// Mean pressure for a half-width $a$, $p^\ast \sin^2(\pi a/\lambda)$ \[Pa\].
+    /// Mean pressure for a half-width `a`, $`p^\ast \sin^2(\pi a/\lambda)`$ \[Pa\].
     ///
-    /// Half-widths beyond $\lambda/2$ count as that.
+    /// Half-widths beyond `λ/2` count as that.
     #[must_use]
     pub fn mean_pressure_at_half_width(&self, half_width: f64) -> f64 {
         let fraction = positive_part(half_width) / self.wavelength;
@@ -101,9 +101,11 @@ impl Westergaard {
     }
 
     /// Pressure at `x` from a crest \[Pa\]:
-    /// $$p(x) = 2 p^\ast \cos\frac{\pi x}{\lambda}
-    ///   \sqrt{\sin^2\frac{\pi a}{\lambda} - \sin^2\frac{\pi x}{\lambda}}$$
-    /// in contact, and beyond complete contact $\bar p + p^\ast \cos(2\pi x/\lambda)$.
+    /// ```math
+    /// p(x) = 2 p^\ast \cos\frac{\pi x}{\lambda}
+    ///   \sqrt{\sin^2\frac{\pi a}{\lambda} - \sin^2\frac{\pi x}{\lambda}}
+    /// ```
+    /// in contact, and beyond complete contact $`\bar p + p^\ast \cos(2\pi x/\lambda)`$.
     #[must_use]
     pub fn pressure(&self, x: f64, mean_pressure: f64) -> f64 {
         let (sin, cos) = self.phase(x);
@@ -118,9 +120,11 @@ impl Westergaard {
         2.0 * full * cos * ((edge - sin) * (edge + sin)).sqrt()
     }
 
-    /// Gap at `x` from a crest \[m\]: with $\chi^2 = \sin^2(\pi x/\lambda) - P$,
-    /// $$2D \left( \chi \sin\frac{\pi x}{\lambda} -
-    ///   P \ln\frac{\sin(\pi x/\lambda) + \chi}{\sqrt{P}} \right)$$
+    /// Gap at `x` from a crest \[m\]: with $`\chi^2 = \sin^2(\pi x/\lambda) - P`$,
+    /// ```math
+    /// 2D \left( \chi \sin\frac{\pi x}{\lambda} -
+    ///   P \ln\frac{\sin(\pi x/\lambda) + \chi}{\sqrt{P}} \right)
+    /// ```
     /// out of contact, zero in contact.
     #[must_use]
     pub fn gap(&self, x: f64, mean_pressure: f64) -> f64 {
@@ -141,7 +145,7 @@ impl Westergaard {
         positive_part(2.0 * self.amplitude * (chi * sin - log))
     }
 
-    /// Gap averaged over a wavelength, $\bar g = D (1 - P + P \ln P)$ \[m\]: from $D$ to 0.
+    /// Gap averaged over a wavelength, $`\bar g = D (1 - P + P \ln P)`$ \[m\]: from `D` to 0.
     #[must_use]
     pub fn mean_gap(&self, mean_pressure: f64) -> f64 {
         let ratio = self.ratio(mean_pressure);
@@ -152,7 +156,7 @@ impl Westergaard {
     }
 
     /// Interfacial stiffness per nominal area,
-    /// $-\mathrm{d}\bar p/\mathrm{d}\bar g = p^\ast / D \ln(1/P)$ \[Pa/m\].
+    /// $`-\mathrm{d}\bar p/\mathrm{d}\bar g = p^\ast / (D \ln(1/P))`$ \[Pa/m\].
     ///
     /// Zero without load, infinite in complete contact.
     #[must_use]
@@ -163,7 +167,7 @@ impl Westergaard {
     }
 
     /// Elastic energy per nominal area,
-    /// $\int \bar p (-\mathrm{d}\bar g) = D p^\ast P^2 (\frac14 - \frac12 \ln P)$ \[J/m²\].
+    /// $`\int \bar p (-\mathrm{d}\bar g) = D p^\ast P^2 (\frac14 - \frac12 \ln P)`$ \[J/m²\].
     ///
     /// It no longer grows beyond complete contact, since the gap no longer shrinks. (That of
     /// compressing the half-space as a whole is infinite, and not part of it.)

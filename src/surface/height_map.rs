@@ -1,14 +1,18 @@
 //! Heights given node by node: measured, or computed elsewhere.
 
+use std::path::Path;
+
 use nalgebra::DMatrix;
 
 use super::placement::all_finite;
+use crate::io::read_npy;
 use crate::{Error, Grid, Surface};
 
 /// Heights \[m\] of the nodes of a grid, positive towards the half-space.
 ///
-/// Element `[(ix, iy)]` belongs to node (ix, iy): x runs along the rows. The map has no lengths of
-/// its own; the cell size comes with the [`Grid`], whose shape must be that of the map.
+/// Element `[(ix, iy)]` belongs to node (ix, iy): x is the first index; an image `[row, column]` must be
+/// transposed. The map has no lengths of its own; the cell size comes with the [`Grid`], whose shape
+/// must be that of the map.
 ///
 /// ```
 /// use asperity::{Error, Grid, Surface, surface::HeightMap};
@@ -56,14 +60,14 @@ impl HeightMap {
         Self::new(heights)
     }
 
-    /// Reads a NumPy `.npy` file; array element `[ix, iy]` becomes the height of node (ix, iy).
+    /// Reads a NumPy `.npy` file; array element `[ix, iy]` becomes the height of node (ix, iy). x is
+    /// the first index; an image `[row, column]` must be transposed.
     ///
     /// # Errors
     ///
     /// Those of [`read_npy`](crate::io::read_npy), and [`Error::HeightNotFinite`].
-    #[cfg(feature = "npy")]
-    pub fn from_npy(path: impl AsRef<std::path::Path>) -> Result<Self, Error> {
-        Self::new(crate::io::read_npy(path)?)
+    pub fn from_npy(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::new(read_npy(path)?)
     }
 
     /// The heights \[m\].
@@ -96,7 +100,7 @@ impl HeightMap {
         self.heights.min()
     }
 
-    /// Mean height $\bar h$ \[m\].
+    /// Mean height `h̄` \[m\].
     #[must_use]
     pub fn mean_height(&self) -> f64 {
         self.mean(|z| z)
@@ -104,7 +108,9 @@ impl HeightMap {
 
     /// Root mean square height about the mean height \[m\]; no tilt is removed.
     ///
-    /// $$ S_q = \sqrt{\langle (h - \bar h)^2 \rangle} $$
+    /// ```math
+    /// S_q = \sqrt{\langle (h - \bar h)^2 \rangle}
+    /// ```
     #[must_use]
     pub fn rms_height(&self) -> f64 {
         let mean = self.mean_height();
@@ -113,7 +119,9 @@ impl HeightMap {
 
     /// Skewness of the heights, 0 for a symmetric distribution; NaN if all are equal.
     ///
-    /// $$ S_{sk} = \langle (h - \bar h)^3 \rangle / S_q^3 $$
+    /// ```math
+    /// S_{sk} = \langle (h - \bar h)^3 \rangle / S_q^3
+    /// ```
     #[must_use]
     pub fn skewness(&self) -> f64 {
         let (mean, rms) = (self.mean_height(), self.rms_height());
@@ -122,7 +130,9 @@ impl HeightMap {
 
     /// Kurtosis of the heights, 3 for a normal distribution; NaN if all are equal.
     ///
-    /// $$ S_{ku} = \langle (h - \bar h)^4 \rangle / S_q^4 $$
+    /// ```math
+    /// S_{ku} = \langle (h - \bar h)^4 \rangle / S_q^4
+    /// ```
     #[must_use]
     pub fn kurtosis(&self) -> f64 {
         let (mean, rms) = (self.mean_height(), self.rms_height());
@@ -131,9 +141,11 @@ impl HeightMap {
 
     /// Root mean square gradient from forward differences, without unit.
     ///
-    /// $$ h'\_\mathrm{rms} = \sqrt{
+    /// ```math
+    /// h'_\mathrm{rms} = \sqrt{
     ///     \left\langle \left(\frac{h_{i+1,j} - h_{ij}}{\Delta x}\right)^2 \right\rangle +
-    ///     \left\langle \left(\frac{h_{i,j+1} - h_{ij}}{\Delta y}\right)^2 \right\rangle } $$
+    ///     \left\langle \left(\frac{h_{i,j+1} - h_{ij}}{\Delta y}\right)^2 \right\rangle }
+    /// ```
     ///
     /// Each mean runs over the neighbours that exist, none across the border of the grid; a
     /// direction with a single node adds nothing. Differences see less of a wave the fewer nodes

@@ -9,24 +9,22 @@
 //! Only differences of height matter for contact. Heights are positive towards the half-space: the
 //! highest node touches first.
 
-mod fft;
 mod height_map;
 mod placement;
 mod self_affine;
 mod shapes;
-mod spectrum;
 mod sum;
-mod synthesis;
 mod turns;
 mod waves;
 
 pub use height_map::HeightMap;
 pub use placement::Axis;
-pub use self_affine::{Amplitude, SelfAffine};
+pub use self_affine::{Amplitude, SelfAffine, Spectrum};
 pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
-pub use spectrum::Spectrum;
 pub use sum::Sum;
 pub use waves::{BiWave, Wave};
+
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
@@ -35,6 +33,8 @@ use crate::{Error, Grid};
 /// A rough surface: heights \[m\] on the nodes of any grid, positive towards the half-space.
 pub trait Surface {
     /// Heights on `grid`, as an nx × ny matrix: element `[(ix, iy)]` belongs to node (ix, iy).
+    ///
+    /// x is the first index; an image `[row, column]` must be transposed.
     ///
     /// # Errors
     ///
@@ -53,14 +53,14 @@ pub trait Surface {
     }
 }
 
-impl<S: Surface + ?Sized> Surface for &S {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        (**self).heights(grid)
-    }
+/// Pointers to a surface are that surface.
+macro_rules! forward {
+    ($($pointer:ty),*) => {$(
+        impl<S: Surface + ?Sized> Surface for $pointer {
+            fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+                (**self).heights(grid)
+            }
+        }
+    )*};
 }
-
-impl<S: Surface + ?Sized> Surface for Box<S> {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        (**self).heights(grid)
-    }
-}
+forward!(&S, Box<S>, Arc<S>);

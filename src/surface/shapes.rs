@@ -29,7 +29,9 @@ pub(super) use placed;
 
 /// A paraboloid of revolution, the parabolic stand-in for a sphere of radius R.
 ///
-/// $$ z = -\frac{x^2 + y^2}{2R} $$
+/// ```math
+/// z = -\frac{x^2 + y^2}{2R}
+/// ```
 ///
 /// with x and y measured from the apex, which is at height 0 in the centre of the grid unless
 /// moved by [`centered_at`](Self::centered_at). Hertz's point contact.
@@ -70,7 +72,9 @@ impl Surface for Paraboloid {
 
 /// A paraboloid with different radii of curvature along x and y.
 ///
-/// $$ z = -\frac{x^2}{2R_x} - \frac{y^2}{2R_y} $$
+/// ```math
+/// z = -\frac{x^2}{2R_x} - \frac{y^2}{2R_y}
+/// ```
 ///
 /// with x and y measured from the apex, which is at height 0 in the centre of the grid unless
 /// moved by [`centered_at`](Self::centered_at). Hertz's elliptic contact.
@@ -115,7 +119,9 @@ impl Surface for EllipticParaboloid {
 
 /// A parabolic cylinder, the parabolic stand-in for a circular one of radius R.
 ///
-/// $$ z = -\frac{x^2}{2R} $$
+/// ```math
+/// z = -\frac{x^2}{2R}
+/// ```
 ///
 /// for a cylinder that lies along y, and the same with y for one that lies along x. The distance
 /// is measured from the ridge, which is at height 0 through the centre of the grid unless moved by
@@ -171,7 +177,9 @@ impl Surface for Cylinder {
 
 /// A cone.
 ///
-/// $$ z = -t \sqrt{x^2 + y^2} $$
+/// ```math
+/// z = -t \sqrt{x^2 + y^2}
+/// ```
 ///
 /// with x and y measured from the apex, which is at height 0 in the centre of the grid unless
 /// moved by [`centered_at`](Self::centered_at). Sneddon's contact.

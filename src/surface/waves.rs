@@ -10,7 +10,9 @@ use crate::{Error, Grid, Surface};
 
 /// A one-dimensional wave.
 ///
-/// $$ z = D \cos \frac{2\pi x}{\lambda} $$
+/// ```math
+/// z = D \cos \frac{2\pi x}{\lambda}
+/// ```
 ///
 /// along x, or the same along y; the distance is measured from a crest, which runs through the
 /// centre of the grid unless moved by [`centered_at`](Self::centered_at). Westergaard's contact,
@@ -77,7 +79,9 @@ impl Surface for Wave {
 
 /// A two-dimensional wave.
 ///
-/// $$ z = D \cos \frac{2\pi x}{\lambda_x} \cos \frac{2\pi y}{\lambda_y} $$
+/// ```math
+/// z = D \cos \frac{2\pi x}{\lambda_x} \cos \frac{2\pi y}{\lambda_y}
+/// ```
 ///
 /// with x and y measured from a peak, which is in the centre of the grid unless moved by
 /// [`centered_at`](Self::centered_at). There are two peaks a cell of λ_x × λ_y. With equal

@@ -1,13 +1,11 @@
-//! The header of a `.npy` file.
+//! The header of a `.npy` file: the text of a Python dictionary.
 //!
-//! npyz could parse it, but not any header without harm: its general parser of Python literals
-//! recurses as deep as the brackets nest, trusts the header's length, and multiplies the sides
-//! without a check. A height map needs very little of that language.
+//! A matrix of floating-point numbers needs very little of that language. The parser therefore never
+//! recurses, and it believes no length before it has compared it with the file.
 
 use std::io::Read;
 
-use super::bad;
-use crate::Error;
+use super::fault::Fault;
 
 /// Longest header text accepted. NumPy's own limit is 10 000, and a matrix needs about 100.
 const MAX_TEXT: usize = 1 << 16;
@@ -22,13 +20,13 @@ pub(super) enum Element {
 }
 
 impl Element {
-    fn from_descr(descr: &str) -> Result<Self, Error> {
+    fn from_descr(descr: &str) -> Result<Self, Fault> {
         match descr {
             "<f8" => Ok(Self::LittleF64),
             ">f8" => Ok(Self::BigF64),
             "<f4" => Ok(Self::LittleF32),
             ">f4" => Ok(Self::BigF32),
-            other => Err(bad(format!(
+            other => Err(Fault::malformed(format!(
                 "the elements are of type '{other}', but only float64 and float32 are read"
             ))),
         }
@@ -54,6 +52,27 @@ impl Element {
     }
 }
 
+/// Magic string and version 1.0.
+const PREAMBLE: &[u8; 8] = b"\x93NUMPY\x01\x00";
+
+/// The elements of a file begin at a multiple of this many bytes.
+const ALIGNMENT: usize = 64;
+
+/// The header of a matrix of `float64`, little-endian, in C order, as NumPy itself writes it.
+pub(super) fn of_doubles((nx, ny): (usize, usize)) -> Vec<u8> {
+    let mut text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({nx}, {ny}), }}");
+    // The text ends with a line feed, and its length stands before it in two bytes, which are
+    // enough: two numbers have at most 40 digits.
+    let unpadded = PREAMBLE.len() + 2 + text.len() + 1;
+    let padding = unpadded.next_multiple_of(ALIGNMENT) - unpadded;
+    text.extend(std::iter::repeat_n(' ', padding));
+    text.push('\n');
+    let mut header = PREAMBLE.to_vec();
+    header.extend((text.len() as u16).to_le_bytes());
+    header.extend(text.bytes());
+    header
+}
+
 /// What a header says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
@@ -66,20 +85,24 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads the header of a file of `length` bytes.
-    pub(super) fn read(input: &mut impl Read, length: u64) -> Result<Self, Error> {
-        let cut = || bad("the file ends within its header");
+    pub(super) fn read(input: &mut impl Read, length: u64) -> Result<Self, Fault> {
+        let cut = || Fault::malformed("the file ends within its header");
         let mut preamble = [0; 8];
         if length < preamble.len() as u64 {
-            return Err(bad("the file is too short for a .npy file"));
+            return Err(Fault::malformed("the file is too short for a .npy file"));
         }
         input.read_exact(&mut preamble)?;
-        if preamble[..6] != *b"\x93NUMPY" {
-            return Err(bad("the file does not begin like a .npy file"));
+        if preamble[..6] != PREAMBLE[..6] {
+            return Err(Fault::malformed("the file does not begin like a .npy file"));
         }
         let (width, version) = match preamble[6] {
             1 => (2, 1),
             major @ (2 | 3) => (4, major),
-            major => return Err(bad(format!("version {major} of the format is unknown"))),
+            major => {
+                return Err(Fault::malformed(format!(
+                    "version {major} of the format is unknown"
+                )));
+            }
         };
         let start = preamble.len() as u64 + width as u64;
         if length < start {
@@ -92,17 +115,18 @@ impl Header {
             return Err(cut());
         }
         if size as usize > MAX_TEXT {
-            return Err(bad(format!(
+            return Err(Fault::malformed(format!(
                 "a header of {size} bytes (version {version}) is longer than that of any matrix"
             )));
         }
         let mut text = vec![0; size as usize];
         input.read_exact(&mut text)?;
-        let text = String::from_utf8(text).map_err(|_| bad("the header is not text"))?;
+        let text =
+            String::from_utf8(text).map_err(|_| Fault::malformed("the header is not text"))?;
         Self::parse(&text, start + u64::from(size))
     }
 
-    fn parse(text: &str, bytes: u64) -> Result<Self, Error> {
+    fn parse(text: &str, bytes: u64) -> Result<Self, Fault> {
         let mut text = Cursor(text);
         let (mut descr, mut order, mut shape) = (None, None, None);
         text.expect('{')?;
@@ -110,18 +134,24 @@ impl Header {
             let key = text.string()?;
             text.expect(':')?;
             match key {
-                "descr" if text.at('[') => return Err(bad("the elements are records")),
+                "descr" if text.at('[') => {
+                    return Err(Fault::malformed("the elements are records"));
+                }
                 "descr" => descr = Some(text.string()?),
                 "fortran_order" => order = Some(text.boolean()?),
                 "shape" => shape = Some(text.pair()?),
-                other => return Err(bad(format!("the header has an unknown key '{other}'"))),
+                other => {
+                    return Err(Fault::malformed(format!(
+                        "the header has an unknown key '{other}'"
+                    )));
+                }
             }
             if !text.take(',') && !text.at('}') {
                 return Err(text.unexpected());
             }
         }
         text.end()?;
-        let missing = |key| bad(format!("the header lacks the key '{key}'"));
+        let missing = |key| Fault::malformed(format!("the header lacks the key '{key}'"));
         Ok(Self {
             element: Element::from_descr(descr.ok_or_else(|| missing("descr"))?)?,
             fortran_order: order.ok_or_else(|| missing("fortran_order"))?,
@@ -135,9 +165,9 @@ impl Header {
 struct Cursor<'a>(&'a str);
 
 impl<'a> Cursor<'a> {
-    fn unexpected(&self) -> Error {
+    fn unexpected(&self) -> Fault {
         let rest: String = self.0.chars().take(20).collect();
-        bad(format!("the header cannot be read from '{rest}' on"))
+        Fault::malformed(format!("the header cannot be read from '{rest}' on"))
     }
 
     fn at(&mut self, symbol: char) -> bool {
@@ -153,7 +183,7 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    fn expect(&mut self, symbol: char) -> Result<(), Error> {
+    fn expect(&mut self, symbol: char) -> Result<(), Fault> {
         if self.take(symbol) {
             Ok(())
         } else {
@@ -161,7 +191,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    fn end(&self) -> Result<(), Error> {
+    fn end(&self) -> Result<(), Fault> {
         if self.0.trim().is_empty() {
             Ok(())
         } else {
@@ -170,7 +200,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A quoted string without escapes.
-    fn string(&mut self) -> Result<&'a str, Error> {
+    fn string(&mut self) -> Result<&'a str, Fault> {
         let quote = if self.at('"') { '"' } else { '\'' };
         self.expect(quote)?;
         let (string, rest) = self.0.split_once(quote).ok_or_else(|| self.unexpected())?;
@@ -178,7 +208,7 @@ impl<'a> Cursor<'a> {
         Ok(string)
     }
 
-    fn boolean(&mut self) -> Result<bool, Error> {
+    fn boolean(&mut self) -> Result<bool, Fault> {
         let text = self.0.trim_start();
         for (word, value) in [("True", true), ("False", false)] {
             if let Some(rest) = text.strip_prefix(word) {
@@ -190,7 +220,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A tuple of two integers; numbers too large for the computer become the largest.
-    fn pair(&mut self) -> Result<(usize, usize), Error> {
+    fn pair(&mut self) -> Result<(usize, usize), Fault> {
         self.expect('(')?;
         let mut sides = Vec::new();
         while !self.take(')') {
@@ -201,14 +231,14 @@ impl<'a> Cursor<'a> {
         }
         match sides[..] {
             [nx, ny] => Ok((nx, ny)),
-            _ => Err(bad(format!(
+            _ => Err(Fault::malformed(format!(
                 "the array has {} dimensions, but a height map has 2",
                 sides.len()
             ))),
         }
     }
 
-    fn integer(&mut self) -> Result<usize, Error> {
+    fn integer(&mut self) -> Result<usize, Fault> {
         let text = self.0.trim_start();
         let digits = text.bytes().take_while(u8::is_ascii_digit).count();
         if digits == 0 {
@@ -227,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_of_every_writer_are_understood() -> Result<(), Error> {
+    fn headers_of_every_writer_are_understood() -> Result<(), Fault> {
         let expected = Header {
             shape: (3, 40),
             fortran_order: true,
@@ -271,7 +301,7 @@ mod tests {
             "{'é",
         ] {
             let refused = Header::parse(text, 0);
-            assert!(matches!(refused, Err(Error::BadNpy { .. })), "{text}");
+            assert!(matches!(refused, Err(Fault::Malformed(_))), "{text}");
         }
     }
 }

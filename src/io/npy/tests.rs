@@ -2,7 +2,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use nalgebra::dmatrix;
-use npyz::WriterBuilder;
 use proptest::prelude::*;
 
 use super::*;
@@ -19,12 +18,17 @@ fn file(header: &str, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn parse(bytes: &[u8]) -> Result<DMatrix<f64>, Error> {
+fn parse(bytes: &[u8]) -> Result<DMatrix<f64>, Fault> {
     read(bytes, bytes.len() as u64)
 }
 
-fn is_bad(result: Result<DMatrix<f64>, Error>) -> bool {
-    matches!(result, Err(Error::BadNpy { .. }))
+/// The error of a file that only exists here.
+fn named(fault: Fault) -> Error {
+    fault.in_file(Path::new("test.npy"))
+}
+
+fn is_bad(result: Result<DMatrix<f64>, Fault>) -> bool {
+    matches!(result, Err(Fault::Malformed(_)))
 }
 
 #[test]
@@ -42,53 +46,8 @@ fn every_type_and_order_gives_the_same_matrix() -> TestResult {
         ] {
             let header =
                 format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': (2, 3), }}\n");
-            assert_eq!(parse(&file(&header, &data))?, expected, "{header}");
-        }
-    }
-    Ok(())
-}
-
-#[test]
-fn files_written_by_npyz_are_read() -> TestResult {
-    let values: Vec<f64> = (0..35).map(|k| f64::from(k).sqrt()).collect();
-    for order in [npyz::Order::C, npyz::Order::Fortran] {
-        for descr in ["<f8", ">f8", "<f4", ">f4"] {
-            let mut bytes = Vec::new();
-            let scalar = npyz::DType::new_scalar(descr.parse()?);
-            if descr.ends_with('8') {
-                let mut writer = npyz::WriteOptions::new()
-                    .dtype(scalar)
-                    .shape(&[5, 7])
-                    .order(order)
-                    .writer(&mut bytes)
-                    .begin_nd()?;
-                writer.extend(values.iter().copied())?;
-                writer.finish()?;
-            } else {
-                let mut writer = npyz::WriteOptions::new()
-                    .dtype(scalar)
-                    .shape(&[5, 7])
-                    .order(order)
-                    .writer(&mut bytes)
-                    .begin_nd()?;
-                writer.extend(values.iter().map(|v| *v as f32))?;
-                writer.finish()?;
-            }
-            let matrix = parse(&bytes)?;
-            for ix in 0..5 {
-                for iy in 0..7 {
-                    let k = match order {
-                        npyz::Order::C => 7 * ix + iy,
-                        npyz::Order::Fortran => ix + 5 * iy,
-                    };
-                    let expected = if descr.ends_with('8') {
-                        values[k]
-                    } else {
-                        f64::from(values[k] as f32)
-                    };
-                    assert_eq!(matrix[(ix, iy)], expected);
-                }
-            }
+            let found = parse(&file(&header, &data)).map_err(named)?;
+            assert_eq!(found, expected, "{header}");
         }
     }
     Ok(())
@@ -100,6 +59,10 @@ fn a_file_written_by_numpy_is_read() -> TestResult {
     let map = HeightMap::from_npy(&path)?;
     assert_eq!(map.shape(), (48, 48));
     let bytes = fs::read(path)?;
+    // What NumPy has written, this crate writes again to the last byte.
+    let mut again = Vec::new();
+    write(&mut again, map.matrix())?;
+    assert_eq!(again, bytes);
     // A header of 128 bytes, then rows of 48 doubles.
     assert_eq!(bytes.len(), 128 + 48 * 48 * 8);
     for (ix, iy) in [(0, 0), (0, 1), (1, 0), (5, 31), (31, 5), (47, 47)] {
@@ -129,11 +92,56 @@ fn what_is_written_is_read_back() -> TestResult {
         header.contains("'<f8'") && header.contains("(7, 5"),
         "{header}"
     );
-    assert!(matches!(read_npy(&path), Err(Error::Io(_))));
-    assert!(matches!(
-        read_npy(std::env::temp_dir()),
-        Err(Error::Io(_) | Error::BadNpy { .. })
-    ));
+    Ok(())
+}
+
+#[test]
+fn the_elements_begin_at_a_multiple_of_64() {
+    for shape in [
+        (1, 1),
+        (7, 5),
+        (48, 48),
+        (32768, 32768),
+        (9_999_999, 12_345_678),
+    ] {
+        let header = header::of_doubles(shape);
+        assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"));
+        let length = u16::from_le_bytes([header[8], header[9]]);
+        assert_eq!(header.len(), 10 + usize::from(length));
+        let understood = Header::read(&mut &header[..], header.len() as u64);
+        assert!(matches!(understood, Ok(header) if header.shape == shape));
+    }
+}
+
+#[test]
+fn errors_name_the_file() -> TestResult {
+    let folder = std::env::temp_dir();
+    let absent = folder.join(format!("asperity-absent-{}.npy", std::process::id()));
+    let error = read_npy(&absent).err().ok_or("a file that is not there")?;
+    assert!(matches!(&error, Error::Io { path, .. } if *path == absent));
+    assert!(error.to_string().contains("asperity-absent"), "{error}");
+    let error = read_npy(&folder).err().ok_or("a directory")?;
+    assert!(matches!(&error, Error::BadNpy { path, .. } if *path == folder));
+    let unwritable = absent.join("below-a-file-that-is-not-there.npy");
+    let error = write_npy(&unwritable, &dmatrix![1.0])
+        .err()
+        .ok_or("no folder")?;
+    assert!(matches!(&error, Error::Io { path, .. } if *path == unwritable));
+    Ok(())
+}
+
+/// A pipe into which nobody writes: opening it would never return.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused() -> TestResult {
+    let path = std::env::temp_dir().join(format!("asperity-pipe-{}.npy", std::process::id()));
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    // Without the program there is nothing to try.
+    if made.is_ok_and(|status| status.success()) {
+        let refused = read_npy(&path);
+        fs::remove_file(&path)?;
+        assert!(matches!(refused, Err(Error::BadNpy { .. })));
+    }
     Ok(())
 }
 
@@ -169,7 +177,7 @@ fn a_file_that_shrinks_while_it_is_read_is_refused() -> TestResult {
     write(&mut whole, &DMatrix::from_element(4, 3, 1.0))?;
     for length in 0..whole.len() {
         let result = read(&whole[..length], whole.len() as u64);
-        assert!(matches!(result, Err(Error::Io(_))), "{length} bytes");
+        assert!(matches!(result, Err(Fault::Io(_))), "{length} bytes");
     }
     Ok(())
 }
@@ -188,13 +196,19 @@ fn absurd_sizes_are_refused_before_allocating() {
         "(1, 99999999999999999999999999999999999999999999)",
     ] {
         assert!(
-            matches!(with_shape(shape), Err(Error::GridTooLarge { .. })),
+            matches!(
+                with_shape(shape),
+                Err(Fault::Shape(Error::GridTooLarge { .. }))
+            ),
             "{shape}"
         );
     }
     for shape in ["(0, 0)", "(0, 8)", "(8, 0)", "(0, 18446744073709551616)"] {
         assert!(
-            matches!(with_shape(shape), Err(Error::EmptyGrid { .. })),
+            matches!(
+                with_shape(shape),
+                Err(Fault::Shape(Error::EmptyGrid { .. }))
+            ),
             "{shape}"
         );
     }

@@ -2,16 +2,20 @@
 //!
 //! With the observer at (r, φ), a source at (s, θ) of the same plane contributes
 //!
-//! $$ \frac1{|\mathbf r - \mathbf s|} = \frac1r \Bigl(1 - \tfrac sr e^{i(\theta-\varphi)}\Bigr)^{-1/2}
-//!    \Bigl(1 - \tfrac sr e^{-i(\theta-\varphi)}\Bigr)^{-1/2}. $$
+//! ```math
+//! \frac1{|\mathbf r - \mathbf s|} = \frac1r \Bigl(1 - \tfrac sr e^{i(\theta-\varphi)}\Bigr)^{-1/2}
+//!    \Bigl(1 - \tfrac sr e^{-i(\theta-\varphi)}\Bigr)^{-1/2}.
+//! ```
 //!
 //! Both binomial series together, averaged over the rectangle (odd powers vanish), give
 //!
-//! $$ \Bigl\langle \frac1{|\mathbf r - \mathbf s|} \Bigr\rangle = \frac1r \sum_k r^{-2k}
+//! ```math
+//! \Bigl\langle \frac1{|\mathbf r - \mathbf s|} \Bigr\rangle = \frac1r \sum_k r^{-2k}
 //!    \sum_{j \le k} c_{kj} \cos 2j\varphi, \qquad
-//!    c_{kj} = (2 - \delta_{j0})\, a_{k-j}\, a_{k+j}\, \langle s^{2k} \cos 2j\theta \rangle, $$
+//!    c_{kj} = (2 - \delta_{j0})\, a_{k-j}\, a_{k+j}\, \langle s^{2k} \cos 2j\theta \rangle,
+//! ```
 //!
-//! with $a_m = \binom{2m}{m} / 4^m$. The sum over j is a polynomial in cos 2φ.
+//! with $`a_m = \binom{2m}{m} / 4^m`$. The sum over j is a polynomial in cos 2φ.
 
 /// Highest order k that is summed: on square cells it serves from some 4 cells on.
 const MAX_ORDER: usize = 8;

@@ -9,26 +9,30 @@ use self::far::Far;
 use super::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 
-/// The elastic half-space with a free boundary, $C(\mathbf d)$ of a cell under uniform pressure
+/// The elastic half-space with a free boundary, $`C(\mathbf d)`$ of a cell under uniform pressure
 /// \[m/Pa\].
 ///
-/// The Boussinesq solution integrated over a cell of $\Delta_x \times \Delta_y$, observed at the
-/// centre of the cell $\mathbf d = (d_i, d_j)$ cells away:
+/// The Boussinesq solution integrated over a cell of $`\Delta_x \times \Delta_y`$, observed at the
+/// centre of the cell $`\mathbf d = (d_i, d_j)`$ cells away:
 ///
-/// $$ C(d_i, d_j) = \frac{1}{\pi E^\*}
-///    \int\_{-\Delta_x/2}^{\Delta_x/2} \int\_{-\Delta_y/2}^{\Delta_y/2}
+/// ```math
+/// C(d_i, d_j) = \frac{1}{\pi E^*}
+///    \int_{-\Delta_x/2}^{\Delta_x/2} \int_{-\Delta_y/2}^{\Delta_y/2}
 ///    \frac{\mathrm d\xi ~ \mathrm d\eta}{\sqrt{(x-\xi)^2 + (y-\eta)^2}},
-///    \qquad x = d_i \Delta_x,\quad y = d_j \Delta_y. $$
+///    \qquad x = d_i \Delta_x,\quad y = d_j \Delta_y.
+/// ```
 ///
-/// Love's closed form of it, with $F(x; y_1, y_2) = x [\operatorname{asinh}(y_2/|x|) -
-/// \operatorname{asinh}(y_1/|x|)]$, is eq. (3) of the paper, which calls it a point load:
+/// Love's closed form of it, with $`F(x; y_1, y_2) = x [\operatorname{asinh}(y_2/|x|) -
+/// \operatorname{asinh}(y_1/|x|)]`$, is eq. (3) of the paper, which calls it a point load:
 ///
-/// $$ \pi E^\* C = F(x_+; y_-, y_+) - F(x_-; y_-, y_+) + F(y_+; x_-, x_+) - F(y_-; x_-, x_+), $$
+/// ```math
+/// \pi E^* C = F(x_+; y_-, y_+) - F(x_-; y_-, y_+) + F(y_+; x_-, x_+) - F(y_-; x_-, x_+),
+/// ```
 ///
-/// where $x_\pm = x \pm \Delta_x / 2$ and $y_\pm = y \pm \Delta_y / 2$.
+/// where $`x_\pm = x \pm \Delta_x / 2`$ and $`y_\pm = y \pm \Delta_y / 2`$.
 ///
-/// On square cells $C(0, 0) = 4 \ln(1 + \sqrt 2) \Delta / (\pi E^\*)$, and far away
-/// $C \to (\Delta / \pi E^\*) (1/r) (1 + 1/(24 r^2) + \dots)$ with $r$ in cells.
+/// On square cells $`C(0, 0) = 4 \ln(1 + \sqrt 2) \Delta / (\pi E^*)`$, and far away
+/// $`C \to (\Delta / \pi E^*) (1/r) (1 + 1/(24 r^2) + \dots)`$ with `r` in cells.
 ///
 /// # Accuracy
 ///

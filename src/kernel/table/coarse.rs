@@ -1,7 +1,7 @@
 //! The same kernel on a grid of half as many nodes a side.
 
 use super::KernelTable;
-use crate::{Boundary, Error, Grid};
+use crate::{Boundary, ContactGrowth, Error, Grid};
 
 impl KernelTable {
     /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
@@ -63,11 +63,7 @@ impl KernelTable {
                 values.push(sum);
             }
         }
-        Ok(Self {
-            grid,
-            boundary: self.boundary,
-            values,
-        })
+        Ok(self.on_blocks(grid, values))
     }
 
     fn coarsened_free(&self) -> Result<Self, Error> {
@@ -106,12 +102,19 @@ impl KernelTable {
                 values.push(sum);
             }
         }
-        let boundary = self.boundary;
-        Ok(Self {
+        Ok(self.on_blocks(grid, values))
+    }
+
+    /// What is known of the body does not change with the grid, except for the promise of growth,
+    /// which was made for the nodes of the fine one.
+    fn on_blocks(&self, grid: Grid, values: Vec<f64>) -> Self {
+        Self {
             grid,
-            boundary,
+            boundary: self.boundary,
+            growth: ContactGrowth::Unknown,
+            mean: self.mean,
             values,
-        })
+        }
     }
 }
 

@@ -1,15 +1,12 @@
-//! What the periodic kernels share: symbol, coefficients and gauge.
+//! Periodic half-spaces whose symbol is even along x and along y: coefficients, and the gauge they are
+//! in.
 
 use super::even::Even;
 use crate::{Error, Grid};
 
-/// Gauge of a kernel over the least one: near enough for windows to be long, and far enough for
-/// rounding in the least one, which is a difference of numbers up to N³ times as large.
-const ABOVE_LEAST: f64 = 1.02;
-
 /// A periodic kernel whose symbol is even along x and along y.
 #[derive(Debug, Clone)]
-pub(super) struct Periodic {
+pub(super) struct Symmetric {
     grid: Grid,
     e_star: f64,
     /// Ĉ(k) \[m/Pa\], zero at k = 0.
@@ -19,7 +16,7 @@ pub(super) struct Periodic {
     gauge: f64,
 }
 
-impl Periodic {
+impl Symmetric {
     /// A kernel of symbol `unit` × D / E*, in the gauge `unit_gauge` × D / E*, with D the long side
     /// of a cell; symbol and gauge come from the grid with cells in units of D.
     ///
@@ -90,9 +87,9 @@ impl Periodic {
 
 /// The least gauge s* in which the kernel's matrix is an inverse M-matrix, if there is any.
 ///
-/// With A the pseudo-inverse of the matrix of `symbol`, $C\_s^{-1} = A + 1 / (s M^2)$ everywhere.
+/// With A the pseudo-inverse of the matrix of `symbol`, $`C_s^{-1} = A + 1 / (s M^2)`$ everywhere.
 /// Its elements off the diagonal are not positive if all those of A are negative and
-/// $s \ge s^\* = 1 / (M^2 \min\_{\mathbf r \ne 0} (-A(\mathbf r)))$; its row sums are 1 / (s M).
+/// $`s \ge s^* = 1 / (M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r)))`$; its row sums are 1 / (s M).
 pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
     let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
     let inverse = inverse.inverse_transform();
@@ -103,20 +100,6 @@ pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
     // With a single node nothing is off the diagonal: minus infinity, and any gauge will do.
     let nodes = grid.nodes() as f64;
     (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
-}
-
-/// The gauge for a path, from the least one and the shape of the grid, in units of D / E*.
-///
-/// Without a least gauge, or with any gauge being enough, it is 4/5 of the long side of the grid
-/// over (E* M), which is of the size that least gauges have.
-pub(super) fn path_gauge(grid: &Grid, least: Option<f64>) -> f64 {
-    match least {
-        Some(least) if least > 0.0 => ABOVE_LEAST * least,
-        _ => {
-            let (lx, ly) = grid.sides();
-            0.8 * lx.max(ly) / grid.nodes() as f64
-        }
-    }
 }
 
 /// The grid with lengths in units of the long side of its cells.
@@ -135,11 +118,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_single_node_takes_any_gauge() -> Result<(), Error> {
+    fn any_gauge_is_enough_for_a_single_node() -> Result<(), Error> {
         let grid = Grid::new(1, 1, 2.0, 1.0)?;
         let symbol = Even::from_fn((1, 1), |_, _| 0.0);
         assert_eq!(least_gauge(&grid, &symbol), Some(0.0));
-        assert_eq!(path_gauge(&grid, Some(0.0)), 1.6);
         Ok(())
     }
 

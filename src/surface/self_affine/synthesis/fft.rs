@@ -7,7 +7,7 @@
 
 use num_complex::Complex64;
 
-use super::turns;
+use crate::surface::turns;
 
 /// The unnormalised inverse transform x_j = Σ_k X_k exp(2πi jk/n) of one length n.
 ///

@@ -1,14 +1,17 @@
 //! Random phases, and the sum of waves that makes the heights.
 
+mod fft;
+
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::fft::InverseFft;
-use super::spectrum::{Lattice, Spectrum};
-use super::turns;
+use self::fft::InverseFft;
+use super::lattice::Lattice;
+use super::spectrum::Spectrum;
 use crate::Grid;
+use crate::surface::turns;
 
 /// Phases of the waves (m, n) of one m ≥ 0, in turns, for n = 0, −1, 1, −2, 2, …
 ///
@@ -27,15 +30,10 @@ fn phases(seed: u64, m: i64) -> impl Iterator<Item = (i64, f64)> {
 }
 
 /// Heights of the surface with the given spectrum and seed, at the nodes of the grid.
-pub(super) fn heights(
-    spectrum: &Spectrum,
-    rolloff_wavelength: f64,
-    seed: u64,
-    grid: &Grid,
-) -> DMatrix<f64> {
+pub(super) fn heights(spectrum: &Spectrum, seed: u64, grid: &Grid) -> DMatrix<f64> {
     let (nx, ny) = grid.shape();
     let band = spectrum.band();
-    let lattice = Lattice::new(grid, rolloff_wavelength);
+    let lattice = Lattice::new(grid, band.rolloff_wavelength);
     let m_limit = band.limit(nx, lattice.step_x);
     let n_limit = band.limit(ny, lattice.step_y);
     let plateau = spectrum.plateau_amplitude();

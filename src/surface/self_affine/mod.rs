@@ -1,50 +1,36 @@
 //! Randomly rough surfaces with a self-affine power spectrum.
 
+mod amplitude;
+mod band;
+mod lattice;
+mod spectrum;
+mod synthesis;
+
 use nalgebra::DMatrix;
 
+pub use self::amplitude::Amplitude;
+use self::band::Band;
+pub use self::spectrum::Spectrum;
 use super::placement::all_finite;
-use super::spectrum::Spectrum;
-use super::synthesis;
 use crate::{Error, Grid, Surface};
-
-/// What fixes the amplitude of a [`SelfAffine`] surface.
-///
-/// Whichever is given is met exactly on every grid and by every seed, not only on average.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Amplitude {
-    /// Root mean square height S_q \[m\].
-    RmsHeight(f64),
-    /// Root mean square gradient $\sqrt{\langle |\nabla h|^2 \rangle}$, two-dimensional, without
-    /// unit: that of the sum of waves, not of differences between nodes.
-    RmsGradient(f64),
-    /// The prefactor C₀ of the power spectrum \[m^(2 − 2H)\].
-    Prefactor(f64),
-}
-
-impl Amplitude {
-    fn check(self) -> Result<Self, Error> {
-        match self {
-            Self::RmsHeight(value) => Error::require_positive("rms height", value),
-            Self::RmsGradient(value) => Error::require_positive("rms gradient", value),
-            Self::Prefactor(value) => Error::require_positive("prefactor of the spectrum", value),
-        }?;
-        Ok(self)
-    }
-}
 
 /// A randomly rough, isotropic, self-affine surface.
 ///
 /// A sum of the waves that are periodic on the grid, with the amplitudes of the power spectrum
 /// C(q) and random phases:
 ///
-/// $$ h(\mathbf{x}) = \sum_{\mathbf{q} \ne 0} B(q) \\,
+/// ```math
+/// h(\mathbf{x}) = \sum_{\mathbf{q} \ne 0} B(q) \,
 ///     e^{i (\mathbf{q} \cdot \mathbf{x} + \varphi(\mathbf{q}))}, \qquad
-///    B = 2\pi \sqrt{C(q) / A_0}, \qquad \varphi(-\mathbf{q}) = -\varphi(\mathbf{q}) $$
+///    B = 2\pi \sqrt{C(q) / A_0}, \qquad \varphi(-\mathbf{q}) = -\varphi(\mathbf{q})
+/// ```
 ///
-/// $$ C(q) = C_0 \begin{cases}
-///     q_r^{-2(1+H)} & q < q_r \\\\
-///     q^{-2(1+H)} & q_r \le q \le q_s \\\\
-///     0 & q > q_s \end{cases} $$
+/// ```math
+/// C(q) = C_0 \begin{cases}
+///     q_r^{-2(1+H)} & q < q_r \\
+///     q^{-2(1+H)} & q_r \le q \le q_s \\
+///     0 & q > q_s \end{cases}
+/// ```
 ///
 /// with q_r = 2π/λ_r and q_s = 2π/λ_s: eq. (23) of the paper, with its misprints set right. A long
 /// cut-off wavelength λ_l, if there is one, also takes out q < q_l = 2π/λ_l. A wave whose length
@@ -100,10 +86,7 @@ impl Amplitude {
 /// factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffine {
-    hurst: f64,
-    rolloff_wavelength: f64,
-    short_cutoff_wavelength: f64,
-    long_cutoff_wavelength: Option<f64>,
+    band: Band,
     amplitude: Amplitude,
     seed: u64,
 }
@@ -143,11 +126,13 @@ impl SelfAffine {
             });
         }
         Ok(Self {
-            hurst,
-            rolloff_wavelength,
-            short_cutoff_wavelength,
-            long_cutoff_wavelength: None,
-            amplitude: amplitude.check()?,
+            band: Band {
+                hurst,
+                rolloff_wavelength,
+                short_cutoff_wavelength,
+                long_cutoff_wavelength: None,
+            },
+            amplitude: amplitude.checked()?,
             seed,
         })
     }
@@ -162,14 +147,14 @@ impl SelfAffine {
         long_cutoff_wavelength: f64,
     ) -> Result<Self, Error> {
         Error::require_positive("long cut-off wavelength", long_cutoff_wavelength)?;
-        if long_cutoff_wavelength < self.rolloff_wavelength {
+        if long_cutoff_wavelength < self.band.rolloff_wavelength {
             return Err(Error::OutOfRange {
                 quantity: "long cut-off wavelength",
                 value: long_cutoff_wavelength,
                 expected: "at least the roll-off wavelength",
             });
         }
-        self.long_cutoff_wavelength = Some(long_cutoff_wavelength);
+        self.band.long_cutoff_wavelength = Some(long_cutoff_wavelength);
         Ok(self)
     }
 
@@ -181,10 +166,12 @@ impl SelfAffine {
     #[must_use]
     pub fn zhang2020(seed: u64) -> Self {
         Self {
-            hurst: 0.8,
-            rolloff_wavelength: 2.5e-3,
-            short_cutoff_wavelength: 7.8125e-5,
-            long_cutoff_wavelength: None,
+            band: Band {
+                hurst: 0.8,
+                rolloff_wavelength: 2.5e-3,
+                short_cutoff_wavelength: 7.8125e-5,
+                long_cutoff_wavelength: None,
+            },
             amplitude: Amplitude::RmsHeight(50e-6),
             seed,
         }
@@ -193,25 +180,25 @@ impl SelfAffine {
     /// Hurst exponent H.
     #[must_use]
     pub fn hurst(&self) -> f64 {
-        self.hurst
+        self.band.hurst
     }
 
     /// Roll-off wavelength λ_r \[m\].
     #[must_use]
     pub fn rolloff_wavelength(&self) -> f64 {
-        self.rolloff_wavelength
+        self.band.rolloff_wavelength
     }
 
     /// Short cut-off wavelength λ_s \[m\].
     #[must_use]
     pub fn short_cutoff_wavelength(&self) -> f64 {
-        self.short_cutoff_wavelength
+        self.band.short_cutoff_wavelength
     }
 
     /// Long cut-off wavelength λ_l \[m\], if there is one.
     #[must_use]
     pub fn long_cutoff_wavelength(&self) -> Option<f64> {
-        self.long_cutoff_wavelength
+        self.band.long_cutoff_wavelength
     }
 
     /// The prescribed amplitude.
@@ -234,7 +221,7 @@ impl SelfAffine {
     /// with more than one node), [`Error::NoWaves`] if no wave of the grid lies between the
     /// cut-offs, and [`Error::NotPositive`] if the amplitude leaves the range of numbers.
     pub fn spectrum(&self, grid: &Grid) -> Result<Spectrum, Error> {
-        Spectrum::new(self, grid)
+        Spectrum::new(self.band, self.amplitude, grid)
     }
 }
 
@@ -246,15 +233,9 @@ impl Surface for SelfAffine {
     /// Those of [`SelfAffine::spectrum`].
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
         let spectrum = self.spectrum(grid)?;
-        all_finite(synthesis::heights(
-            &spectrum,
-            self.rolloff_wavelength,
-            self.seed,
-            grid,
-        ))
+        all_finite(synthesis::heights(&spectrum, self.seed, grid))
     }
 }
 
 #[cfg(test)]
-#[path = "self_affine_tests.rs"]
 mod tests;

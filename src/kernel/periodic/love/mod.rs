@@ -3,39 +3,46 @@
 mod short_range;
 
 use super::even::{Even, cosine_of_turn};
-use super::periodic::{Periodic, in_long_sides, least_gauge, path_gauge, wave_number};
-use super::{Boundary, ContactGrowth, InfluenceKernel};
+use super::symmetric::{Symmetric, in_long_sides, least_gauge, wave_number};
+use crate::kernel::gauge::of_half_space;
+use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 use short_range::{ALPHA, ShortRange};
 
-/// The periodic half-space, $C(\mathbf d)$ of a cell under uniform pressure \[m/Pa\].
+/// The periodic half-space, $`C(\mathbf d)`$ of a cell under uniform pressure \[m/Pa\].
 ///
-/// Every cell and all its images, one in each period of $L_x \times L_y$, carry the same uniform
+/// Every cell and all its images, one in each period of $`L_x \times L_y`$, carry the same uniform
 /// pressure, and the displacement is observed at the centres of the cells, as with
-/// [`Boussinesq`](super::Boussinesq). Its symbol is a sum over all waves that look alike on the grid:
+/// [`Boussinesq`](crate::Boussinesq). Its symbol is a sum over all waves that look alike on the grid:
 ///
-/// $$ \hat C(k_1, k_2) = \frac{2}{E^\*} \sum_{m_1, m_2 = -\infty}^\infty
+/// ```math
+/// \hat C(k_1, k_2) = \frac{2}{E^*} \sum_{m_1, m_2 = -\infty}^\infty
 ///    \frac{\operatorname{sinc}(k_1 / n_x + m_1) \operatorname{sinc}(k_2 / n_y + m_2)}
 ///         {|\mathbf Q_{\mathbf m}|}, \qquad
 ///    \mathbf Q_{\mathbf m} = 2 \pi \Bigl( \frac{k_1 / n_x + m_1}{\Delta_x},
-///    \frac{k_2 / n_y + m_2}{\Delta_y} \Bigr), $$
+///    \frac{k_2 / n_y + m_2}{\Delta_y} \Bigr),
+/// ```
 ///
-/// with $\operatorname{sinc} x = \sin(\pi x) / (\pi x)$ and $\hat C(\mathbf k) = \sum_{\mathbf r}
-/// C(\mathbf r)\\, e^{-2 \pi i (k_1 r_1 / n_x + k_2 r_2 / n_y)}$. It depends on the wave vector and
-/// the cell, not on the number of nodes: on square cells $E^\* \hat C(n_x / 2, 0) / \Delta =
-/// 8 G / \pi^2$ with Catalan's constant G on any grid.
+/// with $`\operatorname{sinc} x = \sin(\pi x) / (\pi x)`$ and $`\hat C(\mathbf k) = \sum_{\mathbf r}
+/// C(\mathbf r)\, e^{-2 \pi i (k_1 r_1 / n_x + k_2 r_2 / n_y)}`$. It depends on the wave vector and
+/// the cell, not on the number of nodes: on square cells $`E^* \hat C(n_x / 2, 0) / \Delta =
+/// 8 G / \pi^2`$ with Catalan's constant G on any grid.
 ///
 /// # Evaluation
 ///
 /// The sum over aliases converges slowly. Ewald's split of 1/r = erf(αr)/r + erfc(αr)/r with
 /// α = 1 / (4 D), D the long side of a cell, makes both parts finite:
 ///
-/// $$ \hat C = \frac{2}{E^\* |\mathbf q|} \operatorname{erfc} \frac{|\mathbf q|}{2 \alpha}
+/// ```math
+/// \hat C = \frac{2}{E^* |\mathbf q|} \operatorname{erfc} \frac{|\mathbf q|}{2 \alpha}
 ///    \operatorname{sinc} \frac{k_1}{n_x} \operatorname{sinc} \frac{k_2}{n_y} +
-///    \sum_{a, b} S(a, b) \cos \frac{2 \pi a k_1}{n_x} \cos \frac{2 \pi b k_2}{n_y}, $$
+///    \sum_{a, b} S(a, b) \cos \frac{2 \pi a k_1}{n_x} \cos \frac{2 \pi b k_2}{n_y},
+/// ```
 ///
-/// $$ S(a, b) = \frac{1}{\pi E^\*} \int_{\text{cell } (a, b)}
-///    \frac{\operatorname{erfc} \alpha r}{r} ~ \mathrm dA . $$
+/// ```math
+/// S(a, b) = \frac{1}{\pi E^*} \int_{\text{cell } (a, b)}
+///    \frac{\operatorname{erfc} \alpha r}{r} ~ \mathrm dA .
+/// ```
 ///
 /// The first alias of the smooth part is below erfc(2π) = 6 × 10⁻¹⁹, and S falls below 10⁻¹⁸ at
 /// 25 D. Near the cell, S is Love's formula less a quadrature of erf(αr)/r, which is smooth; farther
@@ -48,25 +55,28 @@ use short_range::{ALPHA, ShortRange};
 /// # Gauge
 ///
 /// The mean displacement of a periodic half-space under a net load is arbitrary. In the *zero gauge*
-/// the mean is zero, $\hat C(0) = 0$; in the gauge s a uniform displacement is added,
+/// the mean is zero, $`\hat C(0) = 0`$; in the gauge s a uniform displacement is added,
 ///
-/// $$ C(\mathbf r) = C^{(0)}(\mathbf r) + s, \qquad \hat C(0) = s M, \qquad
-///    \bar u = s \sum p, \qquad M = n_x n_y . $$
+/// ```math
+/// C(\mathbf r) = C^{(0)}(\mathbf r) + s, \qquad \hat C(0) = s M, \qquad
+///    \bar u = s \sum p, \qquad M = n_x n_y .
+/// ```
 ///
 /// No gauge changes a pressure, a gap, or the order in which nodes touch. It only changes what the
-/// approach is counted from: $\delta_s = \delta_0 + s \sum p$, where $\delta_0$ is the approach of
-/// the mean planes. [`InfluenceKernel::coefficient`] is in the gauge [`gauge`](Self::gauge), and
+/// approach is counted from: `δ_s = δ₀ + s Σp`, where `δ₀` is the approach of the mean planes. [`InfluenceKernel::coefficient`] is in the gauge [`gauge`](Self::gauge), and
 /// [`symbol`](Self::symbol) in the zero gauge.
 ///
-/// The gauge decides, however, whether the matrix is an inverse M-matrix, as that of the free
-/// half-space is, for which gaps are convex functions of the approach. With A(r) the pseudo-inverse,
-/// the inverse transform of $1 / \hat C$ without k = 0,
+/// The gauge decides, however, whether the matrix is an inverse M-matrix, in which case gaps are convex
+/// functions of the approach; the matrix of the free half-space is one. With A(r) the pseudo-inverse,
+/// which is the inverse transform of $`1 / \hat C`$ without k = 0,
 ///
-/// $$ C_s^{-1} = A + \frac{1}{s M^2}, \qquad \text{off-diagonals} \le 0 \iff
-///    s \ge s^\* = \frac{1}{M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r))} . $$
+/// ```math
+/// C_s^{-1} = A + \frac{1}{s M^2}, \qquad \text{off-diagonals} \le 0 \iff
+///    s \ge s^* = \frac{1}{M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r))} .
+/// ```
 ///
 /// As made, the kernel has the gauge 1.02 s\*. On a square of L and many nodes
-/// $s^\* M \to 0.7608 ~ L / E^\*$.
+/// $`s^* M \to 0.7608 ~ L / E^*`$.
 ///
 /// # Example
 ///
@@ -92,7 +102,7 @@ use short_range::{ALPHA, ShortRange};
 /// * A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377, for the cell.
 #[derive(Debug, Clone)]
 pub struct PeriodicBoussinesq {
-    periodic: Periodic,
+    half_space: Symmetric,
 }
 
 impl PeriodicBoussinesq {
@@ -118,9 +128,9 @@ impl PeriodicBoussinesq {
         }
         let cells = in_long_sides(&grid)?;
         let symbol = symbol(&cells)?;
-        let gauge = path_gauge(&cells, least_gauge(&cells, &symbol));
+        let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));
         Ok(Self {
-            periodic: Periodic::new(grid, e_star, &symbol, gauge)?,
+            half_space: Symmetric::new(grid, e_star, &symbol, gauge)?,
         })
     }
 
@@ -133,39 +143,39 @@ impl PeriodicBoussinesq {
     ///
     /// [`Error::OutOfRange`] if it is negative or not finite.
     pub fn with_gauge(mut self, gauge: f64) -> Result<Self, Error> {
-        self.periodic.set_gauge(gauge)?;
+        self.half_space.set_gauge(gauge)?;
         Ok(self)
     }
 
     /// Composite modulus E* \[Pa\].
     #[must_use]
     pub fn e_star(&self) -> f64 {
-        self.periodic.e_star()
+        self.half_space.e_star()
     }
 
     /// Ĉ(kx, ky) \[m/Pa\] in the zero gauge, Ĉ(0, 0) = 0; periodic and even in both indices.
     #[must_use]
     pub fn symbol(&self, kx: isize, ky: isize) -> f64 {
-        self.periodic.symbol(kx, ky)
+        self.half_space.symbol(kx, ky)
     }
 
     /// The gauge s \[m/Pa\]: the mean of the coefficients.
     #[must_use]
     pub fn gauge(&self) -> f64 {
-        self.periodic.gauge()
+        self.half_space.gauge()
     }
 
     /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix; `None` if rounding
     /// hides it, on extremely long cells. Zero on a single node. It takes a Fourier transform.
     #[must_use]
     pub fn least_gauge(&self) -> Option<f64> {
-        self.periodic.least_gauge()
+        self.half_space.least_gauge()
     }
 }
 
 impl InfluenceKernel for PeriodicBoussinesq {
     fn grid(&self) -> Grid {
-        self.periodic.grid()
+        self.half_space.grid()
     }
 
     /// [`Boundary::Periodic`].
@@ -173,8 +183,8 @@ impl InfluenceKernel for PeriodicBoussinesq {
         Boundary::Periodic
     }
 
-    /// In a gauge that is large enough, as that of [`PeriodicBoussinesq::new`] is, the influence
-    /// matrix is an inverse M-matrix. In a smaller one it is not, but the signs of $y_2$ and $r_2$
+    /// In a gauge that is large enough, and that of [`PeriodicBoussinesq::new`] is, the influence
+    /// matrix is an inverse M-matrix. In a smaller one it is not, but the signs of `y₂` and `r₂`
     /// are the same in every gauge.
     fn contact_growth(&self) -> ContactGrowth {
         match self.least_gauge() {
@@ -184,9 +194,9 @@ impl InfluenceKernel for PeriodicBoussinesq {
         }
     }
 
-    /// $C^{(0)} + s$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
+    /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.periodic.coefficient(di, dj)
+        self.half_space.coefficient(di, dj)
     }
 }
 

@@ -45,7 +45,7 @@ impl Even {
         &self.values
     }
 
-    /// $\frac1M \sum_{\mathbf k} f(\mathbf k) \, e^{2 \pi i (k_1 i / n_x + k_2 j / n_y)}$.
+    /// $`\frac1M \sum_{\mathbf k} f(\mathbf k) \, e^{2 \pi i (k_1 i / n_x + k_2 j / n_y)}`$.
     pub(super) fn inverse_transform(&self) -> Self {
         let mut planner = FftPlanner::new();
         let mut lines = |values: &[f64], n: usize| {

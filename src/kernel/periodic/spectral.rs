@@ -1,8 +1,9 @@
 //! The periodic half-space of spectral codes.
 
 use super::even::Even;
-use super::periodic::{Periodic, in_long_sides, path_gauge, wave_number};
-use super::{Boundary, ContactGrowth, InfluenceKernel};
+use super::symmetric::{Symmetric, in_long_sides, wave_number};
+use crate::kernel::gauge::of_half_space;
+use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel};
 use crate::{Error, Grid};
 
 /// The periodic half-space, seen by the waves of the grid alone: symbol 2 / (E* |q|) \[m/Pa\].
@@ -10,28 +11,30 @@ use crate::{Error, Grid};
 /// Pressure and displacement are trigonometric interpolants of their values at the nodes, and each
 /// wave answers as it would on the continuous half-space (Johnson; Stanley and Kato):
 ///
-/// $$ \hat C(k_1, k_2) = \frac{2}{E^\* |\mathbf q|}, \qquad
+/// ```math
+/// \hat C(k_1, k_2) = \frac{2}{E^* |\mathbf q|}, \qquad
 ///    \mathbf q = 2 \pi \Bigl( \frac{k_1}{n_x \Delta_x}, \frac{k_2}{n_y \Delta_y} \Bigr), \qquad
-///    |k_1| \le \frac{n_x}2, \quad |k_2| \le \frac{n_y}2, $$
+///    |k_1| \le \frac{n_x}2, \quad |k_2| \le \frac{n_y}2,
+/// ```
 ///
-/// where $\hat C(\mathbf k) = \sum_{\mathbf r} C(\mathbf r)\\,
-/// e^{-2 \pi i (k_1 r_1 / n_x + k_2 r_2 / n_y)}$ and $\hat C(0) = 0$. Waves at the Nyquist frequency
+/// where $`\hat C(\mathbf k) = \sum_{\mathbf r} C(\mathbf r)\,
+/// e^{-2 \pi i (k_1 r_1 / n_x + k_2 r_2 / n_y)}`$ and $`\hat C(0) = 0`$. Waves at the Nyquist frequency
 /// of an even number of nodes have their full weight. This is the kernel of *tamaas* and of
 /// *ContactMechanics* to the last digits (of the former for even nx only: for odd nx tamaas 2.9.0
 /// mistakes the wave number at index (nx − 1)/2; of the latter with `stiffness_q0=0.0`, since its
 /// default is a gauge).
 ///
 /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq) differs from it in what is finer than the grid.
-/// Choose this one to compare with spectral codes, and that one otherwise.
+/// Choose `Spectral` to compare with spectral codes, and `PeriodicBoussinesq` otherwise.
 ///
 /// # Gauge
 ///
 /// The mean displacement is arbitrary and settled by the gauge s as described for
 /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq#gauge):
-/// $C(\mathbf r) = C^{(0)}(\mathbf r) + s$. But the interpolants ring: two cells away along an axis
+/// $`C(\mathbf r) = C^{(0)}(\mathbf r) + s`$. But the interpolants ring: two cells away along an axis
 /// the inverse is positive (2 % of its diagonal), so that this kernel is an inverse M-matrix in *no*
-/// gauge on all but tiny grids. In every one tried, on the other hand, contact grows monotonically:
-/// only the convexity of gaps is lost, and a path checks all gaps after every window of events.
+/// gauge, except on tiny grids. Contact nevertheless grows monotonically on every grid tried. Only the
+/// convexity of gaps is lost, and a path checks all gaps after every window of events.
 /// The gauge is 4/5 of the long side of the grid over (E* M), near the least gauge of
 /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq) (0.64 to 0.83 of the same on common grids).
 ///
@@ -57,7 +60,7 @@ use crate::{Error, Grid};
 ///   J. Open Source Softw. 5 (2020) 2121.
 #[derive(Debug, Clone)]
 pub struct Spectral {
-    periodic: Periodic,
+    half_space: Symmetric,
 }
 
 impl Spectral {
@@ -78,7 +81,7 @@ impl Spectral {
             }
         });
         Ok(Self {
-            periodic: Periodic::new(grid, e_star, &symbol, path_gauge(&cells, None))?,
+            half_space: Symmetric::new(grid, e_star, &symbol, of_half_space(&cells, None))?,
         })
     }
 
@@ -88,39 +91,39 @@ impl Spectral {
     ///
     /// [`Error::OutOfRange`] if it is negative or not finite.
     pub fn with_gauge(mut self, gauge: f64) -> Result<Self, Error> {
-        self.periodic.set_gauge(gauge)?;
+        self.half_space.set_gauge(gauge)?;
         Ok(self)
     }
 
     /// Composite modulus E* \[Pa\].
     #[must_use]
     pub fn e_star(&self) -> f64 {
-        self.periodic.e_star()
+        self.half_space.e_star()
     }
 
     /// Ĉ(kx, ky) \[m/Pa\] in the zero gauge, Ĉ(0, 0) = 0; periodic and even in both indices.
     #[must_use]
     pub fn symbol(&self, kx: isize, ky: isize) -> f64 {
-        self.periodic.symbol(kx, ky)
+        self.half_space.symbol(kx, ky)
     }
 
     /// The gauge s \[m/Pa\]: the mean of the coefficients.
     #[must_use]
     pub fn gauge(&self) -> f64 {
-        self.periodic.gauge()
+        self.half_space.gauge()
     }
 
     /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix: `None`, except on
     /// grids of so few nodes that there is one. It takes a Fourier transform.
     #[must_use]
     pub fn least_gauge(&self) -> Option<f64> {
-        self.periodic.least_gauge()
+        self.half_space.least_gauge()
     }
 }
 
 impl InfluenceKernel for Spectral {
     fn grid(&self) -> Grid {
-        self.periodic.grid()
+        self.half_space.grid()
     }
 
     /// [`Boundary::Periodic`].
@@ -135,8 +138,8 @@ impl InfluenceKernel for Spectral {
         ContactGrowth::Monotone
     }
 
-    /// $C^{(0)} + s$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
+    /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.periodic.coefficient(di, dj)
+        self.half_space.coefficient(di, dj)
     }
 }

@@ -1,0 +1,100 @@
+//! Contact sets to try a kernel on.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::Grid;
+
+/// Grids of up to this many nodes have few enough contact sets for all of them: 2¹⁰ − 1.
+const EXHAUSTIVE: usize = 10;
+
+/// The whole grid is tried with up to this many nodes.
+const WHOLE: usize = 256;
+
+/// Most nodes of a set that is drawn.
+const LARGEST: usize = 64;
+
+/// Sets drawn of each kind.
+const DRAWN: usize = 80;
+
+/// Contact sets, each without repetitions and in ascending order.
+pub(super) struct ContactSets {
+    pub(super) list: Vec<Vec<usize>>,
+    /// Whether these are all there are.
+    pub(super) exhaustive: bool,
+}
+
+/// All sets of a small grid; of a larger one scattered nodes, dense patches, patches with holes, and
+/// the whole if that is not too large.
+pub(super) fn contact_sets(grid: &Grid) -> ContactSets {
+    let nodes = grid.nodes();
+    if nodes <= EXHAUSTIVE {
+        let set = |bits: u32| (0..nodes).filter(|node| bits >> node & 1 == 1).collect();
+        return ContactSets {
+            list: (1..1_u32 << nodes).map(set).collect(),
+            exhaustive: true,
+        };
+    }
+    let mut draw = Draw(ChaCha8Rng::from_seed([0; 32]));
+    let mut list = Vec::new();
+    if nodes <= WHOLE {
+        list.push((0..nodes).collect());
+    }
+    for _ in 0..DRAWN {
+        let size = 1 + draw.below(LARGEST.min(nodes));
+        list.push(distinct((0..size).map(|_| draw.below(nodes)).collect()));
+        // How contacts look: nodes close to each other, with all of a patch or part of it.
+        let patch = draw.patch(grid);
+        let share = 1 + draw.below(7);
+        list.push(distinct(patch.clone()));
+        let holes = patch.into_iter().filter(|_| draw.below(8) < share);
+        list.push(distinct(holes.collect()));
+    }
+    list.retain(|set| !set.is_empty());
+    ContactSets {
+        list,
+        exhaustive: false,
+    }
+}
+
+fn distinct(mut set: Vec<usize>) -> Vec<usize> {
+    set.sort_unstable();
+    set.dedup();
+    set
+}
+
+/// Random numbers that are the same every time and everywhere.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    /// A number below `limit`.
+    fn below(&mut self, limit: usize) -> usize {
+        // What the remainder prefers is one part in 2³² of the limit.
+        self.0.next_u32() as usize % limit
+    }
+
+    /// The nodes of a rectangle of at most [`LARGEST`] nodes, or of the ellipse in it.
+    fn patch(&mut self, grid: &Grid) -> Vec<usize> {
+        let side = |n: usize| n.min(LARGEST);
+        let width = 1 + self.below(side(grid.nx()).min(16));
+        let height = 1 + self.below(side(grid.ny()).min(LARGEST / width));
+        let (left, low) = (
+            self.below(grid.nx() - width + 1),
+            self.below(grid.ny() - height + 1),
+        );
+        let round = self.below(2) == 1;
+        let inside = |i: usize, n: usize| {
+            let x = (2 * i + 1) as f64 / n as f64 - 1.0;
+            x * x
+        };
+        let mut nodes = Vec::with_capacity(width * height);
+        for j in 0..height {
+            for i in 0..width {
+                if !round || inside(i, width) + inside(j, height) < 1.0 {
+                    nodes.push(grid.index(left + i, low + j));
+                }
+            }
+        }
+        nodes
+    }
+}

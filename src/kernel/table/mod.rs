@@ -1,0 +1,371 @@
+//! All influence coefficients of a grid, ready for look-up without index arithmetic.
+
+mod coarse;
+mod symbol;
+
+use super::gauge::of_coefficients;
+use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, MeanDisplacement};
+use crate::{Error, Grid};
+
+/// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
+///
+/// A table is a kernel itself: besides [`new`](Self::new), which evaluates another kernel,
+/// [`from_fn`](Self::from_fn) and [`from_symbol`](Self::from_symbol) make one from a function of the
+/// offset or of the wavevector.
+///
+/// Each node has a *place* in the table, such that the coefficient between two nodes is found at
+/// the difference of their places: filling a column of the influence matrix costs one subtraction
+/// and one load per element.
+///
+/// # Example
+///
+/// A layer of thickness h on a rigid base without friction, of which the symbol is known (Johnson,
+/// Contact Mechanics, §5.8). It tends to 2/(E\* q) for short waves, and to the compression of the
+/// layer, h (1 − 2ν)/((1 − ν)² E\*), for long ones. That mean displacement is a property of the layer:
+///
+/// ```
+/// use asperity::kernel::KernelTable;
+/// use asperity::{ContactGrowth, Grid, MeanDisplacement};
+///
+/// let (e_star, nu, h): (f64, f64, f64) = (1e9, 0.3, 1e-4);
+/// let symbol = |qx: f64, qy: f64| {
+///     let q = qx.hypot(qy);
+///     if q == 0.0 {
+///         return h * (1.0 - 2.0 * nu) / ((1.0 - nu).powi(2) * e_star);
+///     }
+///     // Beyond 2 q h = 80 the layer is a half-space to the last digit.
+///     let x = (2.0 * q * h).min(80.0);
+///     2.0 / (e_star * q) * (x.cosh() - 1.0) / (x.sinh() + x)
+/// };
+/// let grid = Grid::square(32, 1e-3)?;
+/// let layer = KernelTable::from_symbol(
+///     grid,
+///     MeanDisplacement::Physical,
+///     ContactGrowth::Unknown,
+///     symbol,
+/// )?;
+/// assert_eq!(layer.gauge(), None);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct KernelTable {
+    grid: Grid,
+    boundary: Boundary,
+    growth: ContactGrowth,
+    mean: MeanDisplacement,
+    /// (2 nx − 1) × (2 ny − 1) coefficients, di fastest, offset (0, 0) in the middle.
+    values: Vec<f64>,
+}
+
+impl KernelTable {
+    /// Evaluates `kernel` at every offset of its grid.
+    ///
+    /// # Errors
+    ///
+    /// As [`KernelTable::from_fn`].
+    pub fn new<K: InfluenceKernel + ?Sized>(kernel: &K) -> Result<Self, Error> {
+        let (grid, boundary) = (kernel.grid(), kernel.boundary());
+        let coefficient = |di, dj| kernel.coefficient(di, dj);
+        let table = Self::from_fn(grid, boundary, kernel.contact_growth(), coefficient)?;
+        Ok(table.with_mean_displacement(kernel.mean_displacement()))
+    }
+
+    /// A kernel of the coefficients `coefficient(di, dj)` \[m/Pa\], see
+    /// [`InfluenceKernel::coefficient`], which promises the `growth` given.
+    ///
+    /// With a periodic boundary its mean displacement is taken to be arbitrary; if it is not, say so by
+    /// [`with_mean_displacement`](Self::with_mean_displacement).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::KernelNotFinite`], [`Error::KernelNotSymmetric`], [`Error::KernelNotPeriodic`] if
+    /// the boundary is periodic and the coefficients are not, and [`Error::NotPositiveDefinite`] if
+    /// C(0, 0) is not positive.
+    pub fn from_fn(
+        grid: Grid,
+        boundary: Boundary,
+        growth: ContactGrowth,
+        mut coefficient: impl FnMut(isize, isize) -> f64,
+    ) -> Result<Self, Error> {
+        let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
+        let mut values = Vec::with_capacity((2 * grid.nx() - 1) * (2 * grid.ny() - 1));
+        for dj in 1 - ny..ny {
+            for di in 1 - nx..nx {
+                let value = coefficient(di, dj);
+                if !value.is_finite() {
+                    return Err(Error::KernelNotFinite { di, dj, value });
+                }
+                values.push(value);
+            }
+        }
+        let table = Self {
+            grid,
+            boundary,
+            growth,
+            mean: MeanDisplacement::default(),
+            values,
+        };
+        table.check_reciprocity()?;
+        if boundary == Boundary::Periodic {
+            table.check_periodicity()?;
+        }
+        let self_influence = table.self_influence();
+        if self_influence <= 0.0 {
+            return Err(Error::NotPositiveDefinite {
+                ix: 0,
+                iy: 0,
+                approach: 0.0,
+                pivot: self_influence,
+            });
+        }
+        Ok(table)
+    }
+
+    /// A periodic kernel from its symbol Ĉ(q) \[m/Pa\], displacement over pressure of the wave
+    /// $`e^{i \mathbf q \cdot \mathbf x}`$, given by `symbol(qx, qy)` with q in rad/m.
+    ///
+    /// ```math
+    /// C(\mathbf r) = \frac{1}{M} \sum_{\mathbf k} \hat C(\mathbf q)\,
+    ///     e^{2 \pi i (k_1 r_1 / n_x + k_2 r_2 / n_y)}, \qquad
+    /// \mathbf q = 2 \pi \Bigl( \frac{k_1}{n_x \Delta_x}, \frac{k_2}{n_y \Delta_y} \Bigr), \qquad
+    /// |k_1| \le \frac{n_x}2, \quad |k_2| \le \frac{n_y}2 .
+    /// ```
+    ///
+    /// Pressure and displacement are trigonometric interpolants of their values at the nodes, as with
+    /// [`Spectral`](super::Spectral). The symbol must be positive, and even under q → −q; an
+    /// anisotropic body need not be even in each component by itself. Waves at the Nyquist frequency of
+    /// an even number of nodes have their full weight, and take the mean of both directions in which
+    /// they can be said to run.
+    ///
+    /// What happens at q = 0 must be said by `mean`. If the mean displacement is
+    /// [physical](MeanDisplacement::Physical), Ĉ(0) is what a uniform pressure does, u = Ĉ(0) p, and
+    /// must be finite. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies without a base,
+    /// where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge that
+    /// is good to compute in.
+    ///
+    /// There is no such constructor for a free boundary: a finite number of waves only describes bodies
+    /// that repeat, and a symbol sampled on a larger grid gives the displacements of all its images as
+    /// well. The coefficients of a free layer are Hankel integrals, for [`from_fn`](Self::from_fn).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::SymbolNotPositive`] (also if not finite) and [`Error::SymbolNotEven`], which name the
+    /// wavevector; [`Error::NotPositiveDefinite`] for a single node of arbitrary mean, of which nothing
+    /// is known.
+    pub fn from_symbol(
+        grid: Grid,
+        mean: MeanDisplacement,
+        growth: ContactGrowth,
+        symbol: impl FnMut(f64, f64) -> f64,
+    ) -> Result<Self, Error> {
+        let period = symbol::coefficients(&grid, mean, symbol)?;
+        let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
+        let table = Self::from_fn(grid, Boundary::Periodic, growth, |di, dj| {
+            period[(di.rem_euclid(nx) + nx * dj.rem_euclid(ny)) as usize]
+        })?
+        .with_mean_displacement(mean);
+        Ok(match table.computing_gauge() {
+            Some(gauge) => table.in_gauge(gauge),
+            None => table,
+        })
+    }
+
+    /// The same coefficients, with the mean displacement of a periodic body taken as said.
+    #[must_use]
+    pub fn with_mean_displacement(mut self, mean: MeanDisplacement) -> Self {
+        self.mean = mean;
+        self
+    }
+
+    fn check_reciprocity(&self) -> Result<(), Error> {
+        let opposites = self.values.iter().zip(self.values.iter().rev());
+        for (place, (&value, &opposite)) in opposites.enumerate().take(self.center()) {
+            if !self.agree(value, opposite) {
+                let (di, dj) = self.offset(place);
+                return Err(Error::KernelNotSymmetric {
+                    di,
+                    dj,
+                    value,
+                    opposite,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares every coefficient with those one period further, where the table has them.
+    fn check_periodicity(&self) -> Result<(), Error> {
+        let (nx, ny) = self.grid.shape();
+        let width = 2 * nx - 1;
+        for (place, &value) in self.values.iter().enumerate() {
+            let (column, row) = (place % width, place / width);
+            let along_x = (column + nx < width).then_some(place + nx);
+            let along_y = (row + ny < 2 * ny - 1).then_some(place + ny * width);
+            for image in [along_x, along_y].into_iter().flatten() {
+                let repeated = self.values[image];
+                if !self.agree(value, repeated) {
+                    let (di, dj) = self.offset(place);
+                    let (image_di, image_dj) = self.offset(image);
+                    return Err(Error::KernelNotPeriodic {
+                        di,
+                        dj,
+                        value,
+                        image_di,
+                        image_dj,
+                        repeated,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether two coefficients that ought to be the same are.
+    fn agree(&self, value: f64, other: f64) -> bool {
+        // Twice a few ulps: a formula may be evaluated in another order for another offset.
+        const TOLERANCE: f64 = 1e-14;
+        let scale = self.self_influence().abs();
+        (value - other).abs() <= TOLERANCE * value.abs().max(other.abs()).max(scale * 1e-2)
+    }
+
+    /// The offset at a place of the table.
+    fn offset(&self, place: usize) -> (isize, isize) {
+        let (nx, ny) = self.grid.shape();
+        let width = 2 * nx - 1;
+        let signed = |index: usize, n: usize| index as isize - (n as isize - 1);
+        (signed(place % width, nx), signed(place / width, ny))
+    }
+
+    /// The grid of the coefficients.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// What surrounds the grid.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    /// The gauge s of a periodic kernel \[m/Pa\]: the mean of its coefficients. `None` if the
+    /// mean displacement is not arbitrary, because the boundary is free or because the kernel says
+    /// that it is [physical](MeanDisplacement::Physical).
+    ///
+    /// With it the mean displacement under pressures p is `ū = s Σp`. What does not depend on the
+    /// gauge follows from an approach δ and a displacement u in this one: the approach of the mean
+    /// planes is `δ − s Σp`, the displacement about its mean `u − s Σp`.
+    #[must_use]
+    pub fn gauge(&self) -> Option<f64> {
+        let arbitrary =
+            self.boundary == Boundary::Periodic && self.mean == MeanDisplacement::Arbitrary;
+        arbitrary.then(|| self.mean_coefficient())
+    }
+
+    /// The gauge as a displacement for each unit of load; zero if nothing about it is arbitrary.
+    #[allow(dead_code)] // Until paths and fixed loads convert by it.
+    pub(crate) fn gauge_per_load(&self) -> Gauge {
+        Gauge::new(self.gauge(), self.grid.cell_area())
+    }
+
+    /// Mean of the coefficients over one period: the offsets that are not negative.
+    fn mean_coefficient(&self) -> f64 {
+        let (nx, ny) = self.grid.shape();
+        let rows = self.values[self.center()..].chunks(2 * nx - 1).take(ny);
+        let sum: f64 = rows.map(|row| row[..nx].iter().sum::<f64>()).sum();
+        sum / self.grid.nodes() as f64
+    }
+
+    /// The same kernel with a uniform displacement added, so that the gauge becomes `gauge`; itself if
+    /// it has none.
+    pub(crate) fn in_gauge(&self, gauge: f64) -> Self {
+        let mut table = self.clone();
+        if let Some(present) = self.gauge() {
+            for value in &mut table.values {
+                *value = *value - present + gauge;
+            }
+        }
+        table
+    }
+
+    /// A gauge to compute in \[m/Pa\], of no influence on results: see [`of_coefficients`]. `None` if
+    /// the kernel has none.
+    pub(crate) fn computing_gauge(&self) -> Option<f64> {
+        let least = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        self.gauge().map(|mean| of_coefficients(mean, least))
+    }
+
+    /// The coefficient at offset (di, dj), or `None` if it lies outside the grid.
+    #[must_use]
+    pub fn coefficient(&self, di: isize, dj: isize) -> Option<f64> {
+        let (nx, ny) = self.grid.shape();
+        if di.unsigned_abs() >= nx || dj.unsigned_abs() >= ny {
+            return None;
+        }
+        let (nx, ny) = (nx as isize, ny as isize);
+        let index = (di + nx - 1) + (dj + ny - 1) * (2 * nx - 1);
+        self.values.get(index as usize).copied()
+    }
+
+    /// The displacement of a cell under its own unit pressure, C(0, 0).
+    #[must_use]
+    pub fn self_influence(&self) -> f64 {
+        self.values[self.center()]
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.values.len() * size_of::<f64>()
+    }
+
+    /// Place of offset (0, 0).
+    fn center(&self) -> usize {
+        self.values.len() / 2
+    }
+
+    /// Place of a node, for [`KernelTable::between`].
+    pub(crate) fn place(&self, node: usize) -> usize {
+        let (ix, iy) = self.grid.coordinates(node);
+        ix + iy * (2 * self.grid.nx() - 1)
+    }
+
+    /// The coefficient between two nodes given by their places.
+    #[inline]
+    pub(crate) fn between(&self, place: usize, other: usize) -> f64 {
+        self.values[self.center() + place - other]
+    }
+
+    /// Writes the coefficients between the node at `place` and those at `others` into `column`.
+    pub(crate) fn fill_column(&self, place: usize, others: &[usize], column: &mut [f64]) {
+        let base = self.center() + place;
+        for (value, &other) in column.iter_mut().zip(others) {
+            *value = self.values[base - other];
+        }
+    }
+}
+
+impl InfluenceKernel for KernelTable {
+    fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    /// The coefficient \[m/Pa\]; NaN at offsets that do not lie between two nodes of the grid.
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        self.coefficient(di, dj).unwrap_or(f64::NAN)
+    }
+
+    fn contact_growth(&self) -> ContactGrowth {
+        self.growth
+    }
+
+    fn mean_displacement(&self) -> MeanDisplacement {
+        self.mean
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! Influence coefficients from a symbol: the inverse Fourier transform on the waves of a grid.
+
+use num_complex::Complex64;
+use rustfft::FftPlanner;
+
+use crate::kernel::MeanDisplacement;
+use crate::{Error, Grid};
+
+/// Relative difference within which Ĉ(q) and Ĉ(−q) count as the same: a formula whose terms are
+/// evaluated in another order, or with functions that are good to some ten digits.
+const SAME: f64 = 1e-10;
+
+/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\].
+///
+/// # Errors
+///
+/// As [`KernelTable::from_symbol`](super::KernelTable::from_symbol).
+pub(super) fn coefficients(
+    grid: &Grid,
+    mean: MeanDisplacement,
+    symbol: impl FnMut(f64, f64) -> f64,
+) -> Result<Vec<f64>, Error> {
+    let (nx, ny) = grid.shape();
+    let values = on_the_waves(grid, mean, symbol)?;
+    let mut waves: Vec<_> = values.into_iter().map(Complex64::from).collect();
+    let mut planner = FftPlanner::new();
+    planner.plan_fft_inverse(nx).process(&mut waves);
+    let along_y = planner.plan_fft_inverse(ny);
+    let mut column = vec![Complex64::ZERO; ny];
+    let mut result = vec![0.0; nx * ny];
+    for ix in 0..nx {
+        for (iy, value) in column.iter_mut().enumerate() {
+            *value = waves[ix + nx * iy];
+        }
+        along_y.process(&mut column);
+        for (iy, value) in column.iter().enumerate() {
+            result[ix + nx * iy] = value.re / (nx * ny) as f64;
+        }
+    }
+    // Even to the last bit, as reciprocity has it.
+    let half = |place: usize| {
+        let (ix, iy) = (place % nx, place / nx);
+        let opposite = (nx - ix) % nx + nx * ((ny - iy) % ny);
+        0.5 * (result[place] + result[opposite])
+    };
+    Ok((0..nx * ny).map(half).collect())
+}
+
+/// The symbol at all waves of the grid, in the order of a Fourier transform, even under q → −q.
+fn on_the_waves(
+    grid: &Grid,
+    mean: MeanDisplacement,
+    mut symbol: impl FnMut(f64, f64) -> f64,
+) -> Result<Vec<f64>, Error> {
+    let (nx, ny) = grid.shape();
+    let (lx, ly) = grid.sides();
+    let wave_vectors = |n: usize, side: f64| -> Vec<f64> {
+        (0..n)
+            .map(|k| {
+                let signed = if 2 * k > n {
+                    k as f64 - n as f64
+                } else {
+                    k as f64
+                };
+                std::f64::consts::TAU * signed / side
+            })
+            .collect()
+    };
+    let (along_x, along_y) = (wave_vectors(nx, lx), wave_vectors(ny, ly));
+    let mut value_at = |qx: f64, qy: f64| {
+        let value = symbol(qx, qy);
+        if value > 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(Error::SymbolNotPositive { q: (qx, qy), value })
+        }
+    };
+    let mut values = Vec::with_capacity(nx * ny);
+    for (ky, &qy) in along_y.iter().enumerate() {
+        for (kx, &qx) in along_x.iter().enumerate() {
+            if (kx, ky) == (0, 0) {
+                values.push(match mean {
+                    MeanDisplacement::Arbitrary => 0.0,
+                    MeanDisplacement::Physical => value_at(0.0, 0.0)?,
+                });
+                continue;
+            }
+            let (value, opposite) = (value_at(qx, qy)?, value_at(-qx, -qy)?);
+            if (value - opposite).abs() > SAME * value.max(opposite) {
+                return Err(Error::SymbolNotEven {
+                    q: (qx, qy),
+                    value,
+                    opposite,
+                });
+            }
+            let mut shares = vec![value, opposite];
+            // On the grid a wave with two nodes a wavelength along x runs both ways along x at once,
+            // and likewise along y.
+            if 2 * kx == nx || 2 * ky == ny {
+                shares.extend([value_at(-qx, qy)?, value_at(qx, -qy)?]);
+            }
+            values.push(shares.iter().sum::<f64>() / shares.len() as f64);
+        }
+    }
+    Ok(values)
+}

@@ -1,0 +1,182 @@
+use super::*;
+use crate::{PeriodicBoussinesq, Spectral};
+
+const E_STAR: f64 = 3.0;
+
+/// 2 / (E* q), and nonsense at q = 0, where it must not be looked at.
+fn half_space(qx: f64, qy: f64) -> f64 {
+    2.0 / (E_STAR * qx.hypot(qy))
+}
+
+/// A layer of thickness h on a rigid base without friction, times E* (Johnson, §5.8).
+fn layer(q: f64, h: f64, nu: f64) -> f64 {
+    if q == 0.0 {
+        return h * (1.0 - 2.0 * nu) / (1.0 - nu).powi(2);
+    }
+    let x = (2.0 * q * h).min(80.0);
+    2.0 / q * (x.cosh() - 1.0) / (x.sinh() + x)
+}
+
+#[test]
+fn another_gauge_is_a_uniform_displacement() -> Result<(), Error> {
+    let grid = Grid::new(12, 9, 1.0, 1.0)?;
+    let kernel = PeriodicBoussinesq::new(grid, 1.0)?;
+    let table = KernelTable::new(&kernel)?;
+    let zero = table.in_gauge(0.0);
+    // Means of 108 numbers near 1.
+    assert!(zero.gauge().is_some_and(|gauge| gauge.abs() < 1e-15));
+    let own = table.coefficient(5, 4).unwrap_or(f64::NAN) - kernel.gauge();
+    let found = zero.coefficient(5, 4).unwrap_or(f64::NAN);
+    assert!((found - own).abs() < 1e-15);
+    // Of the size of the least gauge that makes the kernel an inverse M-matrix.
+    let ratio =
+        table.computing_gauge().unwrap_or(f64::NAN) / kernel.least_gauge().unwrap_or(f64::NAN);
+    assert!((0.8..1.3).contains(&ratio), "{ratio}");
+    Ok(())
+}
+
+#[test]
+fn offsets_beyond_the_grid_have_no_coefficient() -> Result<(), Error> {
+    let table = KernelTable::new(&Spectral::new(Grid::new(4, 3, 1.0, 1.0)?, 1.0)?)?;
+    for beyond in [isize::MIN, -4, 4, isize::MAX] {
+        assert_eq!(table.coefficient(beyond, 0), None);
+        assert_eq!(table.coefficient(0, beyond), None);
+        assert!(InfluenceKernel::coefficient(&table, beyond, beyond).is_nan());
+    }
+    assert!(table.coefficient(-3, 2).is_some());
+    Ok(())
+}
+
+#[test]
+fn a_table_is_the_kernel_it_was_made_from() -> Result<(), Error> {
+    let kernel = PeriodicBoussinesq::new(Grid::new(6, 5, 1.0, 0.7)?, 1.0)?;
+    let table = KernelTable::new(&kernel)?;
+    let boxed: Box<dyn InfluenceKernel> = Box::new(table.clone());
+    let again = KernelTable::new(&std::sync::Arc::new(boxed))?;
+    assert_eq!(again.values, table.values);
+    assert_eq!(again.contact_growth(), kernel.contact_growth());
+    assert_eq!(again.mean_displacement(), MeanDisplacement::Arbitrary);
+    assert_eq!(again.gauge(), table.gauge());
+    Ok(())
+}
+
+#[test]
+fn the_symbol_of_the_half_space_gives_the_spectral_kernel() -> Result<(), Error> {
+    for (nx, ny, dx, dy) in [
+        (8, 8, 1.0, 1.0),
+        (9, 6, 2e-6, 3e-6),
+        (7, 11, 1.0, 1.0),
+        (1, 5, 1.0, 1.0),
+        (64, 2, 1.0, 7.0),
+    ] {
+        let grid = Grid::new(nx, ny, dx, dy)?;
+        let mean = MeanDisplacement::Arbitrary;
+        let table = KernelTable::from_symbol(grid, mean, ContactGrowth::Monotone, half_space)?;
+        let spectral = KernelTable::new(&Spectral::new(grid, E_STAR)?)?;
+        let (found, expected) = (table.in_gauge(0.0), spectral.in_gauge(0.0));
+        let scale = expected.self_influence();
+        for (a, b) in found.values.iter().zip(&expected.values) {
+            // Two Fourier transforms of at most 128 values, and gauges added and taken away.
+            assert!((a - b).abs() < 1e-14 * scale, "{nx} x {ny}: {a} {b}");
+        }
+        // A gauge that was chosen, and a matrix that is not singular in it.
+        assert!(table.gauge().is_some_and(|gauge| gauge > 0.0));
+    }
+    Ok(())
+}
+
+#[test]
+fn uniform_pressure_compresses_a_layer_on_a_rigid_base() -> Result<(), Error> {
+    let (h, nu) = (0.3, 0.2);
+    let grid = Grid::new(10, 7, 0.1, 0.2)?;
+    let symbol = |qx: f64, qy: f64| layer(qx.hypot(qy), h, nu);
+    let mean = MeanDisplacement::Physical;
+    let table = KernelTable::from_symbol(grid, mean, ContactGrowth::Unknown, symbol)?;
+    // The strain of a layer that cannot spread is p (1 + ν)(1 − 2ν) / (E (1 − ν)), E* = E / (1 − ν²).
+    let modulus = (1.0 - nu * nu) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let compression = grid.nodes() as f64 * table.mean_coefficient();
+    // A sum of 70 terms.
+    assert!(
+        (compression / (h / modulus) - 1.0).abs() < 1e-13,
+        "{compression}"
+    );
+    assert_eq!((table.gauge(), table.computing_gauge()), (None, None));
+    assert_eq!(table.gauge_per_load(), Gauge::default());
+    assert_eq!(table.in_gauge(0.0).values, table.values);
+    let coarse = table.coarsened()?;
+    assert_eq!(coarse.gauge(), None);
+    // Short waves on a thick layer: the half-space, 2/q.
+    assert!((layer(50.0, h, nu) / (2.0 / 50.0) - 1.0).abs() < 1e-10);
+    Ok(())
+}
+
+/// An anisotropic symbol that is not even along x and y alone.
+#[test]
+fn waves_answer_with_their_symbol_in_every_direction() -> Result<(), Error> {
+    let symbol = |qx: f64, qy: f64| 1.0 / (1.0 + qx * qx + 0.8 * qx * qy + qy * qy);
+    for (nx, ny) in [(6, 8), (7, 5), (4, 3)] {
+        let grid = Grid::new(nx, ny, 0.9, 1.3)?;
+        let mean = MeanDisplacement::Physical;
+        let table = KernelTable::from_symbol(grid, mean, ContactGrowth::Unknown, symbol)?;
+        let turn = std::f64::consts::TAU;
+        for (kx, ky) in [(0, 0), (1, 0), (1, 1), (1, -1), (nx as i32 / 2, 1)] {
+            let (mut cosines, mut sines) = (0.0, 0.0);
+            for node in 0..grid.nodes() {
+                let (ix, iy) = grid.coordinates(node);
+                let turns =
+                    f64::from(kx) * ix as f64 / nx as f64 + f64::from(ky) * iy as f64 / ny as f64;
+                let c = table
+                    .coefficient(ix as isize, iy as isize)
+                    .unwrap_or(f64::NAN);
+                cosines += c * (turn * turns).cos();
+                sines += c * (turn * turns).sin();
+            }
+            let (lx, ly) = grid.sides();
+            let at = |kx: i32| symbol(turn * f64::from(kx) / lx, turn * f64::from(ky) / ly);
+            let expected = if 2 * kx as usize == nx {
+                0.5 * (at(kx) + at(-kx))
+            } else {
+                at(kx)
+            };
+            // Sums of at most 48 terms below 1.
+            assert!(
+                (cosines - expected).abs() < 1e-14,
+                "{nx} x {ny}, ({kx}, {ky})"
+            );
+            assert!(sines.abs() < 1e-14, "{nx} x {ny}, ({kx}, {ky}): {sines}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn impossible_symbols_are_refused() -> Result<(), Error> {
+    let grid = Grid::new(4, 4, 1.0, 1.0)?;
+    let make = |mean, symbol: fn(f64, f64) -> f64| {
+        KernelTable::from_symbol(grid, mean, ContactGrowth::Unknown, symbol)
+    };
+    let (arbitrary, physical) = (MeanDisplacement::Arbitrary, MeanDisplacement::Physical);
+    // A half-space has no mean displacement of its own, and cannot be said to have one.
+    let refused = make(physical, half_space);
+    assert!(matches!(
+        refused,
+        Err(Error::SymbolNotPositive { q: (0.0, 0.0), value }) if value.is_infinite()
+    ));
+    assert!(make(arbitrary, half_space).is_ok());
+    for bad in
+        [|_, _| f64::NAN, |qx, _| -qx, |_, _| 0.0, |qx, _| 2.0 - qx] as [fn(f64, f64) -> f64; 4]
+    {
+        assert!(matches!(
+            make(arbitrary, bad),
+            Err(Error::SymbolNotPositive { .. })
+        ));
+    }
+    assert!(matches!(
+        make(physical, |qx, _| 10.0 + qx),
+        Err(Error::SymbolNotEven { .. })
+    ));
+    let single = Grid::new(1, 1, 1.0, 1.0)?;
+    let unknown = KernelTable::from_symbol(single, arbitrary, ContactGrowth::Unknown, half_space);
+    assert!(matches!(unknown, Err(Error::NotPositiveDefinite { .. })));
+    Ok(())
+}
