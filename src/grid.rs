@@ -151,6 +151,25 @@ impl Grid {
         (node % self.nx, node / self.nx)
     }
 
+    /// How many whole nodes fit into a fraction (above 0, at most 1) of the nominal area; a fraction
+    /// computed as m / nodes gives m, whatever the rounding.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for another fraction, and for one that is less than a node.
+    pub fn nodes_in(&self, fraction: f64) -> Result<usize, Error> {
+        let nodes = (fraction * self.nodes() as f64 * (1.0 + 4.0 * f64::EPSILON)).floor();
+        if fraction > 0.0 && fraction <= 1.0 && nodes >= 1.0 {
+            Ok((nodes as usize).min(self.nodes()))
+        } else {
+            Err(Error::OutOfRange {
+                quantity: "contact area fraction",
+                value: fraction,
+                expected: "at least one node's and at most 1",
+            })
+        }
+    }
+
     /// `Ok` if a field of the given shape lives on this grid.
     ///
     /// # Errors

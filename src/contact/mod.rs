@@ -9,8 +9,8 @@ mod sequence;
 mod state;
 mod target;
 
-pub(crate) use certificate::Conditions;
 pub use certificate::Certificate;
+pub(crate) use certificate::{Conditions, LengthScale};
 pub use sequence::ContactSequence;
 pub use state::ContactState;
 pub use target::ContactTarget;

@@ -21,6 +21,7 @@ pub use boussinesq::Boussinesq;
 pub use growth::ContactGrowth;
 pub use periodic_love::PeriodicBoussinesq;
 pub use spectral::Spectral;
+pub(crate) use table::Blocks;
 pub use table::KernelTable;
 
 use crate::Grid;

@@ -2,6 +2,8 @@
 
 mod coarse;
 
+pub(crate) use coarse::Blocks;
+
 use super::{Boundary, InfluenceKernel};
 use crate::{Error, Grid};
 
