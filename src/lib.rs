@@ -11,7 +11,7 @@ pub mod contact;
 pub mod convolution;
 mod elasticity;
 mod error;
-//pub mod fixed_load;
+pub mod fixed_load;
 mod grid;
 pub mod io;
 pub mod kernel;
@@ -24,10 +24,10 @@ pub mod reference;
 pub mod surface;
 pub mod updater;
 
+pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::Error;
-//pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
-pub use contact::{Certificate, ContactState, ContactTarget};
+pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,

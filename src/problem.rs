@@ -25,7 +25,6 @@ use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 #[derive(Debug)]
 pub struct Problem {
     table: KernelTable,
-    growth: ContactGrowth,
     gap: Vec<f64>,
     greatest_gap: f64,
     rms_height: f64,
@@ -61,7 +60,6 @@ impl Problem {
             gap: gap.collect(),
             greatest_gap,
             rms_height: heights.rms_height(),
-            growth: kernel.contact_growth(),
             convolution: Convolution::from_table(&table)?,
             table,
             row_sums: OnceLock::new(),
@@ -83,7 +81,7 @@ impl Problem {
     /// What the kernel promises of the growth of contact.
     #[must_use]
     pub fn growth(&self) -> ContactGrowth {
-        self.growth
+        self.table.contact_growth()
     }
 
     /// The influence coefficients.

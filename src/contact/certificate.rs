@@ -1,7 +1,6 @@
 //! How exact a state is.
 
-use super::ContactState;
-use crate::{Boundary, Problem};
+use crate::kernel::KernelTable;
 
 /// How well a state fulfils the conditions of contact, `gap ≥ 0`, `p ≥ 0` and `p · gap = 0`, computed
 /// afresh from its pressure with one convolution.
@@ -22,32 +21,60 @@ pub struct Certificate {
     /// Difference between `ΔA Σ p` and the load.
     pub load_error: f64,
     /// What gaps are relative to \[m\]: the greatest of the rms height Sq, the approach δ and, on a
-    /// periodic half-space, `C(0, 0) p̄`, since far beyond full contact rounding grows with the pressure
-    /// while the approach stays what it is.
+    /// periodic half-space of arbitrary mean displacement, `C(0, 0) p̄` with p̄ the mean pressure: far
+    /// beyond full contact rounding grows with the pressure while the approach stays what it is. That
+    /// `C(0, 0)` is of the size of a node's own displacement, and independent of the kernel's gauge.
     pub length: f64,
+}
+
+/// The lengths of a contact problem that do not depend on its state: see [`Certificate::length`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LengthScale {
+    rms_height: f64,
+    /// C(0, 0) over the number of nodes if the mean displacement is arbitrary, else zero.
+    own_displacement: f64,
+}
+
+impl LengthScale {
+    /// Of a surface of this rms height on the half-space of `table`.
+    pub(crate) fn new(rms_height: f64, table: &KernelTable) -> Self {
+        let own = match (table.gauge(), table.computing_gauge()) {
+            (Some(present), Some(gauge)) => table.self_influence() - present + gauge,
+            _ => 0.0,
+        };
+        Self {
+            rms_height,
+            own_displacement: own / table.grid().nodes() as f64,
+        }
+    }
+
+    /// Root mean square height Sq.
+    pub(crate) fn rms_height(self) -> f64 {
+        self.rms_height
+    }
+
+    /// `C(0, 0) p̄` for pressures of the sum `sum`, or zero where the approach is scale enough.
+    pub(crate) fn own_displacement(self, sum: f64) -> f64 {
+        self.own_displacement * sum
+    }
 }
 
 /// What a certificate needs to know beside the fields.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conditions {
     /// Sum of pressures that belongs to the load.
-    pub(crate) sum: f64,
+    sum: f64,
     /// See [`Certificate::length`].
-    pub(crate) length: f64,
+    length: f64,
 }
 
 impl Conditions {
-    /// For a state of a problem; `None` before first touch.
-    pub(crate) fn of(problem: &Problem, state: Option<&ContactState>) -> Self {
-        let grid = problem.grid();
-        let (load, approach) = state.map_or((0.0, 0.0), |state| (state.load, state.approach));
-        let pressed = match problem.boundary() {
-            Boundary::Free => 0.0,
-            Boundary::Periodic => problem.table().self_influence() * load / grid.nominal_area(),
-        };
+    /// For a state under pressures of the sum `sum` at an approach, on a problem with these lengths.
+    pub(crate) fn new(sum: f64, approach: f64, scale: LengthScale) -> Self {
+        let lengths = [approach, scale.own_displacement(sum)];
         Self {
-            sum: load / grid.cell_area(),
-            length: problem.rms_height().max(approach).max(pressed),
+            sum,
+            length: lengths.into_iter().fold(scale.rms_height(), f64::max),
         }
     }
 

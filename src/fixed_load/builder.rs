@@ -1,47 +1,53 @@
 //! How the solver is set up.
 
-use super::hierarchy::levels;
+use super::budget::MemoryBudget;
+use super::hierarchy::Hierarchy;
+use super::settings::Settings;
 use super::solver::FixedLoadSolver;
-use crate::initial_gap::InitialGap;
-use crate::kernel::KernelTable;
-use crate::{Error, InfluenceKernel, Surface};
+use crate::{Error, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`FixedLoadSolver`].
-#[derive(Debug, Clone)]
+#[derive(Clone, Copy)]
 #[must_use = "a builder does nothing until it is built"]
-pub struct FixedLoadBuilder<S, K> {
-    surface: S,
-    kernel: K,
-    tolerance: f64,
-    max_iterations: usize,
-    nested: bool,
-    stiffness: bool,
+pub struct FixedLoadBuilder<'a> {
+    surface: &'a dyn Surface,
+    kernel: &'a dyn InfluenceKernel,
+    settings: Settings,
 }
 
-impl<S: Surface, K: InfluenceKernel> FixedLoadBuilder<S, K> {
-    /// Greatest error that a solution may have, 10⁻⁸ by default: of every gap in contact and of
-    /// every overlap, relative to the approach. From 10⁻¹² on rounding begins to matter.
+impl FixedLoadBuilder<'_> {
+    /// Greatest error that a solution may have, 10⁻⁸ by default: of every gap in contact and of every
+    /// overlap, relative to the approach, or to C(0, 0) p̄ if that is larger on a periodic half-space
+    /// of arbitrary mean displacement. From 10⁻¹² on rounding begins to matter.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
+        self.settings.tolerance = tolerance;
         self
     }
 
-    /// Steps of conjugate gradients after which to give up.
+    /// Steps of conjugate gradients after which to give up, 5000 by default.
     pub fn max_iterations(mut self, iterations: usize) -> Self {
-        self.max_iterations = iterations;
+        self.settings.max_iterations = iterations;
         self
     }
 
     /// Whether to start from coarser grids, as is the default.
     pub fn nested(mut self, nested: bool) -> Self {
-        self.nested = nested;
+        self.settings.nested = nested;
         self
     }
 
     /// Whether to compute stiffnesses as well, as is the default: about as much work again as the
     /// pressure. See [`FixedLoadSolver::add_stiffness`].
     pub fn stiffness(mut self, stiffness: bool) -> Self {
-        self.stiffness = stiffness;
+        self.settings.stiffness = stiffness;
+        self
+    }
+
+    /// Bytes that may be held at most, by default three quarters of the machine's memory where the
+    /// system says how much that is: some 330 for each node of the grid, and some 360 for each node in
+    /// contact. More is an [`Error::MemoryBudget`], before it is allocated.
+    pub fn memory_budget(mut self, bytes: usize) -> Self {
+        self.settings.memory_budget = Some(bytes);
         self
     }
 
@@ -49,52 +55,49 @@ impl<S: Surface, K: InfluenceKernel> FixedLoadBuilder<S, K> {
     ///
     /// # Errors
     ///
-    /// Those of the surface and of the kernel; [`Error::HeightNotFinite`];
-    /// [`Error::GridMismatch`] if the surface returns heights of another grid; and
-    /// [`Error::OutOfRange`] for a tolerance that is not between 0 and 1, both excluded.
-    pub fn build(self) -> Result<FixedLoadSolver<S, K>, Error> {
-        let grid = self.kernel.grid();
-        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
-            return Err(Error::OutOfRange {
-                quantity: "tolerance",
-                value: self.tolerance,
-                expected: "above 0 and below 1",
-            });
-        }
-        let gap = InitialGap::of(&self.surface, &grid)?;
-        let table = KernelTable::new(&self.kernel)?;
-        Ok(FixedLoadSolver {
-            levels: levels(&table, gap.values, self.nested)?,
-            surface: self.surface,
-            kernel: self.kernel,
-            grid,
-            tolerance: self.tolerance,
-            max_iterations: self.max_iterations,
-            stiffness: self.stiffness,
-            rms_height: gap.rms_height,
-        })
+    /// [`Error::OutOfRange`] for a tolerance that is not between 0 and 1, both excluded;
+    /// [`Error::MemoryBudget`] if the grid is too large for the budget; and those of [`Problem::new`].
+    pub fn build(self) -> Result<FixedLoadSolver, Error> {
+        let settings = self.settings;
+        settings.check()?;
+        let budget = settings
+            .memory_budget
+            .unwrap_or_else(memory::default_budget);
+        let memory = MemoryBudget::new(budget, &self.kernel.grid(), settings.nested)?;
+        let problem = Problem::new(self.surface, self.kernel)?;
+        let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
+        Ok(FixedLoadSolver::with(settings, hierarchy))
     }
 }
 
-impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
-    /// A solver for `surface` on the half-space of `kernel` with the default tolerance.
+impl std::fmt::Debug for FixedLoadBuilder<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FixedLoadBuilder")
+            .field("grid", &self.kernel.grid())
+            .field("settings", &self.settings)
+            .finish_non_exhaustive()
+    }
+}
+
+impl FixedLoadSolver {
+    /// A solver for `surface` on the half-space of `kernel` with default settings.
     ///
     /// # Errors
     ///
     /// As [`FixedLoadBuilder::build`].
-    pub fn new(surface: S, kernel: K) -> Result<Self, Error> {
+    pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
         Self::builder(surface, kernel).build()
     }
 
     /// Sets up a solver for `surface` on the half-space of `kernel`.
-    pub fn builder(surface: S, kernel: K) -> FixedLoadBuilder<S, K> {
+    pub fn builder<'a>(
+        surface: &'a dyn Surface,
+        kernel: &'a dyn InfluenceKernel,
+    ) -> FixedLoadBuilder<'a> {
         FixedLoadBuilder {
             surface,
             kernel,
-            tolerance: 1e-8,
-            max_iterations: 5000,
-            nested: true,
-            stiffness: true,
+            settings: Settings::default(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! From one state to the next: where a sweep starts.
+//! The prediction of a state from the last ones.
 
 use super::level::Level;
 use super::tangent::Tangent;
@@ -9,7 +9,7 @@ use crate::krylov::{add_scaled, sum};
 /// 0.8 % (512 × 512 nodes, 12 % in contact).
 const GREATEST_STEP: f64 = 1.25;
 
-/// What a sweep knows beside its last state, which the level holds.
+/// What is known of a sequence of states beside the last one, which the level holds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Continuation {
     pub(super) tangent: Tangent,
@@ -44,7 +44,7 @@ impl Continuation {
         if !self.tangent.is_known() {
             return now * approach / iterate.approach;
         }
-        let compliance = sum(&self.tangent.rate).recip() - level.gauge;
+        let compliance = sum(&self.tangent.rate).recip() - level.uniform();
         now + (approach - iterate.approach) / compliance
     }
 
@@ -55,13 +55,14 @@ impl Continuation {
     }
 
     /// Moves the iterate of `level` to the sum `target`. Pressures, displacements and approach are
-    /// combined alike, so that all of it is exact but for the conditions of contact: pressures may
-    /// be negative where nodes leave, gaps where nodes join.
+    /// combined alike, so that only the conditions of contact can be broken: pressures may become
+    /// negative where nodes leave, gaps where nodes join.
     ///
-    /// With tangents $t = y_2 / \sum y_2$ at the sums S and, before, S′, the pressure follows the
-    /// parabola $p + a t + \tfrac12 a^2 (t - t') / (S - S')$, a the change of the sum; without, the
-    /// line through the last two states, or through the first and none.
+    /// With tangents `t = y₂ / Σ y₂` at the sums S and, before, S′, the pressure follows the parabola
+    /// `p + a t + ½ a² (t − t′) / (S − S′)`, a being the change of the sum; without tangents the line
+    /// through the last two states, or through the first and no contact.
     pub(super) fn predict(&mut self, level: &mut Level, target: f64) {
+        let uniform = level.uniform();
         let iterate = &mut level.iterate;
         let now = sum(&iterate.pressure);
         let change = target - now;
@@ -100,8 +101,8 @@ impl Continuation {
         let tangent = Earlier {
             sum: now,
             pressure: unit(&self.tangent.rate, 0.0),
-            displacement: unit(&self.tangent.displacement, level.gauge),
-            approach: total.recip() - level.gauge,
+            displacement: unit(&self.tangent.displacement, uniform),
+            approach: total.recip() - uniform,
         };
         let mut second = 0.0;
         if let Some(earlier) = &self.earlier

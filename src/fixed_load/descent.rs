@@ -1,145 +1,192 @@
 //! Projected conjugate gradients on a contact set.
 
-use super::iterate::{Criteria, Effort, Errors};
-use super::level::{Level, Target};
+use super::iterate::{Criteria, Errors, Progress};
+use super::level::{Level, Prescribed};
+use super::release::release;
 use crate::Error;
 use crate::krylov::{Directions, NodeSet, add_scaled, dot, greatest, sum, sum_over};
 
-/// Where a round began.
+/// The way down in energy on the contact set of a level, at whose nodes it keeps the fields.
+#[derive(Debug)]
+pub(super) struct Descent<'a> {
+    level: &'a mut Level,
+    prescribed: Prescribed,
+    criteria: Criteria,
+    pressure: Vec<f64>,
+    closure: Vec<f64>,
+    /// The preconditioner times the unit vector if the sum is prescribed, and its sum.
+    weights: Vec<f64>,
+    total_weight: f64,
+}
+
+/// Where a descent began.
 struct Start {
     pressure: Vec<f64>,
     closure: Vec<f64>,
     approach: f64,
 }
 
-impl Level {
-    /// Conjugate gradients on `contact`, then release of nodes with tension.
-    pub(super) fn round_on(
-        &mut self,
-        contact: &NodeSet,
-        target: Target,
-        criteria: Criteria,
-        inner: f64,
-        effort: &mut Effort,
-    ) -> Result<Errors, Error> {
-        let (mut x, mut closure) = (Vec::new(), Vec::new());
-        contact.gather(&self.iterate.pressure, &mut x);
-        contact.gather(&self.iterate.closure, &mut closure);
+impl<'a> Descent<'a> {
+    /// From the present iterate of `level`.
+    pub(super) fn new(level: &'a mut Level, prescribed: Prescribed, criteria: Criteria) -> Self {
+        let (mut pressure, mut closure) = (Vec::new(), Vec::new());
+        let contact = &level.iterate.contact;
+        contact.gather(&level.iterate.pressure, &mut pressure);
+        contact.gather(&level.iterate.closure, &mut closure);
         let mut weights = Vec::new();
-        let mut total_weight = 0.0;
-        if let Target::Sum(_) = target {
-            self.inverse.apply(&vec![1.0; contact.len()], &mut weights);
-            total_weight = sum(&weights);
+        if let Prescribed::Sum(_) = prescribed {
+            level.inverse.apply(&vec![1.0; contact.len()], &mut weights);
         }
-        let approach_of = |closure: &[f64]| match target {
-            Target::Approach(approach) => approach,
-            Target::Sum(_) => dot(&weights, closure) / total_weight,
+        let descent = Self {
+            level,
+            prescribed,
+            criteria,
+            pressure,
+            closure,
+            total_weight: sum(&weights),
+            weights,
         };
-        self.iterate.approach = approach_of(&closure);
-        let start = Start {
-            pressure: x.clone(),
-            closure: closure.clone(),
-            approach: self.iterate.approach,
-        };
+        descent.level.iterate.approach = descent.approach();
+        descent
+    }
 
-        let mut errors = self.errors(contact, &x, &closure);
-        let mut residual = vec![0.0; x.len()];
+    /// Conjugate gradients until the residual is below `inner` times the errors of the set itself,
+    /// then release of nodes with tension.
+    pub(super) fn run(mut self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
+        let start = Start {
+            pressure: self.pressure.clone(),
+            closure: self.closure.clone(),
+            approach: self.level.iterate.approach,
+        };
+        let errors = self.iterate(inner, progress)?;
+        if errors.tension > self.tolerance() {
+            self.release(&start)?;
+            return Ok(Errors {
+                residual: f64::INFINITY,
+                ..errors
+            });
+        }
+        for value in &mut self.pressure {
+            *value = value.max(0.0);
+        }
+        let iterate = &mut self.level.iterate;
+        iterate
+            .contact
+            .scatter(&self.pressure, &mut iterate.pressure);
+        Ok(errors)
+    }
+
+    /// Conjugate gradients; pressures may become negative.
+    fn iterate(&mut self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
+        let mut errors = self.errors();
+        let mut residual = vec![0.0; self.pressure.len()];
         let mut z = Vec::new();
         let mut directions = Directions::default();
         loop {
-            let approach = self.iterate.approach;
             let others = errors.in_set();
-            let tolerance = criteria.tolerance * criteria.scale(approach);
+            let tolerance = self.tolerance();
             // What is within the tolerance need not be cured.
             let enough = if others > tolerance {
                 tolerance.max(inner * others)
             } else {
                 tolerance
             };
-            let done = errors.residual <= enough || errors.residual.is_nan();
-            // A set that has just been chosen deserves a step, unless nothing is wrong.
-            let fresh = directions.is_empty() && others > tolerance;
-            if (done && !fresh) || effort.iterations >= criteria.max_iterations || x.is_empty() {
-                break;
-            }
-            for (r, g) in residual.iter_mut().zip(&closure) {
-                *r = approach - g;
-            }
-            self.inverse.apply(&residual, &mut z);
-            let values = directions.conjugate(&z);
-            let displacement = self.operator.step(contact, &values)?;
-            let mut image = Vec::new();
-            contact.gather(displacement, &mut image);
-            let curvature = dot(&values, &image);
-            if curvature.is_nan() || curvature <= 0.0 {
-                if residual.iter().all(|r| *r == 0.0) {
-                    break;
-                }
-                if directions.forget() {
-                    continue;
-                }
-                return Err(Error::FactorizationFailed {
-                    nodes: contact.len(),
+            if !errors.residual.is_finite() {
+                return Ok(Errors {
+                    residual: f64::NAN,
+                    ..errors
                 });
             }
-            let step = dot(&residual, &values) / curvature;
-            add_scaled(&mut x, step, &values);
-            add_scaled(&mut self.iterate.closure, step, displacement);
-            add_scaled(&mut closure, step, &image);
-            self.iterate.approach = approach_of(&closure);
-            directions.push(values, image, curvature);
-            effort.iterations += 1;
-            errors = self.errors(contact, &x, &closure);
-        }
-        let slack = criteria.tolerance * criteria.scale(self.iterate.approach);
-        if errors.tension <= slack {
-            for value in &mut x {
-                *value = value.max(0.0);
+            // A set that has just been chosen deserves a step, unless nothing is wrong.
+            let fresh = directions.is_empty() && others > tolerance && errors.residual > 0.0;
+            if (errors.residual <= enough && !fresh)
+                || progress.iterations >= self.criteria.max_iterations
+            {
+                return Ok(errors);
             }
-            contact.scatter(&x, &mut self.iterate.pressure);
-            return Ok(errors);
+            let approach = self.level.iterate.approach;
+            for (r, g) in residual.iter_mut().zip(&self.closure) {
+                *r = approach - g;
+            }
+            let Level {
+                inverse,
+                operator,
+                iterate,
+                ..
+            } = &mut *self.level;
+            inverse.apply(&residual, &mut z);
+            let step = directions.advance(operator, &iterate.contact, &residual, &z)?;
+            add_scaled(&mut self.pressure, step.length, step.values);
+            add_scaled(&mut self.closure, step.length, step.image);
+            add_scaled(&mut iterate.closure, step.length, operator.displacement());
+            self.level.iterate.approach = self.approach();
+            progress.iterations += 1;
+            errors = self.errors();
         }
-
-        self.release(&mut x, &weights, target);
-        self.accept(contact, &start, &mut x)?;
-        if let Target::Sum(_) = target {
-            // On the nodes that still carry.
-            contact.gather(&self.iterate.closure, &mut closure);
-            let carrying = |i: usize| if x[i] > 0.0 { weights[i] } else { 0.0 };
-            self.iterate.approach =
-                sum_over(x.len(), |i| carrying(i) * closure[i]) / sum_over(x.len(), carrying);
-        }
-        Ok(Errors {
-            residual: f64::INFINITY,
-            ..errors
-        })
     }
 
-    /// Moves to the pressures `x`, or less far if the energy rises on the way.
-    fn accept(&mut self, contact: &NodeSet, start: &Start, x: &mut [f64]) -> Result<(), Error> {
-        contact.scatter(x, &mut self.iterate.pressure);
-        self.refresh()?;
-        let mut closure = Vec::new();
-        contact.gather(&self.iterate.closure, &mut closure);
+    /// Sets nodes with tension free, and goes there or as far as the energy falls.
+    fn release(&mut self, start: &Start) -> Result<(), Error> {
+        release(
+            &mut self.level.inverse,
+            &mut self.pressure,
+            &self.weights,
+            self.prescribed,
+        );
+        self.move_there()?;
         // Along the segment the energy is a parabola, known from its slopes.
+        let (x, closure) = (&self.pressure, &self.closure);
         let change = |i: usize| x[i] - start.pressure[i];
         let slope = sum_over(x.len(), |i| (start.closure[i] - start.approach) * change(i));
         let curvature = sum_over(x.len(), |i| (closure[i] - start.closure[i]) * change(i));
         let minimum = -slope / curvature;
         if minimum > 0.0 && minimum < 0.5 {
-            for (x, start) in x.iter_mut().zip(&start.pressure) {
+            for (x, start) in self.pressure.iter_mut().zip(&start.pressure) {
                 *x = start + minimum * (*x - start);
             }
-            contact.scatter(x, &mut self.iterate.pressure);
-            self.refresh()?;
+            self.move_there()?;
+        }
+        if let Prescribed::Sum(_) = self.prescribed {
+            // On the nodes that still carry.
+            let (x, closure) = (&self.pressure, &self.closure);
+            let carrying = |i: usize| if x[i] > 0.0 { self.weights[i] } else { 0.0 };
+            self.level.iterate.approach =
+                sum_over(x.len(), |i| carrying(i) * closure[i]) / sum_over(x.len(), carrying);
         }
         Ok(())
     }
 
+    /// Makes the pressures those of the level, and computes displacements afresh.
+    fn move_there(&mut self) -> Result<(), Error> {
+        let iterate = &mut self.level.iterate;
+        iterate
+            .contact
+            .scatter(&self.pressure, &mut iterate.pressure);
+        self.level.refresh()?;
+        let iterate = &self.level.iterate;
+        iterate.contact.gather(&iterate.closure, &mut self.closure);
+        Ok(())
+    }
+
+    /// The approach that is prescribed, or the multiplier of the sum that is.
+    fn approach(&self) -> f64 {
+        match self.prescribed {
+            Prescribed::Approach(approach) => approach,
+            Prescribed::Sum(_) => dot(&self.weights, &self.closure) / self.total_weight,
+        }
+    }
+
+    /// Greatest length by which gaps may be wrong.
+    fn tolerance(&self) -> f64 {
+        self.criteria.tolerance * self.criteria.scale(self.level.iterate.approach)
+    }
+
     /// The worst errors at present.
-    fn errors(&self, contact: &NodeSet, x: &[f64], closure: &[f64]) -> Errors {
-        let approach = self.iterate.approach;
-        let (all, places) = (&self.iterate.closure, contact.places());
+    fn errors(&self) -> Errors {
+        let (x, closure) = (&self.pressure, &self.closure);
+        let iterate = &self.level.iterate;
+        let (approach, all) = (iterate.approach, &iterate.closure);
+        let places = iterate.contact.places();
         Errors {
             residual: greatest(x.len(), 0.0, |i| (approach - closure[i]).abs()),
             overlap: greatest(all.len(), 0.0, |node| {
@@ -149,7 +196,7 @@ impl Level {
                     0.0
                 }
             }),
-            tension: greatest(x.len(), 0.0, |i| -x[i]) * self.self_influence,
+            tension: greatest(x.len(), 0.0, |i| -x[i]) * self.level.self_influence,
         }
     }
 }

@@ -1,90 +1,170 @@
-//! Nested grids: from fine to coarse and back.
+//! Nested grids: the start on a grid comes from the next coarser one.
 
-use super::level::{Level, Target};
-use crate::kernel::KernelTable;
-use crate::{Boundary, Error, Grid};
+use super::active_set::ActiveSet;
+use super::budget::MemoryBudget;
+use super::iterate::Criteria;
+use super::level::{Level, Prescribed};
+use super::settings::Settings;
+use crate::convolution::Convolution;
+use crate::kernel::Blocks;
+use crate::krylov::sum;
+use crate::parallel::inside;
+use crate::{Error, Problem};
 
 /// Sides of at most so many nodes are not coarsened further.
 const COARSEST: usize = 16;
+/// Tolerance on the coarser grids, whose solutions are only starts, relative to the approach ...
+const COARSE_TOLERANCE: f64 = 1e-2;
+/// ... or to so many rms heights: long waves that are wrong by more are costly on the finest grid.
+const COARSE_RMS_HEIGHTS: f64 = 10.0;
 
-/// The grids, finest first.
-pub(super) fn levels(
-    table: &KernelTable,
-    gap: Vec<f64>,
-    nested: bool,
-) -> Result<Vec<Level>, Error> {
-    let mut levels = vec![Level::new(table, gap)?];
-    let mut table = std::borrow::Cow::Borrowed(table);
-    loop {
-        let fine = &levels[levels.len() - 1];
-        if !nested || fine.grid.nx().max(fine.grid.ny()) <= COARSEST {
-            return Ok(levels);
+/// The contact problem on the grid of the caller and on coarser ones.
+#[derive(Debug, Clone)]
+pub(super) struct Hierarchy {
+    pub(super) finest: Level,
+    /// Finest first.
+    coarser: Vec<Coarser>,
+}
+
+/// A grid, and the blocks of nodes of the next finer one that are its nodes.
+#[derive(Debug, Clone)]
+struct Coarser {
+    level: Level,
+    blocks: Blocks,
+}
+
+impl Hierarchy {
+    /// All grids of a problem, only its own unless `nested`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Convolution::from_table`] and [`Grid::new`](crate::Grid::new).
+    pub(super) fn new(
+        problem: &Problem,
+        nested: bool,
+        memory: MemoryBudget,
+    ) -> Result<Self, Error> {
+        let rms_height = problem.rms_height();
+        let gap = problem.initial_gap().to_vec();
+        let convolution = problem.convolution();
+        let finest = Level::new(problem.table(), convolution, gap, rms_height, memory);
+        let mut coarser: Vec<Coarser> = Vec::new();
+        let mut table = std::borrow::Cow::Borrowed(problem.table());
+        loop {
+            let fine = coarser.last().map_or(&finest, |coarse| &coarse.level);
+            let (nx, ny) = fine.grid.shape();
+            if !nested || nx.max(ny) <= COARSEST {
+                return Ok(Self { finest, coarser });
+            }
+            let (coarse, blocks) = table.coarsened()?;
+            let gap = blocks.restrict(&fine.gap);
+            let convolution = Convolution::from_table(&coarse)?;
+            coarser.push(Coarser {
+                level: Level::new(&coarse, convolution, gap, rms_height, memory),
+                blocks,
+            });
+            table = std::borrow::Cow::Owned(coarse);
         }
-        let coarse = table.coarsened()?;
-        let grid = coarse.grid();
-        let blocks = Blocks::new(&fine.grid, &grid, table.boundary());
-        let gap = blocks.restrict(&fine.gap);
-        levels.push(Level::new(&coarse, gap)?);
-        table = std::borrow::Cow::Owned(coarse);
-    }
-}
-
-/// The target on the grid of `coarse` that corresponds to `target` on that of `fine`.
-pub(super) fn coarse_target(target: Target, fine: &Grid, coarse: &Grid) -> Target {
-    match target {
-        Target::Sum(sum) => Target::Sum(sum * fine.cell_area() / coarse.cell_area()),
-        approach @ Target::Approach(_) => approach,
-    }
-}
-
-/// Blocks of nodes of a fine grid, each a node of a coarse one.
-pub(super) struct Blocks<'a> {
-    fine: &'a Grid,
-    coarse: &'a Grid,
-    boundary: Boundary,
-}
-
-impl<'a> Blocks<'a> {
-    pub(super) fn new(fine: &'a Grid, coarse: &'a Grid, boundary: Boundary) -> Self {
-        Self {
-            fine,
-            coarse,
-            boundary,
-        }
     }
 
-    /// The block in which a node lies.
-    fn of(&self, node: usize) -> usize {
-        let (ix, iy) = self.fine.coordinates(node);
-        let halve = |i: usize, fine: usize, coarse: usize| match self.boundary {
-            Boundary::Free if fine == 1 => i,
-            Boundary::Free => i / 2,
-            // Blocks share the period equally.
-            Boundary::Periodic => (2 * i + 1) * coarse / (2 * fine),
+    /// Fills the start of the finest grid, without a state near what is prescribed, from the coarsest
+    /// grid upwards.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::FactorizationFailed`] if the kernel is not positive definite, and
+    /// [`Error::MemoryBudget`].
+    pub(super) fn start(
+        &mut self,
+        prescribed: Prescribed,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        let cell = self.finest.grid.cell_area();
+        let Some(coarsest) = self.coarser.last_mut() else {
+            start_uniformly(&mut self.finest, prescribed);
+            return Ok(());
         };
-        self.coarse.index(
-            halve(ix, self.fine.nx(), self.coarse.nx()),
-            halve(iy, self.fine.ny(), self.coarse.ny()),
-        )
+        let level = &mut coarsest.level;
+        start_uniformly(level, prescribed.on_cells(cell, level.grid.cell_area()));
+        for index in (0..self.coarser.len()).rev() {
+            let (finer, coarse) = self.coarser.split_at_mut(index);
+            let Coarser { level, blocks } = &mut coarse[0];
+            let fine = finer.last_mut().map_or(&mut self.finest, |f| &mut f.level);
+            solve_roughly(
+                level,
+                prescribed.on_cells(cell, level.grid.cell_area()),
+                settings,
+            )?;
+            blocks.prolong(&level.iterate.pressure, &mut fine.iterate.pressure);
+            let fine_cell = fine.grid.cell_area();
+            scale(
+                &mut fine.iterate.pressure,
+                prescribed.on_cells(cell, fine_cell),
+            );
+        }
+        Ok(())
     }
 
-    /// Averages over blocks.
-    fn restrict(&self, values: &[f64]) -> Vec<f64> {
-        let mut sums = vec![(0.0, 0_u32); self.coarse.nodes()];
-        for (node, value) in values.iter().enumerate() {
-            let (sum, count) = &mut sums[self.of(node)];
-            *sum += value;
-            *count += 1;
-        }
-        sums.into_iter()
-            .map(|(sum, count)| sum / f64::from(count.max(1)))
-            .collect()
+    /// Convolutions since this was last asked: on the finest grid, and on coarser ones, each of these
+    /// counted as its part of the nodes of the finest.
+    pub(super) fn take_convolutions(&mut self) -> (usize, f64) {
+        let nodes = self.finest.grid.nodes() as f64;
+        let coarse = self.coarser.iter_mut().map(|coarse| {
+            let part = coarse.level.grid.nodes() as f64 / nodes;
+            coarse.level.operator.take_convolutions() as f64 * part
+        });
+        let coarse = coarse.sum();
+        (self.finest.operator.take_convolutions(), coarse)
     }
 
-    /// The same pressure on all nodes of a block.
-    pub(super) fn prolong(&self, values: &[f64], result: &mut [f64]) {
-        for (node, value) in result.iter_mut().enumerate() {
-            *value = values[self.of(node)];
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let coarser = self.coarser.iter().map(|coarse| coarse.level.bytes());
+        self.finest.bytes() + coarser.sum::<usize>()
+    }
+}
+
+/// Uniform pressure of the sum that is prescribed, none if it is an approach.
+fn start_uniformly(level: &mut Level, prescribed: Prescribed) {
+    let value = match prescribed {
+        Prescribed::Sum(_) => 1.0,
+        Prescribed::Approach(_) => 0.0,
+    };
+    level.iterate.pressure.fill(value);
+    scale(&mut level.iterate.pressure, prescribed);
+}
+
+/// Gives pressures the sum that is prescribed.
+fn scale(pressure: &mut [f64], prescribed: Prescribed) {
+    if let Prescribed::Sum(target) = prescribed {
+        let factor = target / sum(pressure);
+        for value in pressure {
+            *value *= factor;
         }
+    }
+}
+
+/// Solves well enough for a start on the next finer grid, and where that takes too many iterations
+/// leaves what they have come to.
+fn solve_roughly(
+    level: &mut Level,
+    prescribed: Prescribed,
+    settings: &Settings,
+) -> Result<(), Error> {
+    let rms_height = level.scale.rms_height();
+    let criteria = Criteria {
+        tolerance: COARSE_TOLERANCE.max(settings.tolerance),
+        floor: level.least_length(prescribed),
+        length: if rms_height > 0.0 {
+            COARSE_RMS_HEIGHTS * rms_height
+        } else {
+            f64::INFINITY
+        },
+        max_iterations: settings.max_iterations,
+        verify: false,
+    };
+    match inside(|| ActiveSet::new(level, prescribed, criteria).solve(false)) {
+        Ok(_) | Err(Error::NoConvergence { .. }) => Ok(()),
+        Err(error) => Err(error),
     }
 }

@@ -1,6 +1,6 @@
 //! Approximate solutions: what they are, how good they are, and when they are good enough.
 
-use crate::krylov::NodeSet;
+use crate::krylov::{NodeSet, greatest};
 
 /// An approximate solution on one grid: pressure ≥ 0, with the target's sum if it is one.
 #[derive(Debug, Clone)]
@@ -41,9 +41,9 @@ impl Criteria {
     }
 }
 
-/// What a solve took.
+/// How far a solve has come: steps of conjugate gradients, and contact sets.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Effort {
+pub(super) struct Progress {
     pub(super) iterations: usize,
     pub(super) rounds: usize,
 }
@@ -78,11 +78,11 @@ pub(super) struct Errors {
 impl Errors {
     /// What is wrong with the set itself.
     pub(super) fn in_set(&self) -> f64 {
-        self.overlap.max(self.tension)
+        greatest(2, 0.0, |i| [self.overlap, self.tension][i])
     }
 
-    /// All of it.
+    /// All of it; NaN if any is.
     pub(super) fn worst(&self) -> f64 {
-        self.residual.max(self.in_set())
+        greatest(2, 0.0, |i| [self.residual, self.in_set()][i])
     }
 }

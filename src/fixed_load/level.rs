@@ -2,67 +2,150 @@
 
 use std::borrow::Cow;
 
+use super::budget::MemoryBudget;
 use super::iterate::Iterate;
+use crate::contact::LengthScale;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
-use crate::krylov::{Operator, SparseInverse};
-use crate::{Boundary, Error, Grid};
+use crate::krylov::{Operator, SparseInverse, sum};
+use crate::{Error, Grid};
 
-/// What is prescribed.
+/// What is prescribed on one grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Target {
+pub(super) enum Prescribed {
     /// The sum of all pressures.
     Sum(f64),
     /// The approach.
     Approach(f64),
 }
 
+impl Prescribed {
+    /// The same on a grid with other cells: the load is what counts.
+    pub(super) fn on_cells(self, from: f64, to: f64) -> Self {
+        match self {
+            Self::Sum(sum) => Self::Sum(sum * from / to),
+            approach @ Self::Approach(_) => approach,
+        }
+    }
+}
+
 /// The contact problem on one grid.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
     pub(super) grid: Grid,
-    pub(super) boundary: Boundary,
     /// Initial gap, zero at the highest node of the finest grid.
     pub(super) gap: Vec<f64>,
-    /// In the zero gauge if the half-space is periodic.
+    /// In the zero gauge if the mean displacement is arbitrary.
     pub(super) operator: Operator,
     /// That of the matrix in the gauge `gauge`.
     pub(super) inverse: SparseInverse,
-    /// A gauge of its own to compute in, where the zero gauge is singular; zero if the half-space
-    /// is free.
-    pub(super) gauge: f64,
+    /// A gauge of its own to compute in, since the zero gauge is singular in full contact; `None` if
+    /// the mean displacement is the kernel's.
+    pub(super) gauge: Option<f64>,
     /// C(0, 0), in that gauge.
     pub(super) self_influence: f64,
+    pub(super) scale: LengthScale,
     pub(super) iterate: Iterate,
+    memory: MemoryBudget,
 }
 
 impl Level {
-    pub(super) fn new(table: &KernelTable, gap: Vec<f64>) -> Result<Self, Error> {
+    /// The problem with the kernel of `table`, of which `convolution` is the convolution, and the
+    /// initial gap `gap` of a surface of the given rms height.
+    pub(super) fn new(
+        table: &KernelTable,
+        convolution: Convolution,
+        gap: Vec<f64>,
+        rms_height: f64,
+        memory: MemoryBudget,
+    ) -> Self {
         let gauge = table.computing_gauge();
-        let [zero, own] = match gauge {
-            Some(gauge) => [0.0, gauge].map(|gauge| Cow::Owned(table.in_gauge(gauge))),
-            None => [Cow::Borrowed(table), Cow::Borrowed(table)],
+        let (own, convolution) = match gauge {
+            Some(gauge) => (
+                Cow::Owned(table.in_gauge(gauge)),
+                convolution.without_mean(),
+            ),
+            None => (Cow::Borrowed(table), convolution),
         };
-        Ok(Self {
+        Self {
             grid: table.grid(),
-            boundary: table.boundary(),
+            operator: Operator::new(convolution),
+            inverse: SparseInverse::new(&own),
+            gauge,
+            self_influence: own.self_influence(),
+            scale: LengthScale::new(rms_height, table),
             iterate: Iterate::new(gap.len()),
             gap,
-            operator: Operator::new(Convolution::from_table(&zero)?),
-            inverse: SparseInverse::new(&own),
-            gauge: gauge.unwrap_or_default(),
-            self_influence: own.self_influence(),
-        })
+            memory,
+        }
     }
 
-    /// Errors of gaps are measured by no less than this length: far beyond full contact of a periodic
-    /// half-space the approach stays what it is, whereas rounding grows with the pressure.
-    pub(super) fn least_length(&self, target: Target) -> f64 {
-        match target {
-            Target::Sum(sum) if self.boundary == Boundary::Periodic => {
-                self.self_influence * (sum / self.gap.len() as f64)
-            }
-            Target::Sum(_) | Target::Approach(_) => 0.0,
+    /// Mean initial gap.
+    pub(super) fn mean_initial_gap(&self) -> f64 {
+        sum(&self.gap) / self.gap.len() as f64
+    }
+
+    /// Uniform displacement per unit of the sum of pressures that the gauge of the level adds to the
+    /// zero gauge.
+    pub(super) fn uniform(&self) -> f64 {
+        self.gauge.unwrap_or_default()
+    }
+
+    /// Computes the displacements of the present pressures afresh.
+    pub(super) fn refresh(&mut self) -> Result<(), Error> {
+        let Iterate {
+            pressure, closure, ..
+        } = &mut self.iterate;
+        let displacement = self.operator.apply_field(pressure)?;
+        for ((closure, u), g) in closure.iter_mut().zip(displacement).zip(&self.gap) {
+            *closure = g + u;
+        }
+        Ok(())
+    }
+
+    /// Does `work` with displacements in the gauge of the level.
+    pub(super) fn in_gauge<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.operator.set_uniform(self.uniform());
+        let done = work(self);
+        self.operator.set_uniform(0.0);
+        done
+    }
+
+    /// Makes the nodes for which `is_in` holds the contact, given the present pressures and closures.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] if there are too many of them.
+    pub(super) fn choose_contact(
+        &mut self,
+        is_in: impl Fn(usize, &[f64], &[f64]) -> bool,
+    ) -> Result<(), Error> {
+        let Iterate {
+            pressure,
+            closure,
+            contact,
+            ..
+        } = &mut self.iterate;
+        if !contact.assign(|node| is_in(node, pressure, closure)) {
+            return Ok(());
+        }
+        let fits = self.memory.check(contact.len());
+        if fits.is_err() {
+            contact.assign(|_| false);
+        }
+        self.inverse.update(contact);
+        fits
+    }
+
+    /// Errors of gaps are measured by no less than this length: far beyond full contact the approach
+    /// of mean planes stays what it is, whereas rounding grows with the pressure.
+    pub(super) fn least_length(&self, prescribed: Prescribed) -> f64 {
+        match prescribed {
+            Prescribed::Sum(sum) => self.scale.own_displacement(sum),
+            Prescribed::Approach(_) => 0.0,
         }
     }
 

@@ -3,19 +3,21 @@
 //! The contact of a rigid rough surface with an elastic half-space under the load W minimises the
 //! energy
 //!
-//! $$ \tfrac12\\, p^T C p + g^T p \qquad\text{over}\qquad p \ge 0, \quad \Delta A \sum p = W, $$
+//! ```math
+//! \tfrac12 \, p^T C p + g^T p \qquad\text{over}\qquad p \ge 0, \quad \Delta A \sum p = W,
+//! ```
 //!
-//! with the initial gap g ≥ 0 and the influence matrix C. Its multiplier is the approach δ: at the
-//! solution $g + C p = \delta$ in contact and $\ge \delta$ elsewhere. [`FixedLoadSolver`] finds it
-//! in O(grid) memory and a few convolutions, to any tolerance that double precision carries, from a
-//! single node to full contact.
+//! with the initial gap `g ≥ 0` \[m\], pressures p \[Pa\] and the influence matrix C \[m/Pa\]. Its
+//! multiplier is the approach δ: at the solution `g + C p = δ` in contact and `≥ δ` elsewhere.
+//! [`FixedLoadSolver`] finds it in O(grid) memory and a few convolutions, to any tolerance that double
+//! precision carries, from a single node to full contact.
 //!
 //! # Method
 //!
 //! * **Active set, inexact inside.** On the set I of nodes with pressure or overlap, the equations
-//!   $C_{II}\\, p = \delta - g$ are solved with $\sum p$ fixed by projected conjugate gradients,
-//!   one convolution a step, only until what is left is smaller than the worst error in I itself.
-//! * **Preconditioner**: a sparse inverse Cholesky factor of $C_{II}$.
+//!   `C_II p = δ − g` are solved with `Σ p` fixed by projected conjugate gradients, one convolution a
+//!   step, only until what is left is smaller than the worst error in I itself.
+//! * **Preconditioner**: a sparse inverse Cholesky factor of `C_II`.
 //! * **Release**: nodes with tension are set free, their neighbours corrected by the
 //!   preconditioner alone, and the step is accepted only if the energy falls.
 //! * **Precision**: search directions go through a convolution in single precision, residuals are
@@ -25,17 +27,29 @@
 //!
 //! # Periodic half-spaces
 //!
-//! With the load prescribed every search direction has the sum zero, so that the gauge of a periodic
-//! kernel drops out: the zero gauge is used, and what is reported does not depend on that of the kernel.
-//! The approach is that of the mean planes, displacements are about their mean, and there is no contact
-//! stiffness but the interfacial one. Up to full contact an approach can be prescribed as well; from
-//! there on it stays the mean initial gap, whatever the load.
+//! The mean displacement of a periodic half-space is arbitrary unless its kernel says otherwise. With
+//! the load prescribed every search direction has the sum zero, so that this gauge drops out: the zero
+//! gauge is used, and what is reported does not depend on that of the kernel. The approach is that of
+//! the mean planes, displacements are about their mean, and of the stiffnesses only the interfacial one
+//! exists. Up to full contact an approach can be prescribed as well; from there on it stays the mean
+//! initial gap, whatever the load.
 //!
 //! # Many states
 //!
 //! [`FixedLoadSolver::sweep`] goes from state to state, each given by a load, an approach, a contact
-//! area or a mean gap ([`ContactTarget`]), and each as exact as if it were alone. Pressures,
+//! area or a mean gap ([`ContactTarget`](crate::ContactTarget)), and each as exact as if it were alone. Pressures,
 //! displacements and approach are predicted together from the last states and their tangents.
+//!
+//! # Errors of the solution
+//!
+//! Every solution is checked afresh with one convolution in double precision: its
+//! [`Certificate`](crate::Certificate) says what is left.
+//!
+//! # Layout
+//!
+//! A solver consists of its settings and of a hierarchy of levels, each the contact problem on one
+//! grid. On a level an active set is searched for, with a descent by conjugate gradients on each. From
+//! state to state goes a stepper, with a continuation of tangents; searches and sweeps use it.
 //!
 //! # References
 //!
@@ -47,6 +61,7 @@
 //! * J. Allwood, J. Tribol. 127 (2005) 10: a survey of solvers with active sets.
 
 mod active_set;
+mod budget;
 mod builder;
 mod continuation;
 mod descent;
@@ -55,14 +70,14 @@ mod iterate;
 mod level;
 mod release;
 mod search;
+mod settings;
 mod solution;
 mod solver;
+mod stepper;
 mod sweep;
 mod tangent;
-mod target;
 
 pub use builder::FixedLoadBuilder;
-pub use solution::{FixedLoadCertificate, FixedLoadSolution, FixedLoadState};
+pub use solution::{FixedLoadSolution, SolverEffort};
 pub use solver::FixedLoadSolver;
 pub use sweep::LoadSweep;
-pub use target::ContactTarget;

@@ -1,10 +1,10 @@
 //! The load of a state of which something else is known.
 
-use super::continuation::Continuation;
+use super::level::Level;
 use super::solution::FixedLoadSolution;
-use super::solver::FixedLoadSolver;
-use crate::krylov::sum;
-use crate::{Error, InfluenceKernel, Surface};
+use super::stepper::Stepper;
+use crate::Error;
+use crate::contact::{ContactState, ContactTarget};
 
 /// Steps after which to give up; bisection alone would halve the bracket so often.
 const MOST_STEPS: usize = 100;
@@ -15,13 +15,37 @@ const NARROWEST: f64 = 1e-13;
 /// Contact area fraction from which to look for a mean gap.
 const TYPICAL: f64 = 0.05;
 
+/// Contact at a target, from the last state of `stepper`.
+///
+/// # Errors
+///
+/// Those of the steps; [`Error::OutOfRange`] for a fraction of the area or a mean gap that cannot be,
+/// and [`Error::NoConvergence`] if the load that goes with it is not found.
+pub(super) fn solve_target(
+    stepper: &mut Stepper<'_>,
+    target: ContactTarget,
+) -> Result<FixedLoadSolution, Error> {
+    match target {
+        ContactTarget::Load(load) => stepper.to_load(load),
+        ContactTarget::Approach(approach) => stepper.to_approach(approach),
+        ContactTarget::AreaFraction(fraction) => {
+            let nodes = stepper.finest().grid.nodes_in(fraction)?;
+            search(stepper, Sought::Nodes(nodes))
+        }
+        ContactTarget::MeanGap(mean_gap) => {
+            let sought = Sought::mean_gap(mean_gap, stepper.finest(), stepper.tolerance())?;
+            search(stepper, sought)
+        }
+    }
+}
+
 /// What is looked for, along the logarithm of the load.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Sought {
+enum Sought {
     /// So many nodes. Area grows in proportion to the load over decades.
     Nodes(usize),
-    /// A mean gap, that for no load, and the greatest error. It falls with the logarithm of the load
-    /// over decades.
+    /// A mean gap, given the one without load and the greatest error relative to the approach. It
+    /// falls with the logarithm of the load over decades.
     MeanGap {
         target: f64,
         unloaded: f64,
@@ -30,10 +54,25 @@ pub(super) enum Sought {
 }
 
 impl Sought {
-    /// How far a solution lies beyond, in a measure that is close to a line over the logarithm of the
+    fn mean_gap(target: f64, level: &Level, tolerance: f64) -> Result<Self, Error> {
+        let unloaded = level.mean_initial_gap();
+        if !(target > 0.0 && target < unloaded) {
+            return Err(Error::OutOfRange {
+                quantity: "mean gap",
+                value: target,
+                expected: "above 0 and below that of surfaces that just touch",
+            });
+        }
+        Ok(Self::MeanGap {
+            target,
+            unloaded,
+            tolerance,
+        })
+    }
+
+    /// How far a state lies beyond, in a measure that is close to a line over the logarithm of the
     /// load and grows with it.
-    fn beyond(self, solution: &FixedLoadSolution) -> f64 {
-        let state = &solution.state;
+    fn beyond(self, state: &ContactState) -> f64 {
         match self {
             Self::Nodes(nodes) => (state.contact_nodes as f64 / nodes as f64).ln(),
             Self::MeanGap {
@@ -42,8 +81,7 @@ impl Sought {
         }
     }
 
-    fn is_found(self, solution: &FixedLoadSolution) -> bool {
-        let state = &solution.state;
+    fn is_found(self, state: &ContactState) -> bool {
         match self {
             Self::Nodes(nodes) => state.contact_nodes == nodes,
             Self::MeanGap {
@@ -52,139 +90,92 @@ impl Sought {
         }
     }
 
-    /// Slope of [`Self::beyond`] at a solution, exact if stiffnesses are known.
-    fn slope(self, solution: &FixedLoadSolution) -> f64 {
+    /// Slope of [`Self::beyond`] at a state, and whether it is exact.
+    fn slope(self, state: &ContactState) -> (f64, bool) {
         match self {
-            Self::Nodes(_) => 1.0,
-            Self::MeanGap { unloaded, .. } => {
-                let state = &solution.state;
-                match state.interfacial_stiffness {
-                    Some(stiffness) => state.load / stiffness / unloaded,
-                    None => 0.2,
-                }
-            }
+            Self::Nodes(_) => (1.0, false),
+            Self::MeanGap { unloaded, .. } => match state.interfacial_stiffness {
+                Some(stiffness) => (state.load / stiffness / unloaded, true),
+                None => (0.2, false),
+            },
         }
-    }
-}
-
-impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
-    /// The number of nodes for a fraction of the nominal area.
-    pub(super) fn nodes_of(&self, fraction: f64) -> Result<Sought, Error> {
-        if !(fraction > 0.0 && fraction <= 1.0) {
-            return Err(Error::OutOfRange {
-                quantity: "contact area fraction",
-                value: fraction,
-                expected: "above 0 and at most 1",
-            });
-        }
-        let nodes = (fraction * self.grid.nodes() as f64).round() as usize;
-        Ok(Sought::Nodes(nodes.max(1)))
-    }
-
-    /// The search for a mean gap.
-    pub(super) fn mean_gap_of(&self, target: f64) -> Result<Sought, Error> {
-        let gaps = &self.levels[0].gap;
-        let unloaded = sum(gaps) / gaps.len() as f64;
-        if !(target > 0.0 && target < unloaded) {
-            return Err(Error::OutOfRange {
-                quantity: "mean gap",
-                value: target,
-                expected: "above 0 and below that of surfaces that just touch",
-            });
-        }
-        Ok(Sought::MeanGap {
-            target,
-            unloaded,
-            tolerance: self.tolerance,
-        })
     }
 
     /// A load of the right order: the area times the pressure that flattens two neighbours.
     ///
     /// On rough contact the mean pressure of the true area is half of E* times the rms gradient; with
     /// the step s between neighbours and C(0, 0) ≈ 1.12 dx / E* that is 0.56 s / C(0, 0).
-    fn typical_load(&self, sought: Sought) -> f64 {
-        let level = &self.levels[0];
+    fn typical_load(self, level: &Level) -> f64 {
         let steps = level.gap.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
         let mut step = (steps.sum::<f64>() / level.gap.len() as f64).sqrt();
         if step <= 0.0 {
-            step = self.grid.dx();
+            step = level.grid.dx();
         }
-        let nodes = match sought {
-            Sought::Nodes(nodes) => nodes as f64,
-            Sought::MeanGap { .. } => TYPICAL * self.grid.nodes() as f64,
+        let nodes = match self {
+            Self::Nodes(nodes) => nodes as f64,
+            Self::MeanGap { .. } => TYPICAL * level.grid.nodes() as f64,
         };
-        let own = level.self_influence;
-        self.grid.cell_area() * nodes * (0.56 * step / own)
+        level.grid.cell_area() * nodes * (0.56 * step / level.self_influence)
     }
+}
 
-    /// The state that is sought, from the `last` one of a sweep if there is one: the root of
-    /// [`Sought::beyond`] by the exact tangent or by secants, inside a bracket once there is one.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::solve`]; [`Error::NoConvergence`] if the root is not found.
-    pub(super) fn search(
-        &mut self,
-        continuation: &mut Continuation,
-        sought: Sought,
-        last: Option<&FixedLoadSolution>,
-    ) -> Result<FixedLoadSolution, Error> {
-        let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
-        let mut best: Option<FixedLoadSolution> = None;
-        let mut previous = last.map(|last| (last.state.load.ln(), sought.beyond(last)));
-        let mut x = match (last, previous) {
-            (Some(last), Some((x, beyond))) => {
-                x - (beyond / sought.slope(last)).clamp(-LONGEST, LONGEST)
-            }
-            _ => self.typical_load(sought).ln(),
-        };
-        let mut is_state = last.is_some();
-        for _ in 0..MOST_STEPS {
-            let solution = self.next_load(continuation, x.exp(), is_state)?;
-            is_state = true;
-            if sought.is_found(&solution) {
-                return Ok(solution);
-            }
-            let beyond = sought.beyond(&solution);
-            let side = if beyond > 0.0 { &mut high } else { &mut low };
-            *side = Some(x);
-            let mut slope = sought.slope(&solution);
-            if let Some((earlier, then)) = previous
-                && !matches!(sought, Sought::MeanGap { .. } if solution.state.interfacial_stiffness.is_some())
-            {
-                let secant = (beyond - then) / (x - earlier);
-                if secant > 0.0 && secant.is_finite() {
-                    slope = secant;
-                }
-            }
+/// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
+/// a bracket once there is one.
+fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution, Error> {
+    let step_from = |x: f64, beyond: f64, slope: f64| x - (beyond / slope).clamp(-LONGEST, LONGEST);
+    let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
+    let mut best: Option<FixedLoadSolution> = None;
+    let mut previous = None;
+    let mut x = match stepper.last() {
+        Some(last) => {
+            let (x, beyond) = (last.load.ln(), sought.beyond(last));
             previous = Some((x, beyond));
-            if best
-                .as_ref()
-                .is_none_or(|best| beyond.abs() < sought.beyond(best).abs())
-            {
-                best = Some(solution);
-            }
-            let mut next = x - (beyond / slope).clamp(-LONGEST, LONGEST);
-            if let (Some(low), Some(high)) = (low, high) {
-                // NaN as well.
-                if !(next > low && next < high) {
-                    next = low + 0.5 * (high - low);
-                }
-                if high - low <= NARROWEST * high.abs().max(1.0) {
-                    break;
-                }
-            }
-            x = next;
+            step_from(x, beyond, sought.slope(last).0)
         }
-        match (best, sought) {
-            // Nodes that touch together: the nearest number there is.
-            (Some(best), Sought::Nodes(_)) if low.is_some() && high.is_some() => Ok(best),
-            (best, _) => Err(Error::NoConvergence {
-                residual: best.map_or(f64::INFINITY, |best| sought.beyond(&best).abs()),
-                tolerance: self.tolerance,
-                iterations: MOST_STEPS,
-            }),
+        None => sought.typical_load(stepper.finest()).ln(),
+    };
+    for _ in 0..MOST_STEPS {
+        let solution = stepper.to_load(x.exp())?;
+        let state = &solution.state;
+        if sought.is_found(state) {
+            return Ok(solution);
         }
+        let beyond = sought.beyond(state);
+        let side = if beyond > 0.0 { &mut high } else { &mut low };
+        *side = Some(x);
+        let (mut slope, is_exact) = sought.slope(state);
+        if let Some((earlier, then)) = previous
+            && !is_exact
+        {
+            let secant = (beyond - then) / (x - earlier);
+            if secant > 0.0 && secant.is_finite() {
+                slope = secant;
+            }
+        }
+        previous = Some((x, beyond));
+        let is_best = |best: &FixedLoadSolution| beyond.abs() < sought.beyond(&best.state).abs();
+        if best.as_ref().is_none_or(is_best) {
+            best = Some(solution);
+        }
+        let mut next = step_from(x, beyond, slope);
+        if let (Some(low), Some(high)) = (low, high) {
+            // NaN as well.
+            if !(next > low && next < high) {
+                next = low + 0.5 * (high - low);
+            }
+            if high - low <= NARROWEST * high.abs().max(1.0) {
+                break;
+            }
+        }
+        x = next;
+    }
+    match (best, sought) {
+        // Nodes that touch together: the nearest number there is.
+        (Some(best), Sought::Nodes(_)) if low.is_some() && high.is_some() => Ok(best),
+        (best, _) => Err(Error::NoConvergence {
+            residual: best.map_or(f64::INFINITY, |best| sought.beyond(&best.state).abs()),
+            tolerance: stepper.tolerance(),
+            iterations: MOST_STEPS,
+        }),
     }
 }

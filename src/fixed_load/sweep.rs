@@ -2,17 +2,18 @@
 
 use std::iter::FusedIterator;
 
-use super::continuation::Continuation;
+use super::search::solve_target;
 use super::solution::FixedLoadSolution;
-use super::solver::FixedLoadSolver;
-use super::target::ContactTarget;
-use crate::{Error, InfluenceKernel, Surface};
+use super::stepper::Stepper;
+use crate::Error;
+use crate::contact::ContactTarget;
 
-/// Contact at a sequence of loads or other targets: see [`FixedLoadSolver::sweep`].
+/// Contact at a sequence of loads or other targets: see
+/// [`FixedLoadSolver::sweep`](super::FixedLoadSolver::sweep).
 ///
-/// A fused iterator: after an error it yields `None` for ever. Targets may come in any order and be
-/// of any kind; the closer each is to the one before, the faster. Every state is as exact as if it
-/// had been solved for alone.
+/// A fused iterator: the first error is its last item. Targets may come in any order and be of any
+/// kind; the closer each is to the one before, the faster. Every state is as exact as if it had been
+/// solved for alone.
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
@@ -21,7 +22,8 @@ use crate::{Error, InfluenceKernel, Surface};
 /// # fn main() -> Result<(), asperity::Error> {
 /// let grid = Grid::square(64, 1e-3)?;
 /// let surface = SelfAffine::new(0.8, 5e-4, 8e-5, Amplitude::RmsHeight(1e-6), 7)?;
-/// let mut solver = FixedLoadSolver::new(surface, Boussinesq::new(grid, 100e9)?)?;
+/// let half_space = Boussinesq::new(grid, 100e9)?;
+/// let mut solver = FixedLoadSolver::new(&surface, &half_space)?;
 /// for solution in solver.sweep([10.0, 20.0, 40.0]) {
 ///     let state = solution?.state;
 ///     println!("{} N: {} nodes, {} m", state.load, state.contact_nodes, state.mean_gap);
@@ -30,31 +32,24 @@ use crate::{Error, InfluenceKernel, Surface};
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct LoadSweep<'a, S, K, I> {
-    solver: &'a mut FixedLoadSolver<S, K>,
+pub struct LoadSweep<'a, I> {
+    stepper: Stepper<'a>,
     targets: I,
-    continuation: Continuation,
-    /// The solution that the solver holds.
-    last: Option<FixedLoadSolution>,
     finished: bool,
 }
 
-impl<'a, S, K, I> LoadSweep<'a, S, K, I> {
-    pub(super) fn new(solver: &'a mut FixedLoadSolver<S, K>, targets: I) -> Self {
+impl<'a, I> LoadSweep<'a, I> {
+    pub(super) fn new(stepper: Stepper<'a>, targets: I) -> Self {
         Self {
-            solver,
+            stepper,
             targets,
-            continuation: Continuation::default(),
-            last: None,
             finished: false,
         }
     }
 }
 
-impl<S, K, I> Iterator for LoadSweep<'_, S, K, I>
+impl<I> Iterator for LoadSweep<'_, I>
 where
-    S: Surface,
-    K: InfluenceKernel,
     I: Iterator,
     I::Item: Into<ContactTarget>,
 {
@@ -64,17 +59,10 @@ where
         if self.finished {
             return None;
         }
-        let Some(target) = self.targets.next() else {
-            self.finished = true;
-            return None;
-        };
-        let (continuation, last) = (&mut self.continuation, self.last.as_ref());
-        let solved = self.solver.next_target(continuation, target.into(), last);
-        match &solved {
-            Ok(solution) => self.last = Some(solution.clone()),
-            Err(_) => self.finished = true,
-        }
-        Some(solved)
+        let target = self.targets.next();
+        let solved = target.map(|target| solve_target(&mut self.stepper, target.into()));
+        self.finished = !matches!(solved, Some(Ok(_)));
+        solved
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -85,10 +73,8 @@ where
     }
 }
 
-impl<S, K, I> FusedIterator for LoadSweep<'_, S, K, I>
+impl<I> FusedIterator for LoadSweep<'_, I>
 where
-    S: Surface,
-    K: InfluenceKernel,
     I: Iterator,
     I::Item: Into<ContactTarget>,
 {

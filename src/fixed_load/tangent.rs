@@ -3,18 +3,25 @@
 use nalgebra::DMatrix;
 
 use super::level::Level;
+use super::settings::Settings;
 use super::solution::FixedLoadSolution;
-use super::solver::FixedLoadSolver;
+use crate::Error;
 use crate::krylov::{LinearSystem, NodeSet, dot, sum, sum_over};
 use crate::parallel::inside;
-use crate::{Boundary, Error, InfluenceKernel, Surface};
 
-/// The pressure per unit of approach, $y_2$, and its displacement, both on the whole grid and in the
-/// gauge of the level: in the zero gauge full contact is singular. Empty where they are not known.
+/// The pressure per unit of approach, y₂, and its displacement, both on the whole grid and in the gauge
+/// of the level: in the zero gauge full contact is singular. Empty where they are not known.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tangent {
     pub(super) rate: Vec<f64>,
     pub(super) displacement: Vec<f64>,
+}
+
+/// What solving for a tangent took and gave.
+struct Solved {
+    iterations: usize,
+    /// `eᵀ C_II⁻¹ e`.
+    unit_unit: f64,
 }
 
 impl Tangent {
@@ -25,12 +32,13 @@ impl Tangent {
     /// That of a solution, which costs a convolution; unknown if it has no stiffnesses.
     pub(super) fn of(level: &mut Level, solution: &FixedLoadSolution) -> Result<Self, Error> {
         let state = &solution.state;
-        let Some(interfacial) = state.interfacial_stiffness else {
-            return Ok(Self::default());
+        let interfacial = match state.interfacial_stiffness {
+            Some(interfacial) if !solution.pressure_rate.is_empty() => interfacial,
+            _ => return Ok(Self::default()),
         };
-        let (gauge, cell_area) = (level.gauge, level.grid.cell_area());
-        // $1 / K_s = 1 / K_i + s / \Delta A$ in the gauge s.
-        let in_gauge = 1.0 / (1.0 / interfacial + gauge / cell_area);
+        // 1 / K = 1 / Kᵢ + s / ΔA in the gauge s.
+        let cell_area = level.grid.cell_area();
+        let in_gauge = 1.0 / (1.0 / interfacial + level.uniform() / cell_area);
         let stiffness = state.contact_stiffness.unwrap_or(in_gauge);
         let rates = solution.pressure_rate.iter();
         let rate: Vec<f64> = rates.map(|rate| stiffness * rate).collect();
@@ -38,58 +46,76 @@ impl Tangent {
             level.in_gauge(|level| Ok(level.operator.apply_field(&rate)?.to_vec()))?;
         Ok(Self { rate, displacement })
     }
-}
 
-/// What a solution for the tangent took and gave.
-struct Solved {
-    iterations: usize,
-    /// $e^T C_{II}^{-1} e$.
-    unit_unit: f64,
-}
-
-impl Level {
-    /// Does `work` with displacements in the gauge of the level.
-    fn in_gauge<T>(
+    /// Becomes the tangent of `solution`, and adds stiffnesses and pressure rate to it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is not positive definite,
+    /// [`Error::MemoryBudget`], and [`Error::NotPositive`] if no node is in contact.
+    pub(super) fn complete(
         &mut self,
-        work: impl FnOnce(&mut Self) -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        self.operator.set_uniform(self.gauge);
-        let done = work(self);
-        self.operator.set_uniform(0.0);
-        done
+        level: &mut Level,
+        settings: &Settings,
+        solution: &mut FixedLoadSolution,
+    ) -> Result<(), Error> {
+        let in_contact = solution.contact_map.as_slice();
+        level.choose_contact(|node, _, _| in_contact[node])?;
+        Error::require_positive(
+            "number of nodes in contact",
+            level.iterate.contact.len() as f64,
+        )?;
+        let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
+        let nodes = level.grid.nodes();
+        let displacement = &self.displacement;
+        // Nodes in contact are left out: then full contact is exact.
+        let closing = sum_over(nodes, |node| {
+            if in_contact[node] {
+                0.0
+            } else {
+                1.0 - displacement[node]
+            }
+        });
+        let stiffness = level.grid.cell_area() * solved.unit_unit;
+        let (nx, ny) = level.grid.shape();
+        let rates = self.rate.iter().map(|rate| rate / stiffness);
+        solution.pressure_rate = DMatrix::from_iterator(nx, ny, rates);
+        solution.state.contact_stiffness = match level.gauge {
+            None => Some(stiffness),
+            Some(_) => None,
+        };
+        solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
+        solution.effort.stiffness_iterations = solved.iterations;
+        solution.effort.convolutions += level.operator.take_convolutions();
+        Ok(())
     }
 
-    /// Solves $C_{II}\\, y_2 = e$ on the contact set, from the tangent of another one if it is known.
-    fn solve_tangent(
-        &mut self,
-        tangent: &mut Tangent,
-        tolerance: f64,
-        max_iterations: usize,
-    ) -> Result<Solved, Error> {
-        let contact = &self.iterate.contact;
+    /// Solves `C_II y₂ = e` on the contact set, from the tangent of another one if it is known.
+    fn solve(&mut self, level: &mut Level, settings: &Settings) -> Result<Solved, Error> {
+        let contact = &level.iterate.contact;
         let ones = vec![1.0; contact.len()];
         let mut y = Vec::new();
         let mut residual = Vec::new();
-        let is_known = tangent.is_known();
+        let is_known = self.is_known();
         if is_known {
-            contact.gather(&tangent.rate, &mut y);
-            contact.gather(&tangent.displacement, &mut residual);
+            contact.gather(&self.rate, &mut y);
+            contact.gather(&self.displacement, &mut residual);
             for value in &mut residual {
                 *value = 1.0 - *value;
             }
         } else {
-            self.inverse.apply(&ones, &mut y);
+            level.inverse.apply(&ones, &mut y);
         }
         // Nodes that have left take their displacements with them.
         let places = contact.places();
-        let mut rates = tangent.rate.iter().zip(places);
+        let mut rates = self.rate.iter().zip(places);
         let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == NodeSet::NONE);
         let mut equations = LinearSystem {
-            operator: &mut self.operator,
-            inverse: &mut self.inverse,
+            operator: &mut level.operator,
+            inverse: &mut level.inverse,
             contact,
-            tolerance,
-            max_iterations,
+            tolerance: settings.tolerance,
+            max_iterations: settings.max_iterations,
         };
         let stale = lost || !is_known;
         if stale {
@@ -99,76 +125,22 @@ impl Level {
         if !outcome.converged {
             return Err(Error::NoConvergence {
                 residual: outcome.residual,
-                tolerance,
+                tolerance: settings.tolerance,
                 iterations: outcome.iterations,
             });
         }
         if stale || outcome.iterations > 0 {
-            tangent.displacement.clear();
-            tangent
-                .displacement
-                .extend_from_slice(self.operator.displacement());
+            self.displacement.clear();
+            self.displacement
+                .extend_from_slice(level.operator.displacement());
         }
-        tangent.rate.clear();
-        tangent.rate.resize(self.gap.len(), 0.0);
-        contact.scatter(&y, &mut tangent.rate);
+        self.rate.clear();
+        self.rate.resize(level.gap.len(), 0.0);
+        contact.scatter(&y, &mut self.rate);
         Ok(Solved {
             iterations: outcome.iterations,
-            // With the residual r, $e^T C^{-1} e = e^T y + y^T r$ but for the square of the error.
+            // With the residual r, eᵀ C⁻¹ e = eᵀ y + yᵀ r up to the square of the error.
             unit_unit: sum(&y) + dot(&y, &residual),
         })
-    }
-}
-
-impl<S: Surface, K: InfluenceKernel> FixedLoadSolver<S, K> {
-    /// Adds the stiffnesses and the rate of pressure to a solution of this solver that was computed
-    /// [without](super::FixedLoadBuilder::stiffness).
-    ///
-    /// # Errors
-    ///
-    /// [`Error::GridMismatch`] if the solution lives on another grid, [`Error::NoConvergence`], and
-    /// [`Error::FactorizationFailed`] if the kernel is not positive definite.
-    pub fn add_stiffness(&mut self, solution: &mut FixedLoadSolution) -> Result<(), Error> {
-        self.tangent(solution, &mut Tangent::default())
-    }
-
-    /// Stiffnesses of a solution, from the tangent of another one if it is known.
-    pub(super) fn tangent(
-        &mut self,
-        solution: &mut FixedLoadSolution,
-        tangent: &mut Tangent,
-    ) -> Result<(), Error> {
-        self.grid.check_shape(solution.pressure.shape())?;
-        let pressure = solution.pressure.as_slice();
-        let fine = &mut self.levels[0];
-        let contact = &mut fine.iterate.contact;
-        if contact.assign(|node| pressure[node] > 0.0) {
-            fine.inverse.update(contact);
-        }
-        let (tolerance, max_iterations) = (self.tolerance, self.max_iterations);
-        let solve = |fine: &mut Level| fine.solve_tangent(tangent, tolerance, max_iterations);
-        let solved = inside(|| fine.in_gauge(solve))?;
-        let nodes = self.grid.nodes();
-        let displacement = &tangent.displacement;
-        // Nodes in contact are left out: then full contact is exact.
-        let closing = sum_over(nodes, |node| {
-            if pressure[node] > 0.0 {
-                0.0
-            } else {
-                1.0 - displacement[node]
-            }
-        });
-        let stiffness = self.grid.cell_area() * solved.unit_unit;
-        let (nx, ny) = self.grid.shape();
-        let rates = tangent.rate.iter().map(|rate| rate / stiffness);
-        solution.pressure_rate = DMatrix::from_iterator(nx, ny, rates);
-        solution.state.contact_stiffness = match fine.boundary {
-            Boundary::Free => Some(stiffness),
-            Boundary::Periodic => None,
-        };
-        solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
-        solution.stiffness_iterations = solved.iterations;
-        solution.convolutions += self.levels[0].operator.take_convolutions();
-        Ok(())
     }
 }

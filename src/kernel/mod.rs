@@ -28,4 +28,5 @@ pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
 pub use mean::MeanDisplacement;
 pub use periodic::{PeriodicBoussinesq, Spectral};
+pub(crate) use table::Blocks;
 pub use table::KernelTable;

@@ -1,6 +1,7 @@
-//! Search directions of conjugate gradients.
+//! Search directions of conjugate gradients, and the step along one.
 
-use super::{add_scaled, dot};
+use super::{NodeSet, Operator, add_scaled, dot};
+use crate::Error;
 
 /// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic; with
 /// the second the iteration does not suffer from steps in single precision.
@@ -14,7 +15,16 @@ struct Direction {
     curvature: f64,
 }
 
-/// The last search directions.
+/// A step of conjugate gradients on a contact set: by `length` along `values`, which changes
+/// displacements by `length` times `image`.
+#[derive(Debug)]
+pub(crate) struct Step<'a> {
+    pub(crate) length: f64,
+    pub(crate) values: &'a [f64],
+    pub(crate) image: &'a [f64],
+}
+
+/// The last search directions, oldest first.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directions {
     last: Vec<Direction>,
@@ -25,37 +35,73 @@ impl Directions {
         self.last.is_empty()
     }
 
-    /// `z` made conjugate to them.
-    pub(crate) fn conjugate(&self, z: &[f64]) -> Vec<f64> {
-        let mut values = z.to_vec();
-        for Direction {
-            values: earlier,
-            image,
-            curvature,
-        } in &self.last
-        {
-            add_scaled(&mut values, -dot(z, image) / curvature, earlier);
-        }
-        values
-    }
-
-    /// Forgets all of them, and says whether there were any: among a few nodes they may leave nothing
-    /// for another, though a step in single precision was not exact.
-    pub(crate) fn forget(&mut self) -> bool {
-        let any = !self.last.is_empty();
-        self.last.clear();
-        any
-    }
-
-    /// Adds a direction, and forgets the oldest.
-    pub(crate) fn push(&mut self, values: Vec<f64>, image: Vec<f64>, curvature: f64) {
+    /// The step that takes most of the energy out of `residual`, along the preconditioned residual
+    /// `z` made conjugate to earlier directions. The operator then holds the displacements that the
+    /// direction causes on the whole grid.
+    ///
+    /// On a set of few nodes nothing may be left of z once it is conjugate to directions whose images
+    /// are of single precision: then they are forgotten, and the step goes along z itself.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::FactorizationFailed`] if the curvature along z is not positive either.
+    pub(crate) fn advance(
+        &mut self,
+        operator: &mut Operator,
+        contact: &NodeSet,
+        residual: &[f64],
+        z: &[f64],
+    ) -> Result<Step<'_>, Error> {
+        let direction = match self.explore(operator, contact, z)? {
+            None if !self.is_empty() => {
+                self.last.clear();
+                self.explore(operator, contact, z)?
+            }
+            direction => direction,
+        };
+        let Some(direction) = direction else {
+            return Err(Error::FactorizationFailed {
+                nodes: contact.len(),
+            });
+        };
         if self.last.len() == MEMORY {
             self.last.remove(0);
         }
-        self.last.push(Direction {
+        self.last.push(direction);
+        let Direction {
             values,
             image,
             curvature,
-        });
+        } = &self.last[self.last.len() - 1];
+        Ok(Step {
+            length: dot(residual, values) / curvature,
+            values,
+            image,
+        })
+    }
+
+    /// The direction along `z`, conjugate to the earlier ones; `None` unless its curvature is positive
+    /// and finite.
+    fn explore(
+        &self,
+        operator: &mut Operator,
+        contact: &NodeSet,
+        z: &[f64],
+    ) -> Result<Option<Direction>, Error> {
+        let mut values = z.to_vec();
+        for earlier in &self.last {
+            let part = dot(z, &earlier.image) / earlier.curvature;
+            add_scaled(&mut values, -part, &earlier.values);
+        }
+        let displacement = operator.step(contact, &values)?;
+        let mut image = Vec::new();
+        contact.gather(displacement, &mut image);
+        let curvature = dot(&values, &image);
+        let usable = curvature > 0.0 && curvature.is_finite();
+        Ok(usable.then_some(Direction {
+            values,
+            image,
+            curvature,
+        }))
     }
 }

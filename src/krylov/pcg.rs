@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients for one linear system on a contact set.
 
-use super::{Directions, NodeSet, Operator, SparseInverse, add_scaled, dot, greatest};
+use super::{Directions, NodeSet, Operator, SparseInverse, add_scaled, greatest};
 use crate::Error;
 
 /// So far a residual falls on steps of single precision before it is computed afresh: then their
@@ -18,7 +18,7 @@ pub(crate) struct LinearOutcome {
     pub(crate) converged: bool,
 }
 
-/// Linear systems $C_{II} x = b$ on a contact set.
+/// Linear systems `C_II x = b` on a contact set I.
 #[derive(Debug)]
 pub(crate) struct LinearSystem<'a> {
     pub(crate) operator: &'a mut Operator,
@@ -50,7 +50,9 @@ impl LinearSystem<'_> {
     ///
     /// # Errors
     ///
-    /// [`Error::FactorizationFailed`] if the matrix turns out not to be positive definite.
+    /// [`Error::FactorizationFailed`] if the matrix turns out not to be positive definite, and
+    /// [`Error::NoConvergence`] as soon as the residual is not finite. Running out of iterations, or
+    /// into rounding, is told by the outcome.
     pub(crate) fn solve(
         &mut self,
         b: &[f64],
@@ -59,41 +61,26 @@ impl LinearSystem<'_> {
     ) -> Result<LinearOutcome, Error> {
         let worst = |residual: &[f64]| greatest(residual.len(), 0.0, |i| residual[i].abs());
         let mut outcome = LinearOutcome {
-            residual: worst(residual),
+            residual: self.finite(worst(residual), 0)?,
             iterations: 0,
             converged: false,
         };
         let (mut z, mut directions) = (Vec::new(), Directions::default());
-        // NaN is not above the tolerance, and no convergence either.
         while outcome.residual > self.tolerance && outcome.iterations < self.max_iterations {
             let start = outcome.residual;
             let enough = (MARGIN * self.tolerance).max(REDUCTION * start);
             let mut now = start;
             while now > enough && outcome.iterations < self.max_iterations {
                 self.inverse.apply(residual, &mut z);
-                // Those from before a fresh residual are as good as ever.
-                let direction = directions.conjugate(&z);
-                let displacement = self.operator.step(self.contact, &direction)?;
-                let mut image = Vec::new();
-                self.contact.gather(displacement, &mut image);
-                let curvature = dot(&direction, &image);
-                if curvature.is_nan() || curvature <= 0.0 {
-                    if directions.forget() {
-                        continue;
-                    }
-                    return Err(Error::FactorizationFailed {
-                        nodes: self.contact.len(),
-                    });
-                }
-                let step = dot(residual, &direction) / curvature;
-                add_scaled(x, step, &direction);
-                add_scaled(residual, -step, &image);
-                directions.push(direction, image, curvature);
+                // Directions from before a fresh residual are as good as ever.
+                let step = directions.advance(self.operator, self.contact, residual, &z)?;
+                add_scaled(x, step.length, step.values);
+                add_scaled(residual, -step.length, step.image);
                 outcome.iterations += 1;
                 now = worst(residual);
             }
             self.residual(b, x, residual)?;
-            outcome.residual = worst(residual);
+            outcome.residual = self.finite(worst(residual), outcome.iterations)?;
             // Rounding ends an iteration that no longer halves its residual.
             if outcome.residual > 0.5 * start && outcome.residual > self.tolerance {
                 break;
@@ -101,5 +88,67 @@ impl LinearSystem<'_> {
         }
         outcome.converged = outcome.residual <= self.tolerance;
         Ok(outcome)
+    }
+
+    /// `Ok(residual)` if it is finite.
+    fn finite(&self, residual: f64, iterations: usize) -> Result<f64, Error> {
+        if residual.is_finite() {
+            Ok(residual)
+        } else {
+            Err(Error::NoConvergence {
+                residual,
+                tolerance: self.tolerance,
+                iterations,
+            })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convolution::Convolution;
+    use crate::kernel::KernelTable;
+    use crate::{Boussinesq, Grid};
+
+    /// Solves on all nodes of a small grid, from the residual `start` of a zero solution.
+    fn solve(start: f64, max_iterations: usize) -> Result<LinearOutcome, Error> {
+        let grid = Grid::square(8, 1.0)?;
+        let table = KernelTable::new(&Boussinesq::new(grid, 1.0)?)?;
+        let mut contact = NodeSet::new(grid.nodes());
+        contact.assign(|_| true);
+        let mut inverse = SparseInverse::new(&table);
+        inverse.update(&contact);
+        let mut system = LinearSystem {
+            operator: &mut Operator::new(Convolution::from_table(&table)?),
+            inverse: &mut inverse,
+            contact: &contact,
+            tolerance: 1e-10,
+            max_iterations,
+        };
+        let b = vec![1.0; grid.nodes()];
+        let mut residual = vec![start; grid.nodes()];
+        system.solve(&b, &mut vec![0.0; grid.nodes()], &mut residual)
+    }
+
+    #[test]
+    fn a_residual_that_is_not_finite_is_an_error_at_once() {
+        for start in [f64::INFINITY, f64::NAN] {
+            let solved = solve(start, 100);
+            assert!(
+                matches!(solved, Err(Error::NoConvergence { iterations: 0, .. })),
+                "{solved:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn iterations_are_limited() -> Result<(), Error> {
+        for limit in [0, 1, 3] {
+            let outcome = solve(1.0, limit)?;
+            assert_eq!((outcome.iterations, outcome.converged), (limit, false));
+        }
+        assert!(solve(1.0, 100)?.converged);
+        Ok(())
     }
 }

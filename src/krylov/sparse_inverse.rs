@@ -23,13 +23,15 @@ pub(crate) const NEIGHBOURS: usize = 8;
 /// Rows a thread takes at a time.
 const CHUNK: usize = 512;
 
-/// $M = U U^T \approx C_{II}^{-1}$, the best in the sense of Kullback and Leibler for its sparsity.
+/// ```math
+/// M = U U^T \approx C_{II}^{-1}
+/// ```
 ///
-/// Nodes are ordered coarse to fine. Each conditions on the $k$ earlier nodes of greatest influence:
-/// with A their influence matrix and a their influence on the node, $w = A^{-1} a$ and
-/// $v = C_0 - a^T w$, its column of U is $(1, -w) / \sqrt v$ (Vecchia; Schäfer, Katzfuss and
-/// Owhadi, SIAM J. Sci. Comput. 43 (2021) A2019). M is positive definite by construction, in
-/// whatever precision the columns are computed: single, here.
+/// the best in the sense of Kullback and Leibler for its sparsity. Nodes are ordered coarse to fine.
+/// Each conditions on the k earlier nodes of greatest influence: with A their influence matrix and a
+/// their influence on the node, `w = A⁻¹ a` and `v = C(0, 0) − aᵀ w`, its column of U is
+/// `(1, −w) / √v` (Vecchia; Schäfer, Katzfuss and Owhadi, SIAM J. Sci. Comput. 43 (2021) A2019). M is
+/// positive definite by construction, in whatever precision the columns are computed: here single.
 #[derive(Debug, Clone)]
 pub(crate) struct SparseInverse<const K: usize = NEIGHBOURS> {
     lattices: Lattices,
@@ -64,6 +66,13 @@ impl<const K: usize> Row<K> {
 }
 
 impl<const K: usize> SparseInverse<K> {
+    /// Bytes taken for each node in contact at most, while it changes.
+    pub(crate) const BYTES_A_NODE: usize = 2 * size_of::<Row<K>>()
+        + size_of::<[u32; K]>()
+        + K * size_of::<(u32, f32)>()
+        + 2 * size_of::<u32>()
+        + size_of::<f64>();
+
     /// For an empty contact set.
     pub(crate) fn new(table: &KernelTable) -> Self {
         Self {

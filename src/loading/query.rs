@@ -6,7 +6,7 @@ use super::limits::LoadingEnd;
 use super::run::LoadingTimings;
 use super::solver::{LoadingSolver, Procedure};
 use super::state::LoadingState;
-use crate::contact::{Certificate, Conditions};
+use crate::contact::{Certificate, Conditions, LengthScale};
 use crate::updater::{LinearUpdater, Solution};
 use crate::{Error, Grid, Problem};
 
@@ -162,12 +162,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let state = self.state.map(|state| state.contact);
         let run = &mut self.run;
         let approach = state.map_or(0.0, |state| run.front.own_approach(&state));
+        let reported = state.map_or(0.0, |state| state.approach);
         let gaps = run.field.displace(pressure.as_slice())?;
         let gaps = gaps.iter().zip(run.problem.initial_gap());
         let gaps = gaps.map(|(u, g)| g + u - approach);
         let nodes = pressure.iter().zip(gaps).zip(&contact);
         let nodes = nodes.map(|((p, gap), in_contact)| (*p, gap, *in_contact));
-        Ok(Conditions::of(&run.problem, state.as_ref()).check(nodes))
+        let load = state.map_or(0.0, |state| state.load);
+        let scale = LengthScale::new(run.problem.rms_height(), run.problem.table());
+        let sum = load / run.problem.grid().cell_area();
+        Ok(Conditions::new(sum, reported, scale).check(nodes))
     }
 
     /// The solution at a state of this path.

@@ -1,7 +1,6 @@
 //! Reference data shared by the integration tests.
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, missing_docs)]
 
-
 use std::path::PathBuf;
 
 use asperity::surface::HeightMap;

@@ -3,30 +3,109 @@
 use super::KernelTable;
 use crate::{Boundary, ContactGrowth, Error, Grid};
 
-impl KernelTable {
-    /// The coefficients between blocks of 2 × 2 cells under a common pressure, displacements
-    /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
-    /// on blocks. A direction with a single node stays as it is.
+/// Blocks of 2 × 2 nodes of a grid, each a node of a coarser grid. A direction with a single node
+/// stays as it is.
+///
+/// Where the number of nodes is odd, the last block of a free grid reaches beyond its edge; those of
+/// a periodic one are a little smaller than two cells, so that they fit the period.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Blocks {
+    fine: Grid,
+    coarse: Grid,
+    boundary: Boundary,
+}
+
+impl Blocks {
+    /// # Errors
     ///
-    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, where
-    /// the kernel is continued by its last value; those of a periodic one are a little smaller than two
-    /// cells, so that they fit the period, and weighted by how much they overlap.
+    /// Those of [`Grid::new`].
+    pub(crate) fn new(fine: Grid, boundary: Boundary) -> Result<Self, Error> {
+        let (nx, ny) = fine.shape();
+        let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
+        let coarse = match boundary {
+            Boundary::Free => {
+                let [fx, fy] = [nx, ny].map(Self::cells);
+                Grid::new(cx, cy, fine.dx() * fx as f64, fine.dy() * fy as f64)?
+            }
+            Boundary::Periodic => {
+                let (lx, ly) = fine.sides();
+                Grid::with_sides(cx, cy, lx, ly)?
+            }
+        };
+        Ok(Self {
+            fine,
+            coarse,
+            boundary,
+        })
+    }
+
+    /// Cells of a free grid that make the side of a block, along a direction of so many nodes.
+    fn cells(nodes: usize) -> usize {
+        nodes.min(2)
+    }
+
+    /// The grid of blocks.
+    pub(crate) fn grid(&self) -> Grid {
+        self.coarse
+    }
+
+    /// The block in which a node lies.
+    fn of(&self, node: usize) -> usize {
+        let (ix, iy) = self.fine.coordinates(node);
+        let along = |i: usize, fine: usize, coarse: usize| match self.boundary {
+            Boundary::Free => i / Self::cells(fine),
+            // Blocks share the period equally.
+            Boundary::Periodic => (2 * i + 1) * coarse / (2 * fine),
+        };
+        self.coarse.index(
+            along(ix, self.fine.nx(), self.coarse.nx()),
+            along(iy, self.fine.ny(), self.coarse.ny()),
+        )
+    }
+
+    /// Averages over blocks.
+    pub(crate) fn restrict(&self, values: &[f64]) -> Vec<f64> {
+        let mut sums = vec![(0.0, 0_u32); self.coarse.nodes()];
+        for (node, value) in values.iter().enumerate() {
+            let (sum, count) = &mut sums[self.of(node)];
+            *sum += value;
+            *count += 1;
+        }
+        sums.into_iter()
+            .map(|(sum, count)| sum / f64::from(count.max(1)))
+            .collect()
+    }
+
+    /// The same value on all nodes of a block.
+    pub(crate) fn prolong(&self, values: &[f64], result: &mut [f64]) {
+        for (node, value) in result.iter_mut().enumerate() {
+            *value = values[self.of(node)];
+        }
+    }
+}
+
+impl KernelTable {
+    /// The coefficients between blocks under a common pressure, displacements averaged over a block:
+    /// exactly what remains of this kernel for pressures that are uniform on blocks.
+    ///
+    /// Beyond the edge of a free grid the kernel is continued by its last value; cells that lie in two
+    /// blocks of a periodic grid are weighted by how much of them lies in each.
     ///
     /// # Errors
     ///
     /// Those of [`Grid::new`].
-    pub(crate) fn coarsened(&self) -> Result<Self, Error> {
-        match self.boundary {
-            Boundary::Free => self.coarsened_free(),
-            Boundary::Periodic => self.coarsened_periodic(),
-        }
+    pub(crate) fn coarsened(&self) -> Result<(Self, Blocks), Error> {
+        let blocks = Blocks::new(self.grid, self.boundary)?;
+        let coarse = match self.boundary {
+            Boundary::Free => self.coarsened_free(blocks.grid()),
+            Boundary::Periodic => self.coarsened_periodic(blocks.grid()),
+        };
+        Ok((coarse, blocks))
     }
 
-    fn coarsened_periodic(&self) -> Result<Self, Error> {
+    fn coarsened_periodic(&self, grid: Grid) -> Self {
         let (nx, ny) = self.grid.shape();
-        let (lx, ly) = self.grid.sides();
-        let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
-        let grid = Grid::with_sides(cx, cy, lx, ly)?;
+        let (cx, cy) = grid.shape();
         // For each offset of blocks the offsets of cells, and their weights: sums over the sources,
         // averages over the observers.
         let overlaps = |nodes: usize, blocks: usize| -> Vec<[(usize, f64); 4]> {
@@ -63,19 +142,12 @@ impl KernelTable {
                 values.push(sum);
             }
         }
-        Ok(self.on_blocks(grid, values))
+        self.on_blocks(grid, values)
     }
 
-    fn coarsened_free(&self) -> Result<Self, Error> {
+    fn coarsened_free(&self, grid: Grid) -> Self {
         let (nx, ny) = self.grid.shape();
-        let factor = |nodes: usize| if nodes > 1 { 2 } else { 1 };
-        let (fx, fy) = (factor(nx), factor(ny));
-        let grid = Grid::new(
-            nx.div_ceil(fx),
-            ny.div_ceil(fy),
-            self.grid.dx() * fx as f64,
-            self.grid.dy() * fy as f64,
-        )?;
+        let [fx, fy] = [nx, ny].map(Blocks::cells);
         // Differences between the places of two cells within their blocks, and how often each
         // occurs; sums over the sources, averages over the observers.
         let differences = |factor: usize| -> &'static [(isize, f64)] {
@@ -102,7 +174,7 @@ impl KernelTable {
                 values.push(sum);
             }
         }
-        Ok(self.on_blocks(grid, values))
+        self.on_blocks(grid, values)
     }
 
     /// What is known of the body does not change with the grid, except for the promise of growth,
@@ -128,7 +200,7 @@ mod tests {
     fn periodic_blocks_are_averages() -> Result<(), Error> {
         let grid = Grid::new(8, 6, 1.0, 1.5)?;
         let fine = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
-        let coarse = fine.coarsened()?;
+        let (coarse, _) = fine.coarsened()?;
         assert_eq!(coarse.grid(), Grid::new(4, 3, 2.0, 3.0)?);
         for (di, dj) in (0..7 * 5).map(|i| (i % 7 - 3, i / 7 - 2)) {
             let mut sum = 0.0;
@@ -155,7 +227,7 @@ mod tests {
                 KernelTable::new(&Spectral::new(grid, 1.0)?)?,
             ];
             for fine in tables {
-                let coarse = fine.coarsened()?;
+                let (coarse, _) = fine.coarsened()?;
                 coarse.check_periodicity()?;
                 // Along x; across, waves that do not vary.
                 let symbol = |table: &KernelTable, k: usize| {

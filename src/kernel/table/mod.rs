@@ -3,6 +3,8 @@
 mod coarse;
 mod symbol;
 
+pub(crate) use coarse::Blocks;
+
 use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, MeanDisplacement};
 use crate::{Error, Grid};

@@ -1,0 +1,183 @@
+//! From state to state.
+
+use super::active_set::ActiveSet;
+use super::continuation::Continuation;
+use super::hierarchy::Hierarchy;
+use super::iterate::Criteria;
+use super::level::{Level, Prescribed};
+use super::settings::Settings;
+use super::solution::{FixedLoadSolution, SolverEffort};
+use super::tangent::Tangent;
+use crate::contact::ContactState;
+use crate::parallel::inside;
+use crate::{Error, Grid};
+
+/// Solves for one state after the other: from the last one if it is near, else from coarser grids.
+#[derive(Debug)]
+pub(super) struct Stepper<'a> {
+    settings: &'a Settings,
+    hierarchy: &'a mut Hierarchy,
+    continuation: Continuation,
+    /// The state that the finest grid holds, if it holds one.
+    last: Option<ContactState>,
+}
+
+impl<'a> Stepper<'a> {
+    /// Knows no state yet.
+    pub(super) fn new(settings: &'a Settings, hierarchy: &'a mut Hierarchy) -> Self {
+        Self {
+            settings,
+            hierarchy,
+            continuation: Continuation::default(),
+            last: None,
+        }
+    }
+
+    /// Begins at a solution.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`], [`Error::OutOfRange`] and [`Error::FieldNotFinite`] if that is no
+    /// solution on this grid.
+    pub(super) fn at(
+        settings: &'a Settings,
+        hierarchy: &'a mut Hierarchy,
+        solution: &FixedLoadSolution,
+    ) -> Result<Self, Error> {
+        let finest = &mut hierarchy.finest;
+        check(solution, &finest.grid)?;
+        let iterate = &mut finest.iterate;
+        iterate
+            .pressure
+            .copy_from_slice(solution.pressure.as_slice());
+        iterate.approach = solution.state.approach;
+        let gaps = finest.gap.iter().zip(&solution.displacement);
+        for (closure, (gap, displacement)) in iterate.closure.iter_mut().zip(gaps) {
+            *closure = gap + displacement;
+        }
+        let tangent = Tangent::of(finest, solution)?;
+        Ok(Self {
+            settings,
+            hierarchy,
+            continuation: Continuation::new(tangent),
+            last: Some(solution.state),
+        })
+    }
+
+    /// The last state.
+    pub(super) fn last(&self) -> Option<&ContactState> {
+        self.last.as_ref()
+    }
+
+    /// The contact problem on the finest grid.
+    pub(super) fn finest(&self) -> &Level {
+        &self.hierarchy.finest
+    }
+
+    /// Greatest error of a solution.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.settings.tolerance
+    }
+
+    /// Contact under the load `load` \[N\].
+    pub(super) fn to_load(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
+        let load = Error::require_positive("load", load)?;
+        let sum = load / self.finest().grid.cell_area();
+        self.to(Prescribed::Sum(sum), sum, Some(load))
+    }
+
+    /// Contact at the approach `approach` \[m\].
+    pub(super) fn to_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
+        let approach = Error::require_positive("approach", approach)?;
+        let finest = self.finest();
+        if finest.gauge.is_some() {
+            let mean_gap = finest.mean_initial_gap();
+            if approach >= mean_gap {
+                return Err(Error::ApproachNotReached { approach, mean_gap });
+            }
+        }
+        let sum = self.continuation.sum_at(finest, approach);
+        self.to(Prescribed::Approach(approach), sum, None)
+    }
+
+    /// Contact where something is `prescribed` and the sum of pressures is about `sum`.
+    fn to(
+        &mut self,
+        prescribed: Prescribed,
+        sum: f64,
+        load: Option<f64>,
+    ) -> Result<FixedLoadSolution, Error> {
+        // After an error the finest grid holds no state.
+        let is_near = self.last.take().is_some() && Continuation::reaches(self.finest(), sum);
+        if is_near {
+            self.continuation.predict(&mut self.hierarchy.finest, sum);
+        } else {
+            self.continuation = Continuation::default();
+            self.hierarchy.start(prescribed, self.settings)?;
+        }
+        let finest = &mut self.hierarchy.finest;
+        let criteria = Criteria {
+            tolerance: self.settings.tolerance,
+            floor: finest.least_length(prescribed),
+            length: f64::INFINITY,
+            max_iterations: self.settings.max_iterations,
+            verify: true,
+        };
+        let iterations = inside(|| ActiveSet::new(finest, prescribed, criteria).solve(is_near))?;
+        let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
+        let effort = SolverEffort {
+            iterations,
+            stiffness_iterations: 0,
+            convolutions,
+            coarse_convolutions,
+        };
+        let finest = &mut self.hierarchy.finest;
+        let mut solution = FixedLoadSolution::of(finest, load, effort);
+        if self.settings.stiffness {
+            let tangent = &mut self.continuation.tangent;
+            tangent.complete(finest, self.settings, &mut solution)?;
+        }
+        self.last = Some(solution.state);
+        Ok(solution)
+    }
+}
+
+/// `Ok` if this can be a solution on `grid`: its fields are public.
+fn check(solution: &FixedLoadSolution, grid: &Grid) -> Result<(), Error> {
+    let mut fields = vec![
+        ("pressure", &solution.pressure),
+        ("displacement", &solution.displacement),
+    ];
+    if !solution.pressure_rate.is_empty() {
+        fields.push(("pressure rate", &solution.pressure_rate));
+    }
+    for (field, values) in fields {
+        grid.check_shape(values.shape())?;
+        if let Some(node) = values.iter().position(|value| !value.is_finite()) {
+            let (ix, iy) = grid.coordinates(node);
+            return Err(Error::FieldNotFinite {
+                field,
+                ix,
+                iy,
+                value: values[node],
+            });
+        }
+    }
+    let state = &solution.state;
+    if !state.is_finite() {
+        return Err(Error::OutOfRange {
+            quantity: "approach of a solution to start from",
+            value: state.approach,
+            expected: "finite, as all of its state",
+        });
+    }
+    // The shape may be the same on a grid of other cells.
+    if state.contact_area != state.contact_nodes as f64 * grid.cell_area() {
+        return Err(Error::OutOfRange {
+            quantity: "contact area of a solution to start from",
+            value: state.contact_area,
+            expected: "its number of nodes in contact times the area of a cell of this grid",
+        });
+    }
+    Ok(())
+}
