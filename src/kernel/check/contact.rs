@@ -2,8 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use crate::Error;
 use crate::kernel::{ContactGrowth, KernelTable};
+use crate::{Error, KernelError};
 
 /// A contact set whose influence matrix is positive definite.
 pub(super) struct Contact {
@@ -29,17 +29,19 @@ pub(super) struct Violation {
 impl Contact {
     /// # Errors
     ///
-    /// [`Error::BrokenPromise`] if the influence matrix is not positive definite.
+    /// [`KernelError::BrokenPromise`] if the influence matrix is not positive definite.
     pub(super) fn new(table: &KernelTable, nodes: Vec<usize>) -> Result<Self, Error> {
         let places: Vec<usize> = nodes.iter().map(|&node| table.place(node)).collect();
         let n = nodes.len();
         let matrix = DMatrix::from_fn(n, n, |i, j| table.between(places[i], places[j]));
-        let factor = factored(matrix.clone()).map_err(|(row, value)| Error::BrokenPromise {
-            promise: "positive definite",
-            quantity: "pivot",
-            contact: nodes.clone(),
-            node: table.grid().coordinates(nodes[row]),
-            value,
+        let factor = factored(matrix.clone()).map_err(|(row, value)| {
+            Error::Kernel(KernelError::BrokenPromise {
+                promise: "positive definite",
+                quantity: "pivot",
+                contact: nodes.clone(),
+                node: table.grid().coordinates(nodes[row]),
+                value,
+            })
         })?;
         let inverse = factor.inverse();
         let growth = factor.solve(&DVector::from_element(n, 1.0));
@@ -113,13 +115,13 @@ impl Contact {
 
     /// The error for a violation on this set.
     pub(super) fn broken(&self, table: &KernelTable, violation: Violation) -> Error {
-        Error::BrokenPromise {
+        Error::Kernel(KernelError::BrokenPromise {
             promise: violation.promise,
             quantity: violation.quantity,
             contact: self.nodes.clone(),
             node: table.grid().coordinates(violation.node),
             value: violation.value,
-        }
+        })
     }
 }
 

@@ -8,7 +8,7 @@ use rustfft::num_complex::Complex64;
 
 use self::contact::Contact;
 use super::{Boundary, ContactGrowth, InfluenceKernel, KernelTable};
-use crate::Error;
+use crate::{Error, KernelError};
 
 /// What [`check`] has tried, and what it has found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +51,7 @@ pub struct KernelReport {
 ///
 /// # Errors
 ///
-/// Those of [`KernelTable::new`]; [`Error::SymbolNotPositive`]; [`Error::BrokenPromise`] with the
+/// Those of [`KernelTable::new`]; [`KernelError::SymbolNotPositive`]; [`KernelError::BrokenPromise`] with the
 /// promise, the contact set, the node and the value.
 ///
 /// # Example
@@ -134,13 +134,13 @@ fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
                 std::f64::consts::TAU * signed / side
             };
             let (lx, ly) = grid.sides();
-            return Err(Error::SymbolNotPositive {
+            return Err(Error::Kernel(KernelError::SymbolNotPositive {
                 q: (
                     wave_vector(place / ny, nx, lx),
                     wave_vector(place % ny, ny, ly),
                 ),
                 value,
-            });
+            }));
         }
         least = least.min(value);
     }

@@ -12,12 +12,12 @@ fn strip(coefficients: &[f64], promised: ContactGrowth) -> Result<KernelTable, E
 /// The promise, quantity, contact set and node of an error.
 fn broken(result: Result<KernelReport, Error>) -> Option<(&'static str, Vec<usize>, usize)> {
     match result {
-        Err(Error::BrokenPromise {
+        Err(Error::Kernel(KernelError::BrokenPromise {
             promise,
             contact,
             node,
             ..
-        }) => Some((promise, contact, node.0)),
+        })) => Some((promise, contact, node.0)),
         _ => None,
     }
 }
@@ -126,11 +126,16 @@ fn a_periodic_kernel_with_a_wave_of_no_stiffness_is_found_out() -> Result<(), Er
     let (arbitrary, physical) = (MeanDisplacement::Arbitrary, MeanDisplacement::Physical);
     let last = check(&ring(0.5, arbitrary)?);
     let pi = std::f64::consts::PI;
-    assert!(matches!(last, Err(Error::SymbolNotPositive { q, .. }) if q == (pi, 0.0)));
+    assert!(
+        matches!(last, Err(Error::Kernel(KernelError::SymbolNotPositive { q, .. })) if q == (pi, 0.0))
+    );
     let mean = check(&ring(-0.5, physical)?);
     assert!(matches!(
         mean,
-        Err(Error::SymbolNotPositive { q: (0.0, 0.0), .. })
+        Err(Error::Kernel(KernelError::SymbolNotPositive {
+            q: (0.0, 0.0),
+            ..
+        }))
     ));
     // If it is arbitrary it may be nothing.
     assert!(check(&ring(-0.5, arbitrary)?).is_ok());
@@ -152,7 +157,10 @@ fn coefficients_that_make_no_sense_are_refused_first() -> Result<(), Error> {
         }
     }
     let refused = check(&Skew(Grid::new(4, 1, 1.0, 1.0)?));
-    assert!(matches!(refused, Err(Error::KernelNotSymmetric { .. })));
+    assert!(matches!(
+        refused,
+        Err(Error::Kernel(KernelError::NotSymmetric { .. }))
+    ));
     Ok(())
 }
 

@@ -7,7 +7,7 @@ pub(crate) use coarse::Blocks;
 
 use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, MeanDisplacement};
-use crate::{Error, Grid};
+use crate::{Error, Grid, KernelError};
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
 ///
@@ -80,7 +80,7 @@ impl KernelTable {
     ///
     /// # Errors
     ///
-    /// [`Error::KernelNotFinite`], [`Error::KernelNotSymmetric`], [`Error::KernelNotPeriodic`] if
+    /// [`KernelError::NotFinite`], [`KernelError::NotSymmetric`], [`KernelError::NotPeriodic`] if
     /// the boundary is periodic and the coefficients are not, and [`Error::NotPositiveDefinite`] if
     /// C(0, 0) is not positive.
     pub fn from_fn(
@@ -95,7 +95,7 @@ impl KernelTable {
             for di in 1 - nx..nx {
                 let value = coefficient(di, dj);
                 if !value.is_finite() {
-                    return Err(Error::KernelNotFinite { di, dj, value });
+                    return Err(Error::Kernel(KernelError::NotFinite { di, dj, value }));
                 }
                 values.push(value);
             }
@@ -151,7 +151,7 @@ impl KernelTable {
     ///
     /// # Errors
     ///
-    /// [`Error::SymbolNotPositive`] (also if not finite) and [`Error::SymbolNotEven`], which name the
+    /// [`KernelError::SymbolNotPositive`] (also if not finite) and [`KernelError::SymbolNotEven`], which name the
     /// wavevector; [`Error::NotPositiveDefinite`] for a single node of arbitrary mean, of which nothing
     /// is known.
     pub fn from_symbol(
@@ -184,12 +184,12 @@ impl KernelTable {
         for (place, (&value, &opposite)) in opposites.enumerate().take(self.center()) {
             if !self.agree(value, opposite) {
                 let (di, dj) = self.offset(place);
-                return Err(Error::KernelNotSymmetric {
+                return Err(Error::Kernel(KernelError::NotSymmetric {
                     di,
                     dj,
                     value,
                     opposite,
-                });
+                }));
             }
         }
         Ok(())
@@ -208,14 +208,14 @@ impl KernelTable {
                 if !self.agree(value, repeated) {
                     let (di, dj) = self.offset(place);
                     let (image_di, image_dj) = self.offset(image);
-                    return Err(Error::KernelNotPeriodic {
+                    return Err(Error::Kernel(KernelError::NotPeriodic {
                         di,
                         dj,
                         value,
                         image_di,
                         image_dj,
                         repeated,
-                    });
+                    }));
                 }
             }
         }

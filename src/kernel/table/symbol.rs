@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use rustfft::FftPlanner;
 
 use crate::kernel::MeanDisplacement;
-use crate::{Error, Grid};
+use crate::{Error, Grid, KernelError};
 
 /// Relative difference within which Ĉ(q) and Ĉ(−q) count as the same: a formula whose terms are
 /// evaluated in another order, or with functions that are good to some ten digits.
@@ -72,7 +72,10 @@ fn on_the_waves(
         if value > 0.0 && value.is_finite() {
             Ok(value)
         } else {
-            Err(Error::SymbolNotPositive { q: (qx, qy), value })
+            Err(Error::Kernel(KernelError::SymbolNotPositive {
+                q: (qx, qy),
+                value,
+            }))
         }
     };
     let mut values = Vec::with_capacity(nx * ny);
@@ -87,11 +90,11 @@ fn on_the_waves(
             }
             let (value, opposite) = (value_at(qx, qy)?, value_at(-qx, -qy)?);
             if (value - opposite).abs() > SAME * value.max(opposite) {
-                return Err(Error::SymbolNotEven {
+                return Err(Error::Kernel(KernelError::SymbolNotEven {
                     q: (qx, qy),
                     value,
                     opposite,
-                });
+                }));
             }
             let mut shares = vec![value, opposite];
             // On the grid a wave with two nodes a wavelength along x runs both ways along x at once,

@@ -160,7 +160,7 @@ fn impossible_symbols_are_refused() -> Result<(), Error> {
     let refused = make(physical, half_space);
     assert!(matches!(
         refused,
-        Err(Error::SymbolNotPositive { q: (0.0, 0.0), value }) if value.is_infinite()
+        Err(Error::Kernel(KernelError::SymbolNotPositive { q: (0.0, 0.0), value })) if value.is_infinite()
     ));
     assert!(make(arbitrary, half_space).is_ok());
     for bad in
@@ -168,12 +168,12 @@ fn impossible_symbols_are_refused() -> Result<(), Error> {
     {
         assert!(matches!(
             make(arbitrary, bad),
-            Err(Error::SymbolNotPositive { .. })
+            Err(Error::Kernel(KernelError::SymbolNotPositive { .. }))
         ));
     }
     assert!(matches!(
         make(physical, |qx, _| 10.0 + qx),
-        Err(Error::SymbolNotEven { .. })
+        Err(Error::Kernel(KernelError::SymbolNotEven { .. }))
     ));
     let single = Grid::new(1, 1, 1.0, 1.0)?;
     let unknown = KernelTable::from_symbol(single, arbitrary, ContactGrowth::Unknown, half_space);
