@@ -1,0 +1,10 @@
+//! What the program `asperity` and the studies of this repository share: charts, numbers for people,
+//! and the half-space that a command line asks for.
+
+pub mod axis;
+pub mod chart;
+pub mod half_space;
+pub mod number;
+pub mod outcome;
+pub mod panel;
+pub mod picture;

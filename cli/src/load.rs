@@ -1,0 +1,140 @@
+//! `asperity load`: the contact of a measured surface under given loads.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use asperity::FixedLoadSolver;
+use asperity::fixed_load::FixedLoadSolution;
+use asperity::io::write_npy;
+use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::outcome::Failure;
+use clap::Args;
+
+use crate::measured;
+use crate::values::positive;
+
+/// The contact of a measured surface under given loads, each solved by itself: one line for each
+///
+/// Results go to stdout, progress to stderr. Memory grows with the grid and not with the contact.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Heights [m] in a NumPy file, positive towards the half-space; element [ix, iy] is the node
+    /// (ix, iy), x along the first axis
+    #[arg(long, value_name = "FILE.npy")]
+    surface: PathBuf,
+
+    /// Side of the nominal area along x
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    side: f64,
+
+    /// Side along y [default: as many square cells as there are nodes]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    side_y: Option<f64>,
+
+    /// Composite modulus E* = E / (1 - ν²) against a rigid body
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    e_star: f64,
+
+    /// Load; may be given several times
+    #[arg(
+        long,
+        value_name = "NEWTONS",
+        allow_negative_numbers = true,
+        required = true
+    )]
+    load: Vec<f64>,
+
+    /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
+    /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and
+    /// there is no contact stiffness but the interfacial one
+    #[arg(long, value_enum)]
+    periodic: Option<Periodic>,
+
+    /// Greatest error of gaps relative to the approach
+    #[arg(
+        long,
+        value_name = "T",
+        allow_negative_numbers = true,
+        default_value_t = 1e-8
+    )]
+    tolerance: f64,
+
+    /// Directory for pressure_K.npy and gap_K.npy, K counting the loads from 0
+    #[arg(long, value_name = "DIR")]
+    save: Option<PathBuf>,
+}
+
+/// Solves for each load in turn.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let (grid, heights) = measured::read(&options.surface, options.side, options.side_y)?;
+    let (nx, ny) = grid.shape();
+    let start = Instant::now();
+    let mut solver = HalfSpace::new(options.periodic, grid, options.e_star)
+        .and_then(|half_space| {
+            FixedLoadSolver::builder(&heights, half_space)
+                .tolerance(options.tolerance)
+                .stiffness(false)
+                .build()
+        })
+        .map_err(|error| Failure::new("no solution can begin", error))?;
+    eprintln!(
+        "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
+        start.elapsed().as_secs_f64(),
+        solver.memory() / 1_000_000
+    );
+    if let Some(directory) = &options.save {
+        std::fs::create_dir_all(directory)
+            .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
+    }
+    for (k, &load) in options.load.iter().enumerate() {
+        eprintln!("load {} of {}: {load} N", k + 1, options.load.len());
+        let failed = |error| Failure::new(format!("no contact under {load} N"), error);
+        let start = Instant::now();
+        let mut solution = solver.solve(load).map_err(failed)?;
+        let seconds = start.elapsed().as_secs_f64();
+        solver.add_stiffness(&mut solution).map_err(failed)?;
+        let seconds_more = start.elapsed().as_secs_f64() - seconds;
+        print(&solution, seconds, seconds_more);
+        if let Some(directory) = &options.save {
+            for (name, field) in [("pressure", &solution.pressure), ("gap", &solution.gap)] {
+                let file = directory.join(format!("{name}_{k}.npy"));
+                write_npy(&file, field).map_err(|error| {
+                    Failure::new(format!("cannot write {}", file.display()), error)
+                })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A line for programs on stdout, and one for people on stderr.
+fn print(solution: &FixedLoadSolution, seconds: f64, seconds_more: f64) {
+    let state = solution.state;
+    println!(
+        "load={:e} contact_nodes={} max_pressure={:e} mean_gap={:e} approach={:e} \
+         contact_stiffness={} interfacial_stiffness={} iterations={} seconds={seconds:.6}",
+        state.load,
+        state.contact_nodes,
+        state.max_pressure,
+        state.mean_gap,
+        state.approach,
+        printed(state.contact_stiffness),
+        printed(state.interfacial_stiffness),
+        solution.iterations,
+    );
+    eprintln!(
+        "  {:.3} % in contact, {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more \
+         for the stiffness, errors: complementarity {:.1e}, gap in contact {:.1e}, least gap {:.1e}",
+        100.0 * state.contact_area_fraction,
+        solution.convolutions,
+        solution.coarse_convolutions,
+        solution.certificate.complementarity,
+        solution.certificate.greatest_contact_gap,
+        solution.certificate.least_gap,
+    );
+}
+
+/// Nothing where there is none.
+fn printed(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:e}"))
+}

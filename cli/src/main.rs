@@ -1,0 +1,59 @@
+//! The program `asperity`: contacts of rough surfaces on the command line.
+
+mod load;
+mod measured;
+mod path;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Exact elastic contact of rough surfaces.
+///
+/// Without a command, `path` of a generated surface: the whole loading to 10 % contact, in seconds.
+/// `asperity path --help` and `asperity load --help` list the options of each.
+#[derive(Debug, Parser)]
+#[command(name = "asperity", version, disable_help_subcommand = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Path(path::Options),
+    Load(load::Options),
+}
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        None => path::run(&path::Options::parse_from(["asperity path"])),
+        Some(Command::Path(options)) => path::run(&options),
+        Some(Command::Load(options)) => load::run(&options),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn the_path_needs_no_options() {
+        assert!(path::Options::try_parse_from(["asperity path"]).is_ok());
+    }
+}

@@ -1,0 +1,72 @@
+//! What went wrong, and what was written nevertheless.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+/// An error with what could not be done because of it.
+pub struct Failure {
+    what: String,
+    source: Option<Box<dyn Error>>,
+}
+
+impl Failure {
+    /// Something that failed because of an error.
+    pub fn new(what: impl Into<String>, source: impl Into<Box<dyn Error>>) -> Self {
+        Self {
+            what: what.into(),
+            source: Some(source.into()),
+        }
+    }
+
+    /// A request that cannot be met.
+    pub fn request(what: impl Into<String>) -> Self {
+        Self {
+            what: what.into(),
+            source: None,
+        }
+    }
+
+    /// Prints the whole chain of causes on stderr.
+    pub fn report(&self) {
+        eprintln!("error: {}", self.what);
+        let mut cause: Option<&dyn Error> = self.source.as_deref();
+        while let Some(error) = cause {
+            eprintln!("  because: {error}");
+            cause = error.source();
+        }
+    }
+}
+
+/// Collects failures and the names of the files that were written.
+#[derive(Default)]
+pub struct Outcome {
+    failures: Vec<Failure>,
+    files: Vec<PathBuf>,
+}
+
+impl Outcome {
+    /// Keeps a failure for the end.
+    pub fn note(&mut self, result: Result<(), Failure>) {
+        self.failures.extend(result.err());
+    }
+
+    /// Keeps the name of a file, or the failure to write it.
+    pub fn written(&mut self, result: Result<PathBuf, Failure>) {
+        match result {
+            Ok(file) => self.files.push(file),
+            Err(failure) => self.failures.push(failure),
+        }
+    }
+
+    /// Prints the files; reports all failures but the first, which it returns.
+    pub fn finish(self) -> Result<(), Failure> {
+        println!();
+        for file in &self.files {
+            println!("wrote {}", file.display());
+        }
+        let mut failures = self.failures.into_iter();
+        let first = failures.next();
+        failures.for_each(|failure| failure.report());
+        first.map_or(Ok(()), Err)
+    }
+}

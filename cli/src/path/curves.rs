@@ -1,0 +1,194 @@
+//! `loading_curve.svg`: area, approach, mean gap and stiffnesses against load.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use asperity::ContactState;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::job::Job;
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+use asperity_cli::panel::{Area, Drawn, Panel, anchor};
+
+/// Width and height of the picture.
+const SIZE: (i32, i32) = (1240, 980);
+/// Drawing units to a pixel: plotters rounds to whole ones.
+const FINE: i32 = 8;
+
+/// A quantity of a state.
+type Quantity = fn(&ContactState) -> f64;
+/// What a curve shows, its colour, and its name if there are several in a panel.
+type Curve = (Quantity, RGBColor, &'static str);
+
+/// Draws the picture into a directory.
+pub(super) fn draw(
+    job: &Job,
+    states: &[ContactState],
+    directory: &Path,
+) -> Result<PathBuf, Failure> {
+    let name = directory.join("loading_curve.svg");
+    let (width, height) = (SIZE.0 * FINE, SIZE.1 * FINE);
+    let mut text = String::new();
+    let backend = SVGBackend::with_string(&mut text, (width as u32, height as u32));
+    let drawn = panels(&backend.into_drawing_area(), job, states);
+    drawn
+        .map_err(|error| error.to_string().into())
+        .and_then(|()| {
+            let fine = format!("width=\"{width}\" height=\"{height}\"");
+            let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+            std::fs::write(&name, text.replacen(&fine, &size, 1)).map_err(Box::from)
+        })
+        .map_err(|error: Box<dyn Error>| {
+            Failure::new(format!("cannot write {}", name.display()), error)
+        })?;
+    Ok(name)
+}
+
+fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState]) -> Drawn<DB> {
+    area.fill(&WHITE)?;
+    let (nx, ny) = job.grid().shape();
+    let title = format!(
+        "Loading path of {} states: {nx} × {ny} nodes{}, E* = {}, Sq = {}",
+        states.len(),
+        match job.periodic() {
+            None => String::new(),
+            Some(kernel) => format!(", periodic ({} kernel)", kernel.name()),
+        },
+        quantity(job.e_star(), "Pa", 4),
+        quantity(job.heights().rms_height(), "m", 4)
+    );
+    let centred = |text: &str, y: i32| {
+        let at = (FINE * SIZE.0 / 2, FINE * y);
+        let pos = anchor(HPos::Center, VPos::Center);
+        panel(0).write(area, text, at, 22 * FINE, pos)
+    };
+    centred(&title, 34)?;
+
+    let loaded: Vec<ContactState> = states.iter().filter(|s| s.load > 0.0).copied().collect();
+    let Some((from, to)) = extent(&loaded, &[|s| s.load]) else {
+        centred("No state of this path carries load.", SIZE.1 / 2)?;
+        return area.present();
+    };
+    let load = || Axis::logarithmic("load W", "N", from, to).with_room(0.0, 0.02);
+
+    let logarithmic = |name, unit, quantities: &[Quantity]| {
+        let (low, high) = extent(&loaded, quantities).unwrap_or((1.0, 10.0));
+        Axis::logarithmic(name, unit, low, high).with_room(0.04, 0.06)
+    };
+    let linear = |name, unit, quantity: Quantity| {
+        let highest = loaded.iter().map(quantity).fold(0.0, f64::max);
+        let lowest = loaded.iter().map(quantity).fold(0.0, f64::min);
+        // A mean gap that is to be zero may be off by rounding.
+        if lowest < -1e-6 * highest {
+            Axis::linear(name, unit, lowest, highest).with_room(0.05, 0.06)
+        } else {
+            Axis::linear(name, unit, 0.0, highest).with_room(0.0, 0.06)
+        }
+    };
+
+    // A periodic half-space has no approach but that of the mean planes, and no stiffness but the
+    // interfacial one.
+    let both: [Curve; 2] = [
+        (contact_stiffness, BLUE, "contact, K = dW/dδ"),
+        (
+            |s| s.interfacial_stiffness,
+            ORANGE,
+            "interfacial, −dW/d(mean gap)",
+        ),
+    ];
+    let interfacial: [Curve; 1] = [(both[1].0, BLUE, "")];
+    let (approach, stiffness, stiffnesses) = match job.periodic() {
+        None => ("approach δ", "stiffness", &both[..]),
+        Some(_) => (
+            "approach of the mean planes",
+            "interfacial stiffness",
+            &interfacial[..],
+        ),
+    };
+    let all: [(Axis, &[Curve]); 4] = [
+        (
+            logarithmic("contact area A", "m²", &[|s| s.contact_area]),
+            &[(|s| s.contact_area, BLUE, "")],
+        ),
+        (
+            linear(approach, "m", |s| s.approach),
+            &[(|s| s.approach, BLUE, "")],
+        ),
+        (
+            linear("mean gap", "m", |s| s.mean_gap),
+            &[(|s| s.mean_gap, BLUE, "")],
+        ),
+        (
+            logarithmic(
+                stiffness,
+                "N/m",
+                &stiffnesses
+                    .iter()
+                    .map(|(value, ..)| *value)
+                    .collect::<Vec<_>>(),
+            ),
+            stiffnesses,
+        ),
+    ];
+    for (place, (y, curves)) in (0_i32..).zip(all) {
+        let panel = panel(place);
+        let x = load();
+        panel.rule(area, &x, &y)?;
+        for (value, colour, _) in curves {
+            let points = loaded.iter().map(|state| (state.load, value(state)));
+            panel.curve(area, (&x, &y), points, *colour)?;
+        }
+        legend(area, &panel, curves)?;
+        panel.frame(area, &x, &y)?;
+    }
+    area.present()
+}
+
+/// The panel at a place from 0 to 3, row by row.
+fn panel(place: i32) -> Panel {
+    Panel {
+        left: FINE * (120 + (place % 2) * 620),
+        top: FINE * (76 + (place / 2) * 460),
+        width: FINE * 470,
+        height: FINE * 350,
+        font: FINE * 17,
+        stroke: FINE as u32,
+        text_rise: 0.0,
+    }
+}
+
+/// Names of the curves of a panel, in its upper left corner.
+fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) -> Drawn<DB> {
+    let named = curves.iter().filter(|(_, _, name)| !name.is_empty());
+    for (line, (_, colour, name)) in (0_i32..).zip(named) {
+        let x = panel.left + 18 * FINE;
+        let y = panel.top + (24 + 26 * line) * FINE;
+        let stroke = colour.stroke_width(3 * FINE as u32);
+        area.draw(&PathElement::new(vec![(x, y), (x + 34 * FINE, y)], stroke))?;
+        let pos = anchor(HPos::Left, VPos::Center);
+        panel.write(area, name, (x + 44 * FINE, y), panel.font, pos)?;
+    }
+    Ok(())
+}
+
+/// NaN, which is not drawn, where there is none.
+fn contact_stiffness(state: &ContactState) -> f64 {
+    state.contact_stiffness.unwrap_or(f64::NAN)
+}
+
+/// Least and greatest positive finite value of some quantities.
+fn extent(states: &[ContactState], quantities: &[Quantity]) -> Option<(f64, f64)> {
+    let values = || {
+        let each = quantities.iter().flat_map(|q| states.iter().map(q));
+        each.filter(|value| *value > 0.0 && value.is_finite())
+    };
+    values().next()?;
+    Some((
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(0.0, f64::max),
+    ))
+}

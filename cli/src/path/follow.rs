@@ -1,0 +1,119 @@
+//! Following the path, and its file.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use asperity::updater::LinearUpdater;
+use asperity::{ContactState, InfluenceKernel, LoadingSolver, Surface};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use asperity_cli::number::scientific;
+use asperity_cli::outcome::Failure;
+
+/// States between two looks at the progress bar and two visits to the disk.
+const STRIDE: usize = 64;
+
+/// Runs the path to its end, writing each state as it comes; returns all states, and how it ended.
+pub(super) fn follow<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
+    solver: &mut LoadingSolver<S, K, U>,
+    file: &mut PathFile,
+    max_nodes: usize,
+) -> (Vec<ContactState>, Result<(), Failure>) {
+    let bar = ProgressBar::new(max_nodes as u64);
+    if let Ok(style) = ProgressStyle::with_template(
+        "{wide_bar:.blue} {human_pos}/{human_len} nodes  {elapsed}  {msg}",
+    ) {
+        bar.set_style(style.progress_chars("━╸─"));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let mut states = Vec::new();
+    let mut ended = Ok(());
+    for state in solver {
+        match state.map_err(|error| Failure::new("the path broke off", error)) {
+            Ok(state) => {
+                states.push(state);
+                if let Err(failure) = file.write(&state) {
+                    ended = Err(failure);
+                    break;
+                }
+                if state.step.is_multiple_of(STRIDE) {
+                    bar.set_position(state.step as u64);
+                    bar.set_message(format!("W = {} N", scientific(state.load, 3)));
+                }
+            }
+            Err(failure) => {
+                ended = Err(failure);
+                break;
+            }
+        }
+    }
+    bar.set_position(states.len() as u64);
+    bar.finish_and_clear();
+    (states, ended)
+}
+
+/// The file `path.csv`: one line for each state, on the disk soon after it is known.
+pub(super) struct PathFile {
+    name: PathBuf,
+    output: BufWriter<File>,
+}
+
+impl PathFile {
+    /// Begins the file in a directory.
+    pub(super) fn create(directory: &Path) -> Result<Self, Failure> {
+        let name = directory.join("path.csv");
+        let begin = || {
+            let mut output = BufWriter::new(File::create(&name)?);
+            writeln!(
+                output,
+                "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
+                 contact_stiffness,interfacial_stiffness"
+            )?;
+            Ok(output)
+        };
+        match begin() {
+            Ok(output) => Ok(Self { name, output }),
+            Err(error) => Err(failed(&name, error)),
+        }
+    }
+
+    /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
+    fn write(&mut self, state: &ContactState) -> Result<(), Failure> {
+        let (ix, iy) = state.node;
+        // Empty where there is none: on a periodic half-space.
+        let contact_stiffness = state
+            .contact_stiffness
+            .map_or_else(String::new, |stiffness| format!("{stiffness:e}"));
+        let line = writeln!(
+            self.output,
+            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{:e}",
+            state.step,
+            state.approach,
+            state.load,
+            state.contact_area,
+            state.contact_area_fraction,
+            state.mean_gap,
+            contact_stiffness,
+            state.interfacial_stiffness,
+        );
+        let done = match line {
+            Ok(()) if state.step.is_multiple_of(STRIDE) => self.output.flush(),
+            other => other,
+        };
+        done.map_err(|error| failed(&self.name, error))
+    }
+
+    /// Ends the file.
+    pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
+        match self.output.flush() {
+            Ok(()) => Ok(self.name),
+            Err(error) => Err(failed(&self.name, error)),
+        }
+    }
+}
+
+fn failed(name: &Path, error: std::io::Error) -> Failure {
+    Failure::new(format!("cannot write {}", name.display()), error)
+}

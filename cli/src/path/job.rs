@@ -1,0 +1,184 @@
+//! What to compute: the surface, the half-space and where to stop.
+
+use std::fmt;
+use std::path::Path;
+
+use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::{ContactRule, Grid};
+
+use super::options::Options;
+use crate::measured;
+use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+
+/// Side \[m\] and nodes a side of the generated surface, and its seed, if not given.
+const SIDE: f64 = 1e-2;
+const NODES: usize = 256;
+const SEED: u64 = 1;
+
+/// A surface on its grid and what is asked of it.
+pub(super) struct Job {
+    grid: Grid,
+    heights: HeightMap,
+    name: String,
+    rms_gradient: f64,
+    e_star: f64,
+    periodic: Option<Periodic>,
+    rule: ContactRule,
+    max_nodes: usize,
+}
+
+impl Job {
+    /// Makes or reads the surface.
+    pub(super) fn new(options: &Options) -> Result<Self, Failure> {
+        let (grid, heights, name, rms_gradient) = match &options.surface {
+            Some(file) => read(file, options)?,
+            None => generate(options)?,
+        };
+        // A fraction such as 0.1 of 10 nodes means one node, whatever its last bit.
+        let share = options.max_area_fraction * grid.nodes() as f64 * (1.0 + 4.0 * f64::EPSILON);
+        let max_nodes = share as usize;
+        if max_nodes == 0 {
+            return Err(Failure::request(format!(
+                "--max-area-fraction {} of {} nodes is less than one node",
+                options.max_area_fraction,
+                grid.nodes()
+            )));
+        }
+        Ok(Self {
+            grid,
+            heights,
+            name,
+            rms_gradient,
+            e_star: options.e_star,
+            periodic: options.periodic,
+            rule: options.rule.into(),
+            max_nodes,
+        })
+    }
+
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    pub(super) fn heights(&self) -> &HeightMap {
+        &self.heights
+    }
+
+    pub(super) fn e_star(&self) -> f64 {
+        self.e_star
+    }
+
+    pub(super) fn rule(&self) -> ContactRule {
+        self.rule
+    }
+
+    /// Nodes in contact at which the path ends.
+    pub(super) fn max_nodes(&self) -> usize {
+        self.max_nodes
+    }
+
+    pub(super) fn periodic(&self) -> Option<Periodic> {
+        self.periodic
+    }
+
+    pub(super) fn kernel(&self) -> Result<HalfSpace, Failure> {
+        HalfSpace::new(self.periodic, self.grid, self.e_star)
+            .map_err(|error| Failure::new("no such half-space", error))
+    }
+}
+
+impl fmt::Display for Job {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (nx, ny) = self.grid.shape();
+        let (lx, ly) = self.grid.sides();
+        writeln!(f, "surface    {}", self.name)?;
+        writeln!(
+            f,
+            "grid       {nx} x {ny} nodes on {} x {}",
+            quantity(lx, "m", 6),
+            quantity(ly, "m", 6)
+        )?;
+        writeln!(
+            f,
+            "roughness  rms height Sq {}, rms gradient {:.4}",
+            quantity(self.heights.rms_height(), "m", 5),
+            self.rms_gradient.abs()
+        )?;
+        match self.periodic {
+            None => writeln!(f, "half-space free")?,
+            Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
+        }
+        writeln!(
+            f,
+            "loading    E* {}, to {} nodes in contact ({:.4} % of the nominal area), rule {:?}",
+            quantity(self.e_star, "Pa", 6),
+            self.max_nodes,
+            100.0 * self.max_nodes as f64 / self.grid.nodes() as f64,
+            self.rule
+        )
+    }
+}
+
+/// Grid, heights, name and rms gradient of a surface.
+type Made = (Grid, HeightMap, String, f64);
+
+/// The surface of a file.
+fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
+    let Some(side) = options.side else {
+        return Err(Failure::request("--surface needs --side"));
+    };
+    let (grid, heights) = measured::read(file, side, options.side_y)?;
+    let name = file.display().to_string();
+    let rms_gradient = heights
+        .rms_gradient(&grid)
+        .map_err(|error| Failure::new(format!("cannot use {name}"), error))?;
+    Ok((grid, heights, name, rms_gradient))
+}
+
+/// The surface of the paper's Table 1, with its short cut-off moved to two cells if the grid cannot
+/// carry it.
+fn generate(options: &Options) -> Result<Made, Failure> {
+    let nodes = options.nodes.unwrap_or(NODES);
+    let seed = options.seed.unwrap_or(SEED);
+    let side = options.side.unwrap_or(SIDE);
+    let side_y = options.side_y.unwrap_or(side);
+    let failed = |error: asperity::Error| {
+        Failure::new(
+            format!("cannot put the surface on {nodes} x {nodes} nodes"),
+            error,
+        )
+    };
+    let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
+    let mut surface = SelfAffine::zhang2020(seed);
+    let two_cells = 2.0 * grid.dx().max(grid.dy());
+    let wanted = surface.short_cutoff_wavelength();
+    if two_cells > surface.rolloff_wavelength() {
+        return Err(Failure::request(format!(
+            "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
+            quantity(surface.rolloff_wavelength(), "m", 5),
+            quantity(two_cells, "m", 5)
+        )));
+    }
+    if two_cells > wanted * (1.0 + 1e-9) {
+        eprintln!(
+            "note: {nodes} nodes a side cannot carry the short cut-off wavelength of {}; \
+             it is {}, two cells, instead",
+            quantity(wanted, "m", 5),
+            quantity(two_cells, "m", 5)
+        );
+        surface = SelfAffine::new(
+            surface.hurst(),
+            surface.rolloff_wavelength(),
+            two_cells,
+            Amplitude::RmsHeight(50e-6),
+            seed,
+        )
+        .map_err(failed)?;
+    }
+    let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
+    let rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
+    let name = format!("self-affine, Table 1 of Zhang et al. (2020), seed {seed}");
+    Ok((grid, heights, name, rms_gradient))
+}

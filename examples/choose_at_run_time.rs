@@ -1,0 +1,45 @@
+//! Surface and half-space come from a configuration: how do I choose them while the program runs?
+//!
+//! ```text
+//! cargo run --release --example choose_at_run_time
+//! ```
+
+use asperity::surface::Paraboloid;
+use asperity::{
+    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine,
+    Spectral, Surface,
+};
+
+fn surface(name: &str) -> Result<Box<dyn Surface>, Error> {
+    Ok(match name {
+        "sphere" => Box::new(Paraboloid::new(1.0)?),
+        _ => Box::new(SelfAffine::zhang2020(1)),
+    })
+}
+
+fn half_space(name: &str, grid: Grid) -> Result<Box<dyn InfluenceKernel>, Error> {
+    let e_star = 115e9;
+    Ok(match name {
+        "periodic" => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
+        "spectral" => Box::new(Spectral::new(grid, e_star)?),
+        _ => Box::new(Boussinesq::new(grid, e_star)?),
+    })
+}
+
+fn main() -> Result<(), Error> {
+    let grid = Grid::square(64, 2.5e-3)?;
+    println!("surface  half-space  load at 10 % contact [N]");
+    for surface_name in ["sphere", "rough"] {
+        let surface = surface(surface_name)?;
+        for name in ["free", "periodic", "spectral"] {
+            let half_space = half_space(name, grid)?;
+            let path = LoadingSolver::builder(surface.as_ref(), half_space.as_ref())
+                .max_area_fraction(0.1)
+                .build()?;
+            if let Some(last) = path.last() {
+                println!("{surface_name:7}  {name:10}  {:24.4e}", last?.load);
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,41 @@
+//! What is the contact under one load, on a grid too large for the whole path?
+//!
+//! The memory of a fixed load grows with the grid, and not with the contact.
+//!
+//! ```text
+//! cargo run --release --example one_load
+//! ```
+
+use asperity::surface::Amplitude;
+use asperity::{Boussinesq, Error, FixedLoadSolver, Grid, SelfAffine};
+
+fn main() -> Result<(), Error> {
+    let nodes = 1024;
+    let side = 1e-2;
+    let grid = Grid::square(nodes, side)?;
+    // Hurst exponent 0.8, from a quarter of the side down to four cells.
+    let shortest = 4.0 * side / nodes as f64;
+    let surface = SelfAffine::new(0.8, side / 4.0, shortest, Amplitude::RmsHeight(5e-6), 1)?;
+    let half_space = Boussinesq::new(grid, 115e9)?;
+
+    let mut solver = FixedLoadSolver::builder(&surface, &half_space).build()?;
+    let solution = solver.solve(1000.0)?; // [N]
+    let state = solution.state;
+    println!(
+        "{} of {} nodes in contact, {:.2} %",
+        state.contact_nodes,
+        grid.nodes(),
+        100.0 * state.contact_area_fraction
+    );
+    println!("approach           {:.4e} m", state.approach);
+    println!("mean gap           {:.4e} m", state.mean_gap);
+    println!("greatest pressure  {:.4e} Pa", solution.pressure.max());
+    if let Some(stiffness) = state.contact_stiffness {
+        println!("contact stiffness  {stiffness:.4e} N/m");
+    }
+    println!(
+        "found in {} iterations, gaps in contact within {:.1e} of the approach",
+        solution.iterations, solution.certificate.greatest_contact_gap
+    );
+    Ok(())
+}

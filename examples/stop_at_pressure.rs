@@ -1,0 +1,43 @@
+//! What is there when the nominal pressure reaches the one that I have?
+//!
+//! ```text
+//! cargo run --release --example stop_at_pressure
+//! ```
+
+use asperity::{Boussinesq, Error, Grid, LoadingSolver, SelfAffine};
+
+/// Load over the nominal area \[Pa\].
+const PRESSURE: f64 = 50e6;
+const E_STAR: f64 = 115e9;
+
+fn main() -> Result<(), Error> {
+    let grid = Grid::square(128, 2.5e-3)?;
+    let half_space = Boussinesq::new(grid, E_STAR)?;
+    let surface = SelfAffine::zhang2020(1);
+    let load = PRESSURE * grid.nominal_area();
+    let mut path = LoadingSolver::builder(&surface, &half_space)
+        .max_load(load)
+        .build()?;
+    for state in path.by_ref() {
+        state?;
+    }
+
+    // The path ends at the last node that touches below the load. From there to the next one
+    // everything is linear: the state at the load itself is exact.
+    let Some(last) = path.state() else {
+        println!("nothing touches");
+        return Ok(());
+    };
+    let state = last.at_load(load);
+    let pressure = path.pressure_at(&state)?;
+    println!("nodes in contact     {}", state.contact_nodes);
+    println!(
+        "contact area         {:.4} of the nominal",
+        state.contact_area_fraction
+    );
+    println!("approach             {:.4e} m", state.approach);
+    println!("mean gap             {:.4e} m", state.mean_gap);
+    println!("mean pressure there  {:.4e} Pa", load / state.contact_area);
+    println!("greatest pressure    {:.4e} Pa", pressure.max());
+    Ok(())
+}

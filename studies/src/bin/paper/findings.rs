@@ -1,0 +1,261 @@
+//! Rules, other programs, and what is wrong or ambiguous in the paper, each with its evidence.
+
+use std::fmt::Write;
+
+use asperity::reference::SQUARE_PUNCH_STIFFNESS;
+
+use crate::figure3::{NODES, WAVES};
+use crate::figure7::PAPER_EXPONENTIAL;
+use crate::misprint;
+use crate::plane::Case;
+use crate::report::Report;
+use crate::rules::Findings;
+use crate::surfaces::{PAPER_GRADIENT, PAPER_NODES, SIDE, SQ};
+use crate::verdicts::{scientific, signed};
+use asperity_cli::outcome::Failure;
+
+/// First contact against smallest gap.
+pub(crate) fn rules(report: &Report) -> String {
+    let rules = &report.rules;
+    let row = |name: &str, found: &Findings| {
+        format!(
+            "| {name} | {} | {} of {} | {} | {} of {} | {} |",
+            found.backward,
+            found.negative,
+            found.examined,
+            scientific(found.least_pressure, 2).replace('-', "−"),
+            found.overlapping,
+            found.examined,
+            scientific(found.least_gap, 2).replace('-', "−"),
+        )
+    };
+    let parted = rules
+        .parted
+        .map_or("never".to_string(), |step| format!("at node {}", step + 1));
+    format!(
+        "### The two rules for the next contact\n\n\
+         Table 1, seed 1, {} × {} nodes, {} nodes in contact ({:.2} % of the area), by the rule of this crate, *the gap \
+         that closes first*, and by the paper's, *the smallest gap*. Every tenth state is examined; counted are \
+         pressures below −10⁻¹⁰ of their mean and gaps below −10⁻¹⁰ Sq.\n\n\
+         | rule | steps back | p < 0 in states | least p / mean p | overlap in states | least gap / Sq |\n\
+         |---|---|---|---|---|---|\n{}\n{}\n\n\
+         They part {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
+         differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq. **Verdict:** the paper's \
+         curves survive its rule, since nodes join sooner or later in any order; its statement that there are no \
+         negative pressures does not.",
+        rules.nodes,
+        rules.nodes,
+        rules.steps,
+        100.0 * rules.steps as f64 / (rules.nodes * rules.nodes) as f64,
+        row("first contact", &rules.exact),
+        row("smallest gap", &rules.smallest_gap),
+        rules.other_sets,
+        rules.steps,
+        100.0 * rules.load,
+        rules.approach,
+    )
+}
+
+/// aspher and tamaas.
+pub(crate) fn peers(report: &Report) -> String {
+    let mut rows = String::new();
+    for peer in &report.peers {
+        let [theirs, ours] = peer.pressure;
+        let _ = writeln!(
+            rows,
+            "| {} {} | {} | {} | {} | {} | {} | {:.9} | {:.9} | {} |",
+            peer.program,
+            peer.version,
+            if peer.program == "aspher" {
+                "free"
+            } else {
+                "periodic"
+            },
+            scientific(peer.tolerance, 1),
+            scientific(peer.load, 1),
+            peer.nodes[0],
+            peer.nodes[1],
+            theirs,
+            ours,
+            scientific((theirs / ours - 1.0).abs(), 1),
+        );
+    }
+    format!(
+        "### Other programs\n\n\
+         The surface of Table 1, seed 1, on 256 × 256 nodes. aspher solves the same problem as `Boussinesq`, the free \
+         half-space with Love's kernel; tamaas the periodic one of `Spectral`, 2/(E\\*|q|). Ours: `FixedLoadSolver` at \
+         10⁻⁸ for the first, the exact path for the second. Their numbers are in `studies/src/bin/paper/peers.csv`, made by \
+         `studies/src/bin/paper/peers.py`, which says how.\n\n\
+         | program | half-space | tolerance | W/A₀E\\* | nodes, theirs | ours | greatest p/E\\*, theirs | ours | difference |\n\
+         |---|---|---|---|---|---|---|---|---|\n{rows}\n\
+         **Verdict:** {}.",
+        if report
+            .peers
+            .iter()
+            .all(|peer| peer.nodes[0] == peer.nodes[1])
+        {
+            "the same nodes in contact in every case, and pressures that agree within their tolerances"
+        } else {
+            "contact sets differ in some nodes; see the table"
+        },
+    )
+}
+
+/// Where the paper is wrong or ambiguous.
+pub(crate) fn list(report: &Report) -> Result<String, Failure> {
+    let [printed, corrected] =
+        misprint::residuals().map_err(|error| Failure::new("the example of eq. (19)", error))?;
+    let study = &report.study;
+    let punch = study.punch * SIDE / SQ;
+    let worst_free = report
+        .figure3
+        .cases
+        .iter()
+        .filter(|found| matches!(found.case, Case::FreeWaves(..)))
+        .map(|found| found.on_paper_mesh().inner)
+        .fold(0.0, f64::max);
+    let wave = |half_width: f64| {
+        let found = report
+            .figure3
+            .cases
+            .iter()
+            .find(|f| f.case == Case::Wave(half_width));
+        found.map_or(0.0, |found| found.on_paper_mesh().inner)
+    };
+    let boundary = boundary_effect(report);
+    let all = |value: &dyn Fn(usize) -> String| {
+        let names = study.families.iter().enumerate();
+        let texts =
+            names.map(|(index, family)| format!("{} ({})", value(index), family.rough.name()));
+        texts.collect::<Vec<_>>().join(", ")
+    };
+    let gradients = all(&|i| format!("{:.3}", study.families[i].gradient));
+    let ends = all(&|i| report.figure6.ratios[i].end.decimals(2));
+    let slopes = all(&|i| report.figure7.fits[i].line[0].decimals(1));
+    let approaches = all(&|i| report.figure7.fits[i].approach.decimals(1));
+    let starts = all(&|i| {
+        let [offset, amplitude, _, _] = report.figure7.fits[i].exponentials[1];
+        signed(offset.mean + amplitude.mean, 2)
+    });
+    let raw = all(&|i| report.figure6.ratios[i].at[1].1.decimals(2));
+    let less = all(&|i| report.figure6.ratios[i].at[1].2.decimals(2));
+    let (y0, a, _) = PAPER_EXPONENTIAL;
+    let area = 1.0 * 0.1 / PAPER_GRADIENT;
+    let nodes = area * (PAPER_NODES * PAPER_NODES) as f64;
+    let share = std::f64::consts::PI / 16.0;
+    let items = [
+        format!(
+            "**Rule for the next node.** \"The smallest gap\" is not exact: {} of {} examined states have negative \
+             pressure, see above; `docs/theory.md`, section 3, says why.",
+            report.rules.smallest_gap.negative, report.rules.smallest_gap.examined
+        ),
+        format!(
+            "**Eq. (3)** is called a point load. It is Love's uniformly loaded square, and its prefactor Δ/πE\\* is right: \
+             with it the flat punch on the mesh has K = {punch:.4} E\\*L (exact: {SQUARE_PUNCH_STIFFNESS:.4}); twice the \
+             prefactor would give half."
+        ),
+        "**Eq. (15)** lacks l₀ = √(c₀ − lᵀl). Step 8 has √(c₀ − xᵀc), equal in exact arithmetic.".to_string(),
+        format!(
+            "**Eq. (19)**, and step 7, are misprinted: the numerator is l_m and the sum runs over i = m+1 … n, m \
+             descending. On a system of 36 influence coefficients the printed form leaves a relative residual of {}, \
+             the corrected one {}.",
+            scientific(printed, 1),
+            scientific(corrected, 1)
+        ),
+        "**Steps 2 and 13.** Two nodes in contact is the first event already taken. Step 13 has to compare Δ²Σp with \
+         W, and to interpolate in the last interval, or it overshoots by up to one event; `History::at_load` does."
+            .to_string(),
+        format!(
+            "**Zero padding** is not stated. A free half-space needs (2N)²; without it the problem becomes periodic, \
+             which is another: {boundary}."
+        ),
+        format!(
+            "**Eq. (21).** p₀ is called the average pressure and given as p\\* = πE\\*Δ/λ, that of full contact. The average \
+             is p\\* sin²(πa/λ): with it half and quarter contact agree with the closed form within {} and {} p\\* \
+             (Fig. 3); p\\* itself would be 2 and {:.1} times the load. Δ is the amplitude here, and the mesh size \
+             elsewhere.",
+            scientific(wave(0.25), 1),
+            scientific(wave(0.125), 1),
+            1.0 / (std::f64::consts::PI / 8.0).sin().powi(2)
+        ),
+        format!(
+            "**Fig. 3.** Δ = 2/N_x = 0.0124 means N_x = {NODES}. How a kernel in three dimensions serves plane cases is not \
+             said; {WAVES} free waves stand in for a periodic problem and leave up to {} p\\*, which no mesh removes.",
+            scientific(worst_free, 1)
+        ),
+        "**Eq. (23)** lacks C₀, has λᵣ for λₛ in its upper limits, and needs B = 2π√(C/A₀) and φ(−q) = −φ(q) for heights \
+         that are real and in metres. With these, Sq is met exactly by every seed (`SelfAffine`)."
+            .to_string(),
+        format!(
+            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1: {gradients}. k under the greatest load is {ends}, and \
+             1.0 in the paper: its surface was not that of its table."
+        ),
+        format!(
+            "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
+             nodes, and not 20 minutes. `docs/performance.md` has our time for it.",
+            100.0 * share,
+            share * 65536.0,
+            share / 100.0 * 65536.0
+        ),
+        "**Symbols.** E\\* = E/(1 − ν²); k = A E\\* √⟨|∇h|²⟩ / W. Both are hard to read in print.".to_string(),
+        format!(
+            "**The saturated stiffness 5.8 × 10⁻³** is K Sq/A₀E\\* = {SQUARE_PUNCH_STIFFNESS:.4} Sq/L = {}: the rigid square \
+             punch, for any surface.",
+            scientific(SQUARE_PUNCH_STIFFNESS * SQ / SIDE, 4)
+        ),
+        format!(
+            "**The fits of Fig. 7.** The exponential starts at {}, not 0; ours, over loads up to 0.005, at {starts}. The \
+             line with slope −8.93 can't be in u/Sq, where saturation alone means {}; ours has {slopes}. It fits u \
+             over 20 Sq, or u over its greatest value: ours is {approaches} Sq.",
+            signed(y0 + a, 2),
+            signed(-1.0 / (SQUARE_PUNCH_STIFFNESS * SQ / SIDE), 0)
+        ),
+        format!(
+            "**Figs. 6 to 8** are a free half-space under a finite square, and are compared with theories of an infinite \
+             one. {boundary}; at large contact the border carries most (Fig. 4), and approach and K are those of the \
+             square (Fig. 7)."
+        ),
+        format!(
+            "**Memory.** k = 1.0 with the gradient {PAPER_GRADIENT} at 0.1 A₀E\\* means A/A₀ = {area:.2}: {:.1} × 10⁵ nodes of \
+             512², whose factor takes {:.0} GB, on a computer with 8 GB. Another method must have been used there, \
+             unreported. Here it is `FixedLoadSolver`, from {} nodes on.",
+            nodes / 1e5,
+            4.0 * nodes * nodes / 1e9,
+            study.path_nodes
+        ),
+        format!(
+            "**Whole cells** inflate k at small contact: at 1 % it is {raw} with cells counted and {less} with the border \
+             corrected. Part of the paper's fall from 2.5 is the mesh."
+        ),
+    ];
+    let mut text = "### Where the paper is wrong or ambiguous, and the evidence\n\n".to_string();
+    for (number, item) in (1..).zip(items) {
+        let _ = writeln!(text, "{number}. {item}");
+    }
+    Ok(text.trim_end().to_string())
+}
+
+/// What the boundary does at the same load on the same surface.
+fn boundary_effect(report: &Report) -> String {
+    let of = |program: &str, load: f64| {
+        let mut peers = report.peers.iter();
+        peers
+            .find(|p| p.program == program && p.load == load)
+            .map(|p| p.nodes[1] as f64)
+    };
+    let texts: Vec<String> = report
+        .peers
+        .iter()
+        .filter_map(|peer| {
+            let (free, periodic) = (of("aspher", peer.load)?, of("tamaas", peer.load)?);
+            (peer.program == "tamaas").then(|| {
+                format!(
+                    "{} % more nodes on the periodic half-space at W = {}",
+                    signed(100.0 * (periodic / free - 1.0), 1),
+                    scientific(peer.load, 1)
+                )
+            })
+        })
+        .collect();
+    texts.join(", ")
+}

@@ -1,0 +1,218 @@
+//! The contact of a wave on finer and finer grids, against Westergaard's closed form.
+
+use std::fmt::Write;
+
+use asperity::reference::Westergaard;
+use asperity::surface::{Axis as Along, Wave};
+use asperity::{ContactState, Grid, LoadingSolver};
+
+use crate::Options;
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
+use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::outcome::Failure;
+use asperity_studies::line::Line;
+
+/// Nodes along the coarsest wave, and of every grid across it: the wave does not vary there.
+const COARSEST: usize = 32;
+const ACROSS: usize = 4;
+/// Amplitude of the wave of unit length.
+const AMPLITUDE: f64 = 0.01;
+/// Loads over that of full contact between which area and stiffness are compared: towards no load and
+/// full contact contacts and gaps are no wider than a cell.
+const INSIDE: (f64, f64) = (0.1, 0.9);
+
+/// Errors on one grid.
+#[derive(Debug, Clone, Copy)]
+struct Errors {
+    kernel: Periodic,
+    nodes: usize,
+    /// Of the mean gap over the amplitude, greatest at any event.
+    gap: f64,
+    /// Of the area over the nominal area, just before nodes touch.
+    area: f64,
+    /// Of the stiffness, relative, just before nodes touch.
+    stiffness: f64,
+    /// Of the load of full contact, relative.
+    full: f64,
+}
+
+/// What can be drawn and fitted of [`Errors`].
+type Column = (&'static str, fn(&Errors) -> f64, i32);
+
+const COLUMNS: [Column; 3] = [
+    ("mean gap, error / amplitude", |e| e.gap, 2),
+    ("contact area, error / A₀", |e| e.area, 1),
+    ("interfacial stiffness, relative error", |e| e.stiffness, 1),
+];
+
+/// All grids, kernel by kernel.
+pub(crate) struct Convergence {
+    errors: Vec<Errors>,
+}
+
+impl Convergence {
+    pub(crate) fn run(options: &Options) -> Result<Self, Failure> {
+        let mut errors = Vec::new();
+        for kernel in [Periodic::Love, Periodic::Spectral] {
+            let mut nodes = COARSEST;
+            while nodes <= options.wave_nodes {
+                errors.push(
+                    Errors::on(kernel, nodes)
+                        .map_err(|error| Failure::new("the study of a wave failed", error))?,
+                );
+                nodes *= 2;
+            }
+        }
+        Ok(Self { errors })
+    }
+
+    fn of(&self, kernel: Periodic) -> impl Iterator<Item = &Errors> {
+        self.errors.iter().filter(move |e| e.kernel == kernel)
+    }
+
+    /// The order in which an error falls, from the finest three grids.
+    fn order(&self, kernel: Periodic, value: fn(&Errors) -> f64) -> f64 {
+        let points: Vec<_> = self
+            .of(kernel)
+            .map(|e| ((e.nodes as f64).ln(), value(e).ln()))
+            .collect();
+        -Line::fit(&points[points.len().saturating_sub(3)..]).slope
+    }
+
+    pub(crate) fn csv(&self) -> String {
+        let mut text = "kernel,nodes,mean_gap_error_over_amplitude,area_fraction_error,\
+                        stiffness_relative_error,full_contact_pressure_relative_error\n"
+            .to_string();
+        for e in &self.errors {
+            let _ = writeln!(
+                text,
+                "{},{},{:e},{:e},{:e},{:e}",
+                e.kernel.name(),
+                e.nodes,
+                e.gap,
+                e.area,
+                e.stiffness,
+                e.full
+            );
+        }
+        text
+    }
+
+    pub(crate) fn table(&self) -> String {
+        let mut text = "| kernel | nodes a wave | mean gap / amplitude | area / A₀ | stiffness | load of full \
+                        contact |\n|---|---|---|---|---|---|\n"
+            .to_string();
+        for kernel in [Periodic::Love, Periodic::Spectral] {
+            for e in self.of(kernel) {
+                let _ = writeln!(
+                    text,
+                    "| {} | {} | {:.2e} | {:.2e} | {:.2e} | {:.1e} |",
+                    kernel.name(),
+                    e.nodes,
+                    e.gap,
+                    e.area,
+                    e.stiffness,
+                    e.full
+                );
+            }
+            let [gap, area, stiffness] = COLUMNS.map(|(_, value, _)| self.order(kernel, value));
+            let _ = writeln!(
+                text,
+                "| {} | **order** | **{gap:.2}** | **{area:.2}** | **{stiffness:.2}** | |",
+                kernel.name()
+            );
+        }
+        text
+    }
+
+    pub(crate) fn charts(&self) -> Vec<Chart> {
+        let extent = |value: fn(&Errors) -> f64| {
+            let values = || self.errors.iter().map(value);
+            let (least, most) = (
+                values().fold(f64::INFINITY, f64::min),
+                values().fold(0.0, f64::max),
+            );
+            (least, most)
+        };
+        let finest = extent(|e| e.nodes as f64).1;
+        COLUMNS
+            .iter()
+            .map(|&(name, value, order)| {
+                let points = |kernel| {
+                    let each = self.of(kernel).map(move |e| (e.nodes as f64, value(e)));
+                    each.collect::<Vec<_>>()
+                };
+                let (love, spectral) = (points(Periodic::Love), points(Periodic::Spectral));
+                let (least, most) = extent(value);
+                // A line of the order that theory has, a little above the coarsest error.
+                let start = 1.5 * love[0].1;
+                let slope = |nodes: f64| start * (COARSEST as f64 / nodes).powi(order);
+                Chart {
+                    title: name.to_string(),
+                    x: Axis::plain_logarithmic("nodes a wave", COARSEST as f64, finest)
+                        .with_room(0.05, 0.05),
+                    y: Axis::plain_logarithmic("error", least, start.max(most))
+                        .with_room(0.06, 0.06),
+                    series: vec![
+                        Series::new(
+                            format!("order {order}"),
+                            GREY,
+                            Style::Dashed,
+                            [COARSEST as f64, finest].map(|nodes| (nodes, slope(nodes))),
+                        ),
+                        Series::new("Love kernel", BLUE, Style::Line, love.clone()),
+                        Series::new("", BLUE, Style::Dots, love),
+                        Series::new("spectral kernel", ORANGE, Style::Line, spectral.clone()),
+                        Series::new("", ORANGE, Style::Dots, spectral),
+                    ],
+                    legend: Corner::BottomLeft,
+                }
+            })
+            .collect()
+    }
+}
+
+impl Errors {
+    fn on(kernel: Periodic, nodes: usize) -> Result<Self, asperity::Error> {
+        let side = ACROSS as f64 / nodes as f64;
+        let grid = Grid::with_sides(nodes, ACROSS, 1.0, side)?;
+        // A row of nodes on the crest, and one in the trough.
+        let (x, y) = grid.position(0, 0);
+        let wave = Wave::new(AMPLITUDE, 1.0, Along::X)?.centered_at(x, y)?;
+        let exact = Westergaard::new(AMPLITUDE, 1.0, 1.0)?;
+        let path = LoadingSolver::new(wave, HalfSpace::new(Some(kernel), grid, 1.0)?)?;
+        let states: Vec<ContactState> = path.collect::<Result<_, _>>()?;
+        let full = exact.full_contact_pressure();
+        let mut errors = Self {
+            kernel,
+            nodes,
+            gap: 0.0,
+            area: 0.0,
+            stiffness: 0.0,
+            full: 0.0,
+        };
+        for pair in states.windows(2) {
+            let (before, at) = (pair[0], pair[1]);
+            let pressure = at.mean_pressure();
+            // Whole rows touch at once: nothing is between them.
+            if at.load <= before.load * (1.0 + 1e-9) || pressure > full {
+                continue;
+            }
+            let gap = (at.mean_gap - exact.mean_gap(pressure)) / AMPLITUDE;
+            errors.gap = errors.gap.max(gap.abs());
+            let ratio = pressure / full;
+            if ratio > INSIDE.0 && ratio < INSIDE.1 {
+                let area = before.contact_area_fraction - exact.contact_area_fraction(pressure);
+                errors.area = errors.area.max(area.abs());
+                let per_area = before.interfacial_stiffness / grid.nominal_area();
+                let stiffness = per_area / exact.interfacial_stiffness(pressure) - 1.0;
+                errors.stiffness = errors.stiffness.max(stiffness.abs());
+            }
+        }
+        if let Some(last) = states.last() {
+            errors.full = (last.mean_pressure() / full - 1.0).abs();
+        }
+        Ok(errors)
+    }
+}
