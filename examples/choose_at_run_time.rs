@@ -33,7 +33,7 @@ fn main() -> Result<(), Error> {
         let surface = surface(surface_name)?;
         for name in ["free", "periodic", "spectral"] {
             let half_space = half_space(name, grid)?;
-            let path = LoadingSolver::builder(surface.as_ref(), half_space.as_ref())
+            let path = LoadingSolver::builder(&surface, &half_space)
                 .max_area_fraction(0.1)
                 .build()?;
             if let Some(last) = path.last() {

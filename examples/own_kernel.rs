@@ -48,7 +48,7 @@ fn main() -> Result<(), Error> {
             .max_load(50.0)
             .build()?;
         if let Some(last) = path.last() {
-            let state = last?.at_load(50.0);
+            let state = last?;
             let radius = (state.contact_area / std::f64::consts::PI).sqrt();
             println!("{compliance:14.0e} {:11.4e} {radius:22.4e}", state.load);
         }

@@ -14,22 +14,20 @@ fn main() -> Result<(), Error> {
     let grid = Grid::square(128, 2.5e-3)?;
     let half_space = Boussinesq::new(grid, E_STAR)?;
     let surface = SelfAffine::zhang2020(1);
-    let load = PRESSURE * grid.nominal_area();
     let mut path = LoadingSolver::builder(&surface, &half_space)
-        .max_load(load)
+        .max_mean_pressure(PRESSURE)
         .build()?;
     for state in path.by_ref() {
         state?;
     }
 
-    // The path ends at the last node that touches below the load. From there to the next one
-    // everything is linear: the state at the load itself is exact.
-    let Some(last) = path.state() else {
+    // The path has ended at exactly this pressure, unless all nodes were in contact before.
+    println!("the path ended by    {:?}", path.end());
+    let Some(state) = path.state() else {
         println!("nothing touches");
         return Ok(());
     };
-    let state = last.at_load(load);
-    let pressure = path.pressure_at(&state)?;
+    let pressure = path.pressure()?;
     println!("nodes in contact     {}", state.contact_nodes);
     println!(
         "contact area         {:.4} of the nominal",
@@ -37,7 +35,10 @@ fn main() -> Result<(), Error> {
     );
     println!("approach             {:.4e} m", state.approach);
     println!("mean gap             {:.4e} m", state.mean_gap);
-    println!("mean pressure there  {:.4e} Pa", load / state.contact_area);
+    println!(
+        "mean pressure there  {:.4e} Pa",
+        state.load / state.contact_area
+    );
     println!("greatest pressure    {:.4e} Pa", pressure.max());
     Ok(())
 }

@@ -1,8 +1,6 @@
 //! The half-space that the command line asks for.
 
-use asperity::{
-    Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral,
-};
+use asperity::{Boussinesq, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
 use clap::ValueEnum;
 
 /// The kernel of a periodic half-space.
@@ -24,34 +22,15 @@ impl Periodic {
     }
 }
 
-/// A free or a periodic half-space.
-pub struct HalfSpace(Box<dyn InfluenceKernel>);
-
-impl HalfSpace {
-    /// A half-space of composite modulus `e_star`: free unless it is to be periodic.
-    pub fn new(periodic: Option<Periodic>, grid: Grid, e_star: f64) -> Result<Self, Error> {
-        Ok(Self(match periodic {
-            None => Box::new(Boussinesq::new(grid, e_star)?),
-            Some(Periodic::Love) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
-            Some(Periodic::Spectral) => Box::new(Spectral::new(grid, e_star)?),
-        }))
-    }
-}
-
-impl InfluenceKernel for HalfSpace {
-    fn grid(&self) -> Grid {
-        self.0.grid()
-    }
-
-    fn boundary(&self) -> Boundary {
-        self.0.boundary()
-    }
-
-    fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.0.coefficient(di, dj)
-    }
-
-    fn contact_growth(&self) -> ContactGrowth {
-        self.0.contact_growth()
-    }
+/// A half-space of composite modulus `e_star`: free unless it is to be periodic.
+pub fn half_space(
+    periodic: Option<Periodic>,
+    grid: Grid,
+    e_star: f64,
+) -> Result<Box<dyn InfluenceKernel>, Error> {
+    Ok(match periodic {
+        None => Box::new(Boussinesq::new(grid, e_star)?),
+        Some(Periodic::Love) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
+        Some(Periodic::Spectral) => Box::new(Spectral::new(grid, e_star)?),
+    })
 }

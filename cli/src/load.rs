@@ -6,7 +6,7 @@ use std::time::Instant;
 use asperity::FixedLoadSolver;
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
-use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
@@ -19,7 +19,7 @@ use crate::values::positive;
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// Heights [m] in a NumPy file, positive towards the half-space; element [ix, iy] is the node
-    /// (ix, iy), x along the first axis
+    /// (ix, iy): the first index is x, so that an image [row, column] must be transposed
     #[arg(long, value_name = "FILE.npy")]
     surface: PathBuf,
 
@@ -69,9 +69,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (grid, heights) = measured::read(&options.surface, options.side, options.side_y)?;
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let mut solver = HalfSpace::new(options.periodic, grid, options.e_star)
+    let mut solver = half_space(options.periodic, grid, options.e_star)
         .and_then(|half_space| {
-            FixedLoadSolver::builder(&heights, half_space)
+            FixedLoadSolver::builder(&heights, &half_space)
                 .tolerance(options.tolerance)
                 .stiffness(false)
                 .build()
@@ -80,7 +80,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     eprintln!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
-        solver.memory() / 1_000_000
+        solver.bytes() / 1_000_000
     );
     if let Some(directory) = &options.save {
         std::fs::create_dir_all(directory)
@@ -115,19 +115,19 @@ fn print(solution: &FixedLoadSolution, seconds: f64, seconds_more: f64) {
          contact_stiffness={} interfacial_stiffness={} iterations={} seconds={seconds:.6}",
         state.load,
         state.contact_nodes,
-        state.max_pressure,
+        solution.max_pressure(),
         state.mean_gap,
         state.approach,
         printed(state.contact_stiffness),
         printed(state.interfacial_stiffness),
-        solution.iterations,
+        solution.effort.iterations,
     );
     eprintln!(
         "  {:.3} % in contact, {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more \
          for the stiffness, errors: complementarity {:.1e}, gap in contact {:.1e}, least gap {:.1e}",
         100.0 * state.contact_area_fraction,
-        solution.convolutions,
-        solution.coarse_convolutions,
+        solution.effort.convolutions,
+        solution.effort.coarse_convolutions,
         solution.certificate.complementarity,
         solution.certificate.greatest_contact_gap,
         solution.certificate.least_gap,

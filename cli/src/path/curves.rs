@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use asperity::ContactState;
+use asperity::LoadingState;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -20,14 +20,14 @@ const SIZE: (i32, i32) = (1240, 980);
 const FINE: i32 = 8;
 
 /// A quantity of a state.
-type Quantity = fn(&ContactState) -> f64;
+type Quantity = fn(&LoadingState) -> f64;
 /// What a curve shows, its colour, and its name if there are several in a panel.
 type Curve = (Quantity, RGBColor, &'static str);
 
 /// Draws the picture into a directory.
 pub(super) fn draw(
     job: &Job,
-    states: &[ContactState],
+    states: &[LoadingState],
     directory: &Path,
 ) -> Result<PathBuf, Failure> {
     let name = directory.join("loading_curve.svg");
@@ -48,7 +48,7 @@ pub(super) fn draw(
     Ok(name)
 }
 
-fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState]) -> Drawn<DB> {
+fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState]) -> Drawn<DB> {
     area.fill(&WHITE)?;
     let (nx, ny) = job.grid().shape();
     let title = format!(
@@ -68,7 +68,7 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState
     };
     centred(&title, 34)?;
 
-    let loaded: Vec<ContactState> = states.iter().filter(|s| s.load > 0.0).copied().collect();
+    let loaded: Vec<LoadingState> = states.iter().filter(|s| s.load > 0.0).copied().collect();
     let Some((from, to)) = extent(&loaded, &[|s| s.load]) else {
         centred("No state of this path carries load.", SIZE.1 / 2)?;
         return area.present();
@@ -95,7 +95,7 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[ContactState
     let both: [Curve; 2] = [
         (contact_stiffness, BLUE, "contact, K = dW/dδ"),
         (
-            |s| s.interfacial_stiffness,
+            interfacial_stiffness,
             ORANGE,
             "interfacial, −dW/d(mean gap)",
         ),
@@ -176,12 +176,17 @@ fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) 
 }
 
 /// NaN, which is not drawn, where there is none.
-fn contact_stiffness(state: &ContactState) -> f64 {
+fn contact_stiffness(state: &LoadingState) -> f64 {
     state.contact_stiffness.unwrap_or(f64::NAN)
 }
 
+/// The same.
+fn interfacial_stiffness(state: &LoadingState) -> f64 {
+    state.interfacial_stiffness.unwrap_or(f64::NAN)
+}
+
 /// Least and greatest positive finite value of some quantities.
-fn extent(states: &[ContactState], quantities: &[Quantity]) -> Option<(f64, f64)> {
+fn extent(states: &[LoadingState], quantities: &[Quantity]) -> Option<(f64, f64)> {
     let values = || {
         let each = quantities.iter().flat_map(|q| states.iter().map(q));
         each.filter(|value| *value > 0.0 && value.is_finite())

@@ -5,8 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use asperity::updater::LinearUpdater;
-use asperity::{ContactState, InfluenceKernel, LoadingSolver, Surface};
+use asperity::{LoadingSolver, LoadingState};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use asperity_cli::number::scientific;
@@ -16,15 +15,15 @@ use asperity_cli::outcome::Failure;
 const STRIDE: usize = 64;
 
 /// Runs the path to its end, writing each state as it comes; returns all states, and how it ended.
-pub(super) fn follow<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
-    solver: &mut LoadingSolver<S, K, U>,
+pub(super) fn follow(
+    solver: &mut LoadingSolver,
     file: &mut PathFile,
-    max_nodes: usize,
-) -> (Vec<ContactState>, Result<(), Failure>) {
-    let bar = ProgressBar::new(max_nodes as u64);
-    if let Ok(style) = ProgressStyle::with_template(
-        "{wide_bar:.blue} {human_pos}/{human_len} nodes  {elapsed}  {msg}",
-    ) {
+    progress: impl Fn(&LoadingState) -> f64,
+) -> (Vec<LoadingState>, Result<(), Failure>) {
+    let bar = ProgressBar::new(100);
+    if let Ok(style) =
+        ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
+    {
         bar.set_style(style.progress_chars("━╸─"));
     }
     bar.enable_steady_tick(Duration::from_millis(200));
@@ -39,8 +38,9 @@ pub(super) fn follow<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
                     break;
                 }
                 if state.step.is_multiple_of(STRIDE) {
-                    bar.set_position(state.step as u64);
-                    bar.set_message(format!("W = {} N", scientific(state.load, 3)));
+                    bar.set_position((100.0 * progress(&state)) as u64);
+                    let load = scientific(state.load, 3);
+                    bar.set_message(format!("{} nodes, W = {load} N", state.contact_nodes));
                 }
             }
             Err(failure) => {
@@ -49,7 +49,6 @@ pub(super) fn follow<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
             }
         }
     }
-    bar.set_position(states.len() as u64);
     bar.finish_and_clear();
     (states, ended)
 }
@@ -80,23 +79,23 @@ impl PathFile {
     }
 
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
-    fn write(&mut self, state: &ContactState) -> Result<(), Failure> {
+    fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
         let (ix, iy) = state.node;
         // Empty where there is none: on a periodic half-space.
-        let contact_stiffness = state
-            .contact_stiffness
-            .map_or_else(String::new, |stiffness| format!("{stiffness:e}"));
+        let printed = |stiffness: Option<f64>| {
+            stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
+        };
         let line = writeln!(
             self.output,
-            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{:e}",
+            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{}",
             state.step,
             state.approach,
             state.load,
             state.contact_area,
             state.contact_area_fraction,
             state.mean_gap,
-            contact_stiffness,
-            state.interfacial_stiffness,
+            printed(state.contact_stiffness),
+            printed(state.interfacial_stiffness),
         );
         let done = match line {
             Ok(()) if state.step.is_multiple_of(STRIDE) => self.output.flush(),

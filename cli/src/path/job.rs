@@ -4,11 +4,11 @@ use std::fmt;
 use std::path::Path;
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{ContactRule, Grid};
+use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingState};
 
 use super::options::Options;
 use crate::measured;
-use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
@@ -26,7 +26,8 @@ pub(super) struct Job {
     e_star: f64,
     periodic: Option<Periodic>,
     rule: ContactRule,
-    max_nodes: usize,
+    /// Where the path ends, whichever comes first.
+    targets: Vec<ContactTarget>,
 }
 
 impl Job {
@@ -36,16 +37,6 @@ impl Job {
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
-        // A fraction such as 0.1 of 10 nodes means one node, whatever its last bit.
-        let share = options.max_area_fraction * grid.nodes() as f64 * (1.0 + 4.0 * f64::EPSILON);
-        let max_nodes = share as usize;
-        if max_nodes == 0 {
-            return Err(Failure::request(format!(
-                "--max-area-fraction {} of {} nodes is less than one node",
-                options.max_area_fraction,
-                grid.nodes()
-            )));
-        }
         Ok(Self {
             grid,
             heights,
@@ -54,7 +45,7 @@ impl Job {
             e_star: options.e_star,
             periodic: options.periodic,
             rule: options.rule.into(),
-            max_nodes,
+            targets: options.targets(&grid),
         })
     }
 
@@ -74,17 +65,29 @@ impl Job {
         self.rule
     }
 
-    /// Nodes in contact at which the path ends.
-    pub(super) fn max_nodes(&self) -> usize {
-        self.max_nodes
+    /// Where the path ends, whichever comes first.
+    pub(super) fn targets(&self) -> &[ContactTarget] {
+        &self.targets
+    }
+
+    /// How far a state is on the way to the nearest target, from 0 to 1: the cost of a path grows with its
+    /// nodes, and its load about in proportion to them.
+    pub(super) fn progress(&self, state: &LoadingState) -> f64 {
+        let shares = self.targets.iter().map(|target| match *target {
+            ContactTarget::Load(load) => state.load / load,
+            ContactTarget::Approach(approach) => state.approach / approach,
+            ContactTarget::AreaFraction(fraction) => state.contact_area_fraction / fraction,
+            _ => 0.0,
+        });
+        shares.fold(state.contact_area_fraction, f64::max).min(1.0)
     }
 
     pub(super) fn periodic(&self) -> Option<Periodic> {
         self.periodic
     }
 
-    pub(super) fn kernel(&self) -> Result<HalfSpace, Failure> {
-        HalfSpace::new(self.periodic, self.grid, self.e_star)
+    pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
+        half_space(self.periodic, self.grid, self.e_star)
             .map_err(|error| Failure::new("no such half-space", error))
     }
 }
@@ -110,14 +113,23 @@ impl fmt::Display for Job {
             None => writeln!(f, "half-space free")?,
             Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
         }
-        writeln!(
-            f,
-            "loading    E* {}, to {} nodes in contact ({:.4} % of the nominal area), rule {:?}",
-            quantity(self.e_star, "Pa", 6),
-            self.max_nodes,
-            100.0 * self.max_nodes as f64 / self.grid.nodes() as f64,
-            self.rule
-        )
+        write!(f, "loading    E* {}", quantity(self.e_star, "Pa", 6))?;
+        for target in &self.targets {
+            match *target {
+                ContactTarget::Load(load) => write!(f, ", to {}", quantity(load, "N", 6))?,
+                ContactTarget::Approach(approach) => {
+                    write!(f, ", to an approach of {}", quantity(approach, "m", 6))?;
+                }
+                ContactTarget::MeanGap(mean_gap) => {
+                    write!(f, ", to a mean gap of {}", quantity(mean_gap, "m", 6))?;
+                }
+                ContactTarget::AreaFraction(fraction) => {
+                    write!(f, ", to {:.4} % of the nominal area", 100.0 * fraction)?;
+                }
+                _ => {}
+            }
+        }
+        writeln!(f, ", rule {:?}", self.rule)
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::updater::LinearUpdater;
-use asperity::{Grid, InfluenceKernel, LoadingSolver, Surface};
+use asperity::{Grid, LoadingSolver};
 use nalgebra::DMatrix;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -39,9 +38,9 @@ struct Margin {
 }
 
 /// Draws the present state of a path into a directory.
-pub(super) fn draw<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
+pub(super) fn draw(
     job: &Job,
-    solver: &mut LoadingSolver<S, K, U>,
+    solver: &mut LoadingSolver,
     directory: &Path,
 ) -> Result<PathBuf, Failure> {
     let name = directory.join("contact_map.png");

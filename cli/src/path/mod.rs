@@ -1,6 +1,6 @@
 //! `asperity path`: from a rough surface to its whole loading path.
 //!
-//! Writes `path.csv` with one line for each node that touches, `loading_curve.svg` and
+//! Writes `path.csv` with one line for each state, `loading_curve.svg` and
 //! `contact_map.png`, and prints a short table. If the path ends with an error, everything up to
 //! there is written all the same, and the exit code is 1.
 
@@ -26,9 +26,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
     let kernel = job.kernel()?;
-    let mut solver = LoadingSolver::builder(job.heights(), kernel)
-        .rule(job.rule())
-        .max_nodes(job.max_nodes())
+    let mut builder = LoadingSolver::builder(job.heights(), &kernel).rule(job.rule());
+    for &target in job.targets() {
+        builder = builder.until(target);
+    }
+    let mut solver = builder
         .build()
         .map_err(|error| Failure::new("the path cannot begin", error))?;
     panel::register_font()?;
@@ -37,7 +39,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let start = Instant::now();
     let mut file = PathFile::create(&options.out)?;
-    let (states, ended) = follow(&mut solver, &mut file, job.max_nodes());
+    let (states, ended) = follow(&mut solver, &mut file, |state| job.progress(state));
     let seconds = start.elapsed().as_secs_f64();
 
     // Each of these is tried whatever became of the others: nothing computed is lost.

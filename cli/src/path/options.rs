@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use asperity::ContactRule;
+use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use clap::{Parser, ValueEnum};
 
@@ -17,7 +17,7 @@ use crate::values::{fraction, positive};
 #[derive(Debug, Parser)]
 pub(crate) struct Options {
     /// Heights [m] in a NumPy file, positive towards the half-space; element [ix, iy] is the node
-    /// (ix, iy), x along the first axis
+    /// (ix, iy): the first index is x, so that an image [row, column] must be transposed
     #[arg(long, value_name = "FILE.npy", requires = "side", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
 
@@ -39,9 +39,25 @@ pub(crate) struct Options {
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
-    /// Contact area over nominal area at which the path ends
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction, default_value = "0.1")]
-    pub(super) max_area_fraction: f64,
+    /// Load over nominal area at which the path ends, exactly
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, conflicts_with = "max_load")]
+    mean_pressure: Option<f64>,
+
+    /// Load at which the path ends, exactly
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    max_load: Option<f64>,
+
+    /// Approach at which the path ends, exactly
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    max_approach: Option<f64>,
+
+    /// Mean gap at which the path ends, exactly
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    min_mean_gap: Option<f64>,
+
+    /// Contact area over nominal area at which the path ends [default: 0.1 if nothing else ends it]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
+    max_area_fraction: Option<f64>,
 
     /// Which node touches next
     #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
@@ -59,6 +75,28 @@ pub(crate) struct Options {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(super) out: PathBuf,
 }
+
+impl Options {
+    /// Where the path ends, whichever comes first.
+    pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
+        let pressure = self.mean_pressure.map(|p| p * grid.nominal_area());
+        let given = [
+            pressure.map(ContactTarget::Load),
+            self.max_load.map(ContactTarget::Load),
+            self.max_approach.map(ContactTarget::Approach),
+            self.min_mean_gap.map(ContactTarget::MeanGap),
+            self.max_area_fraction.map(ContactTarget::AreaFraction),
+        ];
+        let mut targets: Vec<ContactTarget> = given.into_iter().flatten().collect();
+        if targets.is_empty() {
+            targets.push(ContactTarget::AreaFraction(AREA_FRACTION));
+        }
+        targets
+    }
+}
+
+/// Contact area over nominal area at which a path ends if nobody says where.
+const AREA_FRACTION: f64 = 0.1;
 
 /// [`ContactRule`] on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]

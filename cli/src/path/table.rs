@@ -1,26 +1,29 @@
 //! The short table, and how exact the last state is.
 
-use asperity::loading::History;
-use asperity::updater::LinearUpdater;
-use asperity::{ContactRule, ContactState, InfluenceKernel, LoadingSolver, Surface};
+use asperity::loading::{History, LoadingEnd};
+use asperity::{ContactRule, LoadingSolver, LoadingState};
 
 use super::job::Job;
+use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
 /// Loads of the rows, as fractions of the last.
 const LOADS: [f64; 10] = [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 
 /// Prints rows at loads spread over the path, and the certificate of its last state.
-pub(super) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
+pub(super) fn print(
     job: &Job,
-    solver: &mut LoadingSolver<S, K, U>,
-    states: &[ContactState],
+    solver: &mut LoadingSolver,
+    states: &[LoadingState],
     seconds: f64,
 ) -> Result<(), Failure> {
     let Some(last) = states.last() else {
         return Ok(());
     };
     println!("{} states in {seconds:.2} s", states.len());
+    if let Some(end) = solver.end() {
+        println!("ended by: {}", reason(end));
+    }
     println!();
     let rms_height = job.heights().rms_height();
     let (length, approach, gap) = if rms_height > 0.0 {
@@ -42,18 +45,15 @@ pub(super) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
             }
         };
         println!(
-            "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12.4e} {:>12.4e}",
+            "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12} {:>12.4e}",
             state.contact_nodes,
             state.load,
             state.mean_pressure() / job.e_star(),
             state.contact_area_fraction,
             state.approach / length,
             state.mean_gap / length,
-            // Nothing where there is none.
-            state
-                .contact_stiffness
-                .map_or_else(|| "-".to_string(), |stiffness| format!("{stiffness:.4e}")),
-            state.interfacial_stiffness,
+            printed(state.contact_stiffness),
+            printed(state.interfacial_stiffness),
             greatest / job.e_star(),
         );
     }
@@ -62,6 +62,7 @@ pub(super) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
     let certificate = solver
         .certificate()
         .map_err(|error| Failure::new("no certificate", error))?;
+    let length = quantity(certificate.length, "m", 4);
     println!();
     println!("certificate of the last state, from its pressure alone (0 would be exact):");
     println!(
@@ -69,11 +70,11 @@ pub(super) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
         certificate.least_pressure
     );
     println!(
-        "  least gap out of contact    {:>10.1e} of Sq",
+        "  least gap out of contact    {:>10.1e} of {length}",
         certificate.least_gap
     );
     println!(
-        "  greatest gap in contact     {:>10.1e} of Sq",
+        "  greatest gap in contact     {:>10.1e} of {length}",
         certificate.greatest_contact_gap
     );
     println!(
@@ -85,9 +86,9 @@ pub(super) fn print<S: Surface, K: InfluenceKernel, U: LinearUpdater>(
 
 /// States at given loads: exactly there on an exact path, the next event on the paper's, which is
 /// not a function of load.
-fn rows(rule: ContactRule, states: &[ContactState], last: &ContactState) -> Vec<ContactState> {
+fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
     let history: History = states.iter().copied().collect();
-    let mut rows: Vec<ContactState> = Vec::new();
+    let mut rows: Vec<LoadingState> = Vec::new();
     for load in LOADS.map(|fraction| fraction * last.load) {
         let state = match rule {
             ContactRule::FirstContact => history.at_load(load),
@@ -96,4 +97,24 @@ fn rows(rule: ContactRule, states: &[ContactState], last: &ContactState) -> Vec<
         rows.extend(state.filter(|state| rows.last() != Some(state)));
     }
     rows
+}
+
+/// A stiffness, or nothing where there is none.
+fn printed(stiffness: Option<f64>) -> String {
+    stiffness.map_or_else(|| "-".to_string(), |stiffness| format!("{stiffness:.4e}"))
+}
+
+/// Why a path has ended, in words.
+fn reason(end: LoadingEnd) -> &'static str {
+    match end {
+        LoadingEnd::FullContact => "full contact",
+        LoadingEnd::Load => "the load asked for",
+        LoadingEnd::Approach => "the approach asked for",
+        LoadingEnd::MeanGap => "the mean gap asked for",
+        LoadingEnd::AreaFraction => "the contact area asked for",
+        LoadingEnd::Nodes => "the number of nodes asked for",
+        LoadingEnd::Memory => "the memory budget",
+        LoadingEnd::NoMoreEvents => "no further node that touches",
+        _ => "an error",
+    }
 }
