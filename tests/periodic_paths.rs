@@ -4,7 +4,11 @@
 
 mod common;
 
-use asperity::{ContactGrowth, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral};
+use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::updater::ConjugateGradient;
+use asperity::{
+    ContactGrowth, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
+};
 
 /// Same node at every event to full contact, every column within 1e-9: both sides come from
 /// triangular solves with a condition number of some 10³, and the last mean gaps lose five digits
@@ -108,5 +112,75 @@ fn love_in_a_smaller_gauge() {
     assert_eq!(kernel.contact_growth(), ContactGrowth::Monotone);
     for window in [None, Some(7)] {
         compare(&kernel, "love", window);
+    }
+}
+
+/// A self-affine surface whose rms height is a hundredth of the longer side.
+fn rough(grid: &Grid, seed: u64) -> HeightMap {
+    let (lx, ly) = grid.sides();
+    let long = lx.max(ly);
+    let short = 4.0 * grid.dx().max(grid.dy());
+    let height = Amplitude::RmsHeight(1e-2 * long);
+    let surface = SelfAffine::new(0.8, long / 2.0, short, height, seed).unwrap();
+    HeightMap::sample(&surface, grid).unwrap()
+}
+
+/// The updater without a factor gives the same periodic path, and its preconditioner the same
+/// operator in any gauge.
+#[test]
+fn conjugate_gradients_follow_a_periodic_path() {
+    let grid = Grid::new(20, 16, 1.0, 1.0).unwrap();
+    let map = rough(&grid, 19);
+    let love = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    let spectral = Spectral::new(grid, 1.0).unwrap();
+    let kernels: [&dyn InfluenceKernel; 2] = [&love, &spectral];
+    for kernel in kernels {
+        let factored: Vec<_> = LoadingSolver::new(&map, kernel)
+            .unwrap()
+            .map(Result::unwrap)
+            .collect();
+        let iterated: Vec<_> = LoadingSolver::builder(&map, kernel)
+            .updater(ConjugateGradient::new())
+            .window_size(12)
+            .build()
+            .unwrap()
+            .map(Result::unwrap)
+            .collect();
+        assert_eq!(factored.len(), iterated.len());
+        let first = factored[0].mean_gap;
+        for (a, b) in factored.iter().zip(&iterated) {
+            assert_eq!((a.step, a.node), (b.step, b.node));
+            // A tolerance of 1e-12 times a condition of some hundred, as for the free half-space.
+            assert!((a.load - b.load).abs() <= 1e-9 * a.load, "{a:?} {b:?}");
+            let error = (a.mean_gap - b.mean_gap).abs();
+            assert!(error <= 1e-10 * first, "{a:?} {b:?}");
+        }
+    }
+}
+
+/// The fields of a path do not depend on the gauge either: its displacement is about the mean.
+#[test]
+fn fields_of_a_path_in_two_gauges() {
+    let grid = Grid::new(24, 18, 1.0, 1.0).unwrap();
+    let map = rough(&grid, 23);
+    let kernel = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    let larger = kernel.gauge() * 4.0;
+    let [mut a, mut b] = [kernel.clone(), kernel.with_gauge(larger).unwrap()]
+        .map(|kernel| LoadingSolver::new(&map, &kernel).unwrap());
+    for step in 1..=grid.nodes() {
+        let states = [a.next().unwrap().unwrap(), b.next().unwrap().unwrap()];
+        assert_eq!(states[0].node, states[1].node);
+        if step % 60 != 0 && step != grid.nodes() {
+            continue;
+        }
+        let [u, v] = [&mut a, &mut b].map(|path| path.displacement().unwrap());
+        // Rounding of the uniform displacement, which is some ten times as large in the second.
+        assert!((&u - &v).amax() < 1e-11 * u.amax(), "step {step}");
+        assert!(u.mean().abs() < 1e-12 * u.amax(), "step {step}");
+        let expected = a.gap().unwrap();
+        let gap = map.heights(&grid).unwrap();
+        let gap = gap.map(|height| gap.max() - height) + u;
+        let gap = gap.map(|value| value - states[0].approach);
+        assert!((gap - expected).amax() < 1e-12 * v.amax(), "step {step}");
     }
 }

@@ -109,12 +109,12 @@ impl Hierarchy {
     /// counted as its part of the nodes of the finest.
     pub(super) fn take_convolutions(&mut self) -> (usize, f64) {
         let nodes = self.finest.grid.nodes() as f64;
-        let coarse = self.coarser.iter_mut().map(|coarse| {
-            let part = coarse.level.grid.nodes() as f64 / nodes;
-            coarse.level.operator.take_convolutions() as f64 * part
-        });
-        let coarse = coarse.sum();
-        (self.finest.operator.take_convolutions(), coarse)
+        let mut coarser = 0.0;
+        for Coarser { level, .. } in &mut self.coarser {
+            let part = level.grid.nodes() as f64 / nodes;
+            coarser += level.operator.take_convolutions() as f64 * part;
+        }
+        (self.finest.operator.take_convolutions(), coarser)
     }
 
     /// Bytes held.

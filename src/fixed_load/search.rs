@@ -71,19 +71,26 @@ impl Sought {
     }
 
     /// How far a state lies beyond, in a measure that is close to a line over the logarithm of the
-    /// load and grows with it.
-    fn beyond(self, state: &ContactState) -> f64 {
+    /// load and grows with it. Nodes that touch without pressure count as half a node.
+    fn beyond(self, state: &ContactState, carrying: usize) -> f64 {
         match self {
-            Self::Nodes(nodes) => (state.contact_nodes as f64 / nodes as f64).ln(),
+            Self::Nodes(nodes) => {
+                let touching = if carrying < state.contact_nodes {
+                    0.5
+                } else {
+                    0.0
+                };
+                ((carrying as f64 + touching) / nodes as f64).ln()
+            }
             Self::MeanGap {
                 target, unloaded, ..
             } => (target - state.mean_gap) / unloaded,
         }
     }
 
-    fn is_found(self, state: &ContactState) -> bool {
+    fn is_found(self, state: &ContactState, carrying: usize) -> bool {
         match self {
-            Self::Nodes(nodes) => state.contact_nodes == nodes,
+            Self::Nodes(nodes) => state.contact_nodes == nodes && carrying == nodes,
             Self::MeanGap {
                 target, tolerance, ..
             } => (state.mean_gap - target).abs() <= tolerance * state.approach,
@@ -122,42 +129,50 @@ impl Sought {
 /// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
 /// a bracket once there is one.
 fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution, Error> {
-    let step_from = |x: f64, beyond: f64, slope: f64| x - (beyond / slope).clamp(-LONGEST, LONGEST);
+    let step = |beyond: f64, slope: f64| (-beyond / slope).clamp(-LONGEST, LONGEST);
     let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
-    let mut best: Option<FixedLoadSolution> = None;
+    let mut nearest: Option<((bool, f64), FixedLoadSolution)> = None;
     let mut previous = None;
     let mut x = match stepper.last() {
         Some(last) => {
-            let (x, beyond) = (last.load.ln(), sought.beyond(last));
+            let (x, beyond) = (last.load.ln(), sought.beyond(last, last.contact_nodes));
             previous = Some((x, beyond));
-            step_from(x, beyond, sought.slope(last).0)
+            x + step(beyond, sought.slope(last).0)
         }
         None => sought.typical_load(stepper.finest()).ln(),
     };
     for _ in 0..MOST_STEPS {
         let solution = stepper.to_load(x.exp())?;
         let state = &solution.state;
-        if sought.is_found(state) {
+        let carrying = solution.carrying_nodes();
+        if sought.is_found(state, carrying) {
             return Ok(solution);
         }
-        let beyond = sought.beyond(state);
+        let beyond = sought.beyond(state, carrying);
         let side = if beyond > 0.0 { &mut high } else { &mut low };
         *side = Some(x);
-        let (mut slope, is_exact) = sought.slope(state);
+        let (slope, is_exact) = sought.slope(state);
+        let mut change = step(beyond, slope);
         if let Some((earlier, then)) = previous
             && !is_exact
         {
             let secant = (beyond - then) / (x - earlier);
             if secant > 0.0 && secant.is_finite() {
-                slope = secant;
+                change = step(beyond, secant);
+            } else if beyond == then {
+                // Nothing has happened on the way: twice as far, as close to full contact.
+                change = (2.0 * (x - earlier).abs())
+                    .clamp(change.abs(), LONGEST)
+                    .copysign(change);
             }
         }
         previous = Some((x, beyond));
-        let is_best = |best: &FixedLoadSolution| beyond.abs() < sought.beyond(&best.state).abs();
-        if best.as_ref().is_none_or(is_best) {
-            best = Some(solution);
+        // Where nodes just touch, rounding decides how many.
+        let rank = (carrying < state.contact_nodes, beyond.abs());
+        if nearest.as_ref().is_none_or(|(best, _)| rank < *best) {
+            nearest = Some((rank, solution));
         }
-        let mut next = step_from(x, beyond, slope);
+        let mut next = x + change;
         if let (Some(low), Some(high)) = (low, high) {
             // NaN as well.
             if !(next > low && next < high) {
@@ -169,11 +184,11 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         }
         x = next;
     }
-    match (best, sought) {
+    match (nearest, sought) {
         // Nodes that touch together: the nearest number there is.
-        (Some(best), Sought::Nodes(_)) if low.is_some() && high.is_some() => Ok(best),
-        (best, _) => Err(Error::NoConvergence {
-            residual: best.map_or(f64::INFINITY, |best| sought.beyond(&best.state).abs()),
+        (Some((_, nearest)), Sought::Nodes(_)) if low.is_some() && high.is_some() => Ok(nearest),
+        (nearest, _) => Err(Error::NoConvergence {
+            residual: nearest.map_or(f64::INFINITY, |((_, distance), _)| distance),
             tolerance: stepper.tolerance(),
             iterations: MOST_STEPS,
         }),

@@ -53,6 +53,12 @@ impl FixedLoadSolution {
         self.pressure.max()
     }
 
+    /// Number of nodes with pressure. It is less than that of nodes in contact where some touch or leave
+    /// at this very load, to within rounding, which then decides how many of them are counted.
+    pub(super) fn carrying_nodes(&self) -> usize {
+        self.pressure.iter().filter(|p| **p > 0.0).count()
+    }
+
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was
     /// prescribed, else that of the pressure.
     pub(super) fn of(level: &Level, load: Option<f64>, effort: SolverEffort) -> Self {

@@ -130,6 +130,7 @@ impl FixedLoadSolver {
     /// not positive definite, and [`Error::MemoryBudget`] if more nodes are in contact than fit.
     pub fn add_stiffness(&mut self, solution: &mut FixedLoadSolution) -> Result<(), Error> {
         self.grid().check_shape(solution.contact_map.shape())?;
+        self.hierarchy.take_convolutions();
         let finest = &mut self.hierarchy.finest;
         Tangent::default().complete(finest, &self.settings, solution)
     }

@@ -25,6 +25,8 @@ pub(super) struct Stepper<'a> {
 impl<'a> Stepper<'a> {
     /// Knows no state yet.
     pub(super) fn new(settings: &'a Settings, hierarchy: &'a mut Hierarchy) -> Self {
+        // What was spent before, if that ended with an error, is no part of the next solution.
+        hierarchy.take_convolutions();
         Self {
             settings,
             hierarchy,
@@ -55,13 +57,11 @@ impl<'a> Stepper<'a> {
         for (closure, (gap, displacement)) in iterate.closure.iter_mut().zip(gaps) {
             *closure = gap + displacement;
         }
-        let tangent = Tangent::of(finest, solution)?;
-        Ok(Self {
-            settings,
-            hierarchy,
-            continuation: Continuation::new(tangent),
-            last: Some(solution.state),
-        })
+        let mut stepper = Self::new(settings, hierarchy);
+        let tangent = Tangent::of(&mut stepper.hierarchy.finest, solution)?;
+        stepper.continuation = Continuation::new(tangent);
+        stepper.last = Some(solution.state);
+        Ok(stepper)
     }
 
     /// The last state.

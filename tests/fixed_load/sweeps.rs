@@ -1,0 +1,69 @@
+//! Many states, each from the one before.
+
+use asperity::{Error, Grid};
+
+use crate::common::fixed_load::{check, relative};
+use crate::problems::{Kernel, rough, solver};
+
+#[test]
+fn a_sweep_is_its_loads() {
+    let grid = Grid::square(96, 1.0).unwrap();
+    let map = rough(&grid, 17);
+    for kernel in Kernel::all(grid, 1.0) {
+        let mut solver = solver(&map, &kernel, 1e-11);
+        // Up, in small and large steps, beyond full contact, and down again.
+        let loads = [1e-6, 1e-4, 1e-2, 1.1e-2, 0.1, 0.12, 3.0, 0.05, 1e-5];
+        let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        assert_eq!(swept.len(), loads.len());
+        for (load, swept) in loads.into_iter().zip(swept) {
+            check(&solver, &swept, 1e-11);
+            let cold = solver.solve(load).unwrap();
+            assert_eq!(swept.contact_map, cold.contact_map, "load {load}");
+            let error = (&swept.pressure - &cold.pressure).amax() / cold.max_pressure();
+            // The tolerance times the condition.
+            assert!(error < 1e-8, "load {load}: {error:e}");
+            let states = [swept.state, cold.state];
+            let stiffnesses = states.map(|state| state.interfacial_stiffness.unwrap());
+            if stiffnesses[0].is_finite() {
+                let error = relative(stiffnesses[0], stiffnesses[1]);
+                assert!(error < 1e-8, "load {load}: {error:e}");
+            } else {
+                assert_eq!(stiffnesses[0], stiffnesses[1]);
+            }
+            match states.map(|state| state.contact_stiffness) {
+                [Some(swept), Some(cold)] => assert!(relative(swept, cold) < 1e-10, "load {load}"),
+                stiffnesses => assert_eq!(stiffnesses, [None, None]),
+            }
+        }
+    }
+}
+
+/// A solution of another run is as good a start.
+#[test]
+fn from_a_solution() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let map = rough(&grid, 29);
+    for kernel in Kernel::all(grid, 1.0) {
+        let mut solver = solver(&map, &kernel, 1e-11);
+        let start = solver.solve(0.02).unwrap();
+        solver.solve(1.0).unwrap();
+        // Near, on either side, and far.
+        for load in [0.021, 0.018, 0.2] {
+            let next = solver.solve_from(&start, load).unwrap();
+            check(&solver, &next, 1e-11);
+            let cold = solver.solve(load).unwrap();
+            assert_eq!(next.contact_map, cold.contact_map, "load {load}");
+            assert!(relative(next.state.approach, cold.state.approach) < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn an_error_ends_a_sweep() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let mut solver = solver(&rough(&grid, 1), &Kernel::free(grid, 1.0), 1e-8);
+    let mut sweep = solver.sweep([1.0, -1.0, 2.0]);
+    assert!(sweep.next().unwrap().is_ok());
+    assert!(matches!(sweep.next(), Some(Err(Error::NotPositive { .. }))));
+    assert!(sweep.next().is_none());
+}

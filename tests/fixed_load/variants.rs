@@ -1,0 +1,83 @@
+//! What must not change the result: coarser grids, gauges, the way in which a kernel is given.
+
+use asperity::{Boussinesq, FixedLoadSolver, Grid};
+
+use crate::common::fixed_load::{check, relative};
+use crate::problems::{Kernel, Plain, rough, solver};
+
+/// The gauge of the kernel, zero included, is of no influence.
+#[test]
+fn gauges_do_not_matter() {
+    let grid = Grid::square(48, 1.0).unwrap();
+    let map = rough(&grid, 11);
+    for kernel in Kernel::periodic(grid, 1.0) {
+        for load in [1e-3, 0.05, 1.0] {
+            let expected = solver(&map, &kernel, 1e-12).solve(load).unwrap();
+            for factor in [0.0, 0.5, 10.0] {
+                let mut solver = solver(&map, &kernel.clone().in_gauge(factor), 1e-12);
+                let found = solver.solve(load).unwrap();
+                check(&solver, &found, 1e-12);
+                assert_eq!(found.contact_map, expected.contact_map);
+                // The tolerance times the condition.
+                let error = (&found.pressure - &expected.pressure).amax();
+                assert!(error < 1e-10 * expected.max_pressure(), "{error:e}");
+                assert!(relative(found.state.approach, expected.state.approach) < 1e-10);
+                assert!(relative(found.state.energy, expected.state.energy) < 1e-10);
+                // Rounding of what the gauge adds to C(0, 0).
+                let lengths = [&found, &expected].map(|solution| solution.certificate.length);
+                assert!(relative(lengths[0], lengths[1]) < 1e-10);
+            }
+        }
+    }
+}
+
+/// Nested grids, odd ones among them, change the cost and not the result.
+#[test]
+fn nested_or_not() {
+    for (nx, ny) in [(96, 96), (75, 51), (130, 33)] {
+        let grid = Grid::new(nx, ny, 0.01, 0.01).unwrap();
+        let map = rough(&grid, 13);
+        for kernel in Kernel::all(grid, 1.0) {
+            let solve = |nested: bool| {
+                FixedLoadSolver::builder(&map, &kernel)
+                    .tolerance(1e-11)
+                    .nested(nested)
+                    .build()
+                    .unwrap()
+                    .solve(0.02 * grid.nominal_area())
+                    .unwrap()
+            };
+            let (nested, plain) = (solve(true), solve(false));
+            assert_eq!(nested.contact_map, plain.contact_map);
+            // The tolerance times the condition.
+            let error = (&nested.pressure - &plain.pressure).amax();
+            assert!(error < 1e-8 * plain.max_pressure(), "{error:e}");
+            assert_eq!(plain.effort.coarse_convolutions, 0.0);
+            let [with, without] = [&nested, &plain].map(|solution| solution.effort.iterations);
+            assert!(
+                with < without,
+                "{nx} x {ny}: {with} with, {without} without coarser grids"
+            );
+        }
+    }
+}
+
+/// A kernel that says nothing about itself, and a stiffness that comes later, give the same state.
+#[test]
+fn any_kernel_and_a_stiffness_that_comes_later() {
+    let grid = Grid::square(96, 1.0).unwrap();
+    let map = rough(&grid, 3);
+    let plain = Plain(Boussinesq::new(grid, 1.0).unwrap());
+    let expected = solver(&map, &plain, 1e-11).solve(0.02).unwrap();
+    let mut plainly = FixedLoadSolver::builder(&map, &plain)
+        .tolerance(1e-11)
+        .stiffness(false)
+        .build()
+        .unwrap();
+    let mut without = plainly.solve(0.02).unwrap();
+    assert!(without.state.contact_stiffness.is_none() && without.pressure_rate.is_empty());
+    let next = plainly.solve_from(&without, 0.022).unwrap();
+    check(&plainly, &next, 1e-11);
+    plainly.add_stiffness(&mut without).unwrap();
+    assert_eq!(without.state, expected.state);
+}
