@@ -8,9 +8,9 @@ impl KernelTable {
     /// averaged over a block: exactly what remains of this kernel for pressures that are uniform
     /// on blocks. A direction with a single node stays as it is.
     ///
-    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, where
-    /// the kernel is continued by its last value; those of a periodic one are a little smaller than two
-    /// cells, so that they fit the period, and weighted by how much they overlap.
+    /// Where the number of nodes is odd, the last block of a free kernel reaches beyond the grid, and the
+    /// kernel is continued there by its last value. The blocks of a periodic kernel are then a little
+    /// smaller than two cells, so that they fit the period, and are weighted by how much they overlap.
     ///
     /// # Errors
     ///
