@@ -3,16 +3,16 @@
 //!
 //! In the gauge s \[m/Pa\] the mean displacement under the pressures p is s Σp. Pressures, gaps and
 //! the order of events are the same in every gauge; approach, displacement and energy are not, and
-//! are reported as those of the mean planes.
+//! are reported relative to the mean planes.
 //!
 //! Two rules choose a gauge, because two different things are known where one is chosen:
 //!
 //! * [`of_half_space`], for the half-spaces of this crate as they are made. Their symbol tells the
 //!   least gauge in which the matrix is an inverse M-matrix, and the promise that gaps are convex
 //!   holds from there on only.
-//! * [`of_coefficients`], for any table of coefficients, coarsened ones and those of other bodies
-//!   included. It knows neither modulus nor symbol, promises nothing, and only has to keep a matrix
-//!   well conditioned that would be singular in the zero gauge.
+//! * [`of_coefficients`], for any table of coefficients, also a coarsened one or one of another body. It
+//!   knows neither modulus nor symbol, promises nothing, and only has to keep a matrix well
+//!   conditioned that would be singular in the zero gauge.
 
 use crate::Grid;
 
@@ -42,31 +42,30 @@ impl Gauge {
         self.per_load * load
     }
 
-    /// The approach in this gauge under a load W, where that of the mean planes is `reported`:
-    /// δ_s = δ₀ + (s/ΔA) W \[m\].
+    /// The approach in this gauge \[m\] under a load W, from the approach δ₀ = `reported` of the mean
+    /// planes: δ_s = δ₀ + (s/ΔA) W.
     pub(crate) fn approach(self, reported: f64, load: f64) -> f64 {
         reported + self.displacement(load)
     }
 
-    /// The approach of the mean planes under a load W, where `approach` is that in this gauge \[m\].
+    /// The approach of the mean planes \[m\] under a load W, from the one in this gauge.
     pub(crate) fn reported_approach(self, approach: f64, load: f64) -> f64 {
         approach - self.displacement(load)
     }
 
-    /// The elastic energy in this gauge under a load W, where that about the mean planes is
-    /// `reported`: U_s = U₀ + ½ (s/ΔA) W² \[J\].
+    /// The elastic energy in this gauge \[J\] under a load W, from the energy U₀ = `reported` about the
+    /// mean planes: U_s = U₀ + ½ (s/ΔA) W².
     pub(crate) fn energy(self, reported: f64, load: f64) -> f64 {
         reported + 0.5 * self.per_load * load * load
     }
 
-    /// The elastic energy about the mean planes under a load W, where `energy` is that in this
-    /// gauge \[J\].
+    /// The elastic energy about the mean planes \[J\] under a load W, from the one in this gauge.
     pub(crate) fn reported_energy(self, energy: f64, load: f64) -> f64 {
         energy - 0.5 * self.per_load * load * load
     }
 
-    /// The stiffness dW/dδ \[N/m\] in this gauge, where `reported` is that against the approach of
-    /// the mean planes, which may be infinite: 1/K_s = 1/K₀ + s/ΔA.
+    /// The stiffness dW/dδ_s \[N/m\] in this gauge, from K₀ = `reported` = dW/dδ₀, which may be
+    /// infinite: 1/K_s = 1/K₀ + s/ΔA.
     pub(crate) fn stiffness(self, reported: f64) -> f64 {
         1.0 / (1.0 / reported + self.per_load)
     }
@@ -94,10 +93,10 @@ pub(super) fn of_half_space(grid: &Grid, least: Option<f64>) -> f64 {
 
 /// A gauge for any coefficients, given their mean and the least of them \[m/Pa\].
 ///
-/// In the zero gauge the least coefficient is that of the farthest node. The gauge is 1.5 times its
-/// absolute value, with Love's kernel on a square of many nodes 0.74 L / (E* M): of the size of the
-/// least gauge in which that kernel is an inverse M-matrix, though not always above it. A single
-/// node has no other node and nothing but its gauge, which is kept.
+/// In the zero gauge the least coefficient is the one of the farthest node, and negative. The gauge is
+/// 1.5 times its absolute value; with Love's kernel on a square of many nodes this is 0.74 L / (E* M),
+/// near the least gauge in which that kernel is an inverse M-matrix, though not always above it. The
+/// coefficient of a single node is nothing but its gauge, which is kept.
 pub(super) fn of_coefficients(mean: f64, least: f64) -> f64 {
     let least = least - mean;
     if least < 0.0 { -1.5 * least } else { mean }

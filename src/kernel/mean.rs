@@ -9,9 +9,9 @@ pub enum MeanDisplacement {
     /// The mean displacement depends on the depth from which it is counted, as on a periodic
     /// half-space, where it grows with that depth without bound. The mean of the coefficients is then
     /// a matter of choice, the *gauge* of the kernel (see
-    /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq#gauge)). Approaches are reported as those of
-    /// the mean planes, from which the mean displacement is taken out, and nothing that is reported
-    /// depends on the gauge.
+    /// [`PeriodicBoussinesq`](super::PeriodicBoussinesq#gauge)). What is reported is the approach
+    /// of the mean planes, without the mean displacement, and so nothing that is reported depends on the
+    /// gauge.
     #[default]
     Arbitrary,
     /// The mean displacement is real, like the compression of a layer on a rigid base. Approach,

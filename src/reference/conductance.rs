@@ -7,9 +7,9 @@ use crate::Error;
 /// \frac{1}{R} = \frac{2}{\rho E^\ast} \frac{\mathrm{d}W}{\mathrm{d}\delta}
 /// ```
 ///
-/// `contact_stiffness` is `dW/dδ` \[N/m\] and `e_star` the composite modulus
-/// \[Pa\]; `resistivity` is `ρ = ρ₁ + ρ₂`, the *sum* over both bodies \[Ω m\]. The result \[S\] is
-/// that of the constriction alone, between half-spaces without films, at any shape of contact: the
+/// `contact_stiffness` is `dW/dδ` \[N/m\] and `e_star` the composite modulus \[Pa\]; `resistivity` is
+/// `ρ = ρ₁ + ρ₂`, the *sum* over both bodies \[Ω m\]. The result \[S\] is the conductance of the
+/// constriction alone, between half-spaces without films. It holds for any shape of the contact: the
 /// potential under a current and the displacement under a further load solve the same problem.
 /// With thermal resistivities \[m K/W\] the result is the thermal conductance \[W/K\]. A stiffness per
 /// area gives a conductance per area.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// The complete elliptic integrals of modulus `k`, `m = k²`.
 ///
-/// Beside `K` and `E` the Hertz problem needs the ratio of
+/// In addition to `K` and `E` the Hertz problem needs the ratio of
 /// `D = (K - E)/m` and `B = (E - (1-m) K)/m`; both differences cancel as `m → 0`, so that ratio
 /// is formed from the sum of the AGM instead, all of whose terms are positive.
 #[derive(Debug, Clone, Copy)]

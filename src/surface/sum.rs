@@ -29,6 +29,8 @@ impl<A: Surface, B: Surface> Surface for Sum<A, B> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::surface::{FlatPunch, HeightMap, Paraboloid};
 
@@ -44,12 +46,13 @@ mod tests {
     }
 
     #[test]
-    fn works_through_references_and_boxes() -> Result<(), Error> {
+    fn works_through_pointers() -> Result<(), Error> {
         let grid = Grid::square(3, 1.0)?;
         let punch = FlatPunch::new(1.0)?;
         let boxed: Box<dyn Surface> = Box::new(FlatPunch::new(2.0)?);
-        let heights = (&punch).plus(boxed).plus(punch).heights(&grid)?;
-        assert_eq!(heights, DMatrix::from_element(3, 3, 4.0));
+        let shared: Arc<dyn Surface> = Arc::new(FlatPunch::new(3.0)?);
+        let heights = (&punch).plus(boxed).plus(shared).heights(&grid)?;
+        assert_eq!(heights, DMatrix::from_element(3, 3, 6.0));
         Ok(())
     }
 

@@ -147,12 +147,13 @@ fn the_path_ends_at_the_pseudo_inverse() {
         assert!(relative(state.mean_pressure(), relief.max()) < 1e-12);
         assert!(relative(state.approach, gap.mean()) < 1e-12);
         let pressure = path.pressure_at(&state).unwrap();
-        let (node, least) = pressure
-            .iter()
-            .enumerate()
-            .fold((0, f64::INFINITY), |least, (node, p)| {
-                if *p < least.1 { (node, *p) } else { least }
-            });
+        let (node, least) =
+            pressure
+                .iter()
+                .enumerate()
+                .fold((0, f64::INFINITY), |least, (node, p)| {
+                    if *p < least.1 { (node, *p) } else { least }
+                });
         assert!(least.abs() < 1e-12 * pressure.max());
         assert_eq!(relief[node], relief.max());
     }

@@ -85,7 +85,7 @@ impl Spectral {
         })
     }
 
-    /// The same kernel in the gauge `gauge` \[m/Pa\]; as made, it has that of the description.
+    /// The same kernel in the gauge `gauge` \[m/Pa\]; a new kernel has the one described above.
     ///
     /// # Errors
     ///

@@ -21,23 +21,33 @@ use crate::{Error, Grid, KernelError};
 ///
 /// # Example
 ///
-/// A layer of thickness h on a rigid base without friction, of which the symbol is known (Johnson,
-/// Contact Mechanics, §5.8). It tends to 2/(E\* q) for short waves, and to the compression of the
-/// layer, h (1 − 2ν)/((1 − ν)² E\*), for long ones. That mean displacement is a property of the layer:
+/// A layer of thickness h, bonded to a rigid base (Bentall and Johnson, Int. J. Mech. Sci. 10 (1968)
+/// 637). With `κ = 3 − 4ν` and `a = q h` its symbol is
+///
+/// ```math
+/// \hat C(q) = \frac{2}{E^* q}\,
+///     \frac{2 \kappa \sinh 2a - 4a}{2 \kappa \cosh 2a + 4a^2 + \kappa^2 + 1} ,
+/// ```
+///
+/// which tends to the half-space's 2/(E\* q) for short waves, and for long ones to the compression
+/// h (1 − 2ν)/((1 − ν)² E\*). That mean displacement is a property of the layer:
 ///
 /// ```
 /// use asperity::kernel::KernelTable;
 /// use asperity::{ContactGrowth, Grid, MeanDisplacement};
 ///
 /// let (e_star, nu, h): (f64, f64, f64) = (1e9, 0.3, 1e-4);
+/// let kappa = 3.0 - 4.0 * nu;
 /// let symbol = |qx: f64, qy: f64| {
 ///     let q = qx.hypot(qy);
 ///     if q == 0.0 {
 ///         return h * (1.0 - 2.0 * nu) / ((1.0 - nu).powi(2) * e_star);
 ///     }
-///     // Beyond 2 q h = 80 the layer is a half-space to the last digit.
-///     let x = (2.0 * q * h).min(80.0);
-///     2.0 / (e_star * q) * (x.cosh() - 1.0) / (x.sinh() + x)
+///     // Hyperbolic functions of large numbers overflow, and from a = 40 on it is a half-space.
+///     let a = (q * h).min(40.0);
+///     let above = 2.0 * kappa * (2.0 * a).sinh() - 4.0 * a;
+///     let below = 2.0 * kappa * (2.0 * a).cosh() + 4.0 * a * a + kappa * kappa + 1.0;
+///     2.0 / (e_star * q) * above / below
 /// };
 /// let grid = Grid::square(32, 1e-3)?;
 /// let layer = KernelTable::from_symbol(

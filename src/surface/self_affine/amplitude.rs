@@ -10,7 +10,7 @@ pub enum Amplitude {
     /// Root mean square height S_q \[m\].
     RmsHeight(f64),
     /// Root mean square gradient $`\sqrt{\langle |\nabla h|^2 \rangle}`$, two-dimensional, without
-    /// unit: that of the sum of waves, not of differences between nodes.
+    /// unit: the gradient of the sum of waves, not of differences between nodes.
     RmsGradient(f64),
     /// The prefactor C₀ of the power spectrum \[m^(2 − 2H)\].
     Prefactor(f64),

@@ -183,8 +183,8 @@ impl InfluenceKernel for PeriodicBoussinesq {
         Boundary::Periodic
     }
 
-    /// In a gauge that is large enough, and that of [`PeriodicBoussinesq::new`] is, the influence
-    /// matrix is an inverse M-matrix. In a smaller one it is not, but the signs of `y₂` and `r₂`
+    /// In a gauge that is large enough, such as the one [`PeriodicBoussinesq::new`] chooses, the
+    /// influence matrix is an inverse M-matrix. In a smaller one it is not, but the signs of `y₂` and `r₂`
     /// are the same in every gauge.
     fn contact_growth(&self) -> ContactGrowth {
         match self.least_gauge() {
