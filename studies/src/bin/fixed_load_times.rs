@@ -1,4 +1,4 @@
-//! Cold fixed-load solves beside other solvers: writes the surfaces and times this crate on them.
+//! Times of cold fixed-load solves, and the surfaces, to measure other solvers on.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin fixed_load_times -- \
@@ -70,17 +70,18 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
                 seconds.sort_by(f64::total_cmp);
                 let Some(solution) = last else { continue };
+                let effort = solution.effort;
                 println!(
                     "asperity {nodes} load {load}, stiffness {stiffness}: {:.3} s, {} nodes ({:.1} %), \
                      greatest pressure {:.9e}, {} + {} iterations, {} + {:.1} convolutions",
                     seconds[1],
                     solution.state.contact_nodes,
                     100.0 * solution.state.contact_area_fraction,
-                    solution.state.max_pressure,
-                    solution.iterations,
-                    solution.stiffness_iterations,
-                    solution.convolutions,
-                    solution.coarse_convolutions,
+                    solution.max_pressure(),
+                    effort.iterations,
+                    effort.stiffness_iterations,
+                    effort.convolutions,
+                    effort.coarse_convolutions,
                 );
             }
         }

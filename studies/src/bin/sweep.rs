@@ -1,4 +1,4 @@
-//! Many loads on one surface: time and convolutions of a sweep beside those of cold solves.
+//! Many loads on one surface: what a sweep takes, in time and convolutions, compared with cold solves.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin sweep -- \
@@ -16,7 +16,7 @@ use asperity::{Boussinesq, FixedLoadSolver, Grid};
 use clap::Parser;
 
 #[derive(Debug, Parser)]
-#[command(about = "A load sweep beside cold solves")]
+#[command(about = "A load sweep compared with cold solves")]
 struct Arguments {
     /// Nodes a side.
     #[arg(long, default_value_t = 512)]
@@ -64,18 +64,19 @@ fn main() -> Result<(), Box<dyn Error>> {
             let start = Instant::now();
             let solution = solver.solve(load)?;
             let time = start.elapsed().as_secs_f64();
+            let effort = solution.effort;
             if arguments.verbose {
                 eprintln!(
                     "cold {:.2} %: {time:.3} s, {} + {} iterations, {} + {:.1} convolutions",
                     100.0 * solution.state.contact_area_fraction,
-                    solution.iterations,
-                    solution.stiffness_iterations,
-                    solution.convolutions,
-                    solution.coarse_convolutions
+                    effort.iterations,
+                    effort.stiffness_iterations,
+                    effort.convolutions,
+                    effort.coarse_convolutions
                 );
             }
             seconds += time;
-            convolutions += solution.convolutions as f64 + solution.coarse_convolutions;
+            convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
         }
         let cold = arguments.cold as f64;
         let (cold_seconds, cold_convolutions) = (seconds / cold, convolutions / cold);
@@ -87,21 +88,24 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut last = 0.0;
         for solution in solver.sweep(loads) {
             let solution = solution?;
-            convolutions += solution.convolutions as f64 + solution.coarse_convolutions;
+            let effort = solution.effort;
+            convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
             let certificate = solution.certificate;
+            // Relative to the approach, as the tolerance is.
+            let scale = certificate.length / solution.state.approach;
             worst = worst
-                .max(certificate.greatest_contact_gap)
-                .max(-certificate.least_gap);
+                .max(certificate.greatest_contact_gap * scale)
+                .max(-certificate.least_gap * scale);
             if arguments.verbose {
                 let now = start.elapsed().as_secs_f64();
                 eprintln!(
                     "sweep {:.2} %: {:.3} s, {} + {} iterations, {} + {:.1} convolutions",
                     100.0 * solution.state.contact_area_fraction,
                     now - last,
-                    solution.iterations,
-                    solution.stiffness_iterations,
-                    solution.convolutions,
-                    solution.coarse_convolutions
+                    effort.iterations,
+                    effort.stiffness_iterations,
+                    effort.convolutions,
+                    effort.coarse_convolutions
                 );
                 last = now;
             }
