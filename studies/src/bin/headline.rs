@@ -1,4 +1,4 @@
-//! The paper's headline case at the limit of the machine.
+//! How close the paper's headline case comes to the limit of the machine.
 //!
 //! A sphere on 256 × 256 nodes up to a contact fraction of π/16, 12 867 nodes: "about 20 min" in the
 //! paper. Prints where the time goes, what a plain matrix product of the same work takes, and how much
@@ -32,23 +32,36 @@ struct Options {
     paper_full: bool,
 }
 
-/// A path that was run to its end.
-struct Run<U> {
-    solver: LoadingSolver<Paraboloid, Boussinesq, U>,
-    nodes: usize,
-    seconds: f64,
+/// A sphere on a half-space.
+struct Sphere {
+    surface: Paraboloid,
+    kernel: Boussinesq,
 }
 
-fn sphere(nodes: usize) -> Result<LoadingBuilder<Paraboloid, Boussinesq>, asperity::Error> {
-    let kernel = Boussinesq::new(Grid::square(nodes, 1e-2)?, 1.0)?;
-    let sphere = Paraboloid::new(1.0)?;
-    Ok(LoadingSolver::builder(sphere, kernel).max_area_fraction(PI / 16.0))
+impl Sphere {
+    fn new(nodes: usize) -> Result<Self, asperity::Error> {
+        Ok(Self {
+            surface: Paraboloid::new(1.0)?,
+            kernel: Boussinesq::new(Grid::square(nodes, 1e-2)?, 1.0)?,
+        })
+    }
+
+    fn path(&self) -> LoadingBuilder<'_> {
+        LoadingSolver::builder(&self.surface, &self.kernel).max_area_fraction(PI / 16.0)
+    }
+}
+
+/// A path that was run to its end.
+struct Run<U> {
+    solver: LoadingSolver<U>,
+    nodes: usize,
+    seconds: f64,
 }
 
 fn run<U: LinearUpdater>(
     name: &'static str,
     grid_nodes: usize,
-    builder: LoadingBuilder<Paraboloid, Boussinesq, U>,
+    builder: LoadingBuilder<'_, U>,
 ) -> Result<Run<U>, asperity::Error> {
     let expected = (grid_nodes * grid_nodes) as f64 * PI / 16.0;
     let style = ProgressStyle::with_template("{msg:>24} {wide_bar} {pos}/{len} nodes {elapsed}");
@@ -93,7 +106,8 @@ fn gemm_rate() -> f64 {
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
 
-    let exact = run("path", options.nodes, sphere(options.nodes)?)?;
+    let sphere = Sphere::new(options.nodes)?;
+    let exact = run("path", options.nodes, sphere.path())?;
     let peak = peak_memory().unwrap_or(f64::NAN);
     let n = exact.nodes as f64;
     let flops = n.powi(3) / 3.0;
@@ -122,7 +136,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds / gemm_seconds
     );
 
-    let builder = sphere(options.nodes)?.updater(RecursiveCholesky::mixed());
+    let builder = sphere.path().updater(RecursiveCholesky::mixed());
     let mixed = run("path, mixed precision", options.nodes, builder)?;
     println!(
         "mixed precision: {} nodes in {:.2} s, {:.2} times the plain GEMM",
@@ -138,12 +152,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else {
         options.paper_nodes
     };
+    let sphere = Sphere::new(side)?;
     let ours = if options.paper_full {
         exact.seconds
     } else {
-        run("path, smaller case", side, sphere(side)?)?.seconds
+        run("path, smaller case", side, sphere.path())?.seconds
     };
-    let literal = sphere(side)?.rule(ContactRule::SmallestGap).window_size(1);
+    let literal = sphere.path().rule(ContactRule::SmallestGap).window_size(1);
     let paper = run("the paper's procedure", side, literal)?;
     let speedup = paper.seconds / ours;
     println!(

@@ -11,7 +11,7 @@ use asperity::surface::{Amplitude, SelfAffine};
 use asperity::updater::{
     CholeskyTimings, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
 };
-use asperity::{Boussinesq, ContactState, Grid, LoadingSolver};
+use asperity::{Boussinesq, Grid, LoadingSolver, LoadingState};
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
 use clap::Parser;
@@ -47,7 +47,7 @@ fn run<U: LinearUpdater>(
     options: &Options,
     updater: U,
     timings: Option<fn(&U) -> CholeskyTimings>,
-) -> Result<Vec<ContactState>, Box<dyn Error>> {
+) -> Result<Vec<LoadingState>, Box<dyn Error>> {
     const SIDE: f64 = 1e-2;
     let rolloff = SIDE / 4.0;
     let cutoff = 4.0 * SIDE / options.nodes as f64;
@@ -58,7 +58,7 @@ fn run<U: LinearUpdater>(
     let bar = ProgressBar::new(options.contact_nodes as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let start = Instant::now();
-    let mut builder = LoadingSolver::builder(surface, kernel)
+    let mut builder = LoadingSolver::builder(&surface, &kernel)
         .updater(updater)
         .max_nodes(options.contact_nodes);
     if let Some(megabytes) = options.budget {
@@ -79,6 +79,7 @@ fn run<U: LinearUpdater>(
     bar.finish_and_clear();
     let n = states.len() as f64;
     let certificate = path.certificate()?;
+    let in_sq = certificate.length / path.problem().rms_height();
     let peak = peak_memory().unwrap_or(f64::NAN);
     println!(
         "{} nodes ({:.1} %) in {seconds:.2} s: {:.1} GFLOP/s as n^3/3 a second, {} windows, \
@@ -92,7 +93,9 @@ fn run<U: LinearUpdater>(
     );
     println!(
         "  least pressure {:.1e} of the mean, least gap {:.1e} Sq, gap in contact {:.1e} Sq",
-        certificate.least_pressure, certificate.least_gap, certificate.greatest_contact_gap
+        certificate.least_pressure,
+        certificate.least_gap * in_sq,
+        certificate.greatest_contact_gap * in_sq
     );
     if let Some(timings) = timings {
         phases::print(path.timings(), timings(path.updater()));
@@ -100,8 +103,8 @@ fn run<U: LinearUpdater>(
     Ok(states)
 }
 
-fn compare(exact: &[ContactState], mixed: &[ContactState]) {
-    type Column = fn(&ContactState) -> f64;
+fn compare(exact: &[LoadingState], mixed: &[LoadingState]) {
+    type Column = fn(&LoadingState) -> f64;
     let pairs = || exact.iter().zip(mixed);
     let order = pairs().take_while(|(e, m)| e.node == m.node).count();
     println!("same node at the first {order} of {} events", exact.len());
@@ -112,7 +115,9 @@ fn compare(exact: &[ContactState], mixed: &[ContactState]) {
         ("contact stiffness", |state| {
             state.contact_stiffness.unwrap_or(f64::NAN)
         }),
-        ("interfacial stiffness", |state| state.interfacial_stiffness),
+        ("interfacial stiffness", |state| {
+            state.interfacial_stiffness.unwrap_or(f64::NAN)
+        }),
     ];
     for (name, column) in columns {
         let errors = pairs().map(|(e, m)| (column(m) - column(e)).abs() / column(e));
