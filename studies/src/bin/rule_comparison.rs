@@ -11,12 +11,13 @@ use std::error::Error;
 
 use asperity::convolution::Convolution;
 use asperity::surface::{Amplitude, HeightMap};
-use asperity::{Boussinesq, ContactRule, ContactState, Grid, LoadingSolver, SelfAffine};
+use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver, Problem, SelfAffine};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 const SIDE: f64 = 1e-2;
 const FRACTION: f64 = 0.3;
 const SEEDS: u64 = 4;
-/// Relative to the mean pressure, and to Sq: what counts as more than rounding.
+/// Pressures over their mean, and gaps over Sq, count as negative only below minus this.
 const ROUNDING: f64 = 1e-10;
 
 /// What a path looks like, state by state.
@@ -84,12 +85,14 @@ fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<d
         seed,
     )?;
     let heights = HeightMap::sample(&surface, &grid)?;
-    let mut path = LoadingSolver::builder(heights, Boussinesq::new(grid, 1.0)?)
+    let half_space = Boussinesq::new(grid, 1.0)?;
+    let mut path = LoadingSolver::builder(&heights, &half_space)
         .rule(rule)
         .max_area_fraction(FRACTION)
         .build()?;
 
-    let mut convolution = Convolution::new(path.kernel())?;
+    let mut rates = Rates::new(path.problem());
+    let sq = path.problem().rms_height();
     let mut found = Findings::default();
     let mut first_to_touch = None;
     let mut previous = 0.0;
@@ -103,42 +106,79 @@ fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<d
         previous = state.approach;
 
         let certificate = path.certificate()?;
+        let least_gap = certificate.least_gap * certificate.length / sq;
         found.negative_steps += usize::from(certificate.least_pressure < -ROUNDING);
-        found.overlap_steps += usize::from(certificate.least_gap < -ROUNDING);
+        found.overlap_steps += usize::from(least_gap < -ROUNDING);
         found.least_pressure = found.least_pressure.min(certificate.least_pressure);
-        found.least_gap = found.least_gap.min(certificate.least_gap);
-        first_to_touch = next_contact(&mut path, &state, &mut convolution)?;
+        found.least_gap = found.least_gap.min(least_gap);
+
+        rates.join(path.problem(), state.node)?;
+        first_to_touch = rates.first_to_touch(&path.gap()?, &path.contact_map())?;
     }
     Ok(found)
 }
 
-/// The node whose gap closes first as the approach grows, whatever the rule of the path: the
-/// smallest r1 / r2, from the gaps r1 - δ r2 at the present state and at a later approach with the
-/// same contact.
-fn next_contact(
-    path: &mut LoadingSolver<HeightMap, Boussinesq>,
-    state: &ContactState,
-    convolution: &mut Convolution,
-) -> Result<Option<(usize, usize)>, Box<dyn Error>> {
-    let gap = path.gap()?;
-    // Of the order of Sq, so that differences keep their digits.
-    let change = 1e-4;
-    let later = path.pressure_at(&state.at_approach(state.approach + change))?;
-    let closing = later - path.pressure()?;
-    let contact = path.contact_map();
-    let displaced = convolution.convolve(&closing)?;
-    let mut first: Option<(f64, (usize, usize))> = None;
-    for iy in 0..gap.ncols() {
-        for ix in 0..gap.nrows() {
-            let closed = change - displaced[(ix, iy)];
-            if contact[(ix, iy)] || closed <= 0.0 {
-                continue;
-            }
-            let time = gap[(ix, iy)] / closed;
-            if first.is_none_or(|(earliest, _)| time < earliest) {
-                first = Some((time, (ix, iy)));
-            }
+/// How fast gaps close with the contact as it is, whatever the rule of the path.
+struct Rates {
+    convolution: Convolution,
+    /// Nodes in contact in the order in which they joined.
+    contact: Vec<usize>,
+    /// The factor of their influence matrix.
+    factor: Cholesky<f64, Dyn>,
+}
+
+impl Rates {
+    /// Before first touch.
+    fn new(problem: &Problem) -> Self {
+        Self {
+            convolution: problem.convolution(),
+            contact: Vec::new(),
+            factor: Cholesky::new_unchecked(DMatrix::zeros(0, 0)),
         }
     }
-    Ok(first.map(|(_, node)| node))
+
+    /// Takes a node into the contact.
+    fn join(&mut self, problem: &Problem, (ix, iy): (usize, usize)) -> Result<(), Box<dyn Error>> {
+        let outside = "a node outside the grid";
+        let node = problem.grid().node(ix, iy).ok_or(outside)?;
+        self.contact.push(node);
+        let column = self.contact.iter();
+        let column = column.map(|&other| problem.coefficient(node, other));
+        let column: Vec<f64> = column.collect::<Option<_>>().ok_or(outside)?;
+        let column = DVector::from_vec(column);
+        self.factor = self.factor.insert_column(column.len() - 1, column);
+        Ok(())
+    }
+
+    /// The node whose gap closes first as the approach grows, from the present gaps: the smallest quotient
+    /// of a gap and the rate at which it closes, 1 − C y₂ with y₂ = C_II⁻¹ e on the contact I.
+    fn first_to_touch(
+        &mut self,
+        gap: &DMatrix<f64>,
+        contact: &DMatrix<bool>,
+    ) -> Result<Option<(usize, usize)>, Box<dyn Error>> {
+        let y2 = self
+            .factor
+            .solve(&DVector::from_element(self.contact.len(), 1.0));
+        let (nx, ny) = gap.shape();
+        let mut pressure = DMatrix::zeros(nx, ny);
+        for (&node, rate) in self.contact.iter().zip(&y2) {
+            pressure.as_mut_slice()[node] = *rate;
+        }
+        let displacement = self.convolution.convolve(&pressure)?;
+        let mut first: Option<(f64, (usize, usize))> = None;
+        for iy in 0..ny {
+            for ix in 0..nx {
+                let closing = 1.0 - displacement[(ix, iy)];
+                if contact[(ix, iy)] || closing <= 0.0 {
+                    continue;
+                }
+                let change = gap[(ix, iy)] / closing;
+                if first.is_none_or(|(earliest, _)| change < earliest) {
+                    first = Some((change, (ix, iy)));
+                }
+            }
+        }
+        Ok(first.map(|(_, node)| node))
+    }
 }
