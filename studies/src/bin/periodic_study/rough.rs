@@ -11,23 +11,24 @@ use indicatif::ProgressBar;
 use crate::Options;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, Series, Style};
-use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
 use asperity_studies::line::Line;
 use asperity_studies::spread::Spread;
 
-/// Hurst exponent; roll-off and short cut-off as parts of the side; rms height, of which everything is
-/// independent.
+/// Hurst exponent.
 const HURST: f64 = 0.8;
+/// Wavelengths of the roll-off and of the short cut-off, as parts of the side.
 const ROLLOFF: f64 = 0.25;
 const CUTOFF: f64 = 1.0 / 32.0;
+/// It cancels: all results are relative to it.
 const RMS_HEIGHT: f64 = 1e-3;
 /// Mean pressures over E* h′: from isolated contacts to nearly full contact.
 const LEAST_LOAD: f64 = 1e-3;
 const MOST_LOAD: f64 = 1.2;
 /// Where the exponential law of the mean gap is fitted.
 const FIT: (f64, f64) = (3e-3, 0.1);
-/// Where the proportionality of area and load is read off: A/A0 of the area laws' light loads.
+/// The greatest A/A0 at which area is taken to be in proportion to load, as the area laws have it.
 const LIGHT: f64 = 0.1;
 
 /// One state of one surface, in the units of the theories.
@@ -71,11 +72,11 @@ impl Study {
         for seed in 1..=options.surfaces {
             let height = Amplitude::RmsHeight(RMS_HEIGHT);
             let surface = SelfAffine::new(HURST, ROLLOFF, CUTOFF, height, seed).map_err(failed)?;
-            // That of the spectrum: the same for all seeds.
+            // The gradient of the spectrum is the same for all seeds.
             rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
             let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
-            let half_space = HalfSpace::new(Some(options.kernel), grid, 1.0).map_err(failed)?;
-            let mut solver = FixedLoadSolver::new(&heights, half_space).map_err(failed)?;
+            let kernel = half_space(Some(options.kernel), grid, 1.0).map_err(failed)?;
+            let mut solver = FixedLoadSolver::new(&heights, &kernel).map_err(failed)?;
             let pressures = (0..options.loads).map(|i| {
                 let part = i as f64 / (options.loads - 1) as f64;
                 rms_gradient * LEAST_LOAD * (MOST_LOAD / LEAST_LOAD).powf(part)
@@ -84,7 +85,8 @@ impl Study {
             for solution in solver.sweep(pressures) {
                 let solution = solution.map_err(failed)?;
                 let state = solution.state;
-                convolutions += solution.convolutions as f64 + solution.coarse_convolutions;
+                let effort = solution.effort;
+                convolutions += effort.convolutions as f64 + effort.coarse_convolutions;
                 states.push(State {
                     seed,
                     load: state.load / rms_gradient,

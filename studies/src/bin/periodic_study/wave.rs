@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use asperity::reference::Westergaard;
 use asperity::surface::{Axis as Along, Wave};
-use asperity::{ContactState, Grid, LoadingSolver};
+use asperity::{Grid, LoadingSolver, LoadingState};
 
 use crate::Options;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
-use asperity_cli::half_space::{HalfSpace, Periodic};
+use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
 use asperity_studies::line::Line;
 
@@ -18,8 +18,8 @@ const COARSEST: usize = 32;
 const ACROSS: usize = 4;
 /// Amplitude of the wave of unit length.
 const AMPLITUDE: f64 = 0.01;
-/// Loads over that of full contact between which area and stiffness are compared: towards no load and
-/// full contact contacts and gaps are no wider than a cell.
+/// Area and stiffness are compared between these fractions of the load of full contact. At lighter loads
+/// the contact is no wider than a cell, and at heavier ones the gap.
 const INSIDE: (f64, f64) = (0.1, 0.9);
 
 /// Errors on one grid.
@@ -181,8 +181,8 @@ impl Errors {
         let (x, y) = grid.position(0, 0);
         let wave = Wave::new(AMPLITUDE, 1.0, Along::X)?.centered_at(x, y)?;
         let exact = Westergaard::new(AMPLITUDE, 1.0, 1.0)?;
-        let path = LoadingSolver::new(wave, HalfSpace::new(Some(kernel), grid, 1.0)?)?;
-        let states: Vec<ContactState> = path.collect::<Result<_, _>>()?;
+        let path = LoadingSolver::new(&wave, &half_space(Some(kernel), grid, 1.0)?)?;
+        let states: Vec<LoadingState> = path.collect::<Result<_, _>>()?;
         let full = exact.full_contact_pressure();
         let mut errors = Self {
             kernel,
@@ -205,7 +205,9 @@ impl Errors {
             if ratio > INSIDE.0 && ratio < INSIDE.1 {
                 let area = before.contact_area_fraction - exact.contact_area_fraction(pressure);
                 errors.area = errors.area.max(area.abs());
-                let per_area = before.interfacial_stiffness / grid.nominal_area();
+                // A path always has it.
+                let stiffness = before.interfacial_stiffness.unwrap_or(f64::INFINITY);
+                let per_area = stiffness / grid.nominal_area();
                 let stiffness = per_area / exact.interfacial_stiffness(pressure) - 1.0;
                 errors.stiffness = errors.stiffness.max(stiffness.abs());
             }
