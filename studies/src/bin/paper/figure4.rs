@@ -22,7 +22,7 @@ const AREAS: [f64; 4] = [0.01, 0.05, 0.15, 0.4];
 /// Pixels a side of a map.
 const MAP: i32 = 216;
 const FONT: i32 = 14;
-/// Darkest colour: this pressure over E* h′ and all above.
+/// From this pressure over E* h′ on the colour is the darkest.
 const DARKEST: f64 = 1.5;
 /// Patches of fewer cells count as small.
 const SMALL: usize = 10;
@@ -35,10 +35,10 @@ pub(crate) struct Map {
     /// Greatest pressure over E*.
     pub(crate) greatest: f64,
     pub(crate) patches: usize,
-    /// Part of the patches with fewer than ten cells, and part of the contact in those.
+    /// The fraction of patches with fewer than ten cells, and of the contact in them.
     pub(crate) small: f64,
     pub(crate) in_small: f64,
-    /// Part of the contact in the largest tenth of the patches.
+    /// The fraction of the contact in the largest tenth of the patches.
     pub(crate) in_large: f64,
     /// Pressure over E* h′.
     pressure: DMatrix<f64>,
@@ -95,7 +95,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
     let surface = family.rough.surface(&grid, run.seed).map_err(failed)?;
     let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
     let kernel = Boussinesq::new(grid, E_STAR).map_err(failed)?;
-    let mut solver = FixedLoadSolver::builder(&heights, kernel)
+    let mut solver = FixedLoadSolver::builder(&heights, &kernel)
         .tolerance(TOLERANCE)
         .stiffness(false)
         .build()
@@ -108,7 +108,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         let solution = solver
             .solve(point.load * NOMINAL_AREA * E_STAR)
             .map_err(failed)?;
-        let mut sizes = patches(&solution.contact);
+        let mut sizes = patches(&solution.contact_map);
         sizes.sort_unstable();
         let contact = sizes.iter().sum::<usize>() as f64;
         let small = sizes.partition_point(|size| *size < SMALL);
@@ -119,7 +119,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
             surface: family.rough.name(),
             load: point.load,
             area: solution.state.contact_area_fraction,
-            greatest: solution.state.max_pressure / E_STAR,
+            greatest: solution.max_pressure() / E_STAR,
             patches: sizes.len(),
             small: small as f64 / sizes.len() as f64,
             in_small: in_small / contact,

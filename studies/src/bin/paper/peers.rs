@@ -1,6 +1,6 @@
 //! The same surface and loads by other programs.
 //!
-//! `peers.py` beside this file computes `peers.csv` with aspher and tamaas; here their numbers are
+//! `peers.py` in this directory computes `peers.csv` with aspher and tamaas. Here their numbers are
 //! read and ours computed.
 
 use asperity::surface::HeightMap;
@@ -27,7 +27,7 @@ pub(crate) struct Comparison {
     pub(crate) pressure: [f64; 2],
 }
 
-/// Heights of the common surface: that of Table 1.
+/// Heights of the common surface, from Table 1.
 pub(crate) fn heights() -> Result<HeightMap, Failure> {
     let sample = || {
         let grid = grid(NODES)?;
@@ -44,7 +44,7 @@ pub(crate) fn compare() -> Result<Vec<Comparison>, Failure> {
     let heights = heights()?;
     let grid = grid(NODES).map_err(failed)?;
     let kernel = Boussinesq::new(grid, E_STAR).map_err(failed)?;
-    let mut free = FixedLoadSolver::builder(&heights, kernel)
+    let mut free = FixedLoadSolver::builder(&heights, &kernel)
         .tolerance(TOLERANCE)
         .stiffness(false)
         .build()
@@ -56,8 +56,10 @@ pub(crate) fn compare() -> Result<Vec<Comparison>, Failure> {
         let (program, version, tolerance, load, nodes, pressure) = row.map_err(bad)?;
         let force = load * NOMINAL_AREA * E_STAR;
         let (our_nodes, our_pressure) = if program == "aspher" {
-            let state = free.solve(force).map_err(failed)?.state;
-            (state.contact_nodes, state.max_pressure)
+            let solution = free.solve(force).map_err(failed)?;
+            // Nodes with pressure, as the other programs count.
+            let pressed = solution.pressure.iter().filter(|p| **p > 0.0);
+            (pressed.count(), solution.max_pressure())
         } else {
             by_path(&heights, &periodic, force).map_err(failed)?
         };
@@ -82,15 +84,10 @@ fn by_path(
     let mut path = LoadingSolver::builder(heights, kernel)
         .max_load(load)
         .build()?;
-    let mut last = None;
     for state in path.by_ref() {
-        last = Some(state?);
+        state?;
     }
-    match last {
-        Some(state) => {
-            let pressure = path.pressure_at(&state.at_load(load))?;
-            Ok((state.contact_nodes, pressure.max()))
-        }
-        None => Ok((0, 0.0)),
-    }
+    // The last state is at exactly this load.
+    let nodes = path.state().map_or(0, |state| state.contact_nodes);
+    Ok((nodes, path.max_pressure()?))
 }

@@ -1,16 +1,14 @@
 //! Plane contacts by a kernel in three dimensions.
 //!
 //! Nothing changes along y, so a single row of cells is enough, each a bar that reaches across the
-//! whole strip. The free half-space needs the strip to be long: on its middle line, the influence
-//! of a bar of length ℓ is that of an infinite one, a constant, and an error of the order (x/ℓ)². The
-//! periodic half-space with one cell along y is plane as it stands.
+//! whole strip. The free half-space needs the strip to be long: on its middle line a bar of length ℓ
+//! acts like an infinite one, apart from a constant and an error of the order (x/ℓ)². The periodic
+//! half-space with one cell along y is plane without any error.
 
 use asperity::loading::{History, LoadingBuilder};
 use asperity::reference::{HertzLine, Westergaard};
 use asperity::surface::{Axis, Cylinder, Wave};
-use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Surface,
-};
+use asperity::{Boussinesq, Error, Grid, LoadingSolver, PeriodicBoussinesq};
 
 /// Half the domain; x of the paper goes from −1 to 1 over the contact or the wavelength.
 const HALF_DOMAIN: f64 = 5.0;
@@ -20,12 +18,12 @@ const WAVELENGTH: f64 = 2.0;
 const AMPLITUDE: f64 = 0.01;
 /// Length of the strip over the width of the domain.
 pub(crate) const LENGTH: f64 = 1000.0;
-/// Loads over which errors are averaged: single states fluctuate as the edge goes from cell to
-/// cell.
+/// Number of loads over which errors are averaged: the error of a single state depends on where in a
+/// cell the edge of contact lies.
 const SAMPLES: usize = 20;
-/// Half-widths of these loads over that of the case.
+/// The contact at these loads is from 0.9 to 1.1 times as wide as that of the case.
 const WIDTHS: (f64, f64) = (0.9, 1.1);
-/// Part of the contact called inner, away from its edge.
+/// The fraction of the half-width that counts as inner, away from the edge of contact.
 const INNER: f64 = 0.6;
 
 /// A case of Fig. 3.
@@ -33,9 +31,9 @@ const INNER: f64 = 0.6;
 pub(crate) enum Case {
     /// Eq. (20), on the free half-space.
     Cylinder,
-    /// Eq. (22), one wave on the periodic half-space; the half-width over the wavelength.
+    /// Eq. (22), one wave on the periodic half-space: half-width of the contact over the wavelength.
     Wave(f64),
-    /// Eq. (22), the middle one of some waves on the free half-space.
+    /// Eq. (22), the middle one of some waves on the free half-space: the half-width, and their number.
     FreeWaves(f64, usize),
 }
 
@@ -72,7 +70,7 @@ impl Case {
         Ok(profiles.pop().unwrap_or_default())
     }
 
-    /// Errors, averaged over loads about that of the case; that of full contact is one by itself.
+    /// Errors, averaged over loads around the case's own; full contact is a single load.
     pub(crate) fn error(self, nodes: usize, length: f64) -> Result<PlaneError, Error> {
         let full = matches!(self, Self::Wave(0.5) | Self::FreeWaves(0.5, _));
         let widths: Vec<f64> = if full {
@@ -112,7 +110,7 @@ impl Case {
         }
     }
 
-    /// Profiles for several half-widths over that of the case.
+    /// Profiles for several widths of the contact, as multiples of the case's own.
     fn profiles(self, nodes: usize, length: f64, widths: &[f64]) -> Result<Vec<Profile>, Error> {
         let cell = 2.0 / nodes as f64;
         match self {
@@ -121,14 +119,14 @@ impl Case {
                 let ly = length * 2.0 * HALF_DOMAIN;
                 let grid = Grid::new(5 * nodes, 1, cell, ly)?;
                 let cylinder = Cylinder::new(RADIUS, Axis::Y)?;
-                let path = LoadingSolver::builder(cylinder, Boussinesq::new(grid, 1.0)?);
+                let kernel = Boussinesq::new(grid, 1.0)?;
                 let targets: Vec<f64> = widths
                     .iter()
                     .map(|w| hertz.load_at_half_width(*w))
                     .collect();
-                // Room for the event after the last load.
-                let greatest = targets.iter().copied().fold(0.0, f64::max) * (1.0 + 8.0 * cell);
-                let mut plane = Plane::follow(path.max_load(greatest * ly))?;
+                let greatest = targets.iter().copied().fold(0.0, f64::max);
+                let path = LoadingSolver::builder(&cylinder, &kernel).max_load(greatest * ly);
+                let mut plane = Plane::follow(path)?;
                 let scaled = |target: &f64| {
                     let section = plane.at_load(target * ly)?;
                     let p0 = hertz.max_pressure(*target);
@@ -141,7 +139,7 @@ impl Case {
                 let grid = Grid::new(nodes, 1, cell, WAVELENGTH)?;
                 let wave = Wave::new(AMPLITUDE, WAVELENGTH, Axis::X)?;
                 let kernel = PeriodicBoussinesq::new(grid, 1.0)?;
-                let mut plane = Plane::follow(LoadingSolver::builder(wave, kernel))?;
+                let mut plane = Plane::follow(LoadingSolver::builder(&wave, &kernel))?;
                 wave_profiles(a, widths, |mean| plane.at_load(mean * grid.nominal_area()))
             }
             Self::FreeWaves(a, count) => {
@@ -149,7 +147,7 @@ impl Case {
                 let grid = Grid::new(count * nodes, 1, cell, length * width)?;
                 let wave = Wave::new(AMPLITUDE, WAVELENGTH, Axis::X)?;
                 let kernel = Boussinesq::new(grid, 1.0)?;
-                let mut plane = Plane::follow(LoadingSolver::builder(wave, kernel))?;
+                let mut plane = Plane::follow(LoadingSolver::builder(&wave, &kernel))?;
                 let middle = nodes * (count / 2)..nodes * (count / 2 + 1);
                 wave_profiles(a, widths, |mean| {
                     let mut section = plane.at_mean(mean, middle.clone())?;
@@ -177,13 +175,13 @@ fn wave_profiles(
 }
 
 /// A finished path of a single row of cells.
-struct Plane<S, K> {
-    path: LoadingSolver<S, K>,
+struct Plane {
+    path: LoadingSolver,
     history: History,
 }
 
-impl<S: Surface, K: InfluenceKernel> Plane<S, K> {
-    fn follow(builder: LoadingBuilder<S, K>) -> Result<Self, Error> {
+impl Plane {
+    fn follow(builder: LoadingBuilder<'_>) -> Result<Self, Error> {
         let mut path = builder.build()?;
         let history = path.by_ref().collect::<Result<History, Error>>()?;
         Ok(Self { path, history })

@@ -1,14 +1,14 @@
 //! The two rules for the next contact on the surface of Table 1.
 
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactRule, ContactState, Grid, LoadingSolver};
+use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver, LoadingState};
 
 use crate::surfaces::{E_STAR, Rough, grid};
 use asperity_cli::outcome::Failure;
 
-/// Nodes to which both are followed; the paper's rule costs a convolution for each.
+/// Both are followed to so many nodes; the paper's rule costs a convolution for each.
 const NODES: usize = 1311;
-/// States between two that are examined for their pressures and gaps.
+/// One in so many states is examined for its pressures and gaps.
 const EVERY: usize = 10;
 /// More than rounding, relative to the mean pressure and to Sq.
 const ROUNDING: f64 = 1e-10;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-10;
 pub(crate) struct Findings {
     /// Steps in which the approach goes back.
     pub(crate) backward: usize,
-    /// States examined, and those of them with negative pressure and with overlap.
+    /// Number of states examined, with negative pressure, and with overlap.
     pub(crate) examined: usize,
     pub(crate) negative: usize,
     pub(crate) overlapping: usize,
@@ -27,7 +27,7 @@ pub(crate) struct Findings {
     /// Least gap over Sq.
     pub(crate) least_gap: f64,
     order: Vec<usize>,
-    states: Vec<ContactState>,
+    states: Vec<LoadingState>,
 }
 
 /// Both rules side by side.
@@ -84,10 +84,12 @@ fn examine(
     rule: ContactRule,
     steps: usize,
 ) -> Result<Findings, asperity::Error> {
-    let mut path = LoadingSolver::builder(heights, Boussinesq::new(grid, E_STAR)?)
+    let half_space = Boussinesq::new(grid, E_STAR)?;
+    let mut path = LoadingSolver::builder(heights, &half_space)
         .rule(rule)
         .max_nodes(steps)
         .build()?;
+    let sq = path.problem().rms_height();
     let mut found = Findings::default();
     while let Some(state) = path.next() {
         let state = state?;
@@ -96,14 +98,15 @@ fn examine(
         found.states.push(state);
         if state.step % EVERY == 0 {
             let certificate = path.certificate()?;
+            let least_gap = certificate.least_gap * certificate.length / sq;
             found.examined += 1;
             found.negative += usize::from(certificate.least_pressure < -ROUNDING);
-            found.overlapping += usize::from(certificate.least_gap < -ROUNDING);
+            found.overlapping += usize::from(least_gap < -ROUNDING);
             found.least_pressure = found.least_pressure.min(certificate.least_pressure);
-            found.least_gap = found.least_gap.min(certificate.least_gap);
+            found.least_gap = found.least_gap.min(least_gap);
         }
     }
-    found.order = path.contact_order().to_vec();
+    found.order = path.contact_order();
     Ok(found)
 }
 

@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use asperity::fixed_load::FixedLoadSolution;
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactState, FixedLoadSolver, Grid, LoadingSolver};
+use asperity::{Boussinesq, ContactEvent, ContactState, FixedLoadSolver, Grid, LoadingSolver};
 use nalgebra::DMatrix;
 
 use crate::surfaces::{E_STAR, NOMINAL_AREA, Rough, SQ, grid};
@@ -15,8 +14,8 @@ use asperity_cli::outcome::Failure;
 pub(crate) const GREATEST_LOAD: f64 = 0.1;
 /// Ratio of a fixed load to the one before, at most.
 const STEP: f64 = 1.12;
-/// (π − 1 + ln 2)/24 of Yastrebov, Anciaux and Molinari (2017): the area that is counted too much
-/// for each unit of length, in cells, of the steps around the contact.
+/// (π − 1 + ln 2)/24 of Yastrebov, Anciaux and Molinari (2017): by how many cells the counted area is too
+/// large for each cell side of the border of the contact.
 const STAIRCASE: f64 = 0.118_114_2;
 /// Tolerance of the fixed loads, relative to the approach.
 pub(crate) const TOLERANCE: f64 = 1e-8;
@@ -38,11 +37,11 @@ pub(crate) struct Point {
     pub(crate) contact_stiffness: f64,
     /// −dW/dḡ · Sq / A₀E*.
     pub(crate) interfacial_stiffness: f64,
-    /// Whether it is an event of the path, not a solution for a given load.
+    /// Whether it is a state of the path, not a solution for a given load.
     pub(crate) event: bool,
 }
 
-/// What of the two methods differs where they meet, relative.
+/// Relative differences of the two methods where they meet.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Seam {
     pub(crate) area: f64,
@@ -86,7 +85,9 @@ impl Run {
             .build()
             .map_err(failed)?;
         for solution in solver.sweep(loads.iter().map(|load| load * NOMINAL_AREA * E_STAR)) {
-            points.push(Point::of_solution(&solution.map_err(failed)?, &grid));
+            let solution = solution.map_err(failed)?;
+            let edges = edges(&solution.contact_map);
+            points.push(Point::new(&solution.state, edges, &grid, false));
         }
         eprintln!(
             "  {}, seed {seed}: path to {:.1} % contact in {seconds:.0} s, {} fixed loads to {:.1} % in {:.0} s",
@@ -231,26 +232,9 @@ impl Run {
 }
 
 impl Point {
-    fn of_event(state: &ContactState, edges: usize, grid: &Grid) -> Self {
+    fn new(state: &ContactState, edges: usize, grid: &Grid, event: bool) -> Self {
         let force = NOMINAL_AREA * E_STAR;
         let area = state.contact_area_fraction;
-        Self {
-            load: state.load / force,
-            area,
-            corrected: area - STAIRCASE * edges as f64 / grid.nodes() as f64,
-            approach: state.approach / SQ,
-            mean_gap: state.mean_gap / SQ,
-            contact_stiffness: known(state.contact_stiffness) * SQ / force,
-            interfacial_stiffness: state.interfacial_stiffness * SQ / force,
-            event: true,
-        }
-    }
-
-    fn of_solution(solution: &FixedLoadSolution, grid: &Grid) -> Self {
-        let state = &solution.state;
-        let force = NOMINAL_AREA * E_STAR;
-        let area = state.contact_area_fraction;
-        let edges = edges(&solution.contact);
         Self {
             load: state.load / force,
             area,
@@ -259,7 +243,7 @@ impl Point {
             mean_gap: state.mean_gap / SQ,
             contact_stiffness: known(state.contact_stiffness) * SQ / force,
             interfacial_stiffness: known(state.interfacial_stiffness) * SQ / force,
-            event: false,
+            event,
         }
     }
 
@@ -302,12 +286,15 @@ fn follow(
     let mut next = 1;
     for state in path {
         let state = state?;
-        // A node that joins adds its edges with neighbours out of contact and removes the others.
-        let (present, all) = neighbours(&contact, state.node);
-        edges += all;
-        edges -= 2 * present;
-        contact[state.node] = true;
-        let point = Point::of_event(&state, edges, &grid);
+        // At the limit no node joins.
+        if state.event == ContactEvent::Touch {
+            // A node adds its edges with neighbours out of contact and removes the others.
+            let (present, all) = neighbours(&contact, state.node);
+            edges += all;
+            edges -= 2 * present;
+            contact[state.node] = true;
+        }
+        let point = Point::new(&state, edges, &grid, true);
         pending = Some(point);
         // First touch carries no load and divides nothing.
         if state.step >= next && state.load > 0.0 {
@@ -349,7 +336,8 @@ fn edges(contact: &DMatrix<bool>) -> usize {
 /// went all the way.
 fn loads_beyond(last: f64) -> Vec<f64> {
     let ratio = GREATEST_LOAD / last;
-    if ratio <= 1.0 {
+    // The path ends at this load to rounding.
+    if ratio <= 1.0 + 1e-12 {
         return Vec::new();
     }
     let steps = (ratio.ln() / STEP.ln()).ceil();
@@ -363,6 +351,6 @@ pub(crate) fn punch_stiffness(nodes: usize) -> Result<f64, asperity::Error> {
     let grid = grid(nodes)?;
     let heights = HeightMap::new(DMatrix::zeros(nodes, nodes))?;
     let kernel = Boussinesq::new(grid, E_STAR)?;
-    let solution = FixedLoadSolver::new(heights, kernel)?.solve(NOMINAL_AREA * E_STAR)?;
+    let solution = FixedLoadSolver::new(&heights, &kernel)?.solve(NOMINAL_AREA * E_STAR)?;
     Ok(known(solution.state.contact_stiffness) * SQ / (NOMINAL_AREA * E_STAR))
 }
