@@ -13,7 +13,7 @@ use asperity_studies::line::Line;
 
 /// The mesh of the paper: cells over the contact of the cylinder, or a wavelength.
 pub(crate) const NODES: usize = 161;
-/// Waves that stand in for a periodic problem.
+/// Number of free waves in place of a periodic problem.
 pub(crate) const WAVES: usize = 5;
 const MESHES: [usize; 6] = [21, 41, 81, 161, 321, 641];
 /// Lengths of the strip over the width of the domain.
@@ -221,7 +221,7 @@ fn draw(
         legend: Corner::TopRight,
     };
     let length = Chart {
-        title: "Cylinder: what the length of the strip leaves".to_string(),
+        title: "Cylinder: error from the length of the strip".to_string(),
         x: Axis::plain_logarithmic("length of the strip / width of the domain", 0.2, 40.0),
         y: Axis::plain_logarithmic("change of p/p₀, |x| < 0.6 a", 1e-7, 1e-1),
         series: vec![
@@ -239,7 +239,7 @@ fn draw(
         legend: Corner::TopRight,
     };
     let count = Chart {
-        title: "Half contact: what some free waves leave".to_string(),
+        title: "Half contact: error from the number of free waves".to_string(),
         x: Axis::plain_logarithmic("number of waves (paper: 5)", 0.9, 17.0),
         y: Axis::plain_logarithmic("inner error / p*, N = 161", 1e-5, 1e-1),
         series: vec![

@@ -1,8 +1,7 @@
 //! Fig. 8: mean gap and interfacial stiffness against load.
 //!
 //! A gap that is linear in the logarithm of the load, ḡ = const − γ Sq ln W, has
-//! γ = −dḡ/d(ln W)/Sq = W/(K_i Sq): with exact stiffnesses the range of the law is read off as that
-//! in which γ is constant.
+//! γ = −dḡ/d(ln W)/Sq = W/(K_i Sq). With exact stiffnesses the law holds where γ is constant.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +16,7 @@ use asperity_studies::spread::Spread;
 
 /// The range in which the paper finds the gap logarithmic.
 pub(crate) const PAPER_RANGE: (f64, f64) = (4e-3, 2e-2);
-/// How constant γ is to be.
+/// By which fraction γ may fall short of its greatest value and still count as constant.
 pub(crate) const TOLERANCE: f64 = 0.1;
 const LEAST: f64 = 1e-5;
 const SAMPLES: usize = 400;
@@ -27,10 +26,10 @@ pub(crate) struct Gap {
     /// γ by a line through ḡ/Sq against ln W in the paper's range, and its correlation.
     pub(crate) decay: Spread,
     pub(crate) pearson: Spread,
-    /// Greatest γ on the mean curve, and between which loads it is within 10 % of that.
+    /// Greatest γ on the mean curve, and the loads between which γ is within 10 % of it.
     pub(crate) greatest: f64,
     pub(crate) range: (f64, f64),
-    /// γ at the ends of the paper's range over that of the line.
+    /// γ at the ends of the paper's range, over γ of the line.
     pub(crate) ends: [Spread; 2],
 }
 

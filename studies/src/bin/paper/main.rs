@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Writes for each of Figs. 3 to 8 a picture and the numbers behind it, and `run_*.csv` with the
-//! whole loading of every surface. With `--report docs/validation.md`, also a page that puts each
-//! number that the paper states beside ours, with its spread over the seeds and a verdict.
+//! whole loading of every surface. With `--report docs/validation.md`, also a page with each number
+//! that the paper states, our own with its spread over the seeds, and a verdict.
 
 mod exponential;
 mod figure3;

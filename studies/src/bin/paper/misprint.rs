@@ -16,7 +16,7 @@ pub(crate) fn residuals() -> Result<[f64; 2], Error> {
     };
     let place = |node: usize| (node % SIDE, node / SIDE);
     let matrix = DMatrix::from_fn(n, n, |i, j| between(place(i), place(j)));
-    // The column of the next node, beside the contact.
+    // The column of the next node, a neighbour of the contact.
     let column = DVector::from_fn(n, |i, _| between(place(i), (SIDE, 2)));
     let Some(factor) = matrix.clone().cholesky().map(|found| found.l()) else {
         return Err(Error::FactorizationFailed { nodes: n });

@@ -38,7 +38,7 @@ pub(crate) struct Options {
     pub(crate) peers_surface: Option<PathBuf>,
 
     /// Also write the report into this file, between its markers, and its pictures into images/
-    /// beside it; needs all figures
+    /// next to it; needs all figures
     #[arg(long, value_name = "FILE.md", conflicts_with = "figure")]
     pub(crate) report: Option<PathBuf>,
 }

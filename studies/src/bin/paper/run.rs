@@ -104,8 +104,8 @@ impl Run {
         })
     }
 
-    /// The state at a load, between those that were computed by the cubic that their exact tangents
-    /// give; areas and stiffnesses linearly.
+    /// The state at a load, interpolated between computed ones: approach and mean gap by the cubics that
+    /// have their exact tangents, areas and stiffnesses linearly.
     pub(crate) fn at_load(&self, load: f64) -> Option<Point> {
         let after = self.points.partition_point(|point| point.load < load);
         let (b, a) = (self.points.get(after)?, self.points.get(after.max(1) - 1)?);

@@ -53,8 +53,8 @@ impl Rough {
         }
     }
 
-    /// The surface with a seed on a grid: the short cut-off is that of Table 1, or two cells if
-    /// the grid cannot carry it.
+    /// The surface with a seed on a grid, with the short cut-off of Table 1, or of two cells if the grid
+    /// is too coarse for it.
     pub(crate) fn surface(self, grid: &Grid, seed: u64) -> Result<SelfAffine, Error> {
         SelfAffine::new(
             0.8,
