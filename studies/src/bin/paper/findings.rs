@@ -41,8 +41,8 @@ pub(crate) fn rules(report: &Report) -> String {
          |---|---|---|---|---|---|\n{}\n{}\n\n\
          They part {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
          differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq. **Verdict:** the paper's \
-         curves survive its rule, since nodes join sooner or later in any order; its statement that there are no \
-         negative pressures does not.",
+         curves hardly depend on its rule, since every node joins sooner or later; its statement that there are no \
+         negative pressures does not hold.",
         rules.nodes,
         rules.nodes,
         rules.steps,
@@ -152,7 +152,7 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
         format!(
             "**Eq. (3)** is called a point load. It is Love's uniformly loaded square, and its prefactor Δ/πE\\* is right: \
              with it the flat punch on the mesh has K = {punch:.4} E\\*L (exact: {SQUARE_PUNCH_STIFFNESS:.4}); twice the \
-             prefactor would give half."
+             prefactor would halve K."
         ),
         "**Eq. (15)** lacks l₀ = √(c₀ − lᵀl). Step 8 has √(c₀ − xᵀc), equal in exact arithmetic.".to_string(),
         format!(
@@ -162,37 +162,39 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
             scientific(printed, 1),
             scientific(corrected, 1)
         ),
-        "**Steps 2 and 13.** Two nodes in contact is the first event already taken. Step 13 has to compare Δ²Σp with \
-         W, and to interpolate in the last interval, or it overshoots by up to one event; `History::at_load` does."
+        "**Steps 2 and 13.** To begin with two nodes in contact is to begin after the first event. Step 13 has to compare \
+         Δ²Σp with W, and to interpolate in the last interval, or it overshoots by up to one event. Here a path ends \
+         at exactly its greatest load."
             .to_string(),
         format!(
-            "**Zero padding** is not stated. A free half-space needs (2N)²; without it the problem becomes periodic, \
-             which is another: {boundary}."
+            "**Zero padding** is not stated. A free half-space needs (2N)²; without it the problem becomes a \
+             periodic one, with another answer: {boundary}."
         ),
         format!(
-            "**Eq. (21).** p₀ is called the average pressure and given as p\\* = πE\\*Δ/λ, that of full contact. The average \
-             is p\\* sin²(πa/λ): with it half and quarter contact agree with the closed form within {} and {} p\\* \
-             (Fig. 3); p\\* itself would be 2 and {:.1} times the load. Δ is the amplitude here, and the mesh size \
-             elsewhere.",
+            "**Eq. (21).** p₀ is called the average pressure, but p\\* = πE\\*Δ/λ, its value there, is the pressure of full \
+             contact. The average is p\\* sin²(πa/λ): with it half and quarter contact agree with the closed form \
+             within {} and {} p\\* (Fig. 3); with p\\* the loads would be 2 and {:.1} times as large. Δ is the amplitude \
+             here, and the mesh size elsewhere.",
             scientific(wave(0.25), 1),
             scientific(wave(0.125), 1),
             1.0 / (std::f64::consts::PI / 8.0).sin().powi(2)
         ),
         format!(
-            "**Fig. 3.** Δ = 2/N_x = 0.0124 means N_x = {NODES}. How a kernel in three dimensions serves plane cases is not \
-             said; {WAVES} free waves stand in for a periodic problem and leave up to {} p\\*, which no mesh removes.",
+            "**Fig. 3.** Δ = 2/N_x = 0.0124 means N_x = {NODES}. The paper does not say how it computes plane cases \
+             with a kernel in three dimensions. Its {WAVES} free waves in place of a periodic problem are off by up to {} p\\*, \
+             and no finer mesh helps.",
             scientific(worst_free, 1)
         ),
         "**Eq. (23)** lacks C₀, has λᵣ for λₛ in its upper limits, and needs B = 2π√(C/A₀) and φ(−q) = −φ(q) for heights \
          that are real and in metres. With these, Sq is met exactly by every seed (`SelfAffine`)."
             .to_string(),
         format!(
-            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1: {gradients}. k under the greatest load is {ends}, and \
-             1.0 in the paper: its surface was not that of its table."
+            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1: {gradients}. k under the greatest load is {ends}, but \
+             1.0 in the paper: it cannot have had the surface of its own table."
         ),
         format!(
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
-             nodes, and not 20 minutes. `docs/performance.md` has our time for it.",
+             nodes, which do not take 20 minutes. `docs/performance.md` has our time for it.",
             100.0 * share,
             share * 65536.0,
             share / 100.0 * 65536.0
@@ -205,15 +207,15 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
         ),
         format!(
             "**The fits of Fig. 7.** The exponential starts at {}, not 0; ours, over loads up to 0.005, at {starts}. The \
-             line with slope −8.93 can't be in u/Sq, where saturation alone means {}; ours has {slopes}. It fits u \
-             over 20 Sq, or u over its greatest value: ours is {approaches} Sq.",
+             line with slope −8.93 cannot be one of u/Sq, for which saturation alone gives {}; ours has {slopes}. It fits u \
+             over 20 Sq, or u over its greatest value, which here is {approaches} Sq.",
             signed(y0 + a, 2),
             signed(-1.0 / (SQUARE_PUNCH_STIFFNESS * SQ / SIDE), 0)
         ),
         format!(
-            "**Figs. 6 to 8** are a free half-space under a finite square, and are compared with theories of an infinite \
-             one. {boundary}; at large contact the border carries most (Fig. 4), and approach and K are those of the \
-             square (Fig. 7)."
+            "**Figs. 6 to 8** show a free half-space under a finite square, but are compared with theories of an infinite \
+             one. {boundary}; at large contact the pressure is greatest at the border (Fig. 4), and approach and K \
+             become those of a square punch (Fig. 7)."
         ),
         format!(
             "**Memory.** k = 1.0 with the gradient {PAPER_GRADIENT} at 0.1 A₀E\\* means A/A₀ = {area:.2}: {:.1} × 10⁵ nodes of \
@@ -225,7 +227,7 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
         ),
         format!(
             "**Whole cells** inflate k at small contact: at 1 % it is {raw} with cells counted and {less} with the border \
-             corrected. Part of the paper's fall from 2.5 is the mesh."
+             corrected. Part of the paper's fall from 2.5 comes from the mesh."
         ),
     ];
     let mut text = "### Where the paper is wrong or ambiguous, and the evidence\n\n".to_string();

@@ -1,4 +1,4 @@
-//! The page of verdicts: everything in it comes from this example.
+//! The page of verdicts: everything in it comes from this study.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::study::Study;
 use crate::{findings, sections, verdicts};
 use asperity_cli::outcome::Failure;
 
-/// What this example owns of the page; the rest is left as it is.
+/// The study writes between these lines of the page, and leaves the rest alone.
 const BEGIN: &str = "<!-- written by the study `paper`: begin -->";
 const END: &str = "<!-- written by the study `paper`: end -->";
 const TITLE: &str = "# Validation\n\n";
@@ -34,7 +34,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Writes the page alone, beside the pictures.
+    /// Writes the page alone, into the directory of the pictures.
     pub(crate) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
         let text = self.text("")?;
         std::fs::write(name, format!("{TITLE}{text}"))
@@ -42,8 +42,7 @@ impl Report {
         Ok(name.to_path_buf())
     }
 
-    /// Puts the page into a file that others write as well, and the pictures into images/ beside
-    /// it.
+    /// Puts the page into a file that others write as well, and the pictures into images/ next to it.
     pub(crate) fn publish(&self, name: &Path) -> Result<PathBuf, Failure> {
         let text = self.text("images/paper_")?;
         let publish = || -> Result<(), Box<dyn Error>> {
@@ -109,7 +108,7 @@ impl Report {
             "## The paper, figure by figure\n\n\
              Every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
              the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 (2020), \"the \
-             paper\", beside ours. This part of the page, numbers and pictures, is written by\n\n\
+             paper\", next to ours. This part of the page, numbers and pictures, is written by\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
              --report docs/validation.md\n\
@@ -121,7 +120,7 @@ impl Report {
              * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area), one \
              state for each node; from there fixed loads, each with its exact tangent stiffness, up to \
              0.1 A₀E\\*. Where the two meet they differ, at worst over all runs, by {area:.0e} of the area \
-             (a node at zero pressure counts in the path and not in the other), {approach:.0e} of the \
+             (a node that just touches counts in the path; under a fixed load it may not), {approach:.0e} of the \
              approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
              * **Without units**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
              E\\*.\n\

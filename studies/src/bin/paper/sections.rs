@@ -50,24 +50,25 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
         .fold(0.0, f64::max);
     format!(
         "### Fig. 3: plane contacts against their closed forms\n\n{}\n\n\
-         The paper does not say how a kernel in three dimensions serves plane cases. Here a single row of \
-         cells does, each a bar across the whole strip, so that no quantity can vary along it:\n\n\
+         The paper does not say how it computes plane cases with a kernel in three dimensions. Here a single \
+         row of cells is used, each a bar across the whole strip, so that no quantity can vary along it:\n\n\
          * **Cylinder**, eq. (20): the free half-space, a strip {LENGTH:.0} times as long as the domain is wide. \
-         What a finite length ℓ leaves is of second order in 1/ℓ: {} of p₀ where strip and domain are as long \
-         as wide, and 10⁻⁶ of that with the length used.\n\
+         The error of a finite length ℓ is of second order in 1/ℓ: {} of p₀ if the strip is as long as the domain \
+         is wide, and 10⁻⁶ times as large with the length used.\n\
          * **Wave**, eqs. (21) and (22): `PeriodicBoussinesq` with one cell along y is the plane periodic problem \
          without approximation, one wavelength.\n\
-         * **{WAVES} free waves**: the paper's stand-in for it, domain (−5, 5), the middle wave at the same mean \
-         pressure. What it leaves does not fall with the mesh, up to {} p\\*, but with the number of waves: \
+         * **{WAVES} free waves**: the paper's substitute for it, on the domain (−5, 5); the middle wave is compared \
+         at the same mean pressure. The error, up to {} p\\*, does not fall with a finer mesh, only with more waves: \
          {} with 1, {} with 3, {} with {WAVES} and {} with 15 at half contact.\n\n\
          Errors of the pressure over p₀ or p\\* with N = {NODES} cells over the contact of the cylinder, or the \
-         wavelength. *Inner* is the greatest on |x| < 0.6 a, *rms* that over the contact; both are averages over \
-         20 loads with 0.9 to 1.1 of the half-width, since the edge goes from cell to cell (full contact: one load). \
+         wavelength. *Inner* is the greatest error on |x| < 0.6 a, *rms* the root mean square over the contact. Both are \
+         averages over 20 loads with 0.9 to 1.1 times the half-width, since the error depends on where in a cell \
+         the edge lies (full contact: one load). \
          Orders of convergence by a fit from N = 21 to 641:\n\n\
          | case | inner error | rms error | orders, inner and rms |\n|---|---|---|---|\n{rows}\n\
-         **Verdict: agrees.** The error is of second order in the cell away from the edge of contact and of \
-         first order over all, from the cells that the edge cuts; in full contact there is no edge and it is of \
-         second order. The free waves carry an error of their own that no mesh takes away.",
+         **Verdict: agrees.** Away from the edge of contact the error is of second order in the cell size. Over the \
+         whole contact it is of first order, because the edge cuts cells; in full contact there is no edge, and it is \
+         of second order. Free waves have an error of their own that no finer mesh removes.",
         picture(
             prefix,
             3,
@@ -114,8 +115,8 @@ pub(crate) fn figure4(report: &Report, prefix: &str) -> String {
          | surface | A/A₀ | W/A₀E\\* | greatest p/E\\* | patches | small ones | contact in small ones | contact in the \
          largest tenth |\n|---|---|---|---|---|---|---|---|\n{rows}\n\
          **Verdict:** most patches are small {}; more than half of the contact is in the largest tenth in {large} of \
-         {} maps. The pressure is greatest along the border of the square at large contact: that is the free \
-         half-space under a finite punch, and not roughness.",
+         {} maps. The pressure is greatest along the border of the square at large contact: the cause is \
+         the finite punch on a free half-space, and not roughness.",
         picture(
             prefix,
             4,
@@ -166,7 +167,7 @@ pub(crate) fn figure5(report: &Report, prefix: &str) -> String {
     format!(
         "### Fig. 5: area against load\n\n{}\n\n{}\n\
          Evenly spaced loads. A correlation of 0.999 does not make a law linear: a line with an intercept \
-         follows any gently curved one, and k of Fig. 6 falls over the same range.",
+         also fits a gently curved law, and k of Fig. 6 falls over the same range.",
         picture(prefix, 5, "Contact area against load"),
         table.text,
     )
@@ -214,14 +215,14 @@ pub(crate) fn figure6(report: &Report, prefix: &str) -> String {
         .collect();
     format!(
         "### Fig. 6: the ratio of area to load\n\n{}\n\n\
-         k = A E\\* h′ / W. \"Corrected\" is the area less what whole cells along the border of the contact count too \
-         much, (π − 1 + ln 2)/24 of its staircase length times the cell (Yastrebov, Anciaux and Molinari 2017, \
+         k = A E\\* h′ / W. \"Corrected\" is the area without what whole cells along the border of the contact add to \
+         it: (π − 1 + ln 2)/24 times the length of the staircase times the cell size (Yastrebov, Anciaux and Molinari 2017, \
          arXiv 1701.02727).\n\n{head}\n|---|{}\n{rows}\n\n\
          Within 10 % of 2: {}. With the gradient by central differences on the paper's mesh, k under the greatest \
          load is {}.\n\n\
          **Verdict:** k falls all the way, as the paper says, from about √(2π) towards √(8/π) and below. How \
-         high it starts is in good part the mesh: corrected, it starts lower. That it ends at 1.0 needs a \
-         surface that is almost in full contact at 0.1 A₀E\\*, hence a small gradient.",
+         high it starts depends in good part on the mesh: corrected, it starts lower. To end at 1.0, a surface \
+         must be almost in full contact at 0.1 A₀E\\*, which takes a small gradient.",
         picture(prefix, 6, "Ratio of area to load against area"),
         "---|---|".repeat(ratios.len()),
         near.join("; "),
@@ -286,7 +287,7 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     let share = fits
         .iter()
         .map(|f| plain(scaled(f.stiffness, 1.0 / report.study.punch).decimals(4)));
-    table.row("the same over the punch on this mesh", "–", share);
+    table.row("K at 0.1 A₀E\\*, over the punch on this mesh", "–", share);
     let tenth = report.study.families.iter().map(|family| {
         let share = family.at_area(0.1, |p| p.contact_stiffness / report.study.punch);
         plain(share.decimals(3))
@@ -302,12 +303,12 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     format!(
         "### Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
          The exponential is y₀ + A exp(−W/t) through u/Sq = −δ/Sq, the line is fitted from {} on; both by least \
-         squares over evenly spaced loads, as the paper does not say over which. The fits of the exponential \
+         squares over evenly spaced loads, since the paper does not say which it took. The fits of the exponential \
          depend on the range more than on the seed, and none starts at 0, where every path does. All three numbers \
          agree for: {}.\n\n\
          **Saturated stiffness.** The rigid square punch has K = {} E\\*L, {} in these units; the same punch on \
-         the mesh has {} ({:.2} % less, the error of the mesh), and the surfaces end there. It has nothing to \
-         do with roughness. Nor does it need A/A₀ = 1, as the paper has it: see the row at 10 % contact.\n\n\
+         the mesh has {} ({:.2} % less, the error of the mesh), and the rough surfaces end there: the value has \
+         nothing to do with roughness. Nor does it take A/A₀ = 1, as the paper says: see the row at 10 % contact.\n\n\
          **Growth at light loads.** K follows a power of the load over the decades in which the paper sees an \
          exponential. For few asperities of a finite surface the exponent 1/(1 + H) = 0.56 is expected \
          (Pastewka et al., arXiv 1210.4635).",
@@ -371,14 +372,14 @@ pub(crate) fn figure8(report: &Report, prefix: &str) -> String {
     format!(
         "### Fig. 8: mean gap and interfacial stiffness\n\n{}\n\n\
          A gap that falls linearly with ln W, ḡ = const − γ Sq ln W, has γ = −dḡ/d(ln W)/Sq = W/(Kᵢ Sq), which \
-         the exact stiffness gives at every state. The range of the law is that in which γ, averaged over the \
+         the exact stiffness gives at every state. The law is taken to hold where γ, averaged over the \
          seeds, is within 10 % of its greatest value. The line is fitted in the paper's range, 4 × {} to \
          2 × {}.\n\n\
-         | surface | range of the law | greatest γ | γ of the line | Pearson r of the line | γ at its ends over \
-         that of the line |\n|---|---|---|---|---|---|\n{rows}\n\
+         | surface | range of the law | greatest γ | γ of the line | Pearson r of the line | γ at the ends of \
+         the paper's range over γ of the line |\n|---|---|---|---|---|---|\n{rows}\n\
          **Verdict:** the law holds over a moderate range only, as the paper says; verdicts on its ends are in the \
          first table. γ is near the 0.4 to 0.5 of Persson's theory, where the gap closes over a length in \
-         proportion to Sq. Below the range few asperities carry and γ is smaller (a finite surface has a highest \
+         proportion to Sq. Below the range few asperities carry the load and γ is smaller (a finite surface has a highest \
          summit); beyond it contact is so large that the gap runs out.",
         picture(
             prefix,

@@ -1,4 +1,4 @@
-//! Verdicts: the paper's numbers beside ours, its conclusions, and which surface it had.
+//! Verdicts: the paper's numbers and ours, its conclusions, and which surface it had.
 
 use std::fmt::Write;
 
