@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                             .stiffness(stiffness)
                             .build()
                             .and_then(|mut solver| solver.solve(load * gradient))
-                            .map(|solution| solution.iterations)
+                            .map(|solution| solution.effort.iterations)
                     });
                 });
             }
