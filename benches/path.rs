@@ -19,8 +19,6 @@ const SIDE: f64 = 2.5e-3;
 /// Nodes a side, and the contact area fraction at which the path ends.
 const CASES: [(usize, f64); 3] = [(64, 0.3), (128, 0.2), (256, 0.05)];
 
-type Builder<S, U> = LoadingBuilder<S, Boussinesq, U>;
-
 /// Criterion takes no errors; a path that fails must not be reported as fast.
 fn succeed<T>(result: Result<T, asperity::Error>) -> T {
     match result {
@@ -35,10 +33,10 @@ fn flops(nodes: usize, fraction: f64) -> u64 {
     (n.powi(3) / 3.0) as u64
 }
 
-fn bench<S: Surface + Clone, U: LinearUpdater + Clone>(
+fn bench<U: LinearUpdater + Clone>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: String,
-    builder: &Builder<S, U>,
+    builder: &LoadingBuilder<'_, U>,
 ) {
     group.bench_function(id, |bencher| {
         bencher.iter(|| {
@@ -48,16 +46,16 @@ fn bench<S: Surface + Clone, U: LinearUpdater + Clone>(
     });
 }
 
-fn paths<S: Surface + Clone>(
+fn paths(
     criterion: &mut Criterion,
     name: &str,
-    surface: &S,
+    surface: &dyn Surface,
 ) -> Result<(), asperity::Error> {
     let mut group = short_group(criterion, name);
     for (nodes, fraction) in CASES {
         group.throughput(Throughput::Elements(flops(nodes, fraction)));
         let kernel = Boussinesq::new(Grid::square(nodes, SIDE)?, 1.0)?;
-        let builder = LoadingSolver::builder(surface.clone(), kernel).max_area_fraction(fraction);
+        let builder = LoadingSolver::builder(surface, &kernel).max_area_fraction(fraction);
         bench(&mut group, format!("{nodes}/f64"), &builder);
         let mixed = builder.clone().updater(RecursiveCholesky::mixed());
         bench(&mut group, format!("{nodes}/mixed"), &mixed);
@@ -77,9 +75,10 @@ fn paths<S: Surface + Clone>(
 /// since the solution of the one asked for last is kept.
 fn pressure(criterion: &mut Criterion) -> Result<(), asperity::Error> {
     let mut group = short_group(criterion, "pressure");
+    let surface = SelfAffine::zhang2020(1);
     for (nodes, fraction) in CASES {
         let kernel = Boussinesq::new(Grid::square(nodes, SIDE)?, 1.0)?;
-        let mut path = LoadingSolver::builder(SelfAffine::zhang2020(1), kernel)
+        let mut path = LoadingSolver::builder(&surface, &kernel)
             .max_area_fraction(fraction)
             .build()?;
         let mut states = Vec::new();

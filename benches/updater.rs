@@ -2,18 +2,19 @@
 //!
 //! Throughput is in floating-point operations where the processor is the bound (forward
 //! substitution: k n², Schur complement: k² n) and in bytes of the factor where memory is
-//! (solution, commit). `cargo bench --bench updater -- solution/4000` runs some of them.
+//! (solution, join). `cargo bench --bench updater -- solution/4000` runs some of them.
 
 use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, MixedCholesky, RecursiveCholesky, Schur, Solution, System,
-    Touched, WindowCost,
+    CholeskyTimings, LinearUpdater, MixedCholesky, RecursiveCholesky, Schur, Solution, Touched,
+    UpdaterProfile,
 };
-use asperity::{Boussinesq, Grid, LoadingSolver};
+use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, SamplingMode, Throughput};
 
@@ -49,63 +50,68 @@ impl Timed for MixedCholesky {
 struct Window<U> {
     /// The updater before it.
     updater: U,
-    system: System,
+    /// The contact before it.
+    contact: ContactSequence,
     watched: Vec<usize>,
     touched: Touched,
+    /// The contact after it.
+    grown: ContactSequence,
 }
 
 /// An updater that keeps the first window with at least `at` nodes in contact.
 struct Capture<U> {
     inner: U,
     at: usize,
-    contact: usize,
     window: Option<Window<U>>,
     complete: bool,
 }
 
 impl<U: Timed> LinearUpdater for Capture<U> {
-    fn schur(
+    fn watch(
         &mut self,
-        system: &System,
+        problem: &Problem,
+        contact: &ContactSequence,
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), asperity::Error> {
-        if self.contact >= self.at && self.window.is_none() {
+        if contact.len() >= self.at && self.window.is_none() {
             self.window = Some(Window {
                 updater: self.inner.clone(),
-                system: system.clone(),
+                contact: contact.clone(),
                 watched: nodes.to_vec(),
                 touched: Touched::default(),
+                grown: contact.clone(),
             });
         }
-        self.inner.schur(system, nodes, schur)
+        self.inner.watch(problem, contact, nodes, schur)
     }
 
-    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), asperity::Error> {
-        self.contact += touched.len();
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), asperity::Error> {
         if let Some(window) = self.window.as_mut().filter(|_| !self.complete) {
             window.touched = touched.clone();
+            window.grown = contact.clone();
             self.complete = true;
         }
-        self.inner.commit(system, touched)
+        self.inner.join(problem, contact, touched)
     }
 
     fn solve(
         &mut self,
-        system: &System,
-        touched: &Touched,
+        problem: &Problem,
+        contact: &ContactSequence,
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner.solve(system, touched, count, solution)
+        self.inner.solve(problem, contact, count, solution)
     }
 
-    fn window_cost(&self) -> WindowCost {
-        self.inner.window_cost()
-    }
-
-    fn is_exact(&self) -> bool {
-        self.inner.is_exact()
+    fn profile(&self) -> UpdaterProfile {
+        self.inner.profile()
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
@@ -113,25 +119,28 @@ impl<U: Timed> LinearUpdater for Capture<U> {
     }
 }
 
-/// A window of the path of a sphere on 128 × 128 nodes, and the nodes in contact before it.
-fn window<U: Timed>(updater: U, at: usize) -> Result<(Window<U>, Vec<usize>), Box<dyn Error>> {
+/// A sphere on 128 × 128 nodes.
+fn sphere() -> Result<(Paraboloid, Boussinesq), asperity::Error> {
+    let half_space = Boussinesq::new(Grid::square(128, 1e-2)?, 1.0)?;
+    Ok((Paraboloid::new(1.0)?, half_space))
+}
+
+/// A window of the path of the sphere.
+fn window<U: Timed>(updater: U, at: usize) -> Result<Window<U>, Box<dyn Error>> {
     let capture = Capture {
         inner: updater,
         at,
-        contact: 0,
         window: None,
         complete: false,
     };
-    let kernel = Boussinesq::new(Grid::square(128, 1e-2)?, 1.0)?;
-    let mut path = LoadingSolver::builder(Paraboloid::new(1.0)?, kernel)
+    let (surface, kernel) = sphere()?;
+    let mut path = LoadingSolver::builder(&surface, &kernel)
         .updater(capture)
         .build()?;
     while !path.updater().complete {
         path.next().ok_or("the path is too short")??;
     }
-    let window = path.updater().window.clone().ok_or("no window")?;
-    let before = path.updater().contact - window.touched.len();
-    Ok((window, path.contact_order()[..before].to_vec()))
+    Ok(path.updater().window.clone().ok_or("no window")?)
 }
 
 /// The time that `part` of the updater's timings grows by in `count` calls of `work`.
@@ -162,27 +171,25 @@ fn verbs<U: Timed>(
     updater: U,
     at: usize,
 ) -> Result<(), Box<dyn Error>> {
-    let (window, contact) = window(updater, at)?;
     let Window {
         updater,
-        system,
+        contact,
         watched,
         touched,
-    } = window;
+        grown,
+    } = window(updater, at)?;
+    let (surface, kernel) = sphere()?;
+    let problem = Problem::new(&surface, &kernel)?;
     let n = contact.len();
     let id = format!("{at}/{name}");
 
     // Two sets of nodes in turn, so that all are new to the updater every time.
-    let mut out: Vec<usize> = (0..system.gap().len()).collect();
-    let mut inside = vec![false; out.len()];
-    for &node in &contact {
-        inside[node] = true;
-    }
-    out.retain(|&node| !inside[node]);
+    let mut out: Vec<usize> = (0..problem.grid().nodes()).collect();
+    out.retain(|&node| !contact.contains(node));
     let sets = [&out[..NEW], &out[NEW..2 * NEW]];
     let mut schur = Schur::default();
     let mut borders = |updater: &mut U, i: u64| {
-        succeed(updater.schur(&system, sets[(i % 2) as usize], &mut schur));
+        succeed(updater.watch(&problem, &contact, sets[(i % 2) as usize], &mut schur));
     };
     // Whichever set the last sample ended with.
     let mut turn = 0;
@@ -204,7 +211,6 @@ fn verbs<U: Timed>(
     bench("schur", NEW * NEW * n, |timings| timings.schur);
 
     // From the solution on the nodes before the last window, as at a refresh.
-    let none = Touched::default();
     let mut solution = Solution::default();
     let mut group = short_group(criterion, "solution");
     group.throughput(Throughput::Bytes((n * n / 2 * U::NUMBER) as u64));
@@ -212,9 +218,9 @@ fn verbs<U: Timed>(
         bencher.iter_custom(|count| {
             let mut time = Duration::ZERO;
             for _ in 0..count {
-                succeed(working.solve(&system, &none, n - NEW, &mut solution));
+                succeed(working.solve(&problem, &contact, n - NEW, &mut solution));
                 let start = Instant::now();
-                succeed(working.solve(&system, &none, n, black_box(&mut solution)));
+                succeed(working.solve(&problem, &contact, n, black_box(&mut solution)));
                 time += start.elapsed();
             }
             time
@@ -223,29 +229,28 @@ fn verbs<U: Timed>(
     group.finish();
 
     let mut ready = updater.clone();
-    succeed(ready.schur(&system, &watched, &mut schur));
-    let mut group = short_group(criterion, "commit");
+    succeed(ready.watch(&problem, &contact, &watched, &mut schur));
+    let mut group = short_group(criterion, "join");
     group.throughput(Throughput::Bytes((n * touched.len() * U::NUMBER) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_batched_ref(
             || ready.clone(),
-            |updater| succeed(updater.commit(&system, &touched)),
+            |updater| succeed(updater.join(&problem, &grown, &touched)),
             BatchSize::PerIteration,
         );
     });
     group.finish();
 
     // The whole window but for its events: n² operations and more for each node that joins.
-    let joined = n + touched.len();
     let mut group = short_group(criterion, "window");
     group.throughput(Throughput::Elements((touched.len() * n * n) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_batched_ref(
             || updater.clone(),
             |updater| {
-                succeed(updater.schur(&system, &watched, &mut schur));
-                succeed(updater.commit(&system, &touched));
-                succeed(updater.solve(&system, &none, joined, &mut solution));
+                succeed(updater.watch(&problem, &contact, &watched, &mut schur));
+                succeed(updater.join(&problem, &grown, &touched));
+                succeed(updater.solve(&problem, &grown, grown.len(), &mut solution));
             },
             BatchSize::PerIteration,
         );

@@ -15,14 +15,14 @@ struct Call {
 /// Every call of `next` of a path to 20 % contact on 64 × 64 nodes.
 fn calls<S, U>(surface: S, updater: U, window: Option<usize>) -> Vec<Call>
 where
-    S: Surface + Send,
+    S: Surface + Sync,
     U: LinearUpdater + Send,
 {
     // Allocations are counted by thread: all the work in one.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {
         let kernel = Boussinesq::new(Grid::square(64, 2.5e-3).unwrap(), 1.0).unwrap();
-        let mut builder = LoadingSolver::builder(surface, kernel)
+        let mut builder = LoadingSolver::builder(&surface, &kernel)
             .updater(updater)
             .max_area_fraction(0.2);
         if let Some(size) = window {

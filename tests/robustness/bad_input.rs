@@ -1,10 +1,10 @@
 //! Bad input: a typed error that names what is wrong, never a panic.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
-use asperity::loading::{LoadingBuilder, LoadingSolver};
-use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, System, Touched};
-use asperity::{Boundary, Boussinesq, ContactState, Error, Grid, InfluenceKernel, Surface};
+use asperity::contact::ContactSequence;
+use asperity::loading::{LoadingEnd, LoadingSolver};
+use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
+use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, Touched};
+use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface};
 use nalgebra::DMatrix;
 
 const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -51,10 +51,6 @@ impl InfluenceKernel for Kernel {
 
 fn half_space(n: usize) -> Boussinesq {
     Boussinesq::new(Grid::square(n, 1.0).unwrap(), 1.0).unwrap()
-}
-
-fn sphere(n: usize) -> LoadingBuilder<Paraboloid, Boussinesq> {
-    LoadingSolver::builder(Paraboloid::new(10.0).unwrap(), half_space(n))
 }
 
 #[test]
@@ -127,7 +123,7 @@ fn heights() {
             "{error}"
         );
         let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
-        let error = LoadingSolver::new(Told(heights), kernel).unwrap_err();
+        let error = LoadingSolver::new(&Told(heights), &kernel).unwrap_err();
         assert!(
             matches!(error, Error::HeightNotFinite { ix: 3, iy: 2, .. }),
             "{error}"
@@ -140,7 +136,7 @@ fn heights() {
     for shape in [(4, 5), (5, 5), (20, 1), (0, 0)] {
         let heights = Told(DMatrix::zeros(shape.0, shape.1));
         let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
-        let Err(Error::GridMismatch { expected, found }) = LoadingSolver::new(heights, kernel)
+        let Err(Error::GridMismatch { expected, found }) = LoadingSolver::new(&heights, &kernel)
         else {
             panic!("{shape:?} accepted");
         };
@@ -149,10 +145,10 @@ fn heights() {
     // Each height is finite, their difference is not.
     let mut heights = DMatrix::from_element(4, 4, -1e308);
     heights[(1, 1)] = 1e308;
-    let error = LoadingSolver::new(Told(heights), half_space(4)).unwrap_err();
+    let error = LoadingSolver::new(&Told(heights), &half_space(4)).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
     // The surface's own error arrives as it is.
-    let error = LoadingSolver::new(Refuses, half_space(4)).unwrap_err();
+    let error = LoadingSolver::new(&Refuses, &half_space(4)).unwrap_err();
     assert!(
         matches!(
             error,
@@ -165,77 +161,8 @@ fn heights() {
     );
     // Waves too short for the grid.
     let rough = SelfAffine::new(0.8, 1.0, 0.1, Amplitude::RmsHeight(1.0), 1).unwrap();
-    let error = LoadingSolver::new(rough, half_space(4)).unwrap_err();
+    let error = LoadingSolver::new(&rough, &half_space(4)).unwrap_err();
     assert!(matches!(error, Error::CutoffBelowGrid { .. }), "{error}");
-}
-
-#[test]
-fn limits() {
-    for bad in NOT_POSITIVE {
-        let error = sphere(4).max_load(bad).build().unwrap_err();
-        assert!(matches!(error, Error::NotPositive { .. }), "{error}");
-        let error = sphere(4).max_approach(bad).build().unwrap_err();
-        assert!(matches!(error, Error::NotPositive { .. }), "{error}");
-    }
-    for bad in [
-        -1e-9,
-        1.0 + 1e-9,
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-    ] {
-        let error = sphere(4).max_area_fraction(bad).build().unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
-    }
-    let error = sphere(4).window_size(0).build().unwrap_err();
-    assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
-}
-
-/// Every limit ends the path with `None`, after the last state that obeys it and before the first
-/// that does not.
-#[test]
-fn limits_are_ends_and_not_errors() {
-    let all: Vec<ContactState> = sphere(6).build().unwrap().map(Result::unwrap).collect();
-    assert_eq!(all.len(), 36);
-    let run = |builder: LoadingBuilder<Paraboloid, Boussinesq>| {
-        let mut path = builder.build().unwrap();
-        let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-        for _ in 0..3 {
-            assert!(path.next().is_none(), "fused");
-        }
-        assert_eq!(path.size_hint(), (0, Some(0)));
-        states
-    };
-    for nodes in [0, 1, 7, 36, usize::MAX] {
-        assert_eq!(run(sphere(6).max_nodes(nodes)).len(), nodes.min(36));
-    }
-    for (fraction, nodes) in [(0.0, 0), (1.0 / 36.0, 1), (0.5, 18), (0.999, 35), (1.0, 36)] {
-        assert_eq!(run(sphere(6).max_area_fraction(fraction)).len(), nodes);
-    }
-    // A whole shell has the same load: limits between shells, far from rounding.
-    let (before, after) = (all[15], all[16]);
-    assert!(after.approach > before.approach * 1.01);
-    let load = 0.5 * (before.load + after.load);
-    assert_eq!(run(sphere(6).max_load(load)).len(), 16);
-    let approach = 0.5 * (before.approach + after.approach);
-    assert_eq!(run(sphere(6).max_approach(approach)).len(), 16);
-    assert_eq!(run(sphere(6).window_size(usize::MAX)).len(), 36);
-}
-
-#[test]
-fn states_that_are_not_reached() {
-    let all: Vec<ContactState> = sphere(6).build().unwrap().map(Result::unwrap).collect();
-    let mut path = sphere(6).build().unwrap();
-    assert!(path.pressure().unwrap().iter().all(|p| *p == 0.0));
-    assert_eq!(path.state(), None);
-    for (k, state) in all.iter().enumerate() {
-        let Err(Error::StateNotReached { step, present }) = path.pressure_at(state) else {
-            panic!("{state:?} answered");
-        };
-        assert_eq!((step, present), (k + 1, k));
-        path.next().unwrap().unwrap();
-        assert!(path.pressure_at(state).is_ok());
-    }
 }
 
 /// An updater that returns something malformed.
@@ -245,29 +172,43 @@ struct Malformed {
 }
 
 impl LinearUpdater for Malformed {
-    fn schur(&mut self, system: &System, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
-        self.inner.schur(system, nodes, schur)?;
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.inner.watch(problem, contact, nodes, schur)?;
         match self.what {
             "size" => schur.resize(nodes.len() + 1),
-            "nan" => schur.rhs_mut().iter_mut().for_each(|row| row[1] = f64::NAN),
+            "nan" => schur.matrix_mut().fill(f64::NAN),
             _ => (),
         }
         Ok(())
     }
-    fn commit(&mut self, system: &System, touched: &Touched) -> Result<(), Error> {
-        self.inner.commit(system, touched)
+
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), Error> {
+        self.inner.join(problem, contact, touched)
     }
+
     fn solve(
         &mut self,
-        system: &System,
-        touched: &Touched,
+        problem: &Problem,
+        contact: &ContactSequence,
         count: usize,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner.solve(system, touched, count, solution)?;
+        self.inner.solve(problem, contact, count, solution)?;
         match self.what {
             "y1" => solution.y1.push(0.0),
             "y2" => solution.y2.clear(),
+            "nan y2" => solution.y2.fill(f64::NAN),
             _ => (),
         }
         Ok(())
@@ -281,7 +222,8 @@ fn malformed_updaters() {
             inner: RecursiveCholesky::new(),
             what,
         };
-        let builder = LoadingSolver::builder(FlatPunch::default(), half_space(4));
+        let (punch, kernel) = (FlatPunch::default(), half_space(4));
+        let builder = LoadingSolver::builder(&punch, &kernel);
         let mut path = builder.updater(updater).window_size(3).build().unwrap();
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
@@ -290,6 +232,7 @@ fn malformed_updaters() {
         };
         assert!(typed, "{what}: {error}");
         assert!(path.next().is_none());
+        assert_eq!(path.end(), Some(LoadingEnd::Failed));
     }
 }
 
@@ -297,7 +240,7 @@ fn malformed_updaters() {
 fn kernels_that_are_no_kernels() {
     let grid = Grid::square(4, 1.0).unwrap();
     let build = |coefficient: fn(isize, isize) -> f64| {
-        LoadingSolver::new(FlatPunch::default(), Kernel(grid, coefficient)).unwrap_err()
+        LoadingSolver::new(&FlatPunch::default(), &Kernel(grid, coefficient)).unwrap_err()
     };
     for error in [
         build(|di, dj| if (di, dj) == (2, -1) { f64::NAN } else { 1.0 }),
@@ -310,17 +253,17 @@ fn kernels_that_are_no_kernels() {
         }),
     ] {
         assert!(
-            matches!(error, Error::KernelNotFinite { di: 2, dj: -1, .. }),
+            matches!(error, Error::Kernel(KernelError::NotFinite { di: 2, dj: -1, .. })),
             "{error}"
         );
     }
     let error = build(|di, dj| if (di, dj) == (2, -1) { 0.6 } else { 0.5 });
-    let Error::KernelNotSymmetric {
+    let Error::Kernel(KernelError::NotSymmetric {
         di,
         dj,
         value,
         opposite,
-    } = error
+    }) = error
     else {
         panic!("{error}");
     };

@@ -1,14 +1,11 @@
 //! Paths against event files made by dense solvers that share no code with this crate.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
-mod common;
-
+use crate::common::{Event, read_events, surface, with_window};
 use asperity::loading::LoadingSolver;
 use asperity::updater::{
     ConjugateGradient, Dense, LinearUpdater, MixedCholesky, RecursiveCholesky,
 };
 use asperity::{Boussinesq, Grid, LoadingState};
-use common::{Event, read_events, surface};
 
 const SIDE: f64 = 1e-2;
 
@@ -66,13 +63,10 @@ fn run<U: LinearUpdater>(file: &str, updater: U, window: Option<usize>, nodes: u
     let nodes = nodes.min(events.len());
     let grid = Grid::square(heights.matrix().nrows(), SIDE).unwrap();
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    let mut builder = LoadingSolver::builder(&heights, &kernel)
+    let builder = LoadingSolver::builder(&heights, &kernel)
         .updater(updater)
         .max_nodes(nodes);
-    if let Some(size) = window {
-        builder = builder.window_size(size);
-    }
-    let mut solver = builder.build().unwrap();
+    let mut solver = with_window(builder, window).build().unwrap();
     let states: Vec<_> = solver.by_ref().map(Result::unwrap).collect();
     // What changes between two refreshes carries errors of single precision, 6e-8.
     let tolerance = if solver.updater().profile().exact {

@@ -5,14 +5,13 @@
 //! states fluctuate, because a contact of n cells is never quite round. Δ is the cell and a the
 //! contact radius; the bounds leave some room around coefficients measured from a = 4 Δ to
 //! 32 Δ with four positions of the apex relative to the nodes.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use std::f64::consts::PI;
 
 use asperity::loading::{History, LoadingSolver};
 use asperity::reference::{self, HertzEllipse, HertzSphere, SQUARE_PUNCH_STIFFNESS};
 use asperity::surface::{Cone, EllipticParaboloid, FlatPunch, Paraboloid};
-use asperity::{Boussinesq, ContactState, Grid, Surface};
+use asperity::{Boussinesq, Grid, LoadingState, Surface};
 use nalgebra::DMatrix;
 
 const E_STAR: f64 = 1e9;
@@ -31,8 +30,8 @@ fn within(what: &str, value: f64, low: f64, high: f64) {
 }
 
 /// A path beyond 5/4 of a target load, with its apex.
-struct Run<S> {
-    path: LoadingSolver<S, Boussinesq>,
+struct Run {
+    path: LoadingSolver,
     history: History,
     apex: (f64, f64),
     /// How far the first node to touch lies below the apex, which no node samples.
@@ -41,8 +40,13 @@ struct Run<S> {
     first: (f64, f64),
 }
 
-impl<S: Surface> Run<S> {
-    fn new(grid: Grid, offset: (f64, f64), load: f64, shape: impl Fn(f64, f64) -> S) -> Self {
+impl Run {
+    fn new<S: Surface>(
+        grid: Grid,
+        offset: (f64, f64),
+        load: f64,
+        shape: impl Fn(f64, f64) -> S,
+    ) -> Self {
         let center = grid.center();
         let apex = (
             center.0 + offset.0 * grid.dx(),
@@ -53,7 +57,7 @@ impl<S: Surface> Run<S> {
         let kernel = Boussinesq::new(grid, E_STAR).unwrap();
         // Far enough beyond 5/4 for one more shell of nodes, even of few.
         let reach = 1.3 + 16.0 / grid.nx() as f64;
-        let builder = LoadingSolver::builder(surface, kernel).max_load(reach * load);
+        let builder = LoadingSolver::builder(&surface, &kernel).max_load(reach * load);
         let mut path = builder.build().unwrap();
         let history: History = path.by_ref().map(Result::unwrap).collect();
         let (ix, iy) = history.states()[0].node;
@@ -71,7 +75,7 @@ impl<S: Surface> Run<S> {
     fn average<const N: usize>(
         &mut self,
         load: f64,
-        mut errors: impl FnMut(ContactState, &DMatrix<f64>) -> [f64; N],
+        mut errors: impl FnMut(LoadingState, &DMatrix<f64>) -> [f64; N],
     ) -> [f64; N] {
         const SAMPLES: usize = 60;
         let mut sums = [0.0; N];
@@ -91,7 +95,7 @@ impl<S: Surface> Run<S> {
 fn punch_stiffness(n: usize) -> f64 {
     let grid = Grid::square(n, 2.0).unwrap();
     let kernel = Boussinesq::new(grid, E_STAR).unwrap();
-    let path = LoadingSolver::new(FlatPunch::default(), kernel).unwrap();
+    let path = LoadingSolver::new(&FlatPunch::default(), &kernel).unwrap();
     path.last().unwrap().unwrap().contact_stiffness.unwrap() / (E_STAR * 2.0)
 }
 

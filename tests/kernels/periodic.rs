@@ -1,7 +1,7 @@
 //! Periodic kernels through the public interface: gauges, inverses, symmetry, errors.
 
 use asperity::kernel::KernelTable;
-use asperity::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use asperity::{Boundary, Error, Grid, InfluenceKernel, KernelError, PeriodicBoussinesq, Spectral};
 use nalgebra::DMatrix;
 
 fn influence_matrix(kernel: &impl InfluenceKernel) -> Result<DMatrix<f64>, Error> {
@@ -212,14 +212,14 @@ impl InfluenceKernel for Mistaken {
 #[test]
 fn a_kernel_that_does_not_repeat_is_refused() -> Result<(), Error> {
     let kernel = Mistaken(asperity::Boussinesq::new(Grid::new(4, 3, 1.0, 1.0)?, 1.0)?);
-    let Err(Error::KernelNotPeriodic {
+    let Err(Error::Kernel(KernelError::NotPeriodic {
         di,
         dj,
         value,
         image_di,
         image_dj,
         repeated,
-    }) = KernelTable::new(&kernel)
+    })) = KernelTable::new(&kernel)
     else {
         return Err(Error::EmptyGrid { nx: 4, ny: 3 });
     };

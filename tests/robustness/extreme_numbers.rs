@@ -1,9 +1,9 @@
 //! Numbers at the ends of the range of double precision: an error or a finite path, never a panic.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+use crate::common::with_window;
 use asperity::loading::{History, LoadingSolver};
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactRule, ContactState, Error, Grid};
+use asperity::{Boussinesq, ContactRule, Error, Grid, LoadingState};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -51,8 +51,8 @@ fn cell() -> impl Strategy<Value = (f64, f64)> {
     ]
 }
 
-fn finite(state: &ContactState) -> bool {
-    let stiffness = state.interfacial_stiffness;
+fn finite(state: &LoadingState) -> bool {
+    let stiffness = state.interfacial_stiffness.unwrap();
     [
         state.approach,
         state.load,
@@ -75,14 +75,11 @@ fn run(
     heights: &DMatrix<f64>,
     rule: ContactRule,
     window: Option<usize>,
-) -> Result<Vec<ContactState>, Error> {
+) -> Result<Vec<LoadingState>, Error> {
     let kernel = Boussinesq::new(grid, e_star)?;
     let surface = HeightMap::new(heights.clone())?;
-    let mut builder = LoadingSolver::builder(surface, kernel).rule(rule);
-    if let Some(size) = window {
-        builder = builder.window_size(size);
-    }
-    let mut path = builder.build()?;
+    let builder = LoadingSolver::builder(&surface, &kernel).rule(rule);
+    let mut path = with_window(builder, window).build()?;
     let mut states = Vec::new();
     while let Some(state) = path.next() {
         states.push(state?);

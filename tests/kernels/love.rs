@@ -1,7 +1,5 @@
 //! The Boussinesq kernel against Love's closed form in arbitrary precision.
 
-#![allow(clippy::expect_used)]
-
 use asperity::{Boussinesq, Error, Grid, InfluenceKernel};
 use astro_float::{BigFloat, Consts, RoundingMode};
 

@@ -4,7 +4,6 @@
 //! pressure on a cross-section is that of plane strain under the section's own load per length, up
 //! to an error that falls with the square of the distance to the ends. So pressures are compared on
 //! the middle section, on cells that are long in the direction in which nothing changes.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use asperity::loading::{History, LoadingSolver};
 use asperity::reference::{HertzLine, Westergaard};
@@ -17,9 +16,9 @@ const SAMPLES: usize = 60;
 
 /// Pressures on the middle section at `SAMPLES` loads of a path, evenly spaced from `from` to 1 of
 /// its last load. Single states fluctuate, as the edge of contact goes from cell to cell.
-fn sections(surface: impl Surface, grid: Grid, from: f64, fraction: f64) -> Vec<DVector<f64>> {
+fn sections(surface: &dyn Surface, grid: Grid, from: f64, fraction: f64) -> Vec<DVector<f64>> {
     let kernel = Boussinesq::new(grid, E_STAR).unwrap();
-    let builder = LoadingSolver::builder(surface, kernel).max_area_fraction(fraction);
+    let builder = LoadingSolver::builder(surface, &kernel).max_area_fraction(fraction);
     let mut path = builder.build().unwrap();
     let history: History = path.by_ref().map(Result::unwrap).collect();
     let last = history.states().last().unwrap().load;
@@ -47,7 +46,7 @@ fn line_errors(cells: usize, slenderness: usize) -> [f64; 2] {
     let cylinder = cylinder.centered_at(ridge, 0.0).unwrap();
     let mut sums = [0.0; 2];
     // Up to a half-width of about 1.1 a.
-    for section in sections(cylinder, grid, 0.6, 0.75) {
+    for section in sections(&cylinder, grid, 0.6, 0.75) {
         let load = section.sum() * dx;
         let half_width = hertz.half_width(load);
         let width = section.iter().filter(|p| **p > 0.0).count() as f64;
@@ -101,7 +100,7 @@ fn wave_errors(cells: usize, periods: usize) -> [f64; 3] {
     let grid = Grid::with_sides(cells * periods, ny, side, side).unwrap();
     let wave = Wave::new(amplitude, wavelength, Axis::X).unwrap();
     let (mut sums, mut count) = ([0.0; 3], 0.0);
-    for section in sections(wave, grid, 0.0, 0.7) {
+    for section in sections(&wave, grid, 0.0, 0.7) {
         let first = cells * (periods / 2);
         let period = section.rows(first, cells);
         let mean = period.mean();

@@ -1,8 +1,8 @@
 //! Kernels that are not positive definite, that promise a growth of contact which they do not keep, or
 //! under which contact does not only grow: an error that names the node and the approach where there is
 //! no path, and otherwise the right one.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+use crate::common::with_window;
 use asperity::loading::{ContactEvent, LoadingSolver};
 use asperity::surface::HeightMap;
 use asperity::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel};
@@ -53,19 +53,11 @@ impl InfluenceKernel for Promising {
     }
 }
 
-fn solver<K: InfluenceKernel>(
-    kernel: K,
-    gaps: &[f64],
-    window: Option<usize>,
-) -> LoadingSolver<HeightMap, K> {
+fn solver(kernel: &dyn InfluenceKernel, gaps: &[f64], window: Option<usize>) -> LoadingSolver {
     let heights = DMatrix::from_fn(gaps.len(), 1, |ix, _| -gaps[ix]);
-    let builder = LoadingSolver::builder(HeightMap::new(heights).unwrap(), kernel);
-    match window {
-        Some(size) => builder.window_size(size),
-        None => builder,
-    }
-    .build()
-    .unwrap()
+    let heights = HeightMap::new(heights).unwrap();
+    let builder = LoadingSolver::builder(&heights, kernel);
+    with_window(builder, window).build().unwrap()
 }
 
 #[test]
@@ -158,7 +150,7 @@ fn an_overlap_under_a_broken_promise_names_node_and_approach() {
         (ContactGrowth::Convex, Some(5)),
         (ContactGrowth::Convex, None),
     ] {
-        let mut path = solver(Promising(kernel.clone(), growth), &gaps, window);
+        let mut path = solver(&Promising(kernel.clone(), growth), &gaps, window);
         assert_eq!(path.by_ref().map(Result::unwrap).count(), 5);
         assert_eq!(path.contact_order(), [0, 2, 4, 3, 1]);
         let missed = (growth, window) == (ContactGrowth::Monotone, Some(3));
@@ -182,7 +174,7 @@ fn nodes_that_leave_under_a_broken_promise_are_named() {
         (ContactGrowth::Monotone, Some(2)),
         (ContactGrowth::Convex, Some(1)),
     ] {
-        let mut path = solver(Promising(kernel.clone(), growth), &gaps, window);
+        let mut path = solver(&Promising(kernel.clone(), growth), &gaps, window);
         let mut states = 0;
         let error = loop {
             match path.next() {
@@ -280,10 +272,10 @@ proptest! {
         let mut states = Vec::new();
         while let Some(state) = path.next() {
             let state = state.unwrap();
-            prop_assert!(exact(&kernel, &heights, path.contact_order(), state.approach), "{:?}", state);
+            prop_assert!(exact(&kernel, &heights, &path.contact_order(), state.approach), "{:?}", state);
             states.push(state);
         }
-        let mut promised = solver(Promising(kernel.clone(), promise), &gaps, Some(1));
+        let mut promised = solver(&Promising(kernel.clone(), promise), &gaps, Some(1));
         for (done, expected) in states.iter().enumerate() {
             match promised.next() {
                 Some(Ok(state)) => prop_assert_eq!(

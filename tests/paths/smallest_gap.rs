@@ -1,6 +1,5 @@
 //! The paper's rule, "the node with the smallest gap touches next": reproduced, and shown not to be
 //! exact.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use asperity::loading::LoadingSolver;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
@@ -78,7 +77,7 @@ fn the_papers_procedure_is_reproduced_step_by_step() {
         let (grid, heights) = rough(14, seed);
         let kernel = Boussinesq::new(grid, 3e9).unwrap();
         let mut paper = Paper::new(&kernel, &heights);
-        let mut path = LoadingSolver::builder(heights.clone(), &kernel)
+        let mut path = LoadingSolver::builder(&heights, &kernel)
             .rule(ContactRule::SmallestGap)
             .build()
             .unwrap();
@@ -131,14 +130,14 @@ struct Faults {
     /// Least pressure, relative to the mean on the contact.
     worst_pressure: f64,
     overlap: usize,
-    /// Least gap, relative to Sq.
+    /// Least gap, relative to the greater of Sq and the approach.
     worst_gap: f64,
     backward: usize,
 }
 
 fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    let mut path = LoadingSolver::builder(heights, kernel)
+    let mut path = LoadingSolver::builder(heights, &kernel)
         .rule(rule)
         .max_area_fraction(0.3)
         .build()

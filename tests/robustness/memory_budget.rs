@@ -1,20 +1,15 @@
 //! Memory budgets: every state that fits, then an error that says what would have fitted.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
-use asperity::loading::{LoadingBuilder, LoadingSolver};
-use asperity::surface::Paraboloid;
-use asperity::{Boussinesq, ContactState, Error, Grid};
-
-fn sphere(n: usize) -> LoadingBuilder<Paraboloid, Boussinesq> {
-    let kernel = Boussinesq::new(Grid::square(n, 1.0).unwrap(), 1.0).unwrap();
-    LoadingSolver::builder(Paraboloid::new(10.0).unwrap(), kernel)
-}
+use crate::common::Sphere;
+use asperity::loading::LoadingEnd;
+use asperity::{Error, LoadingState};
 
 #[test]
 fn memory_budgets() {
+    let sphere = Sphere::on(24);
     // Not even the grid fits.
     for budget in [0, 1, 1000] {
-        let error = match sphere(24).memory_budget(budget).build() {
+        let error = match sphere.builder().memory_budget(budget).build() {
             Ok(mut path) => path.next().unwrap().unwrap_err(),
             Err(error) => error,
         };
@@ -30,10 +25,15 @@ fn memory_budgets() {
         assert!(needed > budget);
     }
     // Enough for a part of the path.
-    let all: Vec<ContactState> = sphere(24).build().unwrap().map(Result::unwrap).collect();
+    let all: Vec<LoadingState> = sphere
+        .builder()
+        .build()
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
     let mut seen = Vec::new();
     for budget in (100_000..8_000_000).step_by(100_000) {
-        let mut path = sphere(24).memory_budget(budget).build().unwrap();
+        let mut path = sphere.builder().memory_budget(budget).build().unwrap();
         let mut states = Vec::new();
         let error = loop {
             match path.next() {
@@ -69,6 +69,7 @@ fn memory_budgets() {
             panic!("{error}");
         };
         assert_eq!(told, budget);
+        assert_eq!(path.end(), Some(LoadingEnd::Memory));
         assert!(needed > budget);
         assert!(states.len() <= nodes_that_fit && nodes_that_fit < all.len());
         seen.push(states.len());
@@ -85,14 +86,18 @@ fn memory_budgets() {
 /// What `nodes_that_fit` promises.
 #[test]
 fn the_nodes_that_fit_do_fit() {
+    let sphere = Sphere::on(24);
     let mut partial = 0;
     for budget in (100_000..8_000_000).step_by(200_000) {
-        let mut path = sphere(24).memory_budget(budget).build().unwrap();
+        let mut path = sphere.builder().memory_budget(budget).build().unwrap();
         let Some(Err(Error::MemoryBudget { nodes_that_fit, .. })) = path.find(Result::is_err)
         else {
             continue;
         };
-        let again = sphere(24).memory_budget(budget).max_nodes(nodes_that_fit);
+        let again = sphere
+            .builder()
+            .memory_budget(budget)
+            .max_nodes(nodes_that_fit);
         let count = again.build().unwrap().map_while(Result::ok).count();
         assert_eq!(count, nodes_that_fit, "budget {budget}");
         partial += usize::from(nodes_that_fit > 0);

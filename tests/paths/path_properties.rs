@@ -1,16 +1,13 @@
 //! What holds at every event of every path, on random rough surfaces.
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
-#[path = "common/rough.rs"]
-mod rough;
-
+use crate::common::with_window;
+use crate::rough::{Case, Roughness, case, dense_pressure, initial_gap, noise, rms, roughness};
 use asperity::convolution::Convolution;
 use asperity::loading::{History, LoadingSolver};
 use asperity::surface::{FlatPunch, HeightMap};
 use asperity::updater::Dense;
-use asperity::{Boussinesq, ContactState};
+use asperity::{Boussinesq, LoadingState};
 use proptest::prelude::*;
-use rough::{Case, case, dense_pressure, initial_gap, noise, rms, roughness};
 
 /// What the crate promises of pressures and gaps. The solves lose the condition number, below 1e3
 /// for these grids, from 1e-16: in 2500 cases the worst pressure was -6e-15 of the mean, the worst
@@ -20,19 +17,14 @@ const EXACT: f64 = 1e-12;
 /// worst 5e-15 in 2500 cases.
 const SUMMED: f64 = 1e-13;
 
-type Solver = LoadingSolver<HeightMap, Boussinesq>;
-
-fn solver(case: &Case, window: Option<usize>) -> Solver {
+fn solver(case: &Case, window: Option<usize>) -> LoadingSolver {
     let surface = HeightMap::new(case.heights()).unwrap();
     let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
-    let mut builder = LoadingSolver::builder(surface, kernel);
-    if let Some(size) = window {
-        builder = builder.window_size(size);
-    }
-    builder.build().unwrap()
+    let builder = LoadingSolver::builder(&surface, &kernel);
+    with_window(builder, window).build().unwrap()
 }
 
-fn states(case: &Case, window: Option<usize>) -> Vec<ContactState> {
+fn states(case: &Case, window: Option<usize>) -> Vec<LoadingState> {
     solver(case, window).map(Result::unwrap).collect()
 }
 
@@ -48,7 +40,7 @@ fn close(what: &str, a: f64, b: f64, tolerance: f64, scale: f64) {
 }
 
 /// Everything that the fields of one state say about it, and about the state before it.
-fn check_event(path: &mut Solver, before: Option<Seen>, sq: f64) -> Seen {
+fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen {
     let state = path.state().unwrap();
     let grid = path.grid();
     let (pressure, gap) = (path.pressure().unwrap(), path.gap().unwrap());
@@ -106,7 +98,8 @@ fn check_event(path: &mut Solver, before: Option<Seen>, sq: f64) -> Seen {
     let certificate = path.certificate().unwrap();
     assert!(certificate.least_pressure >= -EXACT, "{certificate:?}");
     assert!(certificate.least_gap >= -EXACT, "{certificate:?}");
-    assert!(certificate.greatest_contact_gap <= EXACT * (length / sq).max(1.0) || sq == 0.0);
+    assert!(certificate.greatest_contact_gap <= EXACT, "{certificate:?}");
+    close("length", certificate.length, length, SUMMED, length);
     assert!(certificate.load_error.abs() <= SUMMED, "{certificate:?}");
 
     let seen = Seen {
@@ -138,7 +131,7 @@ fn check_event(path: &mut Solver, before: Option<Seen>, sq: f64) -> Seen {
             SUMMED,
             load,
         );
-        let closed = (load - last_load) / last.interfacial_stiffness;
+        let closed = (load - last_load) / last.interfacial_stiffness.unwrap();
         close("dW/Ki", last_gap - mean_gap, closed, SUMMED, length);
         assert!(mean_gap <= last_gap + SUMMED * length);
     } else {
@@ -151,7 +144,7 @@ fn check_event(path: &mut Solver, before: Option<Seen>, sq: f64) -> Seen {
 /// A state, with load and mean gap computed from its fields.
 #[derive(Clone, Copy)]
 struct Seen {
-    state: ContactState,
+    state: LoadingState,
     load: f64,
     mean_gap: f64,
 }
@@ -175,7 +168,7 @@ proptest! {
 
         // The end of every path is the rigid flat punch, the stiffest of all.
         let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
-        let punch = LoadingSolver::new(FlatPunch::default(), kernel).unwrap();
+        let punch = LoadingSolver::new(&FlatPunch::default(), &kernel).unwrap();
         let stiffest = punch.last().unwrap().unwrap().contact_stiffness.unwrap();
         close("punch", last.contact_stiffness.unwrap(), stiffest, SUMMED, stiffest);
     }
@@ -188,7 +181,8 @@ proptest! {
         let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
         let mut path = solver(&case, case.window);
         let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-        let order = path.contact_order().to_vec();
+        let history: History = states.iter().copied().collect();
+        let order = path.contact_order();
         let cell = case.grid().cell_area();
         for pair in states.windows(2) {
             let [state, next] = [pair[0], pair[1]];
@@ -198,7 +192,7 @@ proptest! {
             for (load, part) in loads.iter_mut().zip([0.25, 0.75]) {
                 let approach = state.approach + part * width;
                 let expected = dense_pressure(&kernel, contact, &gap, approach);
-                let inside = state.at_approach(approach);
+                let inside = history.at_approach(approach).unwrap();
                 let pressure = path.pressure_at(&inside).unwrap();
                 // Scale: the pressure that the whole approach would cause on one cell.
                 let scale = approach / kernel_self(&kernel);
@@ -221,7 +215,7 @@ proptest! {
         let dense: Vec<_> = {
             let surface = HeightMap::new(case.heights()).unwrap();
             let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
-            let builder = LoadingSolver::builder(surface, kernel).updater(Dense::new());
+            let builder = LoadingSolver::builder(&surface, &kernel).updater(Dense::new());
             let path = builder.window_size(size).build().unwrap();
             path.map(Result::unwrap).collect()
         };
@@ -235,14 +229,14 @@ proptest! {
                 close("approach", a.approach, b.approach, 1e-11, a.approach);
                 close("load", a.load, b.load, 1e-11, a.load);
                 close("energy", a.energy, b.energy, 1e-11, a.energy);
-                let (k, ki) = (a.contact_stiffness.unwrap(), a.interfacial_stiffness);
+                let (k, ki) = (a.contact_stiffness.unwrap(), a.interfacial_stiffness.unwrap());
                 close("stiffness", k, b.contact_stiffness.unwrap(), 1e-11, k);
                 // The mean gap is a difference of lengths as long as the approach.
                 close("mean gap", a.mean_gap, b.mean_gap, SUMMED, length);
                 if ki.is_finite() {
-                    close("interfacial stiffness", ki, b.interfacial_stiffness, 1e-9, ki);
+                    close("interfacial stiffness", ki, b.interfacial_stiffness.unwrap(), 1e-9, ki);
                 } else {
-                    prop_assert_eq!(ki, b.interfacial_stiffness);
+                    prop_assert_eq!(Some(ki), b.interfacial_stiffness);
                 }
             }
         }
@@ -299,8 +293,8 @@ fn kernel_self(kernel: &Boussinesq) -> f64 {
 }
 
 /// Every number of every state, bit by bit.
-fn bits(states: &[ContactState]) -> Vec<[u64; 10]> {
-    let row = |s: &ContactState| {
+fn bits(states: &[LoadingState]) -> Vec<[u64; 10]> {
+    let row = |s: &LoadingState| {
         [
             s.step as u64,
             s.node.0 as u64,
@@ -310,7 +304,7 @@ fn bits(states: &[ContactState]) -> Vec<[u64; 10]> {
             s.contact_area.to_bits(),
             s.mean_gap.to_bits(),
             s.contact_stiffness.unwrap().to_bits(),
-            s.interfacial_stiffness.to_bits(),
+            s.interfacial_stiffness.unwrap().to_bits(),
             s.energy.to_bits(),
         ]
     };
@@ -325,7 +319,7 @@ fn threads_do_not_change_a_bit() {
         cell: (1e-4, 1e-4),
         e_star: 1e9,
         height: 1e-5,
-        roughness: rough::Roughness::SelfAffine(0.8, 12.0),
+        roughness: Roughness::SelfAffine(0.8, 12.0),
         seed: 3,
         window: None,
     };
@@ -337,11 +331,8 @@ fn threads_do_not_change_a_bit() {
             .unwrap();
         pool.install(|| {
             let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
-            let mut builder = LoadingSolver::builder(&surface, kernel).max_area_fraction(0.25);
-            if let Some(size) = window {
-                builder = builder.window_size(size);
-            }
-            let mut path = builder.build().unwrap();
+            let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.25);
+            let mut path = with_window(builder, window).build().unwrap();
             let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
             let pressure = path.pressure().unwrap();
             let pressure: Vec<u64> = pressure.iter().map(|p| p.to_bits()).collect();

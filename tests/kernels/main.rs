@@ -1,0 +1,5 @@
+//! The kernels of the crate through the public interface.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod love;
+mod periodic;

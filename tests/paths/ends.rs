@@ -1,0 +1,128 @@
+//! The last state of a path lies exactly at its limit, and is the one that a longer path reads there.
+
+use crate::common::half_way;
+use crate::problems::{assert_close, grid, kernels, rough, states};
+use asperity::loading::{ContactEvent, History, LoadingEnd};
+use asperity::{ContactTarget, LoadingSolver, LoadingState};
+
+/// The state at a target, by the longer path and by the limited one.
+type Read = fn(&History, f64) -> Option<LoadingState>;
+
+#[test]
+fn paths_end_exactly_at_their_limits() {
+    let surface = rough(&grid(), 1);
+    for (name, kernel) in kernels(grid()) {
+        let all = states(&surface, &kernel);
+        let unloaded = all[0].mean_gap;
+        let whole: History = all.iter().copied().collect();
+        let area = grid().nominal_area();
+        for step in [1, 2, 40, 150, 250] {
+            let at = half_way(all[step - 1], Some(all[step]));
+            let builder = || LoadingSolver::builder(&surface, &kernel);
+            for (builder, end, target, quantity, read) in [
+                (
+                    builder().max_load(at.load),
+                    LoadingEnd::Load,
+                    at.load,
+                    at.load,
+                    History::at_load as Read,
+                ),
+                (
+                    builder().max_mean_pressure(at.load / area),
+                    LoadingEnd::Load,
+                    at.load / area * area,
+                    at.load,
+                    History::at_load,
+                ),
+                (
+                    builder().max_approach(at.approach),
+                    LoadingEnd::Approach,
+                    at.approach,
+                    at.approach,
+                    History::at_approach,
+                ),
+                (
+                    builder().min_mean_gap(at.mean_gap),
+                    LoadingEnd::MeanGap,
+                    at.mean_gap,
+                    at.mean_gap,
+                    History::at_mean_gap,
+                ),
+            ] {
+                let context = format!("{name}, step {step}, {end:?}");
+                let mut path = builder.build().unwrap();
+                let history: History = path.by_ref().map(Result::unwrap).collect();
+                assert_eq!(path.end(), Some(end), "{context}");
+                assert!(path.next().is_none());
+                let last = *history.states().last().unwrap();
+                assert_eq!(last.event, ContactEvent::Limit, "{context}");
+                assert_eq!((last.step, last.node), (step, all[step - 1].node));
+                let events = &history.states()[..step];
+                assert_eq!(events.len() + 1, history.states().len());
+                assert!(events.iter().all(|s| s.event == ContactEvent::Touch));
+                let found = match end {
+                    LoadingEnd::Load => last.load,
+                    LoadingEnd::Approach => last.approach,
+                    _ => last.mean_gap,
+                };
+                // To the last bit, and the history has it there.
+                assert_eq!(found, target, "{context}");
+                assert_eq!(read(&history, target), Some(last), "{context}");
+                let expected = read(&whole, quantity).unwrap();
+                // Two paths that differ in their last windows; beside an interval of any width the
+                // quantities of the state are rounded at 1e-14 or so.
+                assert_close(&last, &expected, 1e-11, unloaded);
+                // Nothing beyond.
+                let beyond = match end {
+                    LoadingEnd::MeanGap => 0.9 * target,
+                    _ => 1.1 * target,
+                };
+                assert!(read(&history, beyond).is_none(), "{context}");
+                // Fields of the present state, which is the one at the limit.
+                assert_eq!(path.state(), Some(last));
+                let load = path.pressure().unwrap().sum() * path.grid().cell_area();
+                assert!((load / last.load - 1.0).abs() < 1e-12, "{context}");
+                let certificate = path.certificate().unwrap();
+                assert!(certificate.least_pressure >= -1e-12, "{context}");
+                assert!(certificate.least_gap >= -1e-12, "{context}");
+                assert!(certificate.greatest_contact_gap <= 1e-12, "{context}");
+                assert!(path.pressure_at(&events[step / 2]).is_ok());
+            }
+        }
+    }
+}
+
+/// `until` is what the named limits say.
+#[test]
+fn until_is_any_limit() {
+    let (surface, kernel) = (rough(&grid(), 2), &kernels(grid())[0].1);
+    let all = states(&surface, kernel);
+    let at = half_way(all[60], Some(all[61]));
+    let builder = || LoadingSolver::builder(&surface, kernel);
+    let ends = |builder: asperity::loading::LoadingBuilder<'_>| {
+        let path = builder.build().unwrap();
+        path.last().unwrap().unwrap()
+    };
+    for (target, named) in [
+        (ContactTarget::Load(at.load), builder().max_load(at.load)),
+        (
+            ContactTarget::Approach(at.approach),
+            builder().max_approach(at.approach),
+        ),
+        (
+            ContactTarget::MeanGap(at.mean_gap),
+            builder().min_mean_gap(at.mean_gap),
+        ),
+        (
+            ContactTarget::AreaFraction(0.25),
+            builder().max_area_fraction(0.25),
+        ),
+    ] {
+        assert_eq!(ends(builder().until(target)), ends(named), "{target:?}");
+    }
+    // A plain number is a load.
+    assert_eq!(
+        ends(builder().until(at.load)),
+        ends(builder().max_load(at.load))
+    );
+}

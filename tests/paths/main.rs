@@ -1,0 +1,22 @@
+//! The loading path: against other solvers, at every event, at its ends, and between events.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/rough.rs"]
+mod rough;
+
+mod areas;
+mod continued;
+mod ends;
+mod foreign_states;
+mod handover;
+mod path_properties;
+mod periodic_paths;
+mod physical_mean;
+mod problems;
+mod reference_paths;
+mod releases;
+mod smallest_gap;
+mod ties;
+mod undisturbed;

@@ -1,0 +1,103 @@
+//! Questions in between do not change a bit of the path.
+
+use crate::problems::{grid, kernels, rough};
+use asperity::updater::{
+    ConjugateGradient, Dense, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
+};
+use asperity::{InfluenceKernel, LoadingSolver, Surface};
+
+/// The same path twice, once with every question at every third state.
+fn undisturbed<U: LinearUpdater + Clone>(
+    surface: &dyn Surface,
+    kernel: &dyn InfluenceKernel,
+    updater: U,
+    context: &str,
+) {
+    for window in [1, 7, 40] {
+        let builder = LoadingSolver::builder(surface, kernel)
+            .updater(updater.clone())
+            .max_area_fraction(0.5)
+            .window_size(window);
+        let expected = builder.clone().build().unwrap();
+        let expected: Vec<_> = expected.map(Result::unwrap).collect();
+        let mut path = builder.build().unwrap();
+        let mut states = Vec::new();
+        while let Some(state) = path.next() {
+            let state = state.unwrap();
+            states.push(state);
+            if state.step % 3 == 0 {
+                path.pressure().unwrap();
+                path.gap().unwrap();
+                path.certificate().unwrap();
+                path.pressure_at(&states[states.len() / 3]).unwrap();
+                path.pressure_at(&states[states.len() - 2]).unwrap();
+                path.contact_map();
+            }
+        }
+        // Derived equality: every number, and none is NaN.
+        assert!(states == expected, "{context}, window {window}");
+    }
+}
+
+fn everywhere<U: LinearUpdater + Clone>(updater: U, context: &str) {
+    let surface = rough(&grid(), 11);
+    for (name, kernel) in kernels(grid()) {
+        undisturbed(
+            &surface,
+            &kernel,
+            updater.clone(),
+            &format!("{context}, {name}"),
+        );
+    }
+}
+
+#[test]
+fn by_questions_to_cholesky() {
+    everywhere(RecursiveCholesky::new(), "Cholesky");
+}
+
+#[test]
+fn by_questions_to_mixed_precision() {
+    everywhere(MixedCholesky::single_from(0), "mixed");
+    everywhere(MixedCholesky::single_from(60), "mixed from 60");
+}
+
+#[test]
+fn by_questions_to_iterations() {
+    everywhere(ConjugateGradient::new(), "conjugate gradients");
+}
+
+#[test]
+fn by_questions_to_others() {
+    everywhere(Handover::new(), "handover");
+    let surface = rough(&grid(), 11);
+    undisturbed(&surface, &kernels(grid())[0].1, Dense::new(), "dense");
+}
+
+/// Nor to a factor that hands over on the way.
+#[test]
+fn by_questions_across_the_seam() {
+    let surface = rough(&grid(), 12);
+    let kernel = &kernels(grid())[0].1;
+    let fixed = LoadingSolver::new(&surface, kernel).unwrap().bytes();
+    let mut seams = 0;
+    for extra in (200_000..2_000_000).step_by(200_000) {
+        let builder = || {
+            LoadingSolver::builder(&surface, kernel)
+                .updater(Handover::new())
+                .memory_budget(fixed + extra)
+        };
+        let expected: Vec<_> = builder().build().unwrap().map_while(Result::ok).collect();
+        let mut path = builder().build().unwrap();
+        let mut states = Vec::new();
+        while let Some(Ok(state)) = path.next() {
+            states.push(state);
+            path.certificate().unwrap();
+            path.pressure_at(&states[states.len() / 2]).unwrap();
+        }
+        assert!(states == expected, "{extra} bytes");
+        let seam = path.updater().handed_over_at();
+        seams += usize::from(seam.is_some_and(|seam| seam > 0 && seam < states.len()));
+    }
+    assert!(seams > 0, "{seams}");
+}

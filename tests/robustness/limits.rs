@@ -1,0 +1,177 @@
+//! Limits: what is refused, where a path ends, and why.
+
+use crate::common::Sphere;
+use asperity::loading::{ContactEvent, LoadingBuilder, LoadingEnd};
+use asperity::{Error, LoadingState};
+
+/// A limit of a builder.
+type Limit = fn(LoadingBuilder<'_>, f64) -> LoadingBuilder<'_>;
+
+#[test]
+fn limits_that_make_no_sense() {
+    let sphere = Sphere::on(4);
+    let positive: [Limit; 3] = [
+        |builder, load| builder.max_load(load),
+        |builder, approach| builder.max_approach(approach),
+        |builder, pressure| builder.max_mean_pressure(pressure),
+    ];
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for limit in positive {
+            let error = limit(sphere.builder(), bad).build().unwrap_err();
+            assert!(matches!(error, Error::NotPositive { .. }), "{error}");
+        }
+    }
+    for bad in [
+        0.0,
+        -1e-9,
+        1.0 + 1e-9,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ] {
+        let error = sphere.builder().max_area_fraction(bad).build().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    }
+    // Less than a node is no contact.
+    let error = sphere.builder().max_area_fraction(0.9 / 16.0).build();
+    let error = error.unwrap_err();
+    assert!(matches!(error, Error::LessThanOneNode { .. }), "{error}");
+    let unloaded = sphere.states()[0].mean_gap;
+    for bad in [-1e-9, unloaded, 2.0 * unloaded, f64::NAN, f64::INFINITY] {
+        let error = sphere.builder().min_mean_gap(bad).build().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    }
+    for builder in [
+        sphere.builder().max_nodes(0),
+        sphere.builder().window_size(0),
+    ] {
+        let error = builder.build().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    }
+}
+
+/// A path to its end, which is fused.
+fn run(builder: LoadingBuilder<'_>, end: LoadingEnd) -> Vec<LoadingState> {
+    let mut path = builder.build().unwrap();
+    assert_eq!(path.end(), None);
+    let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
+    for _ in 0..3 {
+        assert!(path.next().is_none(), "fused");
+    }
+    assert_eq!(path.end(), Some(end));
+    assert_eq!(path.size_hint(), (0, Some(0)));
+    assert_eq!(path.state(), states.last().copied());
+    states
+}
+
+/// Every limit ends the path with `None`, after the last state that obeys it and before the first
+/// that does not; one of load, approach or mean gap with one more state, exactly there.
+#[test]
+fn limits_are_ends_and_not_errors() {
+    let sphere = Sphere::on(6);
+    let all = sphere.states();
+    assert_eq!(all.len(), 36);
+    for nodes in [1, 7, 35] {
+        let states = run(sphere.builder().max_nodes(nodes), LoadingEnd::Nodes);
+        assert_eq!(states, all[..nodes]);
+    }
+    for nodes in [36, usize::MAX] {
+        let states = run(sphere.builder().max_nodes(nodes), LoadingEnd::FullContact);
+        assert_eq!(states, all);
+    }
+    for (fraction, nodes) in [(1.0 / 36.0, 1), (0.5, 18), (0.999, 35)] {
+        let builder = sphere.builder().max_area_fraction(fraction);
+        assert_eq!(run(builder, LoadingEnd::AreaFraction), all[..nodes]);
+    }
+    let builder = sphere.builder().max_area_fraction(1.0);
+    assert_eq!(run(builder, LoadingEnd::FullContact), all);
+    // A whole shell has the same load: limits between shells, far from rounding.
+    let (before, after) = (all[15], all[16]);
+    assert!(after.approach > before.approach * 1.01);
+    let middle = |quantity: fn(&LoadingState) -> f64| 0.5 * (quantity(&before) + quantity(&after));
+    let load = middle(|state| state.load);
+    let approach = middle(|state| state.approach);
+    let mean_gap = middle(|state| state.mean_gap);
+    for (builder, end) in [
+        (sphere.builder().max_load(load), LoadingEnd::Load),
+        // The nominal area is 1.
+        (sphere.builder().max_mean_pressure(load), LoadingEnd::Load),
+        (
+            sphere.builder().max_approach(approach),
+            LoadingEnd::Approach,
+        ),
+        (sphere.builder().min_mean_gap(mean_gap), LoadingEnd::MeanGap),
+    ] {
+        let states = run(builder, end);
+        let (last, events) = states.split_last().unwrap();
+        assert_eq!(events, &all[..16]);
+        assert_eq!(last.event, ContactEvent::Limit);
+        assert_eq!((last.step, last.node), (before.step, before.node));
+    }
+    let builder = sphere.builder().window_size(usize::MAX);
+    assert_eq!(run(builder, LoadingEnd::FullContact).len(), 36);
+}
+
+/// Of several limits the first one reached counts, and of several of one kind the last one given.
+#[test]
+fn the_first_limit_reached_counts() {
+    let sphere = Sphere::on(6);
+    let all = sphere.states();
+    let load = all[20].load;
+    let builder = sphere.builder().max_load(load).max_nodes(9);
+    assert_eq!(run(builder, LoadingEnd::Nodes).len(), 9);
+    let builder = sphere.builder().max_nodes(9).max_area_fraction(0.1);
+    assert_eq!(run(builder, LoadingEnd::AreaFraction).len(), 3);
+    let builder = sphere
+        .builder()
+        .max_load(load)
+        .max_approach(all[2].approach);
+    let states = run(builder, LoadingEnd::Approach);
+    assert_eq!(states.last().unwrap().approach, all[2].approach);
+    let builder = sphere.builder().max_load(load).max_load(0.5 * load);
+    let states = run(builder, LoadingEnd::Load);
+    assert_eq!(states.last().unwrap().load, 0.5 * load);
+}
+
+/// A limit at which an event happens adds no second state.
+#[test]
+fn a_limit_at_an_event_is_that_event() {
+    let sphere = Sphere::on(6);
+    let all = sphere.states();
+    for state in &all {
+        if state.load == 0.0 {
+            continue;
+        }
+        let states = run(sphere.builder().max_load(state.load), {
+            let last = all.last().unwrap();
+            if state.load == last.load {
+                LoadingEnd::FullContact
+            } else {
+                LoadingEnd::Load
+            }
+        });
+        assert!(
+            states
+                .iter()
+                .all(|state| state.event == ContactEvent::Touch)
+        );
+        assert_eq!(states.last().unwrap().load, state.load);
+    }
+}
+
+#[test]
+fn states_that_are_not_reached() {
+    let sphere = Sphere::on(6);
+    let all = sphere.states();
+    let mut path = sphere.builder().build().unwrap();
+    assert!(path.pressure().unwrap().iter().all(|p| *p == 0.0));
+    assert_eq!(path.state(), None);
+    for (k, state) in all.iter().enumerate() {
+        let Err(Error::StateNotReached { step, present }) = path.pressure_at(state) else {
+            panic!("{state:?} answered");
+        };
+        assert_eq!((step, present), (k + 1, k));
+        path.next().unwrap().unwrap();
+        assert!(path.pressure_at(state).is_ok());
+    }
+}

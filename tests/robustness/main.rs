@@ -1,0 +1,11 @@
+//! What must never go wrong: bad input, bad kernels, extreme numbers, too little memory.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bad_input;
+mod bad_kernels;
+mod extreme_numbers;
+mod limits;
+mod memory_budget;
