@@ -5,7 +5,10 @@ use asperity::contact::ContactSequence;
 use asperity::kernel::{self, KernelTable};
 use asperity::loading::History;
 use asperity::updater::{self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched};
-use asperity::{Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver, LoadingState, Problem};
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
+    LoadingState, Problem,
+};
 use nalgebra::{DMatrix, DVector};
 
 /// What [`own_kernel_is_an_inverse_m_matrix`] shows of it is not said yet.

@@ -253,7 +253,10 @@ fn kernels_that_are_no_kernels() {
         }),
     ] {
         assert!(
-            matches!(error, Error::Kernel(KernelError::NotFinite { di: 2, dj: -1, .. })),
+            matches!(
+                error,
+                Error::Kernel(KernelError::NotFinite { di: 2, dj: -1, .. })
+            ),
             "{error}"
         );
     }
