@@ -132,7 +132,8 @@ fn factored(mut matrix: DMatrix<f64>) -> Result<Cholesky<f64, nalgebra::Dyn>, (u
         let row = matrix.row(j);
         let pivot = own - row.columns(0, j).norm_squared();
         // What rounding leaves of a pivot that is zero: a few units of the diagonal for each column.
-        if !(pivot > (j + 4) as f64 * f64::EPSILON * own) {
+        let rounding = (j + 4) as f64 * f64::EPSILON * own;
+        if pivot.is_nan() || pivot <= rounding {
             return Err((j, pivot));
         }
         let diagonal = pivot.sqrt();

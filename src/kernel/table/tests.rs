@@ -66,7 +66,7 @@ fn offsets_beyond_the_grid_have_no_coefficient() -> Result<(), Error> {
 fn a_table_is_the_kernel_it_was_made_from() -> Result<(), Error> {
     let kernel = PeriodicBoussinesq::new(Grid::new(6, 5, 1.0, 0.7)?, 1.0)?;
     let table = KernelTable::new(&kernel)?;
-    let boxed: Box<dyn InfluenceKernel> = Box::new(table.clone());
+    let boxed: Box<dyn InfluenceKernel + Send + Sync> = Box::new(table.clone());
     let again = KernelTable::new(&std::sync::Arc::new(boxed))?;
     assert_eq!(again.values, table.values);
     assert_eq!(again.contact_growth(), kernel.contact_growth());
