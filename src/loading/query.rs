@@ -208,8 +208,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         let load = self.grid().cell_area() * solved.pressure.iter().sum::<f64>();
         let scale = load.abs().max(solved.stiffness * solved.approach);
+        // At first touch nothing is left but the rounding of lengths as long as the greatest gap.
+        let rounding = f64::EPSILON * solved.stiffness * self.run.problem.greatest_gap();
         // NaN is refused as well.
-        let same_load = (load - state.load).abs() <= RECOGNISED * scale;
+        let same_load = (load - state.load).abs() <= (RECOGNISED * scale).max(rounding);
         if !same_load || !state.approach.is_finite() {
             return refused("load", load, "the load of the state");
         }

@@ -14,14 +14,9 @@ pub(crate) const COMPLIANCE: f64 = THICKNESS * 0.4 / (0.49 * E_STAR);
 
 /// A rough surface whose events are never simultaneous.
 pub(crate) fn rough(grid: &Grid, seed: u64) -> HeightMap {
-    let side = grid.sides().0;
-    let surface = SelfAffine::new(
-        0.8,
-        0.4 * side,
-        0.15 * side,
-        Amplitude::RmsHeight(1e-5),
-        seed,
-    );
+    // Two cells at least.
+    let short = (0.15 * grid.sides().0).max(2.0 * grid.dx().max(grid.dy()));
+    let surface = SelfAffine::new(0.8, 2.7 * short, short, Amplitude::RmsHeight(1e-5), seed);
     HeightMap::sample(&surface.unwrap(), grid).unwrap()
 }
 

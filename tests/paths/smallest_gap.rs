@@ -130,7 +130,7 @@ struct Faults {
     /// Least pressure, relative to the mean on the contact.
     worst_pressure: f64,
     overlap: usize,
-    /// Least gap, relative to the greater of Sq and the approach.
+    /// Least gap, relative to Sq.
     worst_gap: f64,
     backward: usize,
 }
@@ -148,7 +148,8 @@ fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
         let state = state.unwrap();
         let certificate = path.certificate().unwrap();
         // Far above rounding, 1e-14, and far below what the paper's rule does.
-        let (p, g) = (certificate.least_pressure, certificate.least_gap);
+        let p = certificate.least_pressure;
+        let g = certificate.least_gap * certificate.length / heights.rms_height();
         faults.negative_pressure += usize::from(p < -1e-9);
         faults.worst_pressure = faults.worst_pressure.min(p);
         faults.overlap += usize::from(g < -1e-9);

@@ -217,7 +217,7 @@ impl LinearUpdater for Malformed {
 
 #[test]
 fn malformed_updaters() {
-    for what in ["size", "y1", "y2", "nan"] {
+    for what in ["size", "y1", "y2", "nan", "nan y2"] {
         let updater = Malformed {
             inner: RecursiveCholesky::new(),
             what,
@@ -227,7 +227,8 @@ fn malformed_updaters() {
         let mut path = builder.updater(updater).window_size(3).build().unwrap();
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
-            "nan" => matches!(error, Error::NotMonotone { .. }),
+            "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
+            "nan y2" => matches!(error, Error::NotMonotone { .. }),
             _ => matches!(error, Error::UpdaterMismatch { .. }),
         };
         assert!(typed, "{what}: {error}");

@@ -64,6 +64,23 @@ fn run(builder: LoadingBuilder<'_>, end: LoadingEnd) -> Vec<LoadingState> {
     states
 }
 
+/// The same events; limits choose other windows, which round otherwise.
+#[track_caller]
+fn assert_same(found: &[LoadingState], expected: &[LoadingState]) {
+    assert_eq!(found.len(), expected.len());
+    for (a, b) in found.iter().zip(expected) {
+        assert_eq!(
+            (a.step, a.event, a.contact_nodes),
+            (b.step, b.event, b.contact_nodes)
+        );
+        assert!((a.load - b.load).abs() <= 1e-12 * b.load, "{a:?} {b:?}");
+        assert!(
+            (a.approach - b.approach).abs() <= 1e-12 * b.approach,
+            "{a:?} {b:?}"
+        );
+    }
+}
+
 /// Every limit ends the path with `None`, after the last state that obeys it and before the first
 /// that does not; one of load, approach or mean gap with one more state, exactly there.
 #[test]
@@ -73,18 +90,18 @@ fn limits_are_ends_and_not_errors() {
     assert_eq!(all.len(), 36);
     for nodes in [1, 7, 35] {
         let states = run(sphere.builder().max_nodes(nodes), LoadingEnd::Nodes);
-        assert_eq!(states, all[..nodes]);
+        assert_same(&states, &all[..nodes]);
     }
     for nodes in [36, usize::MAX] {
         let states = run(sphere.builder().max_nodes(nodes), LoadingEnd::FullContact);
-        assert_eq!(states, all);
+        assert_same(&states, &all);
     }
     for (fraction, nodes) in [(1.0 / 36.0, 1), (0.5, 18), (0.999, 35)] {
         let builder = sphere.builder().max_area_fraction(fraction);
-        assert_eq!(run(builder, LoadingEnd::AreaFraction), all[..nodes]);
+        assert_same(&run(builder, LoadingEnd::AreaFraction), &all[..nodes]);
     }
     let builder = sphere.builder().max_area_fraction(1.0);
-    assert_eq!(run(builder, LoadingEnd::FullContact), all);
+    assert_same(&run(builder, LoadingEnd::FullContact), &all);
     // A whole shell has the same load: limits between shells, far from rounding.
     let (before, after) = (all[15], all[16]);
     assert!(after.approach > before.approach * 1.01);
@@ -104,9 +121,9 @@ fn limits_are_ends_and_not_errors() {
     ] {
         let states = run(builder, end);
         let (last, events) = states.split_last().unwrap();
-        assert_eq!(events, &all[..16]);
+        assert_same(events, &all[..16]);
         assert_eq!(last.event, ContactEvent::Limit);
-        assert_eq!((last.step, last.node), (before.step, before.node));
+        assert_eq!((last.step, last.node), (before.step, events[15].node));
     }
     let builder = sphere.builder().window_size(usize::MAX);
     assert_eq!(run(builder, LoadingEnd::FullContact).len(), 36);
@@ -125,9 +142,9 @@ fn the_first_limit_reached_counts() {
     let builder = sphere
         .builder()
         .max_load(load)
-        .max_approach(all[2].approach);
+        .max_approach(all[12].approach);
     let states = run(builder, LoadingEnd::Approach);
-    assert_eq!(states.last().unwrap().approach, all[2].approach);
+    assert_eq!(states.last().unwrap().approach, all[12].approach);
     let builder = sphere.builder().max_load(load).max_load(0.5 * load);
     let states = run(builder, LoadingEnd::Load);
     assert_eq!(states.last().unwrap().load, 0.5 * load);

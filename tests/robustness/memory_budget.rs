@@ -32,7 +32,7 @@ fn memory_budgets() {
         .map(Result::unwrap)
         .collect();
     let mut seen = Vec::new();
-    for budget in (100_000..8_000_000).step_by(100_000) {
+    for budget in (200_000..8_000_000).step_by(100_000) {
         let mut path = sphere.builder().memory_budget(budget).build().unwrap();
         let mut states = Vec::new();
         let error = loop {
@@ -88,7 +88,7 @@ fn memory_budgets() {
 fn the_nodes_that_fit_do_fit() {
     let sphere = Sphere::on(24);
     let mut partial = 0;
-    for budget in (100_000..8_000_000).step_by(200_000) {
+    for budget in (200_000..8_000_000).step_by(200_000) {
         let mut path = sphere.builder().memory_budget(budget).build().unwrap();
         let Some(Err(Error::MemoryBudget { nodes_that_fit, .. })) = path.find(Result::is_err)
         else {
