@@ -35,7 +35,7 @@ fn main() -> Result<(), Error> {
     }
     println!(
         "found in {} iterations, gaps in contact within {:.1e} of the approach",
-        solution.iterations, solution.certificate.greatest_contact_gap
+        solution.effort.iterations, solution.certificate.greatest_contact_gap
     );
     Ok(())
 }

@@ -26,8 +26,8 @@ pub(super) fn solve_target(
     target: ContactTarget,
 ) -> Result<FixedLoadSolution, Error> {
     match target {
-        ContactTarget::Load(load) => stepper.to_load(load),
-        ContactTarget::Approach(approach) => stepper.to_approach(approach),
+        ContactTarget::Load(load) => stepper.step_to_load(load),
+        ContactTarget::Approach(approach) => stepper.step_to_approach(approach),
         ContactTarget::AreaFraction(fraction) => {
             let nodes = stepper.finest().grid.nodes_in(fraction)?;
             search(stepper, Sought::Nodes(nodes))
@@ -142,7 +142,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         None => sought.typical_load(stepper.finest()).ln(),
     };
     for _ in 0..MOST_STEPS {
-        let solution = stepper.to_load(x.exp())?;
+        let solution = stepper.step_to_load(x.exp())?;
         let state = &solution.state;
         let carrying = solution.carrying_nodes();
         if sought.is_found(state, carrying) {

@@ -61,7 +61,7 @@ impl FixedLoadSolver {
     /// [`Error::FactorizationFailed`] if the kernel is not positive definite on the contact;
     /// [`Error::MemoryBudget`] if more nodes are in contact than fit.
     pub fn solve(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
-        self.stepper().to_load(load)
+        self.stepper().step_to_load(load)
     }
 
     /// Contact under the load `load` \[N\], from a solution for another load.
@@ -81,7 +81,7 @@ impl FixedLoadSolver {
         solution: &FixedLoadSolution,
         load: f64,
     ) -> Result<FixedLoadSolution, Error> {
-        Stepper::at(&self.settings, &mut self.hierarchy, solution)?.to_load(load)
+        Stepper::at(&self.settings, &mut self.hierarchy, solution)?.step_to_load(load)
     }
 
     /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
@@ -93,7 +93,7 @@ impl FixedLoadSolver {
     /// [`Error::NotPositive`] for the approach, [`Error::ApproachNotReached`] if no load or every
     /// large one goes with it on such a half-space, and those of [`Self::solve`].
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
-        self.stepper().to_approach(approach)
+        self.stepper().step_to_approach(approach)
     }
 
     /// Contact at a target: a load, an approach, a contact area or a mean gap. For the latter two

@@ -80,14 +80,14 @@ impl<'a> Stepper<'a> {
     }
 
     /// Contact under the load `load` \[N\].
-    pub(super) fn to_load(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
+    pub(super) fn step_to_load(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
         let load = Error::require_positive("load", load)?;
         let sum = load / self.finest().grid.cell_area();
         self.to(Prescribed::Sum(sum), sum, Some(load))
     }
 
     /// Contact at the approach `approach` \[m\].
-    pub(super) fn to_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
+    pub(super) fn step_to_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
         let approach = Error::require_positive("approach", approach)?;
         let finest = self.finest();
         if finest.gauge.is_some() {

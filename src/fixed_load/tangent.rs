@@ -6,6 +6,7 @@ use super::level::Level;
 use super::settings::Settings;
 use super::solution::FixedLoadSolution;
 use crate::Error;
+use crate::kernel::Gauge;
 use crate::krylov::{LinearSystem, NodeSet, dot, sum, sum_over};
 use crate::parallel::inside;
 
@@ -38,7 +39,7 @@ impl Tangent {
         };
         // 1 / K = 1 / Kᵢ + s / ΔA in the gauge s.
         let cell_area = level.grid.cell_area();
-        let in_gauge = 1.0 / (1.0 / interfacial + level.uniform() / cell_area);
+        let in_gauge = Gauge::new(level.gauge, cell_area).stiffness(interfacial);
         let stiffness = state.contact_stiffness.unwrap_or(in_gauge);
         let rates = solution.pressure_rate.iter();
         let rate: Vec<f64> = rates.map(|rate| stiffness * rate).collect();

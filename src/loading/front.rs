@@ -32,7 +32,7 @@ impl Front {
     pub(super) fn new(problem: &Problem) -> Self {
         Self {
             grid: problem.grid(),
-            gauge: Gauge::new(problem.table().gauge(), problem.grid().cell_area()),
+            gauge: problem.table().gauge_per_load(),
             has_distant_point: problem.table().gauge().is_none(),
             approach: 0.0,
             load: 0.0,

@@ -117,9 +117,7 @@ impl Limits {
         last: Option<LoadingState>,
         next: &LoadingState,
     ) -> Option<(LoadingEnd, Option<LoadingState>)> {
-        let Some(last) = last else {
-            return None;
-        };
+        let last = last?;
         let exceeded = [
             (
                 LoadingEnd::Load,

@@ -275,7 +275,6 @@ impl KernelTable {
     }
 
     /// The gauge as a displacement for each unit of load; zero if nothing about it is arbitrary.
-    #[allow(dead_code)] // Until paths and fixed loads convert by it.
     pub(crate) fn gauge_per_load(&self) -> Gauge {
         Gauge::new(self.gauge(), self.grid.cell_area())
     }
