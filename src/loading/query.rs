@@ -220,7 +220,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         let least = solved.nodes.iter().map(|&node| solved.pressure[node]);
         let least = least.fold(f64::INFINITY, f64::min);
-        if least < -RECOGNISED * solved.pressure.max() {
+        let rounding = rounding / self.grid().cell_area();
+        if least < -(RECOGNISED * solved.pressure.max()).max(rounding) {
             return refused("least pressure in contact", least, "no tension");
         }
         let overlap = self.worst_overlap(state.step, solved)?;

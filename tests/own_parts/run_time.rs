@@ -1,7 +1,7 @@
 //! Surface, boundary, kernel and updater chosen at run time, as a program with options does.
 
 use crate::parts::{Bordering, Facets, Grains};
-use asperity::surface::{FlatPunch, Paraboloid};
+use asperity::surface::{Amplitude, FlatPunch, Paraboloid};
 use asperity::updater::{
     ConjugateGradient, Dense, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
 };
@@ -10,11 +10,15 @@ use asperity::{
     LoadingSolver, LoadingState, PeriodicBoussinesq, SelfAffine, Spectral, Surface,
 };
 
+fn rough() -> Result<SelfAffine, Error> {
+    SelfAffine::new(0.8, 1.2e-3, 4.5e-4, Amplitude::RmsHeight(1e-6), 3)
+}
+
 fn surface(name: &str) -> Result<Box<dyn Surface>, Error> {
     Ok(match name {
         "sphere" => Box::new(Paraboloid::new(1e-2)?),
-        "rough" => Box::new(SelfAffine::zhang2020(3)),
-        "both" => Box::new(Paraboloid::new(1e-2)?.plus(SelfAffine::zhang2020(3))),
+        "rough" => Box::new(rough()?),
+        "both" => Box::new(Paraboloid::new(1e-2)?.plus(rough()?)),
         _ => Box::new(Facets::new()),
     })
 }

@@ -25,7 +25,7 @@ fn paths_records_and_fixed_loads_round_alike() {
             // A node more or less by a whole cell, not by the last bit.
             for (fraction, expected) in [
                 (whole, k),
-                (1.0 - (nodes - k) as f64 / nodes as f64, k),
+                (k as f64 * (1.0 / nodes as f64), k),
                 ((k as f64 + 0.5) / nodes as f64, k),
             ] {
                 if fraction > 1.0 {

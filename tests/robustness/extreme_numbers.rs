@@ -98,7 +98,7 @@ fn run(
             let pressure = path.pressure_at(state);
             // Full contact is read at any load, also where it or its pressures over- or underflow.
             let mean = state.load / grid.nominal_area() / grid.nodes() as f64;
-            let is_in_range = finite(state) && (mean == 0.0 || mean.is_normal());
+            let is_in_range = finite(state) && (state.load == 0.0 || mean.is_normal());
             if is_in_range || !matches!(pressure, Err(Error::NotOnPath { .. })) {
                 pressure?;
             }

@@ -94,6 +94,10 @@ fn the_nodes_that_fit_do_fit() {
         else {
             continue;
         };
+        if nodes_that_fit == 0 {
+            // No path: that many nodes are refused as a limit.
+            continue;
+        }
         let again = sphere
             .builder()
             .memory_budget(budget)
