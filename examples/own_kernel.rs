@@ -8,7 +8,7 @@
 //! ```
 
 use asperity::surface::Paraboloid;
-use asperity::{Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, LoadingSolver};
+use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver};
 
 struct Coated {
     half_space: Boussinesq,

@@ -7,7 +7,7 @@ use super::gap_field::GapField;
 use super::limits::Limits;
 use super::paper::Paper;
 use super::releases::Releases;
-use super::run::{LoadingTimings, Run};
+use super::run::{LoadingRun, LoadingTimings};
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
@@ -42,8 +42,27 @@ pub struct LoadingBuilder<'a, U = RecursiveCholesky> {
     memory_budget: Option<usize>,
 }
 
+impl LoadingSolver {
+    /// The path of `surface` on the half-space of `kernel`, to full contact.
+    ///
+    /// # Errors
+    ///
+    /// As [`LoadingBuilder::build`].
+    pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
+        Self::builder(surface, kernel).build()
+    }
+
+    /// Sets up the path of `surface` on the half-space of `kernel`.
+    pub fn builder<'a>(
+        surface: &'a dyn Surface,
+        kernel: &'a dyn InfluenceKernel,
+    ) -> LoadingBuilder<'a> {
+        LoadingBuilder::new(surface, kernel)
+    }
+}
+
 impl<'a> LoadingBuilder<'a> {
-    pub(super) fn new(surface: &'a dyn Surface, kernel: &'a dyn InfluenceKernel) -> Self {
+    fn new(surface: &'a dyn Surface, kernel: &'a dyn InfluenceKernel) -> Self {
         Self {
             surface,
             kernel,
@@ -160,7 +179,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             _ => Procedure::Windowed(Windowed::new(growth, self.window_size)),
         };
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
-        let mut run = Run {
+        let mut run = LoadingRun {
             contact: ContactSequence::new(problem.grid()),
             releases: Releases::default(),
             field: GapField::new(&problem),

@@ -1,7 +1,7 @@
 //! The paper's procedure: the node with the smallest gap, one at a time.
 
 use super::gap_field::Line;
-use super::run::Run;
+use super::run::LoadingRun;
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
@@ -16,7 +16,10 @@ pub(super) struct Paper {
 
 impl Paper {
     /// Computes one state.
-    pub(super) fn produce<U: LinearUpdater>(&mut self, run: &mut Run<U>) -> Result<(), Error> {
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+    ) -> Result<(), Error> {
         run.affordable(1)?;
         run.renew_field()?;
         let mut smallest: Option<Line> = None;

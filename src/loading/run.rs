@@ -38,7 +38,7 @@ pub struct LoadingTimings {
 
 /// The rooms of a path: each holds one thing, and procedures go from one to the next.
 #[derive(Debug)]
-pub(super) struct Run<U> {
+pub(super) struct LoadingRun<U> {
     pub(super) problem: Problem,
     pub(super) contact: ContactSequence,
     pub(super) releases: Releases,
@@ -51,7 +51,7 @@ pub(super) struct Run<U> {
     pub(super) timings: LoadingTimings,
 }
 
-impl<U: LinearUpdater> Run<U> {
+impl<U: LinearUpdater> LoadingRun<U> {
     /// Number of events so far, those in the queue included.
     pub(super) fn steps(&self) -> usize {
         self.releases.steps(self.contact.len())

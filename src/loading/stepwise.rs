@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::run::{Run, TOLERANCE};
+use super::run::{LoadingRun, TOLERANCE};
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
@@ -42,7 +42,7 @@ impl Stepwise {
     /// Computes one state, unless there is none with at most `most_nodes` in contact.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
-        run: &mut Run<U>,
+        run: &mut LoadingRun<U>,
         most_nodes: usize,
     ) -> Result<(), Error> {
         if run.steps() == 0 {
@@ -88,7 +88,7 @@ impl Stepwise {
     }
 
     /// Refuses to go on without end at one approach.
-    fn count_tie<U>(&mut self, run: &Run<U>, approach: f64) -> Result<(), Error> {
+    fn count_tie<U>(&mut self, run: &LoadingRun<U>, approach: f64) -> Result<(), Error> {
         if approach > run.front.approach() {
             self.tied = 0;
         }
@@ -103,7 +103,11 @@ impl Stepwise {
     }
 
     /// Adds a node to the contact.
-    fn touch<U: LinearUpdater>(&mut self, run: &mut Run<U>, next: Upcoming) -> Result<(), Error> {
+    fn touch<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        next: Upcoming,
+    ) -> Result<(), Error> {
         run.affordable(1)?;
         let line = run
             .field
@@ -116,7 +120,7 @@ impl Stepwise {
     }
 
     /// Solves at the front, checks the conditions of contact there, and finds the next event.
-    fn survey<U: LinearUpdater>(&mut self, run: &mut Run<U>) -> Result<(), Error> {
+    fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         self.upcoming = None;
         run.renew_field()?;
         let approach = run.front.approach();
@@ -140,7 +144,7 @@ impl Stepwise {
 
     /// The next event: of all that would come first, or within rounding of it, the one of the node of lowest
     /// index.
-    fn first_event<U: LinearUpdater>(&self, run: &Run<U>) -> Option<Upcoming> {
+    fn first_event<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Option<Upcoming> {
         let front = run.front.approach();
         let upcoming = |event, node, approach: f64| Upcoming {
             approach: approach.max(front),

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::cost::{automatic_window, watched_for};
 use super::gap_field::Line;
-use super::run::{Run, TOLERANCE};
+use super::run::{LoadingRun, TOLERANCE};
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::updater::LinearUpdater;
@@ -51,7 +51,7 @@ impl Windowed {
     /// after them.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
-        run: &mut Run<U>,
+        run: &mut LoadingRun<U>,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
         let count = run.contact.len();
@@ -106,7 +106,7 @@ impl Windowed {
     }
 
     /// How many nodes to watch.
-    fn next_size<U: LinearUpdater>(&self, run: &Run<U>, most_nodes: usize) -> usize {
+    fn next_size<U: LinearUpdater>(&self, run: &LoadingRun<U>, most_nodes: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
         let size = self.size.unwrap_or_else(|| {
             automatic_window(count, nodes, run.updater.profile().cost)
@@ -116,7 +116,7 @@ impl Windowed {
     }
 
     /// Nodes that were not watched before come in multiples of this.
-    fn multiple<U: LinearUpdater>(&self, run: &Run<U>) -> usize {
+    fn multiple<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> usize {
         match self.size {
             Some(_) => 1,
             None => run.updater.profile().cost.multiple.max(1),
@@ -125,7 +125,7 @@ impl Windowed {
 
     /// Ranks the nodes out of contact by the time at which they would touch if no other did, after
     /// checking that contact still grows.
-    fn rank<U: LinearUpdater>(&mut self, run: &mut Run<U>) -> Result<(), Error> {
+    fn rank<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         let start = Instant::now();
         let least = -TOLERANCE * run.greatest_rate();
         let rates = run.contact.order().iter().zip(&run.field.solution().y2);
@@ -182,7 +182,7 @@ impl Windowed {
     }
 
     /// How many events of the window may rest on a Schur complement that is not exact.
-    fn trusted<U>(&self, run: &Run<U>) -> usize {
+    fn trusted<U>(&self, run: &LoadingRun<U>) -> usize {
         let (start, count) = (run.front.approach(), run.contact.len());
         let mut front = run.front;
         let mut left: Option<[f64; 2]> = None;
@@ -209,7 +209,7 @@ impl Windowed {
     /// The next window needs the same solution and the same displacements, and finds them.
     fn verify<U: LinearUpdater>(
         &mut self,
-        run: &mut Run<U>,
+        run: &mut LoadingRun<U>,
         tolerance: f64,
         mut how_many: impl FnMut(usize, usize) -> usize,
     ) -> Result<(), Error> {
@@ -232,7 +232,11 @@ impl Windowed {
     }
 
     /// Turns the events of the window, which began with `count` nodes in contact, into states.
-    fn enqueue<U: LinearUpdater>(&self, run: &mut Run<U>, count: usize) -> Result<(), Error> {
+    fn enqueue<U: LinearUpdater>(
+        &self,
+        run: &mut LoadingRun<U>,
+        count: usize,
+    ) -> Result<(), Error> {
         let start = run.front.approach();
         for (k, event) in self.window.events().iter().enumerate() {
             let contact_nodes = count + k + 1;
@@ -247,7 +251,7 @@ impl Windowed {
     }
 
     /// The path cannot go on although nodes are left: none of their gaps closes.
-    fn growth_stopped<U: LinearUpdater>(&self, run: &Run<U>) -> Error {
+    fn growth_stopped<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Error {
         let node = self.ranking.iter().map(|&(_, node)| node).min();
         run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
     }
@@ -256,7 +260,11 @@ impl Windowed {
 /// Whether a pressure or a gap at an approach is negative by more than `tolerance`, relative to the greatest
 /// pressure and to the lengths of the problem. Returns the approach until which none was, as far as the
 /// rates tell.
-fn contradiction<U: LinearUpdater>(run: &Run<U>, approach: f64, tolerance: f64) -> Option<f64> {
+fn contradiction<U: LinearUpdater>(
+    run: &LoadingRun<U>,
+    approach: f64,
+    tolerance: f64,
+) -> Option<f64> {
     if run.negative_pressure(approach, tolerance).is_some() {
         return Some(f64::NEG_INFINITY);
     }

@@ -9,14 +9,14 @@ use asperity::{
 /// A free half-space or one of two periodic ones.
 #[derive(Debug, Clone)]
 pub(crate) enum Kernel {
-    Free(Boussinesq),
+    Free(Box<Boussinesq>),
     Love(PeriodicBoussinesq),
     Spectral(Spectral),
 }
 
 impl Kernel {
     pub(crate) fn free(grid: Grid, e_star: f64) -> Self {
-        Self::Free(Boussinesq::new(grid, e_star).unwrap())
+        Self::Free(Box::new(Boussinesq::new(grid, e_star).unwrap()))
     }
 
     pub(crate) fn periodic(grid: Grid, e_star: f64) -> [Self; 2] {

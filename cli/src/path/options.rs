@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
-use clap::{Parser, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 
 use crate::values::{fraction, positive};
 
@@ -39,6 +39,29 @@ pub(crate) struct Options {
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
+    #[command(flatten)]
+    ends: Ends,
+
+    /// Which node touches next
+    #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
+    pub(super) rule: Rule,
+
+    /// Nodes along each side of the generated surface [default: 256]
+    #[arg(long, value_name = "N")]
+    pub(super) nodes: Option<usize>,
+
+    /// Seed of the generated surface [default: 1]
+    #[arg(long, value_name = "S")]
+    pub(super) seed: Option<u64>,
+
+    /// Directory for the files, made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(super) out: PathBuf,
+}
+
+/// Where the path ends.
+#[derive(Debug, Args)]
+struct Ends {
     /// Load over nominal area at which the path ends, exactly
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, conflicts_with = "max_load")]
     mean_pressure: Option<f64>,
@@ -58,34 +81,19 @@ pub(crate) struct Options {
     /// Contact area over nominal area at which the path ends [default: 0.1 if nothing else ends it]
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
     max_area_fraction: Option<f64>,
-
-    /// Which node touches next
-    #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
-    pub(super) rule: Rule,
-
-    /// Nodes along each side of the generated surface [default: 256]
-    #[arg(long, value_name = "N")]
-    pub(super) nodes: Option<usize>,
-
-    /// Seed of the generated surface [default: 1]
-    #[arg(long, value_name = "S")]
-    pub(super) seed: Option<u64>,
-
-    /// Directory for the files, made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub(super) out: PathBuf,
 }
 
 impl Options {
     /// Where the path ends, whichever comes first.
     pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
-        let pressure = self.mean_pressure.map(|p| p * grid.nominal_area());
+        let ends = &self.ends;
+        let pressure = ends.mean_pressure.map(|p| p * grid.nominal_area());
         let given = [
             pressure.map(ContactTarget::Load),
-            self.max_load.map(ContactTarget::Load),
-            self.max_approach.map(ContactTarget::Approach),
-            self.min_mean_gap.map(ContactTarget::MeanGap),
-            self.max_area_fraction.map(ContactTarget::AreaFraction),
+            ends.max_load.map(ContactTarget::Load),
+            ends.max_approach.map(ContactTarget::Approach),
+            ends.min_mean_gap.map(ContactTarget::MeanGap),
+            ends.max_area_fraction.map(ContactTarget::AreaFraction),
         ];
         let mut targets: Vec<ContactTarget> = given.into_iter().flatten().collect();
         if targets.is_empty() {

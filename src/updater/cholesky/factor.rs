@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::columns::Columns;
-use super::panels::{Panels, Rotations};
+use super::panels::{Panels, Rotations, remove};
 use super::precision::Precision;
 use crate::contact::ContactSequence;
 use crate::updater::{Schur, Touched, check_count};
@@ -149,7 +149,7 @@ impl<T: Precision> Factor<T> {
         check_count(self.len(), contact.len() + 1)?;
         let start = Instant::now();
         self.watched.clear();
-        let rotations = self.panels.remove(position);
+        let rotations = remove(&mut self.panels, position);
         self.columns.forget(self.panels.rows());
         self.timings.release += start.elapsed();
         Ok(rotations)

@@ -5,7 +5,7 @@ mod removal;
 use faer::MatRef;
 
 use super::precision::Precision;
-pub(super) use removal::Rotations;
+pub(super) use removal::{Rotations, remove};
 
 /// Rows of a panel: large enough that products of blocks run at the speed of plain GEMM, small
 /// enough that the unused upper half of the diagonal blocks does not matter.

@@ -37,64 +37,65 @@ fn rotate<T: Precision, const N: usize>((c, s): (T, T), l: &mut [T; N], x: &mut 
     }
 }
 
-impl<T: Precision> Panels<T> {
-    /// Removes row and column `k` of $C = L L^T$.
-    ///
-    /// The rows above `k` stay. Those below lose their entry x in column `k`, which leaves
-    /// $L L^T + x x^T$ to be factored: one rotation for each remaining column makes x vanish
-    /// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
-    /// accurate as the old one. Some 3 (n − k)² flops.
-    pub(in crate::updater::cholesky) fn remove(&mut self, k: usize) -> Rotations<T> {
-        let rows = self.rows;
-        let mut rotations = Vec::with_capacity(rows.saturating_sub(k + 1));
-        // Some rows side by side, from their new column k on.
-        let mut block = vec![[T::default(); BLOCK]; rows.saturating_sub(k)];
-        let mut left = Vec::with_capacity(BLOCK * k);
-        for first in (k + 1..rows).step_by(BLOCK) {
-            let count = BLOCK.min(rows - first);
-            let known = rotations.len();
-            let mut removed = [T::default(); BLOCK];
-            left.clear();
-            for (b, row) in self.rows_mut(first).take(count).enumerate() {
-                left.extend_from_slice(&row[..k]);
-                removed[b] = row[k];
-                for (values, value) in block.iter_mut().zip(&row[k + 1..=first + b]) {
-                    values[b] = *value;
-                }
-            }
-            vectorized(
-                #[inline(always)]
-                || {
-                    for (rotation, values) in rotations.iter().zip(&mut block) {
-                        rotate(*rotation, values, &mut removed);
-                    }
-                },
-            );
-            for b in 0..count {
-                let (before, here) = block[known..].split_at_mut(b);
-                let mut x = [removed[b]];
-                for (rotation, values) in rotations[known..].iter().zip(before) {
-                    let mut l = [values[b]];
-                    rotate(*rotation, &mut l, &mut x);
-                    values[b] = l[0];
-                }
-                let (diagonal, x): (f64, f64) = (here[0][b].into(), x[0].into());
-                let root = libm::hypot(diagonal, x);
-                here[0][b] = T::of(root);
-                rotations.push((T::of(diagonal / root), T::of(x / root)));
-            }
-            for (b, row) in self.rows_mut(first - 1).take(count).enumerate() {
-                row[..k].copy_from_slice(&left[b * k..(b + 1) * k]);
-                for (value, values) in row[k..first + b].iter_mut().zip(&block) {
-                    *value = values[b];
-                }
+/// Removes row and column `k` of $C = L L^T$.
+///
+/// The rows above `k` stay. Those below lose their entry x in column `k`, which leaves
+/// $L L^T + x x^T$ to be factored: one rotation for each remaining column makes x vanish
+/// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
+/// accurate as the old one. Some 3 (n − k)² flops.
+pub(in crate::updater::cholesky) fn remove<T: Precision>(
+    panels: &mut Panels<T>,
+    k: usize,
+) -> Rotations<T> {
+    let rows = panels.rows;
+    let mut rotations = Vec::with_capacity(rows.saturating_sub(k + 1));
+    // Some rows side by side, from their new column k on.
+    let mut block = vec![[T::default(); BLOCK]; rows.saturating_sub(k)];
+    let mut left = Vec::with_capacity(BLOCK * k);
+    for first in (k + 1..rows).step_by(BLOCK) {
+        let count = BLOCK.min(rows - first);
+        let known = rotations.len();
+        let mut removed = [T::default(); BLOCK];
+        left.clear();
+        for (b, row) in panels.rows_mut(first).take(count).enumerate() {
+            left.extend_from_slice(&row[..k]);
+            removed[b] = row[k];
+            for (values, value) in block.iter_mut().zip(&row[k + 1..=first + b]) {
+                values[b] = *value;
             }
         }
-        self.truncate(rows.saturating_sub(1));
-        Rotations {
-            first: k,
-            rotations,
+        vectorized(
+            #[inline(always)]
+            || {
+                for (rotation, values) in rotations.iter().zip(&mut block) {
+                    rotate(*rotation, values, &mut removed);
+                }
+            },
+        );
+        for b in 0..count {
+            let (before, here) = block[known..].split_at_mut(b);
+            let mut x = [removed[b]];
+            for (rotation, values) in rotations[known..].iter().zip(before) {
+                let mut l = [values[b]];
+                rotate(*rotation, &mut l, &mut x);
+                values[b] = l[0];
+            }
+            let (diagonal, x): (f64, f64) = (here[0][b].into(), x[0].into());
+            let root = libm::hypot(diagonal, x);
+            here[0][b] = T::of(root);
+            rotations.push((T::of(diagonal / root), T::of(x / root)));
         }
+        for (b, row) in panels.rows_mut(first - 1).take(count).enumerate() {
+            row[..k].copy_from_slice(&left[b * k..(b + 1) * k]);
+            for (value, values) in row[k..first + b].iter_mut().zip(&block) {
+                *value = values[b];
+            }
+        }
+    }
+    panels.truncate(rows.saturating_sub(1));
+    Rotations {
+        first: k,
+        rotations,
     }
 }
 
@@ -142,7 +143,7 @@ mod tests {
             let mut x: Vec<[f64; 1]> = x.into_iter().map(|value| [value]).collect();
             for &k in removals {
                 kept.remove(k);
-                panels.remove(k).remove(&mut x);
+                remove(&mut panels, k).remove(&mut x);
                 let (l, expected) = factor(&kept);
                 assert_eq!(panels.rows(), kept.len());
                 // The condition number is 1; a few hundred roundings of entries up to 20.
