@@ -241,7 +241,7 @@ fn verbs<U: Timed>(
     });
     group.finish();
 
-    // The whole window but for its events: n² operations and more for each node that joins.
+    // The whole window without its events: n² operations and more for each node that joins.
     let mut group = short_group(criterion, "window");
     group.throughput(Throughput::Elements((touched.len() * n * n) as u64));
     group.bench_function(&id, |bencher| {

@@ -59,7 +59,7 @@ impl LengthScale {
     }
 }
 
-/// What a certificate needs to know beside the fields.
+/// What a certificate needs to know besides the fields.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conditions {
     /// Sum of pressures that belongs to the load.

@@ -8,7 +8,9 @@ use crate::{Error, InfluenceKernel};
 
 /// Displacement of every node under `pressure`, summed term by term.
 ///
-/// $$u_i = \sum_j C(\mathbf i - \mathbf j)\\, p_j$$
+/// ```math
+/// u_i = \sum_j C(\mathbf i - \mathbf j)\, p_j
+/// ```
 ///
 /// takes time in proportion to the *square* of the number of nodes. It is primarily used to test
 /// [`Convolution`](super::Convolution) and kernels; each sum is compensated (Neumaier), so that

@@ -1,6 +1,8 @@
 //! Displacement from pressure: an influence kernel over the whole grid.
 //!
-//! $$u_i = \sum_j C(\mathbf i - \mathbf j)\\, p_j$$
+//! ```math
+//! u_i = \sum_j C(\mathbf i - \mathbf j)\, p_j
+//! ```
 //!
 //! is a convolution, which [`Convolution`] does by fast Fourier transform in a time that hardly
 //! grows faster than the number of nodes, and [`direct_sum`] term by term as it stands here.
@@ -26,7 +28,7 @@
 //! # Accuracy
 //!
 //! The error is that of rounding in the transforms, which grows with the logarithm of the number
-//! of nodes: about $10^{-15} \max |u|$. It is the same everywhere: small displacements far
+//! of nodes: about `1e-15 max |u|`. It is the same everywhere: small displacements far
 //! from the load have the absolute error of the large ones.
 //!
 //! # References

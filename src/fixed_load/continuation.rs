@@ -9,7 +9,7 @@ use crate::krylov::{add_scaled, sum};
 /// 0.8 % (512 × 512 nodes, 12 % in contact).
 const GREATEST_STEP: f64 = 1.25;
 
-/// What is known of a sequence of states beside the last one, which the level holds.
+/// What is known of a sequence of states besides the last one, which the level holds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Continuation {
     pub(super) tangent: Tangent,

@@ -87,7 +87,7 @@ impl Touched {
         self.watched
     }
 
-    /// $R_{it}$ for the watched node i and event t, 0 where there is none. For a node that touched
+    /// `R_it` for the watched node i and event t, 0 where there is none. For a node that touched
     /// at event τ only t ≤ τ means anything.
     #[must_use]
     pub fn factor(&self, position: usize, event: usize) -> f64 {

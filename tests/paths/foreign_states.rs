@@ -59,7 +59,7 @@ fn states_beyond_their_interval_are_refused() {
             let inside = loaded(state, 0.5 * (state.load + next.load));
             assert!(path.pressure_at(&inside).is_ok(), "{context}");
         }
-        // Full contact goes on for ever.
+        // In full contact the line goes on.
         let last = all[all.len() - 1];
         let beyond = loaded(last, 100.0 * last.load);
         assert!(path.pressure_at(&beyond).is_ok(), "{name}");

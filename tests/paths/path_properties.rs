@@ -254,7 +254,7 @@ proptest! {
         let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
         let mut convolution = Convolution::new(&kernel).unwrap();
         let gap = initial_gap(&case.heights());
-        // Beyond the last event too: full contact goes on for ever.
+        // Beyond the last event too, in full contact.
         for part in parts {
             let load = 1.2 * part * last.load;
             let state = history.at_load(load).unwrap();

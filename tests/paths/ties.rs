@@ -21,7 +21,7 @@ fn solver(surface: &dyn Surface, grid: Grid, window: Option<usize>) -> LoadingSo
     with_window(builder, window).build().unwrap()
 }
 
-/// Every number finite, but for the interfacial stiffness of full contact; nothing goes backwards.
+/// Every number is finite, except the interfacial stiffness of full contact; nothing goes backwards.
 fn check_numbers(states: &[LoadingState], nodes: usize) {
     assert_eq!(states.len(), nodes);
     for (k, s) in states.iter().enumerate() {

@@ -21,7 +21,7 @@ const COLUMNS_AT_ONCE: usize = 1024;
 const ROWS_AT_ONCE: usize = 64;
 
 impl<T: Precision> Panels<T> {
-    /// Solves $L^T x = b$ in place for right-hand sides of the same length, with the leading part
+    /// Solves `Lᵀ x = b` in place for right-hand sides of the same length, with the leading part
     /// of L that has as many rows.
     pub(super) fn solve_transposed<const N: usize>(&self, mut x: [&mut [T]; N]) {
         let count = length(&x);
@@ -81,7 +81,7 @@ impl<T: Precision> Panels<T> {
         subtract_transposed(&self.panel(p)[first..], (p + 1) * ROWS, y, x);
     }
 
-    /// Solves $L^T x = b$ in place with the triangle of panel p alone.
+    /// Solves `Lᵀ x = b` in place with the triangle of panel p alone.
     fn solve_triangle_transposed<const N: usize>(&self, p: usize, x: [&mut [T]; N]) {
         let (panel, width) = (self.panel(p), (p + 1) * ROWS);
         vectorized(
@@ -101,7 +101,7 @@ impl<T: Precision> Panels<T> {
         );
     }
 
-    /// Solves $L x = b$ in place, with the leading part of L that has as many rows as x; b is zero
+    /// Solves `L x = b` in place, with the leading part of L that has as many rows as x; b is zero
     /// before the row `from`.
     pub(super) fn solve<const N: usize>(&self, mut x: [&mut [T]; N], from: usize) {
         let count = length(&x);
@@ -148,7 +148,7 @@ impl<T: Precision> Panels<T> {
         });
     }
 
-    /// Solves $L x = b$ in place with the rows of a group, of which `products` has those with all
+    /// Solves `L x = b` in place with the rows of a group, of which `products` has those with all
     /// unknowns that are known but the last [`GROUP_ROWS`].
     fn solve_group<const N: usize>(
         &self,

@@ -15,7 +15,7 @@ pub(in crate::updater::cholesky) struct Rotations<T> {
 }
 
 impl<T: Precision> Rotations<T> {
-    /// Removes the entry of the removed row from $x = L^{-1} b$.
+    /// Removes the entry of the removed row from `x = L⁻¹ b`.
     pub(in crate::updater::cholesky) fn remove<const N: usize>(&self, x: &mut Vec<[T; N]>) {
         if self.first >= x.len() {
             return;
@@ -37,10 +37,10 @@ fn rotate<T: Precision, const N: usize>((c, s): (T, T), l: &mut [T; N], x: &mut 
     }
 }
 
-/// Removes row and column `k` of $C = L L^T$.
+/// Removes row and column `k` of `C = L Lᵀ`.
 ///
 /// The rows above `k` stay. Those below lose their entry x in column `k`, which leaves
-/// $L L^T + x x^T$ to be factored: one rotation for each remaining column makes x vanish
+/// `L Lᵀ + x xᵀ` to be factored: one rotation for each remaining column makes x vanish
 /// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
 /// accurate as the old one. Some 3 (n − k)² flops.
 pub(in crate::updater::cholesky) fn remove<T: Precision>(
