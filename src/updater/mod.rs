@@ -131,7 +131,8 @@ impl Default for WindowCost {
 ///         let complement = influence(problem, nodes, nodes) - coupling.transpose() * &solved;
 ///         schur.matrix_mut().copy_from(&complement);
 ///         for (j, &node) in nodes.iter().enumerate() {
-///             let inside = contact.order().iter().zip(&solved.column(j));
+///             let column = solved.column(j);
+///             let inside = contact.order().iter().zip(column.iter());
 ///             let explained: f64 = inside.map(|(&i, x)| problem.row_sums()[i] * x).sum();
 ///             schur.row_sums_mut()[j] = problem.row_sums()[node] - explained;
 ///         }

@@ -65,7 +65,6 @@ fn targets_that_cannot_be() {
     let mut solver = solver(&rough(&grid, 5), &Kernel::free(grid, 1.0), 1e-8);
     for bad in [
         ContactTarget::AreaFraction(0.0),
-        ContactTarget::AreaFraction(0.9 / 2304.0),
         ContactTarget::AreaFraction(1.1),
         ContactTarget::AreaFraction(f64::NAN),
         ContactTarget::MeanGap(0.0),
@@ -75,6 +74,8 @@ fn targets_that_cannot_be() {
         let solved = solver.solve_target(bad);
         assert!(matches!(solved, Err(Error::OutOfRange { .. })), "{bad:?}");
     }
+    let less = solver.solve_target(ContactTarget::AreaFraction(0.9 / 2304.0));
+    assert!(matches!(less, Err(Error::LessThanOneNode { .. })));
 }
 
 /// Four nodes of a symmetric shape touch together: numbers between are not to be had, unless the
