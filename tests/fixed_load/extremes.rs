@@ -1,7 +1,7 @@
 //! From a single node to far beyond full contact, and tolerances from coarse to impossible.
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Error, Grid, InfluenceKernel};
+use asperity::{Error, Grid};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, rough, solver};
@@ -82,6 +82,8 @@ fn tension_that_was_cut_off_does_not_keep_a_load_from_its_tolerance() {
 #[cfg(feature = "rayon")]
 #[test]
 fn threads_do_not_change_a_bit() {
+    use asperity::InfluenceKernel;
+
     let grid = Grid::new(150, 130, 1.0 / 150.0, 1.0 / 150.0).unwrap();
     let map = rough(&grid, 3);
     for kernel in Kernel::all(grid, 1.0) {
