@@ -137,15 +137,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             Procedure::Stepwise(stepwise) => stepwise.produce(run, most_nodes),
             _ if run.contact.len() >= most_nodes => Ok(()),
             Procedure::Windowed(windowed) => {
-                self.failure = windowed.produce(run, most_nodes)?;
-                match self.failure.take() {
+                let failure = windowed.produce(run, most_nodes)?;
+                if run.queue.is_empty() {
                     // Nothing came before it.
-                    Some(error) if run.queue.is_empty() => Err(error),
-                    failure => {
-                        self.failure = failure;
-                        Ok(())
-                    }
+                    return failure.map_or(Ok(()), Err);
                 }
+                self.failure = failure;
+                Ok(())
             }
             Procedure::Paper(paper) => paper.produce(run),
         }
