@@ -9,7 +9,6 @@ use std::time::Duration;
 use asperity::kernel::KernelTable;
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
-use asperity::updater::{LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine, Surface};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
@@ -33,11 +32,7 @@ fn flops(nodes: usize, fraction: f64) -> u64 {
     (n.powi(3) / 3.0) as u64
 }
 
-fn bench<U: LinearUpdater + Clone>(
-    group: &mut BenchmarkGroup<'_, WallTime>,
-    id: String,
-    builder: &LoadingBuilder<'_, U>,
-) {
+fn bench(group: &mut BenchmarkGroup<'_, WallTime>, id: String, builder: &LoadingBuilder<'_>) {
     group.bench_function(id, |bencher| {
         bencher.iter(|| {
             let path = succeed(builder.clone().build());
@@ -56,9 +51,7 @@ fn paths(
         group.throughput(Throughput::Elements(flops(nodes, fraction)));
         let kernel = Boussinesq::new(Grid::square(nodes, SIDE)?, 1.0)?;
         let builder = LoadingSolver::builder(surface, &kernel).max_area_fraction(fraction);
-        bench(&mut group, format!("{nodes}/f64"), &builder);
-        let mixed = builder.clone().updater(RecursiveCholesky::mixed());
-        bench(&mut group, format!("{nodes}/mixed"), &mixed);
+        bench(&mut group, nodes.to_string(), &builder);
         if nodes == 64 {
             bench(
                 &mut group,

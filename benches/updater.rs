@@ -1,4 +1,4 @@
-//! Time of each verb of the Cholesky updaters, with n nodes in contact, as a real path uses them.
+//! Time of each verb of the Cholesky updater, with n nodes in contact, as a real path uses them.
 //!
 //! Throughput is in floating-point operations where the processor is the bound (forward
 //! substitution: k n², Schur complement: k² n) and in bytes of the factor where memory is
@@ -11,8 +11,7 @@ use std::time::{Duration, Instant};
 use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, MixedCholesky, RecursiveCholesky, Schur, Solution, Touched,
-    UpdaterProfile,
+    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched, UpdaterProfile,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
 use criterion::measurement::WallTime;
@@ -21,35 +20,14 @@ use criterion::{BatchSize, BenchmarkGroup, Criterion, SamplingMode, Throughput};
 /// New nodes at a time.
 const NEW: usize = 256;
 
-/// An updater that says where its time went.
-trait Timed: LinearUpdater + Clone {
-    /// Bytes of a number of the factor.
-    const NUMBER: usize;
-
-    fn timings(&self) -> CholeskyTimings;
-}
-
-impl Timed for RecursiveCholesky {
-    const NUMBER: usize = size_of::<f64>();
-
-    fn timings(&self) -> CholeskyTimings {
-        Self::timings(self)
-    }
-}
-
-impl Timed for MixedCholesky {
-    const NUMBER: usize = size_of::<f32>();
-
-    fn timings(&self) -> CholeskyTimings {
-        Self::timings(self)
-    }
-}
+/// Bytes of a number of the factor.
+const NUMBER: usize = size_of::<f64>();
 
 /// What a path asked of its updater in one window.
 #[derive(Clone)]
-struct Window<U> {
+struct Window {
     /// The updater before it.
-    updater: U,
+    updater: RecursiveCholesky,
     /// The contact before it.
     contact: ContactSequence,
     watched: Vec<usize>,
@@ -59,14 +37,14 @@ struct Window<U> {
 }
 
 /// An updater that keeps the first window with at least `at` nodes in contact.
-struct Capture<U> {
-    inner: U,
+struct Capture {
+    inner: RecursiveCholesky,
     at: usize,
-    window: Option<Window<U>>,
+    window: Option<Window>,
     complete: bool,
 }
 
-impl<U: Timed> LinearUpdater for Capture<U> {
+impl LinearUpdater for Capture {
     fn watch(
         &mut self,
         problem: &Problem,
@@ -126,9 +104,9 @@ fn sphere() -> Result<(Paraboloid, Boussinesq), asperity::Error> {
 }
 
 /// A window of the path of the sphere.
-fn window<U: Timed>(updater: U, at: usize) -> Result<Window<U>, Box<dyn Error>> {
+fn window(at: usize) -> Result<Window, Box<dyn Error>> {
     let capture = Capture {
-        inner: updater,
+        inner: RecursiveCholesky::new(),
         at,
         window: None,
         complete: false,
@@ -144,11 +122,11 @@ fn window<U: Timed>(updater: U, at: usize) -> Result<Window<U>, Box<dyn Error>> 
 }
 
 /// The time that `part` of the updater's timings grows by in `count` calls of `work`.
-fn share<U: Timed>(
-    updater: &mut U,
+fn share(
+    updater: &mut RecursiveCholesky,
     count: u64,
     part: impl Fn(CholeskyTimings) -> Duration,
-    mut work: impl FnMut(&mut U, u64),
+    mut work: impl FnMut(&mut RecursiveCholesky, u64),
 ) -> Duration {
     let before = part(updater.timings());
     for i in 0..count {
@@ -165,30 +143,25 @@ fn succeed<T>(result: Result<T, asperity::Error>) -> T {
     }
 }
 
-fn verbs<U: Timed>(
-    criterion: &mut Criterion,
-    name: &str,
-    updater: U,
-    at: usize,
-) -> Result<(), Box<dyn Error>> {
+fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
     let Window {
         updater,
         contact,
         watched,
         touched,
         grown,
-    } = window(updater, at)?;
+    } = window(at)?;
     let (surface, kernel) = sphere()?;
     let problem = Problem::new(&surface, &kernel)?;
     let n = contact.len();
-    let id = format!("{at}/{name}");
+    let id = at.to_string();
 
     // Two sets of nodes in turn, so that all are new to the updater every time.
     let mut out: Vec<usize> = (0..problem.grid().nodes()).collect();
     out.retain(|&node| !contact.contains(node));
     let sets = [&out[..NEW], &out[NEW..2 * NEW]];
     let mut schur = Schur::default();
-    let mut borders = |updater: &mut U, i: u64| {
+    let mut borders = |updater: &mut RecursiveCholesky, i: u64| {
         succeed(updater.watch(&problem, &contact, sets[(i % 2) as usize], &mut schur));
     };
     // Whichever set the last sample ended with.
@@ -213,7 +186,7 @@ fn verbs<U: Timed>(
     // From the solution on the nodes before the last window, as at a refresh.
     let mut solution = Solution::default();
     let mut group = short_group(criterion, "solution");
-    group.throughput(Throughput::Bytes((n * n / 2 * U::NUMBER) as u64));
+    group.throughput(Throughput::Bytes((n * n / 2 * NUMBER) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_custom(|count| {
             let mut time = Duration::ZERO;
@@ -231,7 +204,7 @@ fn verbs<U: Timed>(
     let mut ready = updater.clone();
     succeed(ready.watch(&problem, &contact, &watched, &mut schur));
     let mut group = short_group(criterion, "join");
-    group.throughput(Throughput::Bytes((n * touched.len() * U::NUMBER) as u64));
+    group.throughput(Throughput::Bytes((n * touched.len() * NUMBER) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_batched_ref(
             || ready.clone(),
@@ -273,8 +246,7 @@ fn short_group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'
 fn main() -> Result<(), Box<dyn Error>> {
     let mut criterion = Criterion::default().configure_from_args();
     for at in [1000, 4000] {
-        verbs(&mut criterion, "f64", RecursiveCholesky::new(), at)?;
-        verbs(&mut criterion, "mixed", MixedCholesky::single_from(0), at)?;
+        verbs(&mut criterion, at)?;
     }
     criterion.final_summary();
     Ok(())

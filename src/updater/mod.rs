@@ -8,7 +8,6 @@
 //! | updater | memory for n nodes in contact | |
 //! |---|---|---|
 //! | [`RecursiveCholesky`] | 4n² bytes | exact; the default |
-//! | [`MixedCholesky`] | 2n² bytes | its factor in single precision, solutions refined to double |
 //! | [`ConjugateGradient`] | in proportion to the grid | iterations by fast Fourier transform |
 //! | [`Handover`] | a budget | a factor while it fits, iterations afterwards |
 //! | [`Dense`] | 16n² bytes | for tests: assembles and factors everything anew |
@@ -22,7 +21,7 @@ mod schur;
 mod touched;
 
 pub use check::{UpdaterReport, check};
-pub use cholesky::{CholeskyTimings, MixedCholesky, RecursiveCholesky};
+pub use cholesky::{CholeskyTimings, RecursiveCholesky};
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;

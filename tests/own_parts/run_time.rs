@@ -2,9 +2,7 @@
 
 use crate::parts::{Bordering, Facets, Grains};
 use asperity::surface::{Amplitude, FlatPunch, Paraboloid};
-use asperity::updater::{
-    ConjugateGradient, Dense, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
-};
+use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel,
     LoadingSolver, LoadingState, PeriodicBoussinesq, SelfAffine, Spectral, Surface,
@@ -40,7 +38,6 @@ fn kernel(name: &str, boundary: Boundary, grid: Grid) -> Result<Box<dyn Influenc
 fn updater(name: &str) -> Box<dyn LinearUpdater> {
     match name {
         "factor" => Box::new(RecursiveCholesky::new()),
-        "mixed" => Box::new(MixedCholesky::single_from(0)),
         "iterations" => Box::new(ConjugateGradient::new()),
         "handover" => Box::new(Handover::new()),
         "own" => Box::new(Bordering::default()),
@@ -62,15 +59,10 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
             let kernel = kernel(kernel_name, boundary, grid)?;
             assert_eq!(kernel.boundary(), boundary);
             let mut reference: Option<LoadingState> = None;
-            for updater_name in ["factor", "mixed", "iterations", "handover", "own", "dense"] {
+            for updater_name in ["factor", "iterations", "handover", "own", "dense"] {
                 // Of bordering and iterations with a kernel that is not convex events may have to be
                 // taken back, which the updater of these tests cannot.
                 if (kernel_name, updater_name) == ("spectral", "own") {
-                    continue;
-                }
-                // Nodes of a symmetric shape touch at one instant, which single precision does not tell
-                // apart well enough for windows that are checked at their ends: `NotMonotone`.
-                if (surface_name, kernel_name, updater_name) == ("sphere", "spectral", "mixed") {
                     continue;
                 }
                 let context =
@@ -85,7 +77,7 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
                 };
                 assert_eq!(state.contact_nodes, 67, "{context}");
                 let expected = *reference.get_or_insert(state);
-                // Single precision inside a window, and iterations: 6e-8 times a little.
+                // Iterations: changes inside a window err by some 1e-7.
                 let error = (state.load / expected.load - 1.0).abs();
                 assert!(error < 1e-6, "{context}: {error:e}");
 

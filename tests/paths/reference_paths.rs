@@ -2,9 +2,7 @@
 
 use crate::common::{Event, read_events, surface, with_window};
 use asperity::loading::LoadingSolver;
-use asperity::updater::{
-    ConjugateGradient, Dense, LinearUpdater, MixedCholesky, RecursiveCholesky,
-};
+use asperity::updater::{ConjugateGradient, Dense, LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, Grid, LoadingState};
 
 const SIDE: f64 = 1e-2;
@@ -129,24 +127,6 @@ fn cholesky_window_automatic() {
 fn dense_window_automatic() {
     run("selfaffine_48", Dense::new(), None, usize::MAX);
     run("selfaffine_40_full", Dense::new(), None, usize::MAX);
-}
-
-#[test]
-fn mixed_precision() {
-    for (window, from) in [(None, 0), (Some(7), 0), (None, 500), (Some(7), 500)] {
-        run(
-            "selfaffine_48",
-            MixedCholesky::single_from(from),
-            window,
-            usize::MAX,
-        );
-        run(
-            "selfaffine_40_full",
-            MixedCholesky::single_from(from),
-            window,
-            usize::MAX,
-        );
-    }
 }
 
 /// Without a factor: every window costs solves by conjugate gradients.

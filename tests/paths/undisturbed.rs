@@ -1,9 +1,7 @@
 //! Questions in between do not change a bit of the path.
 
 use crate::problems::{grid, kernels, rough};
-use asperity::updater::{
-    ConjugateGradient, Dense, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
-};
+use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{InfluenceKernel, LoadingSolver, Surface};
 
 /// The same path twice, once with every question at every third state.
@@ -54,12 +52,6 @@ fn everywhere<U: LinearUpdater + Clone>(updater: U, context: &str) {
 #[test]
 fn by_questions_to_cholesky() {
     everywhere(RecursiveCholesky::new(), "Cholesky");
-}
-
-#[test]
-fn by_questions_to_mixed_precision() {
-    everywhere(MixedCholesky::single_from(0), "mixed");
-    everywhere(MixedCholesky::single_from(60), "mixed from 60");
 }
 
 #[test]

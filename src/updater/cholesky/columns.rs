@@ -4,13 +4,13 @@ use std::mem;
 use std::ops::Range;
 use std::ptr;
 
+use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{MatMut, MatRef, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 
 use super::panels::{Panels, ROWS};
-use super::precision::Precision;
 use super::products::subtract_transposed;
-use crate::parallel::{self, vectorized};
+use crate::parallel;
 use crate::updater::Touched;
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
@@ -26,24 +26,24 @@ const UNIT: usize = 48;
 /// The columns come in blocks, of which the first holds those that were watched before. A block is
 /// stored row by row: then products with L run at full speed without repacking L.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Columns<T> {
+pub(super) struct Columns {
     rows: usize,
-    blocks: Vec<Block<T>>,
+    blocks: Vec<Block>,
     /// Room of blocks that are no more, for those to come: pages that are new to a process cost as
     /// much as a tenth of the products.
-    spare: Vec<Vec<T>>,
+    spare: Vec<Vec<f64>>,
 }
 
 /// Some neighbouring columns, row by row.
 #[derive(Debug, Clone, Default)]
-struct Block<T> {
+struct Block {
     width: usize,
-    values: Vec<T>,
+    values: Vec<f64>,
 }
 
-impl<T: Precision> Block<T> {
+impl Block {
     /// Some rows of the columns `columns`.
-    fn view(&self, rows: Range<usize>, columns: Range<usize>) -> MatRef<'_, T> {
+    fn view(&self, rows: Range<usize>, columns: Range<usize>) -> MatRef<'_, f64> {
         view(
             &self.values[rows.start * self.width..],
             self.width,
@@ -54,7 +54,7 @@ impl<T: Precision> Block<T> {
 }
 
 /// The first rows of some columns of a block.
-fn view<T>(values: &[T], width: usize, rows: usize, columns: Range<usize>) -> MatRef<'_, T> {
+fn view(values: &[f64], width: usize, rows: usize, columns: Range<usize>) -> MatRef<'_, f64> {
     if rows == 0 {
         return MatRef::from_row_major_slice(&[], rows, columns.len());
     }
@@ -62,27 +62,15 @@ fn view<T>(values: &[T], width: usize, rows: usize, columns: Range<usize>) -> Ma
     MatRef::from_row_major_slice_with_stride(start, rows, columns.len(), width)
 }
 
-impl<T: Precision> Columns<T> {
+impl Columns {
     /// Bytes that the columns of `watched` nodes take.
     pub(super) fn bytes(rows: usize, watched: usize) -> usize {
-        rows.saturating_mul(watched).saturating_mul(size_of::<T>())
-    }
-
-    /// The same with every number changed.
-    pub(super) fn map<R>(self, change: impl Fn(T) -> R) -> Columns<R> {
-        let block = |block: Block<T>| Block {
-            width: block.width,
-            values: block.values.into_iter().map(&change).collect(),
-        };
-        Columns {
-            rows: self.rows,
-            blocks: self.blocks.into_iter().map(block).collect(),
-            spare: Vec::new(),
-        }
+        rows.saturating_mul(watched)
+            .saturating_mul(size_of::<f64>())
     }
 
     /// Room for so many values and no more, and none yet.
-    fn room(&mut self, values: usize) -> Vec<T> {
+    fn room(&mut self, values: usize) -> Vec<f64> {
         let spare = self.spare.iter().enumerate();
         let nearest = spare.min_by_key(|(_, room)| room.capacity().abs_diff(values));
         let nearest = nearest.map(|(index, _)| index);
@@ -133,7 +121,7 @@ impl<T: Precision> Columns<T> {
     /// Blocks are independent, so that the result does not depend on how many threads share them.
     pub(super) fn forward_substitute(
         &mut self,
-        factor: &Panels<T>,
+        factor: &Panels,
         first: usize,
         fill: impl Fn(usize, usize, &mut [f64]) + Sync,
     ) {
@@ -155,11 +143,8 @@ impl<T: Precision> Columns<T> {
                 }
                 let target = MatMut::from_row_major_slice_mut(here, rows.len(), width);
                 let above = block.view(0..rows.start, 0..width);
-                T::subtract_product(target, 1.0, factor.left(p), above);
-                vectorized(
-                    #[inline(always)]
-                    || block.values.extend(here.iter().map(|value| T::of(*value))),
-                );
+                matmul(target, Accum::Add, factor.left(p), above, -1.0, Par::Seq);
+                block.values.extend_from_slice(here);
                 let solution = &mut block.values[rows.start * width..];
                 let solution = MatMut::from_row_major_slice_mut(solution, rows.len(), width);
                 solve_lower_triangular_in_place(factor.diagonal(p), solution, Par::Seq);
@@ -167,8 +152,8 @@ impl<T: Precision> Columns<T> {
         });
     }
 
-    /// S −= scale Fᵀ F (lower triangle, column by column).
-    pub(super) fn subtract_gram(&self, scale: f64, mut matrix: &mut [f64]) {
+    /// S −= Fᵀ F (lower triangle, column by column).
+    pub(super) fn subtract_gram(&self, mut matrix: &mut [f64]) {
         let tiles = self.tiles();
         let size = tiles
             .last()
@@ -187,13 +172,13 @@ impl<T: Precision> Columns<T> {
                 let (height, width) = (rows.len(), columns.len());
                 let s = &mut s[*start..];
                 let s = MatMut::from_column_major_slice_with_stride_mut(s, height, width, size);
-                T::subtract_product(s, scale, below, here);
+                matmul(s, Accum::Add, below, here, -1.0, Par::Seq);
             }
         });
     }
 
     /// R −= Fᵀ X for X given row by row.
-    pub(super) fn subtract_products<const N: usize>(&self, x: &[[T; N]], mut r: &mut [[T; N]]) {
+    pub(super) fn subtract_products<const N: usize>(&self, x: &[[f64; N]], mut r: &mut [[f64; N]]) {
         let tiles = self.tiles();
         let mut tasks = Vec::with_capacity(tiles.len());
         for (_, block, columns) in &tiles {
@@ -202,7 +187,7 @@ impl<T: Precision> Columns<T> {
             tasks.push((block, columns.start, here));
         }
         parallel::for_each(&mut tasks, |(block, column, r)| {
-            let mut sums = [[T::default(); WIDTH]; N];
+            let mut sums = [[0.0; WIDTH]; N];
             let values = block.values.get(*column..).unwrap_or_default();
             let targets = sums.each_mut().map(|sums| &mut sums[..r.len()]);
             subtract_transposed(values, block.width, x, targets);
@@ -215,7 +200,7 @@ impl<T: Precision> Columns<T> {
     }
 
     /// Ranges of at most [`WIDTH`] columns of one block: (first position, block, its columns).
-    fn tiles(&self) -> Vec<(usize, &Block<T>, Range<usize>)> {
+    fn tiles(&self) -> Vec<(usize, &Block, Range<usize>)> {
         let mut tiles = Vec::new();
         let mut position = 0;
         for block in &self.blocks {
@@ -229,7 +214,7 @@ impl<T: Precision> Columns<T> {
     }
 
     /// The block of a position, and the column in it.
-    fn locate(&self, mut position: usize) -> Option<(&Block<T>, usize)> {
+    fn locate(&self, mut position: usize) -> Option<(&Block, usize)> {
         for block in &self.blocks {
             if position < block.width {
                 return Some((block, position));
@@ -240,20 +225,14 @@ impl<T: Precision> Columns<T> {
     }
 
     /// Appends to the factor the rows of the nodes that touched, and their rows of R to the columns
-    /// of those that did not (at `untouched`, ascending). R is divided by `scale`.
-    pub(super) fn commit(
-        &mut self,
-        factor: &mut Panels<T>,
-        touched: &Touched,
-        untouched: &[usize],
-        scale: f64,
-    ) {
+    /// of those that did not (at `untouched`, ascending).
+    pub(super) fn commit(&mut self, factor: &mut Panels, touched: &Touched, untouched: &[usize]) {
         let before = self.rows;
         let width = untouched.len();
         let mut values = self.room((before + touched.len()) * width);
-        values.resize(before * width, T::default());
+        values.resize(before * width, 0.0);
         factor.push_rows(touched.len());
-        let window = |position, event| T::of(touched.factor(position, event) / scale);
+        let window = |position, event| touched.factor(position, event);
         let located = |positions: &[usize]| -> Vec<_> {
             positions
                 .iter()
@@ -261,7 +240,7 @@ impl<T: Precision> Columns<T> {
                 .collect()
         };
         // What is left of each block, by its columns there.
-        let mut left: Vec<(&Block<T>, Vec<usize>)> = Vec::new();
+        let mut left: Vec<(&Block, Vec<usize>)> = Vec::new();
         for (_, (block, column)) in located(untouched) {
             match left.last_mut() {
                 Some((last, columns)) if ptr::eq(*last, block) => columns.push(column),
@@ -273,7 +252,7 @@ impl<T: Precision> Columns<T> {
         // The new rows of L in pieces, each with its rows of F, so that a thread reads its part of F
         // once for all.
         let mut kept = values.chunks_mut((ROWS * width).max(1));
-        let mut pieces: Vec<Piece<T>> = Vec::new();
+        let mut pieces: Vec<Piece> = Vec::new();
         pieces.resize_with(before.div_ceil(ROWS), || Piece {
             rows: Vec::with_capacity(columns.len()),
             kept: kept.next().unwrap_or_default(),
@@ -341,9 +320,9 @@ impl<T: Precision> Columns<T> {
 }
 
 /// Rows of F on their way into rows of L, and into the columns that are kept.
-struct Piece<'a, T> {
-    rows: Vec<&'a mut [T]>,
-    kept: &'a mut [T],
+struct Piece<'a> {
+    rows: Vec<&'a mut [f64]>,
+    kept: &'a mut [f64],
 }
 
 /// Rows of the columns that are spread over the rows of the factor at a time.

@@ -4,7 +4,6 @@ use std::time::{Duration, Instant};
 
 use super::columns::Columns;
 use super::panels::{Panels, Rotations, remove};
-use super::precision::Precision;
 use crate::contact::ContactSequence;
 use crate::updater::{Schur, Touched, check_count};
 use crate::{Error, Problem};
@@ -25,24 +24,21 @@ pub struct CholeskyTimings {
     pub solve: Duration,
 }
 
-/// The factor `C_II = L Lᵀ` and the columns `F = L⁻¹ C_IP` of the watched nodes P, both divided by
-/// `scale`.
+/// The factor `C_II = L Lᵀ` and the columns `F = L⁻¹ C_IP` of the watched nodes P.
 #[derive(Debug, Clone)]
-pub(super) struct Factor<T> {
-    pub(super) panels: Panels<T>,
-    pub(super) columns: Columns<T>,
+pub(super) struct Factor {
+    pub(super) panels: Panels,
+    pub(super) columns: Columns,
     watched: Vec<usize>,
-    pub(super) scale: f64,
     pub(super) timings: CholeskyTimings,
 }
 
-impl<T: Precision> Factor<T> {
+impl Factor {
     pub(super) fn new() -> Self {
         Self {
             panels: Panels::default(),
             columns: Columns::default(),
             watched: Vec::new(),
-            scale: 1.0,
             timings: CholeskyTimings::default(),
         }
     }
@@ -72,14 +68,9 @@ impl<T: Precision> Factor<T> {
             nodes.iter().map(|&node| table.place(node)).collect()
         };
         let (places, contact) = (places_of(nodes), places_of(contact.order()));
-        let square = self.scale * self.scale;
-        let unit = 1.0 / square;
         self.columns
             .forward_substitute(&self.panels, kept, |row, first, values| {
                 table.fill_column(contact[row], &places[first..], values);
-                if unit != 1.0 {
-                    values.iter_mut().for_each(|value| *value *= unit);
-                }
             });
         let forward_done = Instant::now();
         self.timings.forward += forward_done - start;
@@ -89,7 +80,7 @@ impl<T: Precision> Factor<T> {
         for (column, &place) in matrix.chunks_mut(nodes.len().max(1)).zip(&places) {
             table.fill_column(place, &places, column);
         }
-        self.columns.subtract_gram(square, matrix);
+        self.columns.subtract_gram(matrix);
         self.timings.schur += forward_done.elapsed();
         Ok(())
     }
@@ -121,8 +112,7 @@ impl<T: Precision> Factor<T> {
         let start = Instant::now();
         let mut untouched: Vec<usize> = (0..self.watched.len()).collect();
         untouched.retain(|position| !touched.has_touched(*position));
-        self.columns
-            .commit(&mut self.panels, touched, &untouched, self.scale);
+        self.columns.commit(&mut self.panels, touched, &untouched);
         self.watched = untouched
             .iter()
             .map(|&position| self.watched[position])
@@ -145,7 +135,7 @@ impl<T: Precision> Factor<T> {
         &mut self,
         contact: &ContactSequence,
         position: usize,
-    ) -> Result<Rotations<T>, Error> {
+    ) -> Result<Rotations, Error> {
         check_count(self.len(), contact.len() + 1)?;
         let start = Instant::now();
         self.watched.clear();
@@ -157,20 +147,6 @@ impl<T: Precision> Factor<T> {
 
     /// Bytes held with `contact` nodes in contact and `watched` watched.
     pub(super) fn bytes(contact: usize, watched: usize) -> usize {
-        Panels::<T>::bytes(contact).saturating_add(Columns::<T>::bytes(contact, watched))
-    }
-}
-
-impl Factor<f64> {
-    /// The same in single precision, divided by `scale`.
-    pub(super) fn rounded(self, scale: f64) -> Factor<f32> {
-        let round = |value: f64| f32::of(value / scale);
-        Factor {
-            panels: self.panels.map(round),
-            columns: self.columns.map(round),
-            watched: self.watched,
-            scale: self.scale * scale,
-            timings: self.timings,
-        }
+        Panels::bytes(contact).saturating_add(Columns::bytes(contact, watched))
     }
 }

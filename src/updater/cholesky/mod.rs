@@ -2,15 +2,11 @@
 
 mod columns;
 mod factor;
-mod mixed;
 mod panels;
-mod precision;
 mod products;
-mod refinement;
 mod substitution;
 
 pub use factor::CholeskyTimings;
-pub use mixed::MixedCholesky;
 
 use std::time::Instant;
 
@@ -35,7 +31,7 @@ use panels::ROWS;
 /// [`timings`](Self::timings) says where the time went.
 #[derive(Debug, Clone)]
 pub struct RecursiveCholesky {
-    factor: Factor<f64>,
+    factor: Factor,
     /// L⁻¹B, row by row.
     border: Vec<[f64; Problem::RHS]>,
     /// Reduced right-hand sides of the watched nodes.
@@ -57,13 +53,6 @@ impl RecursiveCholesky {
             border: Vec::new(),
             reduced: Vec::new(),
         }
-    }
-
-    /// The same with a factor in single precision: half the memory, twice the speed; see
-    /// [`MixedCholesky`] for what remains exact.
-    #[must_use]
-    pub fn mixed() -> MixedCholesky {
-        MixedCholesky::new()
     }
 
     /// The factor of a contact that is known as a whole, and the contact.
@@ -184,7 +173,7 @@ impl LinearUpdater for RecursiveCholesky {
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         let rows = contact.saturating_add(watched);
-        Factor::<f64>::bytes(contact, watched)
+        Factor::bytes(contact, watched)
             .saturating_add(rows.saturating_mul(size_of::<[f64; Problem::RHS]>()))
     }
 }

@@ -4,7 +4,6 @@ mod removal;
 
 use faer::MatRef;
 
-use super::precision::Precision;
 pub(super) use removal::{Rotations, remove};
 
 /// Rows of a panel: large enough that products of blocks run at the speed of plain GEMM, small
@@ -16,12 +15,12 @@ pub(super) const ROWS: usize = 256;
 /// Panel p holds rows `p ROWS ..` up to and including their diagonal block, row by row, so that a
 /// new row is one contiguous copy and n rows take n²/2 numbers.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Panels<T> {
-    panels: Vec<Vec<T>>,
+pub(super) struct Panels {
+    panels: Vec<Vec<f64>>,
     rows: usize,
 }
 
-impl<T: Precision> Panels<T> {
+impl Panels {
     /// Number of rows.
     pub(super) fn rows(&self) -> usize {
         self.rows
@@ -36,24 +35,14 @@ impl<T: Precision> Panels<T> {
     pub(super) fn bytes(rows: usize) -> usize {
         let panels = rows.div_ceil(ROWS);
         let blocks = panels.saturating_mul(panels + 1) / 2;
-        blocks.saturating_mul(ROWS * ROWS * size_of::<T>())
-    }
-
-    /// The same with every number changed; a panel is dropped as soon as it is replaced.
-    pub(super) fn map<R>(self, change: impl Fn(T) -> R) -> Panels<R> {
-        let panel = |panel: Vec<T>| panel.into_iter().map(&change).collect();
-        Panels {
-            panels: self.panels.into_iter().map(panel).collect(),
-            rows: self.rows,
-        }
+        blocks.saturating_mul(ROWS * ROWS * size_of::<f64>())
     }
 
     /// Appends rows, to be filled.
     pub(super) fn push_rows(&mut self, count: usize) {
         self.rows += count;
         for panel in self.panels.len()..self.rows.div_ceil(ROWS) {
-            self.panels
-                .push(vec![T::default(); ROWS * (panel + 1) * ROWS]);
+            self.panels.push(vec![0.0; ROWS * (panel + 1) * ROWS]);
         }
     }
 
@@ -64,14 +53,14 @@ impl<T: Precision> Panels<T> {
     }
 
     /// The rows from `first` on, each up to the end of the diagonal block.
-    pub(super) fn rows_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [T]> {
+    pub(super) fn rows_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
         let panels = self.panels.iter_mut().enumerate().skip(first / ROWS);
         let rows = panels.flat_map(|(p, panel)| panel.chunks_mut((p + 1) * ROWS));
         rows.skip(first % ROWS).take(self.rows - first)
     }
 
     /// Panel p, row by row.
-    pub(super) fn panel(&self, p: usize) -> &[T] {
+    pub(super) fn panel(&self, p: usize) -> &[f64] {
         &self.panels[p]
     }
 
@@ -81,14 +70,14 @@ impl<T: Precision> Panels<T> {
     }
 
     /// The diagonal block of panel p.
-    pub(super) fn diagonal(&self, p: usize) -> MatRef<'_, T> {
+    pub(super) fn diagonal(&self, p: usize) -> MatRef<'_, f64> {
         let rows = self.rows_in(p);
         let start = &self.panels[p][p * ROWS..];
         MatRef::from_row_major_slice_with_stride(start, rows, rows, (p + 1) * ROWS)
     }
 
     /// The rows of panel p left of its diagonal block.
-    pub(super) fn left(&self, p: usize) -> MatRef<'_, T> {
+    pub(super) fn left(&self, p: usize) -> MatRef<'_, f64> {
         let panel = &self.panels[p];
         MatRef::from_row_major_slice_with_stride(panel, self.rows_in(p), p * ROWS, (p + 1) * ROWS)
     }

@@ -1,4 +1,4 @@
-//! Forward and backward substitution of a few right-hand sides, at the speed of memory.
+//! Backward substitution of a few right-hand sides, at the speed of memory.
 //!
 //! The factor is read once for all right-hand sides, in groups of panels. While one thread solves the
 //! triangle of a group, the others multiply the rest of the group before, so that nobody waits.
@@ -6,8 +6,7 @@
 use std::ops::{Deref, Range};
 
 use super::panels::{Panels, ROWS};
-use super::precision::Precision;
-use super::products::{add_products, dots, subtract_transposed};
+use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
 
 /// Panels that are solved between two meetings of the threads, which take some 0.1 ms each.
@@ -17,13 +16,11 @@ const GROUP_ROWS: usize = GROUP * ROWS;
 /// Unknowns that one thread updates at a time in a backward substitution: enough for rows of L to
 /// stream from memory, few enough to stay in cache.
 const COLUMNS_AT_ONCE: usize = 1024;
-/// Rows that one thread multiplies at a time in a forward substitution.
-const ROWS_AT_ONCE: usize = 64;
 
-impl<T: Precision> Panels<T> {
+impl Panels {
     /// Solves `Lᵀ x = b` in place for right-hand sides of the same length, with the leading part
     /// of L that has as many rows.
-    pub(super) fn solve_transposed<const N: usize>(&self, mut x: [&mut [T]; N]) {
+    pub(super) fn solve_transposed<const N: usize>(&self, mut x: [&mut [f64]; N]) {
         let count = length(&x);
         let Some(last) = count.div_ceil(GROUP_ROWS).checked_sub(1) else {
             return;
@@ -34,7 +31,7 @@ impl<T: Precision> Panels<T> {
             let start = group * GROUP_ROWS;
             let end = count.min(start + GROUP_ROWS);
             let known = rows(&x, start..end);
-            let subtract = |first: usize, x: &mut [&mut [T]; N]| {
+            let subtract = |first: usize, x: &mut [&mut [f64]; N]| {
                 for (p, known) in (group * GROUP..).zip(known.chunks(ROWS)) {
                     self.subtract_panel(p, first, known, x);
                 }
@@ -57,7 +54,7 @@ impl<T: Precision> Panels<T> {
     }
 
     /// The same with the triangle of a group alone, for the unknowns from its beginning on.
-    fn solve_group_transposed<const N: usize>(&self, group: usize, mut x: [&mut [T]; N]) {
+    fn solve_group_transposed<const N: usize>(&self, group: usize, mut x: [&mut [f64]; N]) {
         let count = length(&x);
         for panel in (0..count.div_ceil(ROWS)).rev() {
             let (p, start) = (group * GROUP + panel, panel * ROWS);
@@ -74,15 +71,15 @@ impl<T: Precision> Panels<T> {
         &self,
         p: usize,
         first: usize,
-        y: &[[T; N]],
-        x: &mut [&mut [T]; N],
+        y: &[[f64; N]],
+        x: &mut [&mut [f64]; N],
     ) {
         let x = x.each_mut().map(|x| &mut **x);
         subtract_transposed(&self.panel(p)[first..], (p + 1) * ROWS, y, x);
     }
 
     /// Solves `Lᵀ x = b` in place with the triangle of panel p alone.
-    fn solve_triangle_transposed<const N: usize>(&self, p: usize, x: [&mut [T]; N]) {
+    fn solve_triangle_transposed<const N: usize>(&self, p: usize, x: [&mut [f64]; N]) {
         let (panel, width) = (self.panel(p), (p + 1) * ROWS);
         vectorized(
             #[inline(always)]
@@ -100,92 +97,14 @@ impl<T: Precision> Panels<T> {
             },
         );
     }
-
-    /// Solves `L x = b` in place, with the leading part of L that has as many rows as x; b is zero
-    /// before the row `from`.
-    pub(super) fn solve<const N: usize>(&self, mut x: [&mut [T]; N], from: usize) {
-        let count = length(&x);
-        let (first, groups) = (from / GROUP_ROWS, count.div_ceil(GROUP_ROWS));
-        let mut products = vec![[T::default(); N]; GROUP_ROWS];
-        let mut next = products.clone();
-        for group in first..groups {
-            let start = group * GROUP_ROWS;
-            let split = x.each_mut().map(|x| {
-                let (known, unknown) = x[..count].split_at_mut(start);
-                let end = unknown.len().min(GROUP_ROWS);
-                (&known[first * GROUP_ROWS..], &mut unknown[..end])
-            });
-            let known = split.each_ref().map(|(known, _)| *known);
-            let unknown = split.map(|(_, unknown)| unknown);
-            let rows = count.saturating_sub(start + GROUP_ROWS).min(GROUP_ROWS);
-            parallel::join(
-                || self.solve_group(group, &products, known, unknown),
-                || self.multiply(group + 1, first * GROUP_ROWS, known, &mut next[..rows]),
-            );
-            std::mem::swap(&mut products, &mut next);
-        }
-    }
-
-    /// Products of the first rows of a group, from column `first` on, with known unknowns.
-    fn multiply<const N: usize>(
-        &self,
-        group: usize,
-        first: usize,
-        known: [&[T]; N],
-        products: &mut [[T; N]],
-    ) {
-        products.fill([T::default(); N]);
-        parallel::for_each_chunk(products, ROWS_AT_ONCE, |chunk, products| {
-            let row = chunk * ROWS_AT_ONCE;
-            let (p, start) = (group * GROUP + row / ROWS, row % ROWS);
-            let width = (p + 1) * ROWS;
-            add_products(
-                &self.panel(p)[start * width + first..],
-                width,
-                known,
-                products,
-            );
-        });
-    }
-
-    /// Solves `L x = b` in place with the rows of a group, of which `products` has those with all
-    /// unknowns that are known but the last [`GROUP_ROWS`].
-    fn solve_group<const N: usize>(
-        &self,
-        group: usize,
-        products: &[[T; N]],
-        known: [&[T]; N],
-        mut x: [&mut [T]; N],
-    ) {
-        let count = length(&x);
-        let start = group * GROUP_ROWS;
-        let near = known.map(|known| &known[known.len().saturating_sub(GROUP_ROWS)..]);
-        let before = start - length(&near);
-        vectorized(
-            #[inline(always)]
-            || {
-                for (r, product) in products.iter().take(count).enumerate() {
-                    let p = group * GROUP + r / ROWS;
-                    let row = &self.panel(p)[r % ROWS * (p + 1) * ROWS..][..=start + r];
-                    let solved = x.each_ref().map(|x| &x[..r]);
-                    let outside = dots(&row[before..start], near);
-                    let inside = dots(&row[start..start + r], solved);
-                    for (i, x) in x.iter_mut().enumerate() {
-                        x[r] -= (product[i] + outside[i]) + inside[i];
-                        x[r] /= row[start + r];
-                    }
-                }
-            },
-        );
-    }
 }
 
 /// Some of the unknowns, row by row.
-fn rows<T: Precision, const N: usize>(x: &[&mut [T]; N], range: Range<usize>) -> Vec<[T; N]> {
+fn rows<const N: usize>(x: &[&mut [f64]; N], range: Range<usize>) -> Vec<[f64; N]> {
     range.map(|k| x.each_ref().map(|x| x[k])).collect()
 }
 
 /// The length of the shortest.
-fn length<T, X: Deref<Target = [T]>>(x: &[X]) -> usize {
+fn length<X: Deref<Target = [f64]>>(x: &[X]) -> usize {
     x.iter().map(|x| x.len()).min().unwrap_or_default()
 }

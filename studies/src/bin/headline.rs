@@ -10,7 +10,6 @@ use std::time::Instant;
 
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
-use asperity::updater::{LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver};
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
@@ -52,17 +51,17 @@ impl Sphere {
 }
 
 /// A path that was run to its end.
-struct Run<U> {
-    solver: LoadingSolver<U>,
+struct Run {
+    solver: LoadingSolver,
     nodes: usize,
     seconds: f64,
 }
 
-fn run<U: LinearUpdater>(
+fn run(
     name: &'static str,
     grid_nodes: usize,
-    builder: LoadingBuilder<'_, U>,
-) -> Result<Run<U>, asperity::Error> {
+    builder: LoadingBuilder<'_>,
+) -> Result<Run, asperity::Error> {
     let expected = (grid_nodes * grid_nodes) as f64 * PI / 16.0;
     let style = ProgressStyle::with_template("{msg:>24} {wide_bar} {pos}/{len} nodes {elapsed}");
     let bar = ProgressBar::new(expected as u64)
@@ -136,17 +135,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds / gemm_seconds
     );
 
-    let builder = sphere.path().updater(RecursiveCholesky::mixed());
-    let mixed = run("path, mixed precision", options.nodes, builder)?;
-    println!(
-        "mixed precision: {} nodes in {:.2} s, {:.2} times the plain GEMM",
-        mixed.nodes,
-        mixed.seconds,
-        mixed.seconds / gemm_seconds
-    );
-    phases::print(mixed.solver.timings(), mixed.solver.updater().timings());
-    drop(mixed.solver);
-
     let side = if options.paper_full {
         options.nodes
     } else {
@@ -169,12 +157,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     println!(
         "nodes={} seconds={:.3} gemm_seconds={gemm_seconds:.3} ratio_to_gemm={:.3} \
-         speedup_over_paper={speedup:.1} peak_over_4n2={:.3} mixed_ratio={:.3}",
+         speedup_over_paper={speedup:.1} peak_over_4n2={:.3}",
         exact.nodes,
         exact.seconds,
         exact.seconds / gemm_seconds,
-        peak / factor_bytes,
-        mixed.seconds / gemm_seconds
+        peak / factor_bytes
     );
     Ok(())
 }

@@ -1,17 +1,14 @@
 //! Long paths: how time and memory grow with the number of contact nodes.
 //!
 //! A self-affine surface, roll-off at a quarter of the side and short cut-off at four cells, up to a
-//! given number of nodes in contact. With `--compare`, the path in mixed precision against the one in
-//! double precision, state by state.
+//! given number of nodes in contact.
 
 use std::error::Error;
 use std::time::Instant;
 
 use asperity::surface::{Amplitude, SelfAffine};
-use asperity::updater::{
-    CholeskyTimings, Handover, LinearUpdater, MixedCholesky, RecursiveCholesky,
-};
-use asperity::{Boussinesq, Grid, LoadingSolver, LoadingState};
+use asperity::updater::{CholeskyTimings, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::{Boussinesq, Grid, LoadingSolver};
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
 use clap::Parser;
@@ -26,12 +23,6 @@ struct Options {
     /// Contact nodes at which the path ends.
     #[arg(long, default_value_t = 9830)]
     contact_nodes: usize,
-    /// The factor in single precision.
-    #[arg(long)]
-    mixed: bool,
-    /// Both precisions, compared state by state.
-    #[arg(long)]
-    compare: bool,
     /// The factor up to a memory budget of so many MB, conjugate gradients after.
     #[arg(long)]
     budget: Option<usize>,
@@ -47,7 +38,7 @@ fn run<U: LinearUpdater>(
     options: &Options,
     updater: U,
     timings: Option<fn(&U) -> CholeskyTimings>,
-) -> Result<Vec<LoadingState>, Box<dyn Error>> {
+) -> Result<(), Box<dyn Error>> {
     const SIDE: f64 = 1e-2;
     let rolloff = SIDE / 4.0;
     let cutoff = 4.0 * SIDE / options.nodes as f64;
@@ -68,23 +59,23 @@ fn run<U: LinearUpdater>(
         builder = builder.window_size(size);
     }
     let mut path = builder.build()?;
-    let mut states = Vec::new();
+    let mut states = 0_u32;
     for state in path.by_ref() {
-        states.push(state?);
-        if states.len() % 128 == 0 {
-            bar.set_position(states.len() as u64);
+        state?;
+        states += 1;
+        if states.is_multiple_of(128) {
+            bar.set_position(states.into());
         }
     }
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    let n = states.len() as f64;
+    let n = f64::from(states);
     let certificate = path.certificate()?;
     let in_sq = certificate.length / path.problem().rms_height();
     let peak = peak_memory().unwrap_or(f64::NAN);
     println!(
-        "{} nodes ({:.1} %) in {seconds:.2} s: {:.1} GFLOP/s as n^3/3 a second, {} windows, \
+        "{states} nodes ({:.1} %) in {seconds:.2} s: {:.1} GFLOP/s as n^3/3 a second, {} windows, \
          peak memory {:.0} MB = {:.3} x 4n^2",
-        states.len(),
         100.0 * n / (options.nodes * options.nodes) as f64,
         n.powi(3) / 3.0 / seconds / 1e9,
         path.timings().windows,
@@ -100,50 +91,15 @@ fn run<U: LinearUpdater>(
     if let Some(timings) = timings {
         phases::print(path.timings(), timings(path.updater()));
     }
-    Ok(states)
-}
-
-fn compare(exact: &[LoadingState], mixed: &[LoadingState]) {
-    type Column = fn(&LoadingState) -> f64;
-    let pairs = || exact.iter().zip(mixed);
-    let order = pairs().take_while(|(e, m)| e.node == m.node).count();
-    println!("same node at the first {order} of {} events", exact.len());
-    let columns: [(&str, Column); 5] = [
-        ("approach", |state| state.approach),
-        ("load", |state| state.load),
-        ("mean gap", |state| state.mean_gap),
-        ("contact stiffness", |state| {
-            state.contact_stiffness.unwrap_or(f64::NAN)
-        }),
-        ("interfacial stiffness", |state| {
-            state.interfacial_stiffness.unwrap_or(f64::NAN)
-        }),
-    ];
-    for (name, column) in columns {
-        let errors = pairs().map(|(e, m)| (column(m) - column(e)).abs() / column(e));
-        let worst = errors.filter(|error| error.is_finite()).fold(0.0, f64::max);
-        println!("  {name:<22} within {worst:.1e}");
-    }
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
-    let exact = || {
+    if options.budget.is_some() {
+        run(&options, Handover::new(), None)
+    } else {
         let timings = RecursiveCholesky::timings;
         run(&options, RecursiveCholesky::new(), Some(timings))
-    };
-    let mixed = || {
-        let timings = MixedCholesky::timings;
-        run(&options, RecursiveCholesky::mixed(), Some(timings))
-    };
-    if options.compare {
-        compare(&exact()?, &mixed()?);
-    } else if options.mixed {
-        mixed()?;
-    } else if options.budget.is_some() {
-        run(&options, Handover::new(), None)?;
-    } else {
-        exact()?;
     }
-    Ok(())
 }

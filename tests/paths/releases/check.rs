@@ -12,14 +12,13 @@ use nalgebra::{DMatrix, DVector};
 
 /// Both sides solve with matrices of condition 1e3 at most, which loses three digits of sixteen.
 pub(super) const EXACT: f64 = 1e-12;
-/// Solutions that are refined or iterated to residuals of 1e-12 and 1e-14: times the condition number.
+/// Solutions that are iterated to residuals of 1e-14: times the condition number.
 pub(super) const ITERATED: f64 = 1e-10;
 
 /// A path from first touch to its end, checked at every event and between events. Returns the number
 /// of releases.
 ///
-/// Everything within `tolerance` of the greatest pressure or load. With a factor in double precision
-/// that is [`EXACT`].
+/// Everything within `tolerance` of the greatest pressure or load. With a factor that is [`EXACT`].
 pub(super) fn check<U: LinearUpdater>(
     kernel: &Table,
     gaps: &[f64],

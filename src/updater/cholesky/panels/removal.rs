@@ -2,21 +2,20 @@
 
 use super::Panels;
 use crate::parallel::vectorized;
-use crate::updater::cholesky::precision::Precision;
 
 /// Rows that are rotated together, so that a rotation is one vector operation.
 const BLOCK: usize = 16;
 
 /// The plane rotations (c, s) that take a removed column of L into its place.
 #[derive(Debug)]
-pub(in crate::updater::cholesky) struct Rotations<T> {
+pub(in crate::updater::cholesky) struct Rotations {
     first: usize,
-    rotations: Vec<(T, T)>,
+    rotations: Vec<(f64, f64)>,
 }
 
-impl<T: Precision> Rotations<T> {
+impl Rotations {
     /// Removes the entry of the removed row from `x = L⁻¹ b`.
-    pub(in crate::updater::cholesky) fn remove<const N: usize>(&self, x: &mut Vec<[T; N]>) {
+    pub(in crate::updater::cholesky) fn remove<const N: usize>(&self, x: &mut Vec<[f64; N]>) {
         if self.first >= x.len() {
             return;
         }
@@ -29,7 +28,7 @@ impl<T: Precision> Rotations<T> {
 
 /// (l, x) ← (c l + s x, c x − s l), for several at a time.
 #[inline(always)]
-fn rotate<T: Precision, const N: usize>((c, s): (T, T), l: &mut [T; N], x: &mut [T; N]) {
+fn rotate<const N: usize>((c, s): (f64, f64), l: &mut [f64; N], x: &mut [f64; N]) {
     for (l, x) in l.iter_mut().zip(x) {
         let (before_l, before_x) = (*l, *x);
         *l = c * before_l + s * before_x;
@@ -43,19 +42,16 @@ fn rotate<T: Precision, const N: usize>((c, s): (T, T), l: &mut [T; N], x: &mut 
 /// `L Lᵀ + x xᵀ` to be factored: one rotation for each remaining column makes x vanish
 /// (Gill, Golub, Murray, Saunders 1974). Nothing is ever subtracted, so that the new factor is as
 /// accurate as the old one. Some 3 (n − k)² flops.
-pub(in crate::updater::cholesky) fn remove<T: Precision>(
-    panels: &mut Panels<T>,
-    k: usize,
-) -> Rotations<T> {
+pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, k: usize) -> Rotations {
     let rows = panels.rows;
     let mut rotations = Vec::with_capacity(rows.saturating_sub(k + 1));
     // Some rows side by side, from their new column k on.
-    let mut block = vec![[T::default(); BLOCK]; rows.saturating_sub(k)];
+    let mut block = vec![[0.0; BLOCK]; rows.saturating_sub(k)];
     let mut left = Vec::with_capacity(BLOCK * k);
     for first in (k + 1..rows).step_by(BLOCK) {
         let count = BLOCK.min(rows - first);
         let known = rotations.len();
-        let mut removed = [T::default(); BLOCK];
+        let mut removed = [0.0; BLOCK];
         left.clear();
         for (b, row) in panels.rows_mut(first).take(count).enumerate() {
             left.extend_from_slice(&row[..k]);
@@ -80,10 +76,10 @@ pub(in crate::updater::cholesky) fn remove<T: Precision>(
                 rotate(*rotation, &mut l, &mut x);
                 values[b] = l[0];
             }
-            let (diagonal, x): (f64, f64) = (here[0][b].into(), x[0].into());
+            let (diagonal, x) = (here[0][b], x[0]);
             let root = libm::hypot(diagonal, x);
-            here[0][b] = T::of(root);
-            rotations.push((T::of(diagonal / root), T::of(x / root)));
+            here[0][b] = root;
+            rotations.push((diagonal / root, x / root));
         }
         for (b, row) in panels.rows_mut(first - 1).take(count).enumerate() {
             row[..k].copy_from_slice(&left[b * k..(b + 1) * k]);
@@ -135,7 +131,7 @@ mod tests {
         ] {
             let mut kept: Vec<usize> = (0..size).collect();
             let (l, x) = factor(&kept);
-            let mut panels = Panels::<f64>::default();
+            let mut panels = Panels::default();
             panels.push_rows(size);
             for (row, values) in panels.rows_mut(0).zip(&l) {
                 row[..values.len()].copy_from_slice(values);
