@@ -6,6 +6,9 @@ use crate::Error;
 /// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic; with
 /// the second the iteration does not suffer from steps in single precision.
 const MEMORY: usize = 2;
+/// Directions that are kept if they are to serve another right-hand side: the first ones hold the long
+/// waves, which right-hand sides have in common.
+const KEPT: usize = 12;
 
 /// A search direction and what it does to the contact set.
 #[derive(Debug, Clone)]
@@ -28,11 +31,31 @@ pub(crate) struct Step<'a> {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directions {
     last: Vec<Direction>,
+    /// Directions kept aside for other right-hand sides.
+    kept: Option<Vec<Direction>>,
 }
 
 impl Directions {
+    /// Directions that are to serve other right-hand sides of the same matrix as well.
+    pub(crate) fn keeping() -> Self {
+        Self {
+            last: Vec::new(),
+            kept: Some(Vec::new()),
+        }
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.last.is_empty()
+    }
+
+    /// Takes the parts along all kept directions out of the residual of x: they are conjugate, so that each
+    /// is one step of its own (Chan and Wan, SIAM J. Sci. Comput. 18 (1997) 1698).
+    pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64]) {
+        for direction in self.kept.iter().flatten().chain(&self.last) {
+            let length = dot(residual, &direction.values) / direction.curvature;
+            add_scaled(x, length, &direction.values);
+            add_scaled(residual, -length, &direction.image);
+        }
     }
 
     /// The step that takes most of the energy out of `residual`, along the preconditioned residual
@@ -65,7 +88,10 @@ impl Directions {
             });
         };
         if self.last.len() == MEMORY {
-            self.last.remove(0);
+            let oldest = self.last.remove(0);
+            if let Some(kept) = self.kept.as_mut().filter(|kept| kept.len() < KEPT) {
+                kept.push(oldest);
+            }
         }
         self.last.push(direction);
         let Direction {

@@ -48,14 +48,6 @@ impl Front {
         self.approach
     }
 
-    pub(super) fn mean_gap(&self) -> f64 {
-        self.mean_gap
-    }
-
-    pub(super) fn closing(&self) -> f64 {
-        self.closing
-    }
-
     /// Advances to an approach up to the next event, or, under the paper's rule, back to one.
     pub(super) fn advance(&mut self, approach: f64) {
         let change = approach - self.approach;
@@ -66,15 +58,38 @@ impl Front {
         self.mean_gap -= self.closing * change;
     }
 
+    /// Goes to another approach, with scalars that are yet to be renewed.
+    pub(super) fn place_at(&mut self, approach: f64) {
+        self.approach = approach;
+    }
+
+    /// What must be added to stiffness and closing rate for them to be those of another front.
+    pub(super) fn missing(&self, other: &Self) -> [f64; 2] {
+        let closing = (self.closing - other.closing) * self.grid.nodes() as f64;
+        [other.unit_stiffness - self.unit_stiffness, closing]
+    }
+
+    /// Adds to load, mean gap and energy what they lack at the end of a window, in proportion to the way there,
+    /// for the energy to its square: `walked` got there from this one's window, `end` is exact.
+    pub(super) fn pin(&mut self, walked: &Self, end: &Self, way: f64) {
+        self.load += way * (end.load - walked.load);
+        self.mean_gap += way * (end.mean_gap - walked.mean_gap);
+        self.energy += way * way * (end.energy - walked.energy);
+    }
+
     /// Lets a node join that adds to stiffness and closing rate; `contact_nodes` are in contact then.
     pub(super) fn touch(&mut self, unit_stiffness: f64, closing: f64, contact_nodes: usize) {
         self.unit_stiffness += unit_stiffness;
         self.closing -= closing / self.grid.nodes() as f64;
         if contact_nodes == self.grid.nodes() {
-            // By identity and not by arithmetic.
-            self.mean_gap = 0.0;
-            self.closing = 0.0;
+            self.close();
         }
+    }
+
+    /// Full contact, by identity and not by arithmetic.
+    pub(super) fn close(&mut self) {
+        self.mean_gap = 0.0;
+        self.closing = 0.0;
     }
 
     /// A mean gap below nothing is rounding, unless the paper's rule lets surfaces overlap.
@@ -93,7 +108,7 @@ impl Front {
     /// Takes the stiffness from the solution on the contact.
     pub(super) fn renew_stiffness(&mut self, solution: &Solution) {
         let mut stiffness = Sum::default();
-        solution.y2.iter().for_each(|y2| stiffness.add(*y2));
+        solution.rate.iter().for_each(|y2| stiffness.add(*y2));
         self.unit_stiffness = stiffness.total();
     }
 

@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
-use crate::updater::{LinearUpdater, Solution};
+use crate::updater::{LinearUpdater, Solution, SolveRequest};
 use crate::{Error, Problem};
 
-/// The solution on a contact and the displacements of all nodes, which together give every gap as a
-/// line: `gap = a − t b` at the approach δ + t, as long as no other node joins.
+/// The solution on a contact at an approach δ and the displacements of all nodes, which together give
+/// every gap as a line: `gap = a − t b` at the approach δ + t, as long as no other node joins.
 #[derive(Debug)]
 pub(super) struct GapField {
     convolution: Convolution,
@@ -17,6 +17,8 @@ pub(super) struct GapField {
     solution: Solution,
     /// The contact that solution and displacements belong to.
     revision: Option<u64>,
+    /// The approach that they belong to.
+    approach: f64,
     time: Duration,
 }
 
@@ -30,6 +32,17 @@ pub(super) struct Line {
     pub(super) closing: f64,
 }
 
+impl Line {
+    /// When the node would touch if no other did.
+    pub(super) fn touches(&self) -> f64 {
+        if self.closing > 0.0 {
+            self.gap / self.closing
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
 impl GapField {
     pub(super) fn new(problem: &Problem) -> Self {
         let field = || vec![0.0; problem.initial_gap().len()];
@@ -39,6 +52,7 @@ impl GapField {
             displacement: [field(), field()],
             solution: Solution::default(),
             revision: None,
+            approach: 0.0,
             time: Duration::ZERO,
         }
     }
@@ -53,30 +67,61 @@ impl GapField {
         self.time
     }
 
-    /// Solves on the contact and computes all displacements, unless that was done last.
+    /// Solves on the contact at an approach, for rates that serve over a span of it, and computes all
+    /// displacements, unless that was done last.
     pub(super) fn renew<U: LinearUpdater>(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
         updater: &mut U,
+        [approach, span]: [f64; 2],
     ) -> Result<(), Error> {
-        if self.revision == Some(contact.revision()) {
+        if self.belongs_to(contact, approach) {
             return Ok(());
         }
+        self.solve(problem, contact, updater, [approach, span])
+    }
+
+    /// Whether everything is that of a contact at an approach.
+    pub(super) fn belongs_to(&self, contact: &ContactSequence, approach: f64) -> bool {
+        self.revision == Some(contact.revision()) && self.approach == approach
+    }
+
+    /// Solves on the contact, whatever was done last.
+    pub(super) fn solve<U: LinearUpdater>(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        updater: &mut U,
+        [approach, span]: [f64; 2],
+    ) -> Result<(), Error> {
         self.revision = None;
-        solve(problem, contact, contact.len(), updater, &mut self.solution)?;
-        let Solution { y1, y2 } = &self.solution;
-        for (field, values) in self.pressure.iter_mut().zip([y1, y2]) {
-            field.fill(0.0);
-            for (&node, &value) in contact.order().iter().zip(values) {
-                field[node] = value;
+        let request = SolveRequest {
+            count: contact.len(),
+            approach,
+            span,
+        };
+        solve(problem, contact, request, updater, &mut self.solution)?;
+        let [u, rate] = &mut self.solution.displacement;
+        if u.is_empty() {
+            let Solution { pressure, rate, .. } = &self.solution;
+            for (field, values) in self.pressure.iter_mut().zip([pressure, rate]) {
+                field.fill(0.0);
+                for (&node, &value) in contact.order().iter().zip(values) {
+                    field[node] = value;
+                }
             }
+            let start = Instant::now();
+            let ([p1, p2], [u1, u2]) = (&self.pressure, &mut self.displacement);
+            self.convolution.apply_two([p1, p2], [u1, u2])?;
+            self.time += start.elapsed();
+        } else {
+            let [own, own_rate] = &mut self.displacement;
+            std::mem::swap(own, u);
+            std::mem::swap(own_rate, rate);
         }
-        let start = Instant::now();
-        let ([p1, p2], [u1, u2]) = (&self.pressure, &mut self.displacement);
-        self.convolution.apply_two([p1, p2], [u1, u2])?;
-        self.time += start.elapsed();
         self.revision = Some(contact.revision());
+        self.approach = approach;
         Ok(())
     }
 
@@ -91,8 +136,10 @@ impl GapField {
         contact: &'a ContactSequence,
         approach: f64,
     ) -> impl Iterator<Item = (usize, f64)> + Clone + 'a {
-        let Solution { y1, y2 } = &self.solution;
-        let values = y1.iter().zip(y2).map(move |(y1, y2)| y1 + approach * y2);
+        let Solution { pressure, rate, .. } = &self.solution;
+        let time = approach - self.approach;
+        let values = pressure.iter().zip(rate);
+        let values = values.map(move |(p, y2)| p + time * y2);
         contact.order().iter().copied().zip(values)
     }
 
@@ -110,14 +157,26 @@ impl GapField {
 
     /// The gap of a node from an approach on.
     pub(super) fn line(&self, problem: &Problem, node: usize, approach: f64) -> Line {
-        let [u1, u2] = &self.displacement;
-        let closing = 1.0 - u2[node];
-        let start = problem.initial_gap()[node] + u1[node];
+        let [u, rate] = &self.displacement;
+        let closing = 1.0 - rate[node];
+        let gap = problem.initial_gap()[node] + u[node] - self.approach;
         Line {
             node,
-            gap: start - approach * closing,
+            gap: gap - (approach - self.approach) * closing,
             closing,
         }
+    }
+
+    /// Follows a contact whose last nodes, from the one at `first` on, have changed places; `order[k]` is where
+    /// the node at `first + k` was before, from `first` on.
+    pub(super) fn rearrange(&mut self, contact: &ContactSequence, first: usize, order: &[usize]) {
+        for values in [&mut self.solution.pressure, &mut self.solution.rate] {
+            let before = values[first..].to_vec();
+            for (value, &place) in values[first..].iter_mut().zip(order) {
+                *value = before[place];
+            }
+        }
+        self.revision = Some(contact.revision());
     }
 
     /// The displacement that a pressure field causes.
@@ -129,20 +188,35 @@ impl GapField {
     }
 }
 
-/// Solves on the first `count` nodes of a contact, and checks that there is a value for each.
+/// Solves on the first nodes of a contact, and checks that there is a value for each.
 pub(super) fn solve<U: LinearUpdater>(
     problem: &Problem,
     contact: &ContactSequence,
-    count: usize,
+    request: SolveRequest,
     updater: &mut U,
     solution: &mut Solution,
 ) -> Result<(), Error> {
-    updater.solve(problem, contact, count, solution)?;
-    for (quantity, values) in [("y1", &solution.y1), ("y2", &solution.y2)] {
-        if values.len() != count {
+    for field in &mut solution.displacement {
+        field.clear();
+    }
+    updater.solve(problem, contact, request, solution)?;
+    let Solution {
+        pressure,
+        rate,
+        displacement: [u, u_rate],
+    } = solution;
+    let nodes = problem.initial_gap().len();
+    let everywhere = if u.is_empty() { 0 } else { nodes };
+    for (quantity, values, expected) in [
+        ("pressures", pressure, request.count),
+        ("pressures per unit of approach", rate, request.count),
+        ("displacements", u, everywhere),
+        ("displacements per unit of approach", u_rate, everywhere),
+    ] {
+        if values.len() != expected {
             return Err(Error::UpdaterMismatch {
                 quantity,
-                expected: count,
+                expected,
                 found: values.len(),
             });
         }

@@ -24,12 +24,14 @@
 //! | 8 | [`LoadingSolver`] | yields them up to the limits |
 
 mod builder;
+mod corrected;
 mod cost;
 mod front;
 mod gap_field;
 mod history;
 mod limits;
 mod paper;
+mod ranking;
 mod releases;
 mod run;
 mod snapshot;

@@ -21,7 +21,7 @@ impl Paper {
         run: &mut LoadingRun<U>,
     ) -> Result<(), Error> {
         run.affordable(1)?;
-        run.renew_field()?;
+        run.renew_field(run.front.approach())?;
         let mut smallest: Option<Line> = None;
         run.survey(false, |line| {
             if smallest.is_none_or(|smallest| line.gap < smallest.gap) {

@@ -10,7 +10,7 @@ use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::ContactSequence;
-use crate::updater::{LinearUpdater, RecursiveCholesky, Solution, Touched};
+use crate::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
 use crate::{Error, Problem};
 
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
@@ -28,6 +28,9 @@ pub struct LoadingTimings {
     /// Number of events that were computed and then taken back, because a state did not stand the check at
     /// the end of its window.
     pub taken_back: usize,
+    /// Number of solutions inside windows, to settle the order of events that were too close to be told
+    /// apart otherwise.
+    pub ties: usize,
     /// Displacements of all nodes at the ends of windows.
     pub convolution: Duration,
     /// Choice of the nodes to watch, once all displacements are known.
@@ -57,10 +60,20 @@ impl<U: LinearUpdater> LoadingRun<U> {
         self.releases.steps(self.contact.len())
     }
 
-    /// Makes the gap field that of the present contact.
-    pub(super) fn renew_field(&mut self) -> Result<(), Error> {
+    /// Makes the gap field that of the present contact at an approach.
+    pub(super) fn renew_field(&mut self, approach: f64) -> Result<(), Error> {
+        let at = [approach, approach];
         self.field
-            .renew(&self.problem, &self.contact, &mut self.updater)?;
+            .renew(&self.problem, &self.contact, &mut self.updater, at)?;
+        self.timings.convolution = self.field.time();
+        Ok(())
+    }
+
+    /// Solves on the present contact at an approach, for rates that serve over a span.
+    pub(super) fn solve_field(&mut self, approach: f64, span: f64) -> Result<(), Error> {
+        let at = [approach, span];
+        self.field
+            .solve(&self.problem, &self.contact, &mut self.updater, at)?;
         self.timings.convolution = self.field.time();
         Ok(())
     }
@@ -94,6 +107,11 @@ impl<U: LinearUpdater> LoadingRun<U> {
         horizon: f64,
     ) -> Result<(), Error> {
         let (nodes, schur) = window.open(lines, horizon);
+        self.watch_nodes(nodes, schur)
+    }
+
+    /// The Schur complement of watched nodes.
+    pub(super) fn watch_nodes(&mut self, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
         self.updater
             .watch(&self.problem, &self.contact, nodes, schur)?;
         if schur.size() != nodes.len() {
@@ -124,6 +142,22 @@ impl<U: LinearUpdater> LoadingRun<U> {
         joined
     }
 
+    /// Puts the nodes of the contact behind the first `count` into another order.
+    pub(super) fn rearrange(&mut self, count: usize, order: &[usize]) -> Result<(), Error> {
+        let before = self.contact.order()[count..].to_vec();
+        if before == order {
+            return Ok(());
+        }
+        let place = |node: &usize| before.iter().position(|other| other == node);
+        let places: Vec<usize> = order.iter().filter_map(place).collect();
+        self.contact.truncate(count);
+        for &node in order {
+            self.contact.push(node)?;
+        }
+        self.field.rearrange(&self.contact, count, &places);
+        Ok(())
+    }
+
     /// Cuts the contact to its first `count` nodes.
     pub(super) fn truncate(&mut self, count: usize) -> Result<(), Error> {
         self.contact.truncate(count);
@@ -138,29 +172,49 @@ impl<U: LinearUpdater> LoadingRun<U> {
         node: usize,
         contact_nodes: usize,
     ) -> Result<(), Error> {
-        let contact = self.front.state(contact_nodes);
-        if !self.front.is_sound(&contact) {
+        let front = self.front;
+        self.enqueue_at(&front, (step, event, node), contact_nodes, 0.0)
+    }
+
+    /// Puts a state into the queue, after something happened to a node there; its approach may be off by
+    /// `error`.
+    pub(super) fn enqueue_at(
+        &mut self,
+        front: &Front,
+        (step, event, node): (usize, ContactEvent, usize),
+        contact_nodes: usize,
+        error: f64,
+    ) -> Result<(), Error> {
+        let contact = front.state(contact_nodes);
+        if !front.is_sound(&contact) {
             return Err(Error::NotFinite { step });
         }
         self.queue.push_back(LoadingState {
             step,
             event,
             node: self.problem.grid().coordinates(node),
+            approach_error: error,
             contact,
         });
         Ok(())
     }
 
-    /// Solves on the contact after `step` events, and returns it.
+    /// Solves on the contact after `step` events at an approach, and returns it.
     pub(super) fn solve_at(
         &mut self,
         step: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<Vec<usize>, Error> {
         let nodes = self.releases.contact_at(self.contact.order(), step);
+        let request = SolveRequest {
+            count: nodes.len(),
+            approach,
+            span: approach,
+        };
         if self.releases.is_prefix(step) {
             let (problem, contact) = (&self.problem, &self.contact);
-            gap_field::solve(problem, contact, nodes.len(), &mut self.updater, solution)?;
+            gap_field::solve(problem, contact, request, &mut self.updater, solution)?;
             return Ok(nodes);
         }
         // Nodes of that contact have left the updater since.
@@ -176,7 +230,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
             });
         }
         let (mut updater, contact) = RecursiveCholesky::of(&self.problem, &nodes)?;
-        updater.solve(&self.problem, &contact, nodes.len(), solution)?;
+        updater.solve(&self.problem, &contact, request, solution)?;
         Ok(nodes)
     }
 
@@ -219,7 +273,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
 
     /// The greatest y₂.
     pub(super) fn greatest_rate(&self) -> f64 {
-        let rates = self.field.solution().y2.iter();
+        let rates = self.field.solution().rate.iter();
         rates.copied().fold(0.0, f64::max)
     }
 

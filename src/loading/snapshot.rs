@@ -28,17 +28,17 @@ impl Snapshot {
         state: &LoadingState,
     ) -> Result<Self, Error> {
         let mut solution = Solution::default();
-        let nodes = run.solve_at(state.step, &mut solution)?;
         let approach = run.front.own_approach(state);
+        let nodes = run.solve_at(state.step, approach, &mut solution)?;
         let grid = run.problem.grid();
         let (nx, ny) = grid.shape();
         let mut pressure = DMatrix::zeros(nx, ny);
         let values = pressure.as_mut_slice();
-        for (&node, (y1, y2)) in nodes.iter().zip(solution.y1.iter().zip(&solution.y2)) {
-            values[node] = y1 + approach * y2;
+        for (&node, value) in nodes.iter().zip(&solution.pressure) {
+            values[node] = *value;
         }
         Ok(Self {
-            stiffness: grid.cell_area() * solution.y2.iter().sum::<f64>(),
+            stiffness: grid.cell_area() * solution.rate.iter().sum::<f64>(),
             nodes,
             approach,
             pressure,

@@ -122,8 +122,8 @@ impl Stepwise {
     /// Solves at the front, checks the conditions of contact there, and finds the next event.
     fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         self.upcoming = None;
-        run.renew_field()?;
         let approach = run.front.approach();
+        run.renew_field(approach)?;
         if let Some((node, value)) = run.negative_pressure(approach, TOLERANCE) {
             return Err(run.not_monotone("pressure", node, value));
         }
@@ -154,13 +154,13 @@ impl Stepwise {
         let touches = self.touches.iter();
         let touches =
             touches.map(|&(approach, node)| upcoming(ContactEvent::Touch, node, approach));
-        let Solution { y1, y2 } = run.field.solution();
+        let Solution { pressure, rate, .. } = run.field.solution();
         // What y₂ has to be below for a node to lose its pressure.
         let slowest = -LEAST_RATE * run.greatest_rate();
-        let releases = run.contact.order().iter().zip(y1).zip(y2);
+        let releases = run.contact.order().iter().zip(pressure).zip(rate);
         let releases = releases
-            .filter(|(_, y2)| **y2 < slowest)
-            .map(|((&node, y1), y2)| upcoming(ContactEvent::Release, node, -y1 / y2));
+            .filter(|(_, rate)| **rate < slowest)
+            .map(|((&node, p), rate)| upcoming(ContactEvent::Release, node, front - p / rate));
         let events = touches.chain(releases);
         let first = events
             .clone()

@@ -13,20 +13,6 @@ pub(super) struct WindowEvent {
     pub(super) unit_stiffness: f64,
     /// What it takes off the sum of closing rates.
     pub(super) closing: f64,
-    /// How fast its gap closed when it touched.
-    rate: f64,
-    /// How much the events before it have changed its gap at the window's beginning, and its rate.
-    change: [f64; 2],
-}
-
-impl WindowEvent {
-    /// How much the events before it have changed the approach at which the node touches, relative to that
-    /// approach: what of it rests on the Schur complement. The window began at the approach `start`.
-    pub(super) fn drift(&self, start: f64) -> f64 {
-        let [gap, rate] = self.change;
-        let approach = start + self.time;
-        ((gap + start * rate).abs() + approach * rate.abs()) / (self.rate * approach)
-    }
 }
 
 /// A node that cannot touch: its pivot is not positive.
@@ -159,8 +145,6 @@ impl Window {
             Ok(column) => column,
             Err(pivot) => return Err(BadPivot { node, time, pivot }),
         };
-        let [gap, rate, _] = self.lines[position];
-        let [first_gap, first_rate] = self.opened[position];
         let entries = self.lines[position].map(|value| value / column[position]);
         for (line, factor) in self.lines.iter_mut().zip(column) {
             for (value, entry) in line.iter_mut().zip(entries) {
@@ -174,8 +158,6 @@ impl Window {
             time,
             unit_stiffness: unit * unit,
             closing: sum * unit,
-            rate,
-            change: [gap - first_gap, rate - first_rate],
         });
         Ok(())
     }

@@ -2,27 +2,15 @@
 
 use std::time::Instant;
 
+use super::corrected::Corrected;
 use super::cost::{automatic_window, watched_for};
 use super::gap_field::Line;
+use super::ranking::rank;
 use super::run::{LoadingRun, TOLERANCE};
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
-
-/// How far pressures and gaps may lie below zero, relative to the greatest ones, for a window of an
-/// updater that is not exact to be accepted: its order of events is then right except among nodes whose
-/// contact differs in approach by some 1e-8.
-const VERIFIED: f64 = 1e-7;
-
-/// Greatest change of the approach at which a node touches, relative to it, that may rest on a Schur
-/// complement that is not exact. Only nodes between others in contact change so much; measured, the states
-/// of 256² surfaces then stay within 2e-8.
-const MOST_DRIFT: f64 = 3.0;
-
-/// What must be left of the mean gap, and of its rate, of what they were after the first event of a window
-/// that is not exact: changes carry errors of single precision, which must stay small beside the rest.
-const LEAST_LEFT: f64 = 0.9;
 
 /// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
 /// did is a lower bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
@@ -35,6 +23,8 @@ pub(super) struct Windowed {
     window: Window,
     /// The nodes out of contact by the time at which they would touch.
     ranking: Vec<(f64, usize)>,
+    /// What goes on when the updater is not exact.
+    corrected: Corrected,
 }
 
 impl Windowed {
@@ -44,6 +34,7 @@ impl Windowed {
             size,
             window: Window::default(),
             ranking: Vec::new(),
+            corrected: Corrected::new(size),
         }
     }
 
@@ -54,15 +45,17 @@ impl Windowed {
         run: &mut LoadingRun<U>,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
+        if !run.updater.profile().exact {
+            return self.corrected.produce(run, most_nodes);
+        }
         let count = run.contact.len();
         let size = run.affordable(self.next_size(run, most_nodes))?;
-        run.renew_field()?;
-        let exact = run.updater.profile().exact;
-        if !exact {
-            let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
-            run.front.renew_load(problem, contact, field);
+        run.renew_field(run.front.approach())?;
+        if !run.updater.profile().exact {
+            // It has just been handed over.
+            return self.corrected.produce(run, most_nodes);
         }
-        self.rank(run)?;
+        rank(run, &mut self.ranking)?;
         let start = Instant::now();
         let (size, horizon) = self.choose(size, self.multiple(run));
         run.timings.choice += start.elapsed();
@@ -81,16 +74,11 @@ impl Windowed {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
-        if !exact {
-            self.window.truncate(self.trusted(run));
-        }
         run.join(&self.window)?;
-        if !exact {
-            self.verify(run, VERIFIED, |_, events| events.div_ceil(2))?;
-        } else if self.growth == ContactGrowth::Monotone {
+        if self.growth == ContactGrowth::Monotone {
             // An estimate that keeps failing must not make the search long.
             let mut fewest = 1;
-            self.verify(run, TOLERANCE, |later, _| {
+            self.verify(run, |later| {
                 let dropped = later.max(fewest);
                 fewest *= 2;
                 dropped
@@ -121,31 +109,6 @@ impl Windowed {
             Some(_) => 1,
             None => run.updater.profile().cost.multiple.max(1),
         }
-    }
-
-    /// Ranks the nodes out of contact by the time at which they would touch if no other did, after
-    /// checking that contact still grows.
-    fn rank<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
-        let start = Instant::now();
-        let least = -TOLERANCE * run.greatest_rate();
-        let rates = run.contact.order().iter().zip(&run.field.solution().y2);
-        for (&node, &y2) in rates {
-            if y2.is_nan() || y2 < least {
-                return Err(run.not_monotone("pressure per unit of approach", node, y2));
-            }
-        }
-        self.ranking.clear();
-        self.ranking.reserve(run.problem.grid().nodes());
-        run.survey(true, |line| {
-            let time = if line.closing > 0.0 {
-                line.gap / line.closing
-            } else {
-                f64::INFINITY
-            };
-            self.ranking.push((time, line.node));
-        })?;
-        run.timings.choice += start.elapsed();
-        Ok(())
     }
 
     /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
@@ -181,28 +144,8 @@ impl Windowed {
         (size, horizon)
     }
 
-    /// How many events of the window may rest on a Schur complement that is not exact.
-    fn trusted<U>(&self, run: &LoadingRun<U>) -> usize {
-        let (start, count) = (run.front.approach(), run.contact.len());
-        let mut front = run.front;
-        let mut left: Option<[f64; 2]> = None;
-        for (k, event) in self.window.events().iter().enumerate() {
-            if let Some([mean_gap, closing]) = left {
-                let ended = front.mean_gap() < LEAST_LEFT * mean_gap
-                    || front.closing() < LEAST_LEFT * closing;
-                if ended || event.drift(start) > MOST_DRIFT {
-                    return k;
-                }
-            }
-            front.advance(start + event.time);
-            front.touch(event.unit_stiffness, event.closing, count + k + 1);
-            left = left.or(Some([front.mean_gap(), front.closing()]));
-        }
-        self.window.events().len()
-    }
-
     /// Checks the contact after the window from a solution there, and takes back its last events as long as
-    /// that contradicts them: `how_many(later, events)` of them, of which `later` come after the first
+    /// that contradicts them: `how_many(later)` of them, of which `later` come after the first
     /// contradiction. Gaps only close, so that none has overlapped where none does at the end; and the
     /// first event follows from a solution, and needs no check.
     ///
@@ -210,20 +153,19 @@ impl Windowed {
     fn verify<U: LinearUpdater>(
         &mut self,
         run: &mut LoadingRun<U>,
-        tolerance: f64,
-        mut how_many: impl FnMut(usize, usize) -> usize,
+        mut how_many: impl FnMut(usize) -> usize,
     ) -> Result<(), Error> {
         let start = run.front.approach();
         while let [_, .., last] = self.window.events() {
             let end = start + last.time;
-            run.renew_field()?;
-            let Some(until) = contradiction(run, end, tolerance) else {
+            run.renew_field(end)?;
+            let Some(until) = contradiction(run, end) else {
                 return Ok(());
             };
             let events = self.window.events();
             let later = events.iter().rev();
             let later = later.take_while(|event| start + event.time > until).count();
-            let dropped = how_many(later, events.len()).clamp(1, events.len() - 1);
+            let dropped = how_many(later).clamp(1, events.len() - 1);
             self.window.truncate(events.len() - dropped);
             run.truncate(run.contact.len() - dropped)?;
             run.timings.taken_back += dropped;
@@ -257,18 +199,13 @@ impl Windowed {
     }
 }
 
-/// Whether a pressure or a gap at an approach is negative by more than `tolerance`, relative to the greatest
-/// pressure and to the lengths of the problem. Returns the approach until which none was, as far as the
+/// Whether a pressure or a gap at an approach is negative, beyond rounding. Returns the approach until which none was, as far as the
 /// rates tell.
-fn contradiction<U: LinearUpdater>(
-    run: &LoadingRun<U>,
-    approach: f64,
-    tolerance: f64,
-) -> Option<f64> {
-    if run.negative_pressure(approach, tolerance).is_some() {
+fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option<f64> {
+    if run.negative_pressure(approach, TOLERANCE).is_some() {
         return Some(f64::NEG_INFINITY);
     }
-    let overlap = -tolerance * (run.problem.greatest_gap() + approach);
+    let overlap = -TOLERANCE * (run.problem.greatest_gap() + approach);
     let lines = run.field.lines(&run.problem, &run.contact, approach);
     lines
         .filter(|line| line.gap < overlap)

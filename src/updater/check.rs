@@ -1,6 +1,6 @@
 //! Holds an updater to what a path asks of it.
 
-use super::{Dense, LinearUpdater, Schur, Solution, Touched};
+use super::{Dense, LinearUpdater, Schur, Solution, SolveRequest, Touched};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
@@ -11,6 +11,8 @@ const MOST: usize = 150;
 /// Greatest difference from a dense solution, relative to the greatest value: influence matrices of so
 /// few nodes lose some three digits.
 const TOLERANCE: f64 = 1e-9;
+/// How much more than its gaps the pressures of a solution may be off, relatively.
+const LOST: f64 = 1e3;
 /// The same for Schur complements of an updater that says it is not exact.
 const ROUNDED: f64 = 1e-3;
 
@@ -118,7 +120,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let scale = greatest(problem.row_sums());
         for (found, expected) in sums {
             let error = (found - expected).abs() / scale;
-            check_error("the reduced row sums", contact.len(), error, TOLERANCE)?;
+            check_error("the reduced row sums", contact.len(), error, tolerance)?;
         }
         // Not in the order in which they are watched.
         let joining = watched.len().saturating_sub(1).max(1);
@@ -135,18 +137,30 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
     fn solution(&mut self, count: usize) -> Result<(), Error> {
         let (mut found, mut expected) = (Solution::default(), Solution::default());
         let (problem, contact) = (self.problem, &self.contact);
-        self.updater.solve(problem, contact, count, &mut found)?;
-        Dense.solve(problem, contact, count, &mut expected)?;
+        // All nodes so far would be under pressure.
+        let approach = problem.greatest_gap();
+        let request = SolveRequest {
+            count,
+            approach,
+            span: approach,
+        };
+        self.updater.solve(problem, contact, request, &mut found)?;
+        Dense.solve(problem, contact, request, &mut expected)?;
+        let tolerance = TOLERANCE.max(LOST * self.updater.profile().tolerance);
         for (quantity, found, expected) in [
-            ("y1", &found.y1, &expected.y1),
-            ("y2", &found.y2, &expected.y2),
+            ("pressures", &found.pressure, &expected.pressure),
+            (
+                "pressures per unit of approach",
+                &found.rate,
+                &expected.rate,
+            ),
         ] {
             check_length(quantity, expected.len(), found.len())?;
             let scale = greatest(expected);
             for (found, expected) in found.iter().zip(expected) {
                 let error = (found - expected).abs() / scale;
                 self.solution_error = self.solution_error.max(error);
-                check_error(quantity, count, error, TOLERANCE)?;
+                check_error(quantity, count, error, tolerance)?;
             }
         }
         Ok(())
@@ -280,14 +294,14 @@ mod tests {
             &mut self,
             problem: &Problem,
             contact: &ContactSequence,
-            count: usize,
+            request: SolveRequest,
             solution: &mut Solution,
         ) -> Result<(), Error> {
-            self.inner.solve(problem, contact, count, solution)?;
+            self.inner.solve(problem, contact, request, solution)?;
             match self.lie {
-                "y1" => solution.y1[0] = f64::NAN,
-                "y2" => solution.y2.reverse(),
-                "length" => solution.y2.clear(),
+                "pressure" => solution.pressure[0] = f64::NAN,
+                "rate" => solution.rate.reverse(),
+                "length" => solution.rate.clear(),
                 _ => {}
             }
             Ok(())
@@ -301,7 +315,7 @@ mod tests {
             let inner = RecursiveCholesky::new();
             check(&mut Lying { inner, lie }, &problem)
         };
-        for lie in ["matrix", "row sums", "y1", "y2"] {
+        for lie in ["matrix", "row sums", "pressure", "rate"] {
             let found = checked(lie);
             assert!(
                 matches!(found, Err(Error::UpdaterWrong { .. })),

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-use super::{LinearUpdater, Schur, Solution, Touched};
+use super::{LinearUpdater, Schur, Solution, SolveRequest, Touched};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
@@ -75,18 +75,22 @@ impl LinearUpdater for Dense {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let Some(contact) = contact.order().get(..count) else {
+        let Some(contact) = contact.order().get(..request.count) else {
             return Err(Error::LengthMismatch {
                 expected: contact.len(),
-                found: count,
+                found: request.count,
             });
         };
-        let solved = Self::factor(problem, contact)?.solve(&Self::rhs(problem, contact));
-        solution.y1 = solved.column(0).iter().map(|value| -value).collect();
-        solution.y2 = solved.column(1).iter().copied().collect();
+        let rhs = DMatrix::from_fn(contact.len(), 2, |i, c| match c {
+            0 => request.approach - problem.initial_gap()[contact[i]],
+            _ => 1.0,
+        });
+        let solved = Self::factor(problem, contact)?.solve(&rhs);
+        solution.pressure = solved.column(0).iter().copied().collect();
+        solution.rate = solved.column(1).iter().copied().collect();
         Ok(())
     }
 

@@ -1,7 +1,8 @@
 //! A factor as long as it fits, iterations after.
 
 use super::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched, UpdaterProfile,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    UpdaterProfile,
 };
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
@@ -96,11 +97,14 @@ impl Handover {
         needed.saturating_add(Touched::bytes(LEAST_WINDOW)) <= self.budget
     }
 
-    /// Gives up a factor that leaves no room.
-    fn hand_over(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        let mut solution = Solution::default();
-        let factor = self.updater_mut();
-        factor.solve(problem, contact, contact.len(), &mut solution)?;
+    /// Gives up a factor that leaves no room, with its last solution.
+    fn hand_over(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        solution: &Solution,
+    ) -> Result<(), Error> {
         log::info!(
             "{} nodes in contact: the factor would exceed {} bytes, conjugate gradients from here",
             contact.len(),
@@ -110,7 +114,7 @@ impl Handover {
         // The factor goes before anything takes its place.
         self.stage = Stage::Iterations(Box::default());
         if let Stage::Iterations(iterations) = &mut self.stage {
-            iterations.take_over(problem, contact, &solution)?;
+            iterations.take_over(problem, contact, approach, solution)?;
         }
         Ok(())
     }
@@ -127,30 +131,33 @@ impl LinearUpdater for Handover {
         self.updater_mut().watch(problem, contact, nodes, schur)
     }
 
-    /// Gives up the factor if it leaves no room for another window.
     fn join(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
         touched: &Touched,
     ) -> Result<(), Error> {
-        self.updater_mut().join(problem, contact, touched)?;
-        match &self.stage {
-            Stage::Factor(factor) if !self.factor_fits(factor, contact.len()) => {
-                self.hand_over(problem, contact)
-            }
-            _ => Ok(()),
-        }
+        self.updater_mut().join(problem, contact, touched)
     }
 
+    /// Gives up the factor if it leaves no room for another window.
     fn solve(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.updater_mut().solve(problem, contact, count, solution)
+        let updater = self.updater_mut();
+        updater.solve(problem, contact, request, solution)?;
+        match &self.stage {
+            Stage::Factor(factor)
+                if request.count == contact.len() && !self.factor_fits(factor, contact.len()) =>
+            {
+                self.hand_over(problem, contact, request.approach, solution)
+            }
+            _ => Ok(()),
+        }
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

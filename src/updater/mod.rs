@@ -31,23 +31,41 @@ pub use touched::Touched;
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
-/// Pressures on the contact nodes, in the order in which they joined: `p = y₁ + δ y₂` (paper, eq. 5, with
-/// δ in place of h₀).
+/// What a solution is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolveRequest {
+    /// The contact: so many nodes, the first ones of the sequence.
+    pub count: usize,
+    /// The approach δ \[m\], in the gauge of the kernel.
+    pub approach: f64,
+    /// How much further the approach will go with these pressures \[m\]: an updater that is not exact
+    /// needs the rate to its tolerance over this span, and not at all if it is 0.
+    pub span: f64,
+}
+
+/// Pressures on the contact nodes, in the order in which they joined: the paper's `y₁ + h₀ y₂` (eq. 5),
+/// with the approach δ in place of h₀ and both parts at the approach where they are needed, so that none
+/// of their digits cancel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Solution {
-    /// `y₁ = −C_II⁻¹ g_I` \[Pa\].
-    pub y1: Vec<f64>,
+    /// `p = C_II⁻¹ (δ e − g_I)` \[Pa\].
+    pub pressure: Vec<f64>,
     /// `y₂ = C_II⁻¹ e` \[Pa/m\], the pressure per unit of approach.
-    pub y2: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// Displacements of all nodes of the grid under `pressure` \[m\] and under `rate`, if the updater has
+    /// them; empty otherwise.
+    pub displacement: [Vec<f64>; 2],
 }
 
 /// What a path should know of an updater.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UpdaterProfile {
     /// Whether Schur complements are exact to rounding in double precision. If they are not, solutions
-    /// must still be: the path then verifies every window before it yields its states, and takes its
-    /// sums from the solution at the window's end.
+    /// must still be, to the tolerance below: the path then corrects every window by the solution at its
+    /// end.
     pub exact: bool,
+    /// Greatest gap in contact that a solution may leave, relative to the approach.
+    pub tolerance: f64,
     /// What the work of a window costs.
     pub cost: WindowCost,
 }
@@ -96,7 +114,7 @@ impl Default for WindowCost {
 ///
 /// ```
 /// use asperity::contact::ContactSequence;
-/// use asperity::updater::{self, LinearUpdater, Schur, Solution, Touched};
+/// use asperity::updater::{self, LinearUpdater, Schur, Solution, SolveRequest, Touched};
 /// use asperity::{Boussinesq, Error, Grid, LoadingSolver, Problem, SelfAffine};
 /// use nalgebra::{DMatrix, DVector};
 ///
@@ -146,15 +164,16 @@ impl Default for WindowCost {
 ///         &mut self,
 ///         problem: &Problem,
 ///         contact: &ContactSequence,
-///         count: usize,
+///         request: SolveRequest,
 ///         solution: &mut Solution,
 ///     ) -> Result<(), Error> {
-///         let contact = &contact.order()[..count];
+///         let contact = &contact.order()[..request.count];
 ///         let gap = contact.iter().map(|&node| problem.initial_gap()[node]);
-///         let rhs = [DVector::from_iterator(count, gap), DVector::from_element(count, 1.0)];
+///         let overlap = DVector::from_iterator(contact.len(), gap.map(|gap| request.approach - gap));
+///         let rhs = [overlap, DVector::from_element(contact.len(), 1.0)];
 ///         let solved = solve(problem, contact, DMatrix::from_columns(&rhs))?;
-///         solution.y1 = solved.column(0).iter().map(|value| -value).collect();
-///         solution.y2 = solved.column(1).iter().copied().collect();
+///         solution.pressure = solved.column(0).iter().copied().collect();
+///         solution.rate = solved.column(1).iter().copied().collect();
 ///         Ok(())
 ///     }
 /// }
@@ -209,8 +228,8 @@ pub trait LinearUpdater {
         touched: &Touched,
     ) -> Result<(), Error>;
 
-    /// Solves on the first `count` nodes of `contact`: on all of them while the path advances, on fewer
-    /// for the pressure of an earlier state. A later call must not depend on that.
+    /// Solves on the first nodes of `contact`: on all of them while the path advances, on fewer for an
+    /// earlier state. A later call must not depend on that.
     ///
     /// # Errors
     ///
@@ -219,7 +238,7 @@ pub trait LinearUpdater {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error>;
 
@@ -261,6 +280,7 @@ pub trait LinearUpdater {
     fn profile(&self) -> UpdaterProfile {
         UpdaterProfile {
             exact: true,
+            tolerance: 1e-12,
             cost: WindowCost::default(),
         }
     }
@@ -302,10 +322,10 @@ impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        (**self).solve(problem, contact, count, solution)
+        (**self).solve(problem, contact, request, solution)
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

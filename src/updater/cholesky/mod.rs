@@ -10,7 +10,7 @@ pub use factor::CholeskyTimings;
 
 use std::time::Instant;
 
-use super::{LinearUpdater, Schur, Solution, Touched, check_count};
+use super::{LinearUpdater, Schur, Solution, SolveRequest, Touched, check_count};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, parallel};
 use factor::Factor;
@@ -129,24 +129,25 @@ impl LinearUpdater for RecursiveCholesky {
         &mut self,
         _problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
         check_count(self.factor.len(), contact.len())?;
         let start = Instant::now();
-        let Some(border) = self.border.get(..count) else {
-            return check_count(self.border.len(), count);
+        let Some(border) = self.border.get(..request.count) else {
+            return check_count(self.border.len(), request.count);
         };
-        let Solution { y1, y2 } = solution;
-        for (y, rhs) in [(&mut *y1, 0), (&mut *y2, 1)] {
-            y.clear();
-            y.extend(border.iter().map(|values| values[rhs]));
-        }
+        let Solution { pressure, rate, .. } = solution;
+        pressure.clear();
+        pressure.extend(
+            border
+                .iter()
+                .map(|[gap, unit, _]| request.approach * unit - gap),
+        );
+        rate.clear();
+        rate.extend(border.iter().map(|[_, unit, _]| unit));
         let panels = &self.factor.panels;
-        parallel::inside(|| panels.solve_transposed([&mut y1[..], &mut y2[..]]));
-        for value in y1 {
-            *value = -*value;
-        }
+        parallel::inside(|| panels.solve_transposed([&mut pressure[..], &mut rate[..]]));
         self.factor.timings.solve += start.elapsed();
         Ok(())
     }

@@ -1,0 +1,406 @@
+//! Events in windows, with an updater whose Schur complements are not exact.
+//!
+//! The order of events inside a window rests on small changes only, so that a Schur complement that is nearly
+//! right gives nearly the right order. The exact solution at the window's end, which the next window needs
+//! anyway, then corrects it, and the same events are played a second time. What is still closer than the
+//! remaining error is settled by one exact solution each.
+
+mod choice;
+mod correction;
+mod group;
+mod play;
+mod scales;
+mod states;
+mod ties;
+
+use nalgebra::DMatrix;
+
+use super::front::Front;
+use super::ranking::Ranking;
+use super::run::LoadingRun;
+use crate::Error;
+use crate::updater::{LinearUpdater, Schur, Touched};
+use choice::Choice;
+use correction::{AtEnd, Correction, correct};
+use play::{Course, Played, play};
+use scales::Scales;
+use ties::Settled;
+
+/// Nodes watched at a time: the error of the order grows with their number.
+const WATCHED: usize = 56;
+/// The window ends at its widest spacing behind this part of its events.
+const CUT: f64 = 0.85;
+/// How often a contact that contradicts the conditions of contact is mended before the path gives up.
+const MOST_TRIES: usize = 10;
+/// What is left of a window that let a node overlap that was not watched.
+const SHORTER: f64 = 0.7;
+
+/// Finds events in windows that are corrected at their end.
+#[derive(Debug)]
+pub(super) struct Corrected {
+    size: usize,
+    /// The nodes out of contact, at the front.
+    ranking: Ranking,
+    /// The contact and approach that the ranking belongs to.
+    ranked: Option<(u64, f64)>,
+    /// How far the last window went, and the span that the rates at hand serve.
+    last_span: f64,
+    rate_span: f64,
+}
+
+/// Watched nodes at the front.
+#[derive(Debug)]
+struct Watched {
+    nodes: Vec<usize>,
+    /// a, b: each gap now, and how fast it closes.
+    lines: Vec<[f64; 2]>,
+    schur: DMatrix<f64>,
+    row_sums: Vec<f64>,
+    /// No other node touches before.
+    horizon: f64,
+}
+
+/// What a contact at a window's end contradicts.
+#[derive(Debug, Default)]
+struct Contradictions {
+    /// Positions of events whose node is under tension.
+    tension: Vec<usize>,
+    /// Positions of watched nodes that overlap.
+    overlap: Vec<usize>,
+    /// (when it would touch, node) of nodes that overlap and were not watched.
+    outside: Ranking,
+}
+
+impl Corrected {
+    pub(super) fn new(size: Option<usize>) -> Self {
+        Self {
+            size: size.unwrap_or(WATCHED),
+            ranking: Vec::new(),
+            ranked: None,
+            last_span: 0.0,
+            rate_span: 0.0,
+        }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact.
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        most_nodes: usize,
+    ) -> Result<Option<Error>, Error> {
+        let scales = Scales::of(run);
+        self.begin(run)?;
+        let most = most_nodes - run.contact.len();
+        let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
+        loop {
+            let mut choice = self.choose(run, &scales, &extra)?;
+            self.refine(run, &scales, &mut choice, &extra)?;
+            if let Some(time) = choice.group {
+                self.enter(run, &scales, time, most)?;
+                return Ok(None);
+            }
+            let watched = self.watch(run, choice, longest)?;
+            match self.advance(run, &scales, &watched, most)? {
+                Ok(()) => return Ok(None),
+                // The horizon was wrong: watch what overlapped as well, and not so far.
+                Err((outside, time)) => {
+                    longest = SHORTER * time;
+                    let room = self.size.saturating_sub(extra.len()).max(1);
+                    extra.extend(outside.into_iter().take(room).map(|(_, node)| node));
+                    run.timings.taken_back += 1;
+                }
+            }
+        }
+    }
+
+    /// Makes solution and ranking those of the front.
+    fn begin<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
+        let approach = run.front.approach();
+        if !run.field.belongs_to(&run.contact, approach) {
+            self.rate_span = approach.max(self.last_span);
+            run.solve_field(approach, self.rate_span)?;
+        }
+        if self.ranked != Some((run.contact.revision(), approach)) {
+            // The first window of this kind.
+            self.rate_span = self.rate_span.max(approach);
+            self.survey(run)?;
+        }
+        Ok(())
+    }
+
+    /// Takes everything at the front from the solution there, and ranks the nodes out of contact.
+    fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
+        let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
+        run.front.renew_load(problem, contact, field);
+        self.ranking.clear();
+        self.ranking.reserve(run.problem.grid().nodes());
+        let ranking = &mut self.ranking;
+        run.survey(false, |line| ranking.push((line.touches(), line.node)))?;
+        self.ranked = Some((run.contact.revision(), run.front.approach()));
+        Ok(())
+    }
+
+    /// Solves for the rates once more if they have to serve much further than the last window did.
+    fn refine<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        scales: &Scales,
+        choice: &mut Choice,
+        extra: &[usize],
+    ) -> Result<(), Error> {
+        let furthest = if choice.horizon < f64::INFINITY {
+            choice.horizon
+        } else {
+            let times = choice.watched.iter().map(|(time, _)| *time);
+            times.filter(|time| time.is_finite()).fold(0.0, f64::max)
+        };
+        if scales.rate_tolerance(furthest) < 0.5 * scales.rate_tolerance(self.rate_span) {
+            self.rate_span = furthest;
+            run.solve_field(run.front.approach(), furthest)?;
+            self.survey(run)?;
+            *choice = self.choose(run, scales, extra)?;
+        }
+        Ok(())
+    }
+
+    /// Opens a window on the chosen nodes.
+    fn watch<U: LinearUpdater>(
+        &self,
+        run: &mut LoadingRun<U>,
+        choice: Choice,
+        longest: f64,
+    ) -> Result<Watched, Error> {
+        let nodes: Vec<usize> = choice.watched.iter().map(|&(_, node)| node).collect();
+        let approach = run.front.approach();
+        let line = |&node: &usize| {
+            let line = run.field.line(&run.problem, node, approach);
+            [line.gap, line.closing]
+        };
+        let lines = nodes.iter().map(line).collect();
+        run.affordable(nodes.len())?;
+        let mut schur = Schur::default();
+        run.watch_nodes(&nodes, &mut schur)?;
+        let size = nodes.len();
+        let matrix = schur.matrix();
+        Ok(Watched {
+            schur: DMatrix::from_fn(size, size, |i, j| matrix[(i.max(j), i.min(j))]),
+            row_sums: schur.row_sums().to_vec(),
+            nodes,
+            lines,
+            horizon: choice.horizon.min(longest),
+        })
+    }
+
+    /// Goes through a window, and queues its states. The inner error is what overlapped outside of it, and
+    /// how long it was: then nothing has changed.
+    fn advance<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        scales: &Scales,
+        watched: &Watched,
+        most: usize,
+    ) -> Result<Result<(), (Ranking, f64)>, Error> {
+        let courses: Vec<Course> = watched.courses();
+        let (events, bad) = play(&watched.schur, &courses, watched.horizon, usize::MAX);
+        if events.is_empty() {
+            return Err(match bad {
+                Some(mut bad) => {
+                    bad.node = watched.nodes[bad.node];
+                    run.not_positive_definite(bad)
+                }
+                None => {
+                    let node = watched.nodes.iter().min().copied();
+                    run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+                }
+            });
+        }
+        let (cut, time) = cut(&events, watched.horizon, most, scales);
+        let start = run.front;
+        let (first, count) = (&events[..cut], run.contact.len());
+        let mut joined: Vec<usize> = first.iter().map(|event| event.position).collect();
+        for _ in 0..MOST_TRIES {
+            let checked = self.go_to_end(run, scales, watched, &joined, time);
+            let found = match checked {
+                Ok(found) => found,
+                Err(error) => {
+                    run.contact.truncate(count);
+                    run.front = start;
+                    return Err(error);
+                }
+            };
+            if found.is_empty() {
+                let ends = watched.at_end(run);
+                let correction = correct(&watched.schur, &watched.lines, &ends, time);
+                let settled = ties::settle(
+                    run,
+                    scales,
+                    watched,
+                    &correction,
+                    (first, &joined, time),
+                    &start,
+                )?;
+                return self
+                    .finish(run, watched, &correction, &settled, (&start, time))
+                    .map(Ok);
+            }
+            run.truncate(count)?;
+            run.front = start;
+            if !found.outside.is_empty() {
+                self.begin_again(run)?;
+                return Ok(Err((found.outside, time)));
+            }
+            joined.retain(|position| !found.tension.contains(position));
+            joined.extend(found.overlap);
+            run.timings.taken_back += 1;
+        }
+        let node = watched.nodes[first[0].position];
+        Err(run.not_monotone("gap or pressure", node, 0.0))
+    }
+
+    /// Makes everything that of the window's beginning again.
+    fn begin_again<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
+        run.solve_field(run.front.approach(), self.rate_span)?;
+        self.survey(run)
+    }
+
+    /// Lets nodes join, solves at the window's end, and looks for what contradicts them there.
+    fn go_to_end<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        scales: &Scales,
+        watched: &Watched,
+        joined: &[usize],
+        time: f64,
+    ) -> Result<Contradictions, Error> {
+        for &position in joined {
+            run.contact.push(watched.nodes[position])?;
+        }
+        let touched = Touched::of(watched.complement(), joined)?;
+        run.updater.join(&run.problem, &run.contact, &touched)?;
+        let approach = run.front.approach() + time;
+        self.rate_span = time.max(self.last_span);
+        run.solve_field(approach, self.rate_span)?;
+        run.front.place_at(approach);
+        self.survey(run)?;
+        let overlap = -scales.overlap(approach);
+        let mut found = Contradictions::default();
+        let pressures = run.field.pressures(&run.contact, approach);
+        let first = run.contact.len() - joined.len();
+        for (&position, (_, pressure)) in joined.iter().zip(pressures.skip(first)) {
+            if pressure * watched.schur[(position, position)] < overlap {
+                found.tension.push(position);
+            }
+        }
+        for &(time, node) in &self.ranking {
+            if time >= 0.0 {
+                continue;
+            }
+            let line = run.field.line(&run.problem, node, approach);
+            if line.gap < overlap {
+                match watched.nodes.iter().position(|other| *other == node) {
+                    Some(position) if !joined.contains(&position) => found.overlap.push(position),
+                    Some(_) => {}
+                    None => found.outside.push((time, node)),
+                }
+            }
+        }
+        found
+            .outside
+            .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Ok(found)
+    }
+
+    /// Queues the states of a window that ends at the front.
+    fn finish<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun<U>,
+        watched: &Watched,
+        correction: &Correction,
+        settled: &Settled,
+        (start, time): (&Front, f64),
+    ) -> Result<(), Error> {
+        self.last_span = time;
+        let count = run.contact.len() - settled.events.len();
+        let order = settled
+            .events
+            .iter()
+            .map(|event| watched.nodes[event.position]);
+        run.rearrange(count, &order.collect::<Vec<_>>())?;
+        self.ranked = Some((run.contact.revision(), run.front.approach()));
+        states::enqueue(run, watched, correction, settled, (start, time))
+    }
+}
+
+impl Contradictions {
+    fn is_empty(&self) -> bool {
+        self.tension.is_empty() && self.overlap.is_empty() && self.outside.is_empty()
+    }
+}
+
+impl Watched {
+    /// Gaps as lines.
+    fn courses(&self) -> Vec<Course> {
+        let lines = self.lines.iter();
+        lines.map(|&[a, b]| Course([a, b, 0.0, 0.0])).collect()
+    }
+
+    /// The Schur complement as an updater gives it.
+    fn complement(&self) -> Schur {
+        let mut schur = Schur::default();
+        schur.resize(self.nodes.len());
+        schur.matrix_mut().copy_from(&self.schur);
+        schur
+    }
+
+    /// What the solution at the front, the window's end, says of the watched nodes.
+    fn at_end<U>(&self, run: &LoadingRun<U>) -> Vec<AtEnd> {
+        let approach = run.front.approach();
+        let solution = run.field.solution();
+        let first = run.contact.len().saturating_sub(self.nodes.len());
+        let joined = &run.contact.order()[first..];
+        let at = |&node: &usize| match joined.iter().position(|other| *other == node) {
+            Some(place) => AtEnd {
+                pressure: [
+                    solution.pressure[first + place],
+                    solution.rate[first + place],
+                ],
+                gap: [0.0; 2],
+            },
+            None => {
+                let line = run.field.line(&run.problem, node, approach);
+                AtEnd {
+                    pressure: [0.0; 2],
+                    gap: [line.gap, -line.closing],
+                }
+            }
+        };
+        self.nodes.iter().map(at).collect()
+    }
+}
+
+/// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
+/// most of them.
+fn cut(events: &[Played], horizon: f64, most: usize, scales: &Scales) -> (usize, f64) {
+    let count = events.len().min(most);
+    let next = |events_kept: usize| {
+        let last = events[events_kept - 1].time;
+        match events.get(events_kept) {
+            Some(event) => event.time,
+            None if horizon < f64::INFINITY => horizon,
+            None => 1.05 * last + 1e-12 * scales.length,
+        }
+    };
+    let spacing = |kept: &usize| next(*kept) - events[*kept - 1].time;
+    let widest = |range: std::ops::RangeInclusive<usize>| {
+        range
+            .rev()
+            .max_by(|a, b| spacing(a).total_cmp(&spacing(b)))
+            .unwrap_or(1)
+    };
+    let least = ((CUT * count as f64) as usize).clamp(1, count);
+    let mut kept = widest(least..=count);
+    if spacing(&kept) <= scales.tie {
+        kept = widest(1..=count);
+    }
+    (kept, 0.5 * (events[kept - 1].time + next(kept)))
+}

@@ -1,0 +1,142 @@
+//! Events among watched nodes, from a Schur complement and the courses of their gaps.
+
+use nalgebra::DMatrix;
+
+use crate::loading::window::BadPivot;
+
+/// The course of a gap as long as no watched node touches: `c₀ − c₁ t + c₂ t² + c₃ t³`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Course(pub(super) [f64; 4]);
+
+/// A watched node that touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Played {
+    /// Which of the watched nodes.
+    pub(super) position: usize,
+    /// From the window's beginning.
+    pub(super) time: f64,
+}
+
+/// Newton steps to the root of a cubic that is nearly a line.
+const NEWTON: usize = 8;
+
+impl Course {
+    /// The gap at a time.
+    pub(super) fn gap(&self, t: f64) -> f64 {
+        let Self([c0, c1, c2, c3]) = self;
+        c0 - t * (c1 - t * (c2 + t * c3))
+    }
+
+    /// How fast it closes.
+    pub(super) fn closing(&self, t: f64) -> f64 {
+        let Self([_, c1, c2, c3]) = self;
+        c1 - t * (2.0 * c2 + 3.0 * t * c3)
+    }
+
+    /// When the gap closes, not before `now`.
+    fn closes(&self, now: f64) -> f64 {
+        let Self([c0, c1, c2, c3]) = *self;
+        if c2 == 0.0 && c3 == 0.0 {
+            return if c1 > 0.0 {
+                (c0 / c1).max(now)
+            } else {
+                f64::INFINITY
+            };
+        }
+        let mut t = now;
+        for _ in 0..NEWTON {
+            let closing = self.closing(t);
+            if closing.is_nan() || closing <= 0.0 {
+                return f64::INFINITY;
+            }
+            t += self.gap(t) / closing;
+        }
+        if t.is_nan() {
+            f64::INFINITY
+        } else {
+            t.max(now)
+        }
+    }
+}
+
+/// Plays up to `most` events until the time `horizon`: the gap that closes first, again and again; of ties
+/// the first of the watched nodes. `bad` says what ended it if that was a pivot.
+pub(super) fn play(
+    schur: &DMatrix<f64>,
+    courses: &[Course],
+    horizon: f64,
+    most: usize,
+) -> (Vec<Played>, Option<BadPivot>) {
+    let size = courses.len();
+    let (mut schur, mut courses) = (schur.clone(), courses.to_vec());
+    let mut open: Vec<usize> = (0..size).collect();
+    let mut events = Vec::with_capacity(size);
+    let mut now = 0.0;
+    while events.len() < most {
+        let times = open.iter().map(|&i| (courses[i].closes(now), i));
+        let Some((time, position)) = times.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+        else {
+            break;
+        };
+        if time > horizon || time == f64::INFINITY {
+            break;
+        }
+        let pivot = schur[(position, position)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            let bad = BadPivot {
+                node: position,
+                time,
+                pivot,
+            };
+            return (events, Some(bad));
+        }
+        now = time;
+        open.retain(|&i| i != position);
+        events.push(Played { position, time });
+        let Course(own) = courses[position];
+        let column: Vec<f64> = schur.column(position).iter().copied().collect();
+        for &i in &open {
+            let factor = column[i] / pivot;
+            for (c, own) in courses[i].0.iter_mut().zip(own) {
+                *c -= factor * own;
+            }
+            for (value, other) in schur.column_mut(i).iter_mut().zip(&column) {
+                *value -= factor * other;
+            }
+        }
+    }
+    (events, None)
+}
+
+/// What each event of an order adds to stiffness and takes off the sum of closing rates, over the cell area:
+/// `b²/S` and `b σ/S` with all events before it eliminated.
+pub(super) fn increments(
+    schur: &DMatrix<f64>,
+    closing: &[f64],
+    row_sums: &[f64],
+    order: impl Iterator<Item = usize>,
+) -> Vec<[f64; 2]> {
+    let mut schur = schur.clone();
+    let (mut b, mut sigma) = (closing.to_vec(), row_sums.to_vec());
+    let mut open: Vec<usize> = (0..b.len()).collect();
+    let mut increments = Vec::with_capacity(b.len());
+    for position in order {
+        let pivot = schur[(position, position)];
+        increments.push([
+            b[position] * b[position] / pivot,
+            b[position] * sigma[position] / pivot,
+        ]);
+        open.retain(|&i| i != position);
+        let column: Vec<f64> = schur.column(position).iter().copied().collect();
+        let (own_b, own_sigma) = (b[position], sigma[position]);
+        for &i in &open {
+            let factor = column[i] / pivot;
+            b[i] -= factor * own_b;
+            sigma[i] -= factor * own_sigma;
+            for (value, other) in schur.column_mut(i).iter_mut().zip(&column) {
+                *value -= factor * other;
+            }
+        }
+    }
+    increments
+}

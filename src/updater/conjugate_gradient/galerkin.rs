@@ -1,0 +1,182 @@
+//! Schur complements from local solutions.
+
+use super::local::Local;
+use crate::kernel::KernelTable;
+use crate::{Boundary, Grid, Problem, parallel};
+
+/// Interpolation points along one side of the box of a source seen from afar.
+const POINTS: usize = 4;
+/// Two sources are far from each other if their centres are more than this times the sum of their radii
+/// apart. Cubic interpolation of 1/r then errs by some (1/4)⁴ of what is small already.
+const FAR: f64 = 2.0;
+
+/// Unit pressure on a watched node and the answer of the contact near it, `e_j − x_j`.
+struct Source {
+    /// (place in the table, pressure) of all nodes, the watched one first.
+    near: Vec<(usize, f64)>,
+    /// The same interpolated to few nodes.
+    far: Vec<(usize, f64)>,
+    centre: [f64; 2],
+    radius: f64,
+}
+
+/// ```math
+/// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
+/// ```
+///
+/// column by column, for all pairs: the complement of a Galerkin solution, from which the exact one
+/// differs by the square of the error of x, and is never greater. The lower triangle is written.
+pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
+    let table = problem.table();
+    let mut sources: Vec<Option<Source>> = locals.iter().map(|_| None).collect();
+    let mut work: Vec<_> = sources.iter_mut().zip(locals).collect();
+    parallel::for_each(&mut work, |(source, local)| {
+        **source = Some(Source::new(problem, local));
+    });
+    let sources: Vec<Source> = sources.into_iter().flatten().collect();
+    let size = locals.len();
+    let mut columns: Vec<(usize, &mut [f64])> =
+        matrix.chunks_mut(size.max(1)).enumerate().collect();
+    parallel::for_each(&mut columns, |(j, column)| {
+        for (i, source) in sources.iter().enumerate().skip(*j) {
+            column[i] = source.energy(&sources[*j], table);
+        }
+    });
+}
+
+impl Source {
+    fn new(problem: &Problem, local: &Local) -> Self {
+        let (grid, table) = (problem.grid(), problem.table());
+        let own = grid.coordinates(local.node);
+        let own = [own.0 as i32, own.1 as i32];
+        // Offsets from the watched node, the shorter way round where the half-space is periodic.
+        let periodic = problem.boundary() == Boundary::Periodic;
+        let shortest = |d: i32, n: usize| {
+            let n = n as i32;
+            match periodic {
+                true if 2 * d > n => d - n,
+                true if 2 * d < -n => d + n,
+                _ => d,
+            }
+        };
+        let offset = |node: u32| {
+            let (ix, iy) = grid.coordinates(node as usize);
+            [
+                shortest(ix as i32 - own[0], grid.nx()),
+                shortest(iy as i32 - own[1], grid.ny()),
+            ]
+        };
+        let answers = local.contact.iter().zip(&local.weights);
+        let answers: Vec<([i32; 2], f64)> = std::iter::once(([0, 0], 1.0))
+            .chain(answers.map(|(&node, x)| (offset(node), -x)))
+            .collect();
+        let nodes = std::iter::once(local.node).chain(local.contact.iter().map(|&n| n as usize));
+        let near = nodes
+            .zip(&answers)
+            .map(|(node, (_, p))| (table.place(node), *p));
+        let axes = [0, 1].map(|axis| Axis::of(answers.iter().map(|(offset, _)| offset[axis])));
+        let mut weights = [[0.0; POINTS]; POINTS];
+        for (offset, pressure) in &answers {
+            let [x, y] = [0, 1].map(|axis| axes[axis].weights(offset[axis]));
+            for (row, y) in weights.iter_mut().zip(y) {
+                for (weight, x) in row.iter_mut().zip(x) {
+                    *weight += pressure * x * y;
+                }
+            }
+        }
+        let mut far = Vec::with_capacity(POINTS * POINTS);
+        for (row, y) in weights.iter().zip(&axes[1].points[..axes[1].count]) {
+            for (weight, x) in row.iter().zip(&axes[0].points[..axes[0].count]) {
+                let wrapped = |own: i32, d: i32, n: usize| (own + d).rem_euclid(n as i32) as usize;
+                let node = grid.index(
+                    wrapped(own[0], *x, grid.nx()),
+                    wrapped(own[1], *y, grid.ny()),
+                );
+                far.push((table.place(node), *weight));
+            }
+        }
+        let sides = [grid.dx(), grid.dy()];
+        let middle = |axis: usize| 0.5 * f64::from(axes[axis].first() + axes[axis].last());
+        let half = |axis: usize| 0.5 * f64::from(axes[axis].last() - axes[axis].first());
+        Self {
+            near: near.collect(),
+            far,
+            centre: [0, 1].map(|axis| (f64::from(own[axis]) + middle(axis)) * sides[axis]),
+            radius: (half(0) * sides[0]).hypot(half(1) * sides[1]),
+        }
+    }
+
+    /// Work of one source on the displacement that another one causes.
+    fn energy(&self, other: &Self, table: &KernelTable) -> f64 {
+        let distance = distance(table.grid(), table.boundary(), self.centre, other.centre);
+        let (here, there) = if distance > FAR * (self.radius + other.radius) {
+            (&self.far, &other.far)
+        } else {
+            (&self.near, &other.near)
+        };
+        let work = here.iter().map(|&(place, pressure)| {
+            let displacement = there
+                .iter()
+                .map(|&(other, p)| table.between(place, other) * p);
+            pressure * displacement.sum::<f64>()
+        });
+        work.sum()
+    }
+}
+
+/// How far two points are from each other, the shorter way round where the half-space is periodic.
+fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (lx, ly) = grid.sides();
+    let [dx, dy] = [(0, lx), (1, ly)].map(|(axis, side)| {
+        let d = (a[axis] - b[axis]).abs();
+        match boundary {
+            Boundary::Free => d,
+            Boundary::Periodic => d.min((side - d).abs()),
+        }
+    });
+    dx.hypot(dy)
+}
+
+/// Up to four points between the least and the greatest offset along an axis.
+#[derive(Default)]
+struct Axis {
+    points: [i32; POINTS],
+    count: usize,
+}
+
+impl Axis {
+    fn of(offsets: impl Iterator<Item = i32> + Clone) -> Self {
+        let (first, last) = (
+            offsets.clone().min().unwrap_or_default(),
+            offsets.max().unwrap_or_default(),
+        );
+        let count = POINTS.min((last - first + 1) as usize);
+        let mut points = [0; POINTS];
+        for (k, point) in points[..count].iter_mut().enumerate() {
+            let gaps = count.max(2) as i32 - 1;
+            *point = first + (2 * (last - first) * k as i32 + gaps) / (2 * gaps);
+        }
+        Self { points, count }
+    }
+
+    fn first(&self) -> i32 {
+        self.points[0]
+    }
+
+    fn last(&self) -> i32 {
+        self.points[self.count - 1]
+    }
+
+    /// Lagrange's polynomials at an offset.
+    fn weights(&self, offset: i32) -> [f64; POINTS] {
+        let mut weights = [0.0; POINTS];
+        let points = &self.points[..self.count];
+        for (k, (weight, &point)) in weights.iter_mut().zip(points).enumerate() {
+            let others = points.iter().enumerate().filter(|(other, _)| *other != k);
+            *weight = others
+                .map(|(_, &other)| f64::from(offset - other) / f64::from(point - other))
+                .product();
+        }
+        weights
+    }
+}

@@ -1,0 +1,115 @@
+//! How two paths of the same surface differ.
+
+use std::collections::HashMap;
+
+use asperity::loading::LoadingState;
+
+/// Events closer than this, relative to their approach, are ties.
+const TIE: f64 = 1e-9;
+/// Events on either side over which spacings are averaged.
+const AROUND: usize = 32;
+
+/// Prints how a path differs from an exact one.
+pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
+    let place: HashMap<(usize, usize), usize> = exact
+        .iter()
+        .enumerate()
+        .map(|(k, state)| (state.node, k))
+        .collect();
+    let count = found.len().min(exact.len());
+    let approach = |k: usize| exact[k].approach;
+    let (mut places, mut events) = (0, 0);
+    let (mut errors, mut exceeded, mut worst) = (Vec::new(), 0, 0.0_f64);
+    for (k, state) in found[..count].iter().enumerate() {
+        let Some(&own) = place.get(&state.node) else {
+            places += 1;
+            events += 1;
+            continue;
+        };
+        if own != k {
+            places += 1;
+            if (approach(own) - approach(k)).abs() > TIE * approach(k) {
+                events += 1;
+            }
+        }
+        let error = (state.approach - approach(own)).abs();
+        let (first, last) = (
+            own.saturating_sub(AROUND),
+            (own + AROUND).min(exact.len() - 1),
+        );
+        let spacing = (approach(last) - approach(first)) / (last - first) as f64;
+        if spacing > 0.0 {
+            errors.push(error / spacing);
+        }
+        // Both solutions may be off by their tolerance.
+        let bound = state.approach_error + 2e-10 * approach(own);
+        if error > bound {
+            exceeded += 1;
+        }
+        if bound > 0.0 {
+            worst = worst.max(error / bound);
+        }
+    }
+    println!(
+        "  places that differ: {places} ({:.3} %), without ties {events}; error over estimate: \
+         {exceeded} above 1 ({:.3} %), worst {worst:.2}",
+        100.0 * places as f64 / count as f64,
+        100.0 * exceeded as f64 / count as f64
+    );
+    println!("  approach over spacing: {}", quantiles(errors));
+    // Where no tie makes the order of equals matter.
+    let clear = |k: &usize| {
+        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
+        approach(*k) > 0.0 && next - approach(*k) > TIE * approach(*k)
+    };
+    let alike: Vec<usize> = (0..count)
+        .filter(clear)
+        .filter(|&k| !is_full(&exact[k]))
+        .collect();
+    let initial = exact[0].mean_gap;
+    let columns: [(&str, &dyn Fn(&LoadingState, &LoadingState) -> f64); 5] = [
+        ("load", &|a, b| relative(a.load, b.load)),
+        ("stiffness", &|a, b| {
+            relative(
+                a.contact_stiffness.unwrap_or(1.0),
+                b.contact_stiffness.unwrap_or(1.0),
+            )
+        }),
+        ("interfacial stiffness", &|a, b| {
+            relative(
+                a.interfacial_stiffness.unwrap_or(1.0),
+                b.interfacial_stiffness.unwrap_or(1.0),
+            )
+        }),
+        ("mean gap over initial", &|a, b| {
+            (a.mean_gap - b.mean_gap).abs() / initial
+        }),
+        ("energy", &|a, b| relative(a.energy, b.energy)),
+    ];
+    for (name, error) in columns {
+        let errors = alike.iter().map(|&k| error(&found[k], &exact[k]));
+        println!("  {name}: {}", quantiles(errors.collect()));
+    }
+}
+
+fn is_full(state: &LoadingState) -> bool {
+    state.contact_area_fraction == 1.0
+}
+
+fn relative(a: f64, b: f64) -> f64 {
+    (a / b - 1.0).abs()
+}
+
+fn quantiles(mut values: Vec<f64>) -> String {
+    if values.is_empty() {
+        return "nothing to compare".to_owned();
+    }
+    values.sort_by(f64::total_cmp);
+    let last = values.len() - 1;
+    format!(
+        "median {:.1e}, 99 % {:.1e}, worst {:.1e}",
+        values[last / 2],
+        values[last * 99 / 100],
+        values[last]
+    )
+}

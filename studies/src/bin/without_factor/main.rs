@@ -1,0 +1,130 @@
+//! The path without a factor against the path with one: order of events, errors, time and memory.
+
+mod compare;
+mod surfaces;
+
+use std::error::Error;
+use std::time::Instant;
+
+use asperity::kernel::KernelTable;
+use asperity::loading::{LoadingState, LoadingTimings};
+use asperity::surface::HeightMap;
+use asperity::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
+use asperity::{Boussinesq, LoadingSolver, PeriodicBoussinesq, Spectral};
+use asperity_studies::peak_memory::peak_memory;
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use surfaces::Shape;
+
+/// Follows a surface without a factor, and compares with the path of a factor.
+#[derive(Parser)]
+struct Options {
+    /// Nodes along x.
+    #[arg(long, default_value_t = 128)]
+    nodes: usize,
+    /// Nodes along y, as many as along x unless given.
+    #[arg(long)]
+    ny: Option<usize>,
+    /// Side of a cell along x over its side along y.
+    #[arg(long, default_value_t = 1.0)]
+    aspect: f64,
+    #[arg(long, value_enum, default_value_t = Shape::Rough)]
+    surface: Shape,
+    #[arg(long, default_value_t = 0.8)]
+    hurst: f64,
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[arg(long, value_enum, default_value_t = HalfSpace::Free)]
+    half_space: HalfSpace,
+    /// Contact nodes at which the path ends; full contact unless given.
+    #[arg(long)]
+    contact_nodes: Option<usize>,
+    /// Nodes to watch at a time.
+    #[arg(long)]
+    window: Option<usize>,
+    /// Only the path without a factor.
+    #[arg(long)]
+    alone: bool,
+    /// Says what happens in each window.
+    #[arg(long)]
+    list: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum HalfSpace {
+    Free,
+    Periodic,
+    Spectral,
+}
+
+/// Runs a path, and returns its states.
+fn run<U: LinearUpdater>(
+    options: &Options,
+    surface: &HeightMap,
+    kernel: &KernelTable,
+    updater: U,
+) -> Result<(Vec<LoadingState>, LoadingTimings, f64), Box<dyn Error>> {
+    let nodes = kernel.grid().nodes();
+    let most = options.contact_nodes.unwrap_or(nodes);
+    let start = Instant::now();
+    let mut builder = LoadingSolver::builder(surface, kernel)
+        .updater(updater)
+        .max_nodes(most);
+    if let Some(size) = options.window {
+        builder = builder.window_size(size);
+    }
+    let mut path = builder.build()?;
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} nodes {elapsed}");
+    let bar = ProgressBar::new(most as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let mut states = Vec::with_capacity(most);
+    while let Some(state) = path.next() {
+        match state {
+            Ok(state) => states.push(state),
+            Err(error) => {
+                println!("  ended by: {error}");
+                break;
+            }
+        }
+        if states.len().is_multiple_of(256) {
+            bar.set_position(states.len() as u64);
+            if options.list && states.len().is_multiple_of(4096) {
+                let seconds = start.elapsed().as_secs_f64();
+                println!("{} nodes {seconds:.1} s {:?}", states.len(), path.timings());
+            }
+        }
+    }
+    bar.finish_and_clear();
+    Ok((states, path.timings(), start.elapsed().as_secs_f64()))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse();
+    let ny = options.ny.unwrap_or(options.nodes);
+    let (grid, surface) = surfaces::make(
+        options.surface,
+        (options.nodes, ny, options.aspect),
+        (options.hurst, options.seed),
+    )?;
+    let kernel = match options.half_space {
+        HalfSpace::Free => KernelTable::new(&Boussinesq::new(grid, 1.0)?)?,
+        HalfSpace::Periodic => KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?,
+        HalfSpace::Spectral => KernelTable::new(&Spectral::new(grid, 1.0)?)?,
+    };
+    let (states, timings, seconds) = run(&options, &surface, &kernel, ConjugateGradient::new())?;
+    let peak = peak_memory().unwrap_or(f64::NAN) / 1e6;
+    println!(
+        "without a factor: {} events in {seconds:.2} s, {peak:.0} MB, {} windows, {} ties settled, {} taken back",
+        states.len(),
+        timings.windows,
+        timings.ties,
+        timings.taken_back
+    );
+    if options.alone {
+        return Ok(());
+    }
+    let (exact, _, seconds) = run(&options, &surface, &kernel, RecursiveCholesky::new())?;
+    println!("with a factor: {} events in {seconds:.2} s", exact.len());
+    compare::print(&states, &exact);
+    Ok(())
+}
