@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use super::{LinearUpdater, Schur, Solution, Touched, check_count};
 use crate::contact::ContactSequence;
-use crate::{Error, Problem, parallel};
+use crate::{Error, Problem};
 use factor::Factor;
 use panels::ROWS;
 
@@ -143,7 +143,7 @@ impl LinearUpdater for RecursiveCholesky {
             y.extend(border.iter().map(|values| values[rhs]));
         }
         let panels = &self.factor.panels;
-        parallel::inside(|| panels.solve_transposed([&mut y1[..], &mut y2[..]]));
+        panels.solve_transposed([&mut y1[..], &mut y2[..]]);
         for value in y1 {
             *value = -*value;
         }
