@@ -2,7 +2,15 @@
 //! without it. What a chunk computes does not depend on which, so results are the same bit for bit.
 
 #[cfg(feature = "rayon")]
+use std::sync::Mutex;
+
+#[cfg(feature = "rayon")]
 use rayon::prelude::*;
+
+/// Operations, a product and a sum of a matrix product say, that pay for waking one thread more: it takes
+/// some 0.05 ms to come, and the one that waits for it as long again.
+#[cfg(feature = "rayon")]
+const WORTH_WAKING: usize = 1 << 22;
 
 /// Runs both, at the same time if there are threads.
 pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
@@ -15,12 +23,34 @@ pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
     }
 }
 
-/// Calls `work` for each item.
-pub(crate) fn for_each<T: Send>(items: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
+/// Calls `work` for each item, some `operations` in all. The calling thread takes its share, and all of
+/// it if it is small.
+pub(crate) fn for_each<T: Send>(
+    operations: usize,
+    items: &mut [T],
+    work: impl Fn(&mut T) + Sync + Send,
+) {
     #[cfg(feature = "rayon")]
-    items.par_iter_mut().with_max_len(1).for_each(work);
+    {
+        let threads = rayon::current_num_threads().min(items.len());
+        let woken = (operations / WORTH_WAKING).min(threads.saturating_sub(1));
+        let items = Mutex::new(items.iter_mut());
+        let next = || items.lock().ok().and_then(|mut items| items.next());
+        let share = || std::iter::from_fn(next).for_each(&work);
+        if woken == 0 {
+            share();
+        } else {
+            rayon::in_place_scope(|scope| {
+                (0..woken).for_each(|_| scope.spawn(|_| share()));
+                share();
+            });
+        }
+    }
     #[cfg(not(feature = "rayon"))]
-    items.iter_mut().for_each(work);
+    {
+        let _ = operations;
+        items.iter_mut().for_each(work);
+    }
 }
 
 /// Calls `work(i, chunk i)` for chunks of `size` values.

@@ -17,7 +17,7 @@ use crate::{Boundary, Error, Grid};
 const PARTS: usize = 32;
 
 /// Nodes from which threads are worth waking.
-pub(super) const PARALLEL_NODES: usize = 64 * 64;
+pub(super) const PARALLEL_NODES: usize = 96 * 96;
 
 /// A convolution whose transforms are done in the precision of T; fields are always double.
 ///

@@ -195,7 +195,7 @@ fn a_wave_answers_with_the_symbol_and_a_constant_with_the_gauge() -> Result<(), 
 
 /// A grid just large enough for threads, with incomplete blocks on both sides.
 fn parallel_grid() -> Result<Grid, Error> {
-    let grid = Grid::new(70, 61, 1.0, 1.0)?;
+    let grid = Grid::new(100, 93, 1.0, 1.0)?;
     assert!(grid.nodes() >= PARALLEL_NODES);
     Ok(grid)
 }

@@ -7,6 +7,9 @@ use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
 use crate::updater::{LinearUpdater, Touched};
 
+/// Rates serve at least this part of the approach.
+const LEAST_SPAN: f64 = 1e-5;
+
 impl Corrected {
     /// Lets all nodes that touch at a time join, up to `most`, in the order of their indices. Between them
     /// stiffness and closing rate change in equal steps.
@@ -33,7 +36,7 @@ impl Corrected {
         }
         start.advance(approach + time);
         self.last_span = self.last_span.max(time);
-        self.rate_span = self.last_span;
+        self.rate_span = self.last_span.max(LEAST_SPAN * scales.length);
         let entered = run
             .updater
             .join(&run.problem, &run.contact, &Touched::default())

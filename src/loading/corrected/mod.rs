@@ -154,7 +154,8 @@ impl Corrected {
             let times = choice.watched.iter().map(|(time, _)| *time);
             times.filter(|time| time.is_finite()).fold(0.0, f64::max)
         };
-        if scales.rate_tolerance(furthest) < 0.5 * scales.rate_tolerance(self.rate_span) {
+        if furthest > 0.0
+            && scales.rate_tolerance(furthest) < 0.5 * scales.rate_tolerance(self.rate_span) {
             self.rate_span = furthest;
             run.solve_field(run.front.approach(), furthest)?;
             self.survey(run)?;

@@ -132,7 +132,8 @@ impl Columns {
             position += starts.last().map_or(0, |(_, block)| block.width);
         }
         let new = starts.partition_point(|(start, _)| *start < first);
-        parallel::for_each(&mut starts[new..], |(start, block)| {
+        let operations = (position - first) * factor.rows() * factor.rows() / 2;
+        parallel::for_each(operations, &mut starts[new..], |(start, block)| {
             let width = block.width;
             let mut buffer = vec![0.0; ROWS * width];
             for p in 0..factor.len() {
@@ -164,7 +165,7 @@ impl Columns {
             matrix = rest;
             tasks.push((&tiles[first..], s));
         }
-        parallel::for_each(&mut tasks, |(tiles, s)| {
+        parallel::for_each(self.rows * size * size / 2, &mut tasks, |(tiles, s)| {
             let (_, block, columns) = &tiles[0];
             let here = block.view(0..self.rows, columns.clone());
             for (start, block, rows) in *tiles {
@@ -180,13 +181,14 @@ impl Columns {
     /// R −= Fᵀ X for X given row by row.
     pub(super) fn subtract_products<const N: usize>(&self, x: &[[f64; N]], mut r: &mut [[f64; N]]) {
         let tiles = self.tiles();
+        let operations = self.rows * r.len() * N;
         let mut tasks = Vec::with_capacity(tiles.len());
         for (_, block, columns) in &tiles {
             let (here, rest) = r.split_at_mut(columns.len());
             r = rest;
             tasks.push((block, columns.start, here));
         }
-        parallel::for_each(&mut tasks, |(block, column, r)| {
+        parallel::for_each(operations, &mut tasks, |(block, column, r)| {
             let mut sums = [[0.0; WIDTH]; N];
             let values = block.values.get(*column..).unwrap_or_default();
             let targets = sums.each_mut().map(|sums| &mut sums[..r.len()]);
@@ -252,11 +254,14 @@ impl Columns {
         // The new rows of L in pieces, each with its rows of F, so that a thread reads its part of F
         // once for all.
         let mut kept = values.chunks_mut((ROWS * width).max(1));
-        let mut pieces: Vec<Piece> = Vec::new();
-        pieces.resize_with(before.div_ceil(ROWS), || Piece {
-            rows: Vec::with_capacity(columns.len()),
-            kept: kept.next().unwrap_or_default(),
-        });
+        let firsts = (0..before).step_by(ROWS);
+        let mut pieces: Vec<Piece> = firsts
+            .map(|first| Piece {
+                first,
+                rows: Vec::with_capacity(columns.len()),
+                kept: kept.next().unwrap_or_default(),
+            })
+            .collect();
         for (last, ((position, _), row)) in columns.iter().zip(factor.rows_mut(before)).enumerate()
         {
             let (left, here) = row.split_at_mut(before);
@@ -267,29 +272,29 @@ impl Columns {
                 piece.rows.push(target);
             }
         }
-        parallel::for_each_chunk(&mut pieces, 1, |piece, targets| {
-            for Piece { rows, kept } in targets {
-                let first = piece * ROWS;
-                let count = ROWS.min(before - first);
-                // So few rows of F at a time stay in cache while all rows of L take from them.
-                for start in (0..count).step_by(CACHED_ROWS) {
-                    let end = count.min(start + CACHED_ROWS);
-                    for ((_, (block, column)), target) in columns.iter().zip(&mut *rows) {
-                        let values = &block.values[(first + start) * block.width + column..];
-                        let values = values.iter().step_by(block.width);
-                        for (target, value) in target[start..end].iter_mut().zip(values) {
-                            *target = *value;
-                        }
+        // A number moved takes as long as some operations.
+        let operations = 16 * before * (columns.len() + width);
+        parallel::for_each(operations, &mut pieces, |Piece { first, rows, kept }| {
+            let first = *first;
+            let count = ROWS.min(before - first);
+            // So few rows of F at a time stay in cache while all rows of L take from them.
+            for start in (0..count).step_by(CACHED_ROWS) {
+                let end = count.min(start + CACHED_ROWS);
+                for ((_, (block, column)), target) in columns.iter().zip(&mut *rows) {
+                    let values = &block.values[(first + start) * block.width + column..];
+                    let values = values.iter().step_by(block.width);
+                    for (target, value) in target[start..end].iter_mut().zip(values) {
+                        *target = *value;
                     }
-                    for row in start..end {
-                        let mut values = &mut kept[row * width..][..width];
-                        for (block, columns) in &left {
-                            let source = &block.values[(first + row) * block.width..];
-                            for (value, &column) in values.iter_mut().zip(columns) {
-                                *value = source[column];
-                            }
-                            values = &mut values[columns.len()..];
+                }
+                for row in start..end {
+                    let mut values = &mut kept[row * width..][..width];
+                    for (block, columns) in &left {
+                        let source = &block.values[(first + row) * block.width..];
+                        for (value, &column) in values.iter_mut().zip(columns) {
+                            *value = source[column];
                         }
+                        values = &mut values[columns.len()..];
                     }
                 }
             }
@@ -321,6 +326,8 @@ impl Columns {
 
 /// Rows of F on their way into rows of L, and into the columns that are kept.
 struct Piece<'a> {
+    /// The first row of F.
+    first: usize,
     rows: Vec<&'a mut [f64]>,
     kept: &'a mut [f64],
 }

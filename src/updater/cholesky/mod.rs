@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use super::{LinearUpdater, Schur, Solution, SolveRequest, Touched, check_count};
 use crate::contact::ContactSequence;
-use crate::{Error, Problem, parallel};
+use crate::{Error, Problem};
 use factor::Factor;
 use panels::ROWS;
 
@@ -147,7 +147,7 @@ impl LinearUpdater for RecursiveCholesky {
         rate.clear();
         rate.extend(border.iter().map(|[_, unit, _]| unit));
         let panels = &self.factor.panels;
-        parallel::inside(|| panels.solve_transposed([&mut pressure[..], &mut rate[..]]));
+        panels.solve_transposed([&mut pressure[..], &mut rate[..]]);
         self.factor.timings.solve += start.elapsed();
         Ok(())
     }

@@ -20,7 +20,16 @@ const COLUMNS_AT_ONCE: usize = 1024;
 impl Panels {
     /// Solves `Lᵀ x = b` in place for right-hand sides of the same length, with the leading part
     /// of L that has as many rows.
-    pub(super) fn solve_transposed<const N: usize>(&self, mut x: [&mut [f64]; N]) {
+    pub(super) fn solve_transposed<const N: usize>(&self, x: [&mut [f64]; N]) {
+        if length(&x) > 2 * GROUP_ROWS {
+            parallel::inside(|| self.solve_groups_transposed(x));
+        } else {
+            // There is nothing to share.
+            self.solve_groups_transposed(x);
+        }
+    }
+
+    fn solve_groups_transposed<const N: usize>(&self, mut x: [&mut [f64]; N]) {
         let count = length(&x);
         let Some(last) = count.div_ceil(GROUP_ROWS).checked_sub(1) else {
             return;
@@ -43,13 +52,19 @@ impl Panels {
                 let part = rest.each_mut().map(|x| x.split_off_mut(..COLUMNS_AT_ONCE));
                 far.push((first, part.map(Option::unwrap_or_default)));
             }
-            parallel::join(
-                || {
-                    subtract(near, &mut rest);
-                    self.solve_group_transposed(group - 1, rest);
-                },
-                || parallel::for_each(&mut far, |(first, x)| subtract(*first, x)),
-            );
+            let next = || {
+                subtract(near, &mut rest);
+                self.solve_group_transposed(group - 1, rest);
+            };
+            if far.is_empty() {
+                next();
+                continue;
+            }
+            // A number that is read from memory takes as long as some operations.
+            let operations = 16 * (end - start) * near;
+            parallel::join(next, || {
+                parallel::for_each(operations, &mut far, |(first, x)| subtract(*first, x));
+            });
         }
     }
 

@@ -6,6 +6,8 @@ use asperity::loading::LoadingState;
 
 /// Events closer than this, relative to their approach, are ties.
 const TIE: f64 = 1e-9;
+/// The same over the mean gap.
+const ROUNDING: f64 = 1e-14;
 /// Events on either side over which spacings are averaged.
 const AROUND: usize = 32;
 
@@ -18,6 +20,8 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
         .collect();
     let count = found.len().min(exact.len());
     let approach = |k: usize| exact[k].approach;
+    // Heights are rounded.
+    let tie = |k: usize| (TIE * approach(k)).max(ROUNDING * exact[0].mean_gap);
     let (mut places, mut events) = (0, 0);
     let (mut errors, mut exceeded, mut worst) = (Vec::new(), 0, 0.0_f64);
     for (k, state) in found[..count].iter().enumerate() {
@@ -28,7 +32,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
         };
         if own != k {
             places += 1;
-            if (approach(own) - approach(k)).abs() > TIE * approach(k) {
+            if (approach(own) - approach(k)).abs() > tie(k) {
                 events += 1;
             }
         }
@@ -42,7 +46,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
             errors.push(error / spacing);
         }
         // Both solutions may be off by their tolerance.
-        let bound = state.approach_error + 2e-10 * approach(own);
+        let bound = state.approach_error + 0.2 * tie(own);
         if error > bound {
             exceeded += 1;
         }
@@ -60,7 +64,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
     // Where no tie makes the order of equals matter.
     let clear = |k: &usize| {
         let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
-        approach(*k) > 0.0 && next - approach(*k) > TIE * approach(*k)
+        approach(*k) > 0.0 && next - approach(*k) > tie(*k)
     };
     let alike: Vec<usize> = (0..count)
         .filter(clear)
