@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched, UpdaterProfile,
+    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    UpdaterProfile,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
 use criterion::measurement::WallTime;
@@ -82,10 +83,10 @@ impl LinearUpdater for Capture {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner.solve(problem, contact, count, solution)
+        self.inner.solve(problem, contact, request, solution)
     }
 
     fn profile(&self) -> UpdaterProfile {
@@ -185,15 +186,21 @@ fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
 
     // From the solution on the nodes before the last window, as at a refresh.
     let mut solution = Solution::default();
+    let approach = problem.mean_gap();
+    let at = |count| SolveRequest {
+        count,
+        approach,
+        span: approach,
+    };
     let mut group = short_group(criterion, "solution");
     group.throughput(Throughput::Bytes((n * n / 2 * NUMBER) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_custom(|count| {
             let mut time = Duration::ZERO;
             for _ in 0..count {
-                succeed(working.solve(&problem, &contact, n - NEW, &mut solution));
+                succeed(working.solve(&problem, &contact, at(n - NEW), &mut solution));
                 let start = Instant::now();
-                succeed(working.solve(&problem, &contact, n, black_box(&mut solution)));
+                succeed(working.solve(&problem, &contact, at(n), black_box(&mut solution)));
                 time += start.elapsed();
             }
             time
@@ -223,7 +230,7 @@ fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
             |updater| {
                 succeed(updater.watch(&problem, &contact, &watched, &mut schur));
                 succeed(updater.join(&problem, &grown, &touched));
-                succeed(updater.solve(&problem, &grown, grown.len(), &mut solution));
+                succeed(updater.solve(&problem, &grown, at(grown.len()), &mut solution));
             },
             BatchSize::PerIteration,
         );

@@ -16,6 +16,8 @@ struct Direction {
     values: Vec<f64>,
     image: Vec<f64>,
     curvature: f64,
+    /// Displacements of the whole grid, if the direction may be kept.
+    everywhere: Vec<f32>,
 }
 
 /// A step of conjugate gradients on a contact set: by `length` along `values`, which changes
@@ -31,7 +33,7 @@ pub(crate) struct Step<'a> {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directions {
     last: Vec<Direction>,
-    /// Directions kept aside for other right-hand sides.
+    /// The first ones, if they are to serve other right-hand sides.
     kept: Option<Vec<Direction>>,
 }
 
@@ -48,13 +50,17 @@ impl Directions {
         self.last.is_empty()
     }
 
-    /// Takes the parts along all kept directions out of the residual of x: they are conjugate, so that each
-    /// is one step of its own (Chan and Wan, SIAM J. Sci. Comput. 18 (1997) 1698).
-    pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64]) {
-        for direction in self.kept.iter().flatten().chain(&self.last) {
+    /// Takes the parts along all kept directions out of the residual of x, whose displacements of the whole
+    /// grid are u: the directions are conjugate, so that each is a step of its own (Chan and Wan, SIAM J.
+    /// Sci. Comput. 18 (1997) 1698).
+    pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64], u: &mut [f64]) {
+        for direction in self.kept.iter().flatten() {
             let length = dot(residual, &direction.values) / direction.curvature;
             add_scaled(x, length, &direction.values);
             add_scaled(residual, -length, &direction.image);
+            for (u, change) in u.iter_mut().zip(&direction.everywhere) {
+                *u += length * f64::from(*change);
+            }
         }
     }
 
@@ -87,17 +93,18 @@ impl Directions {
                 nodes: contact.len(),
             });
         };
+        if let Some(kept) = self.kept.as_mut().filter(|kept| kept.len() < KEPT) {
+            kept.push(direction.clone());
+        }
         if self.last.len() == MEMORY {
-            let oldest = self.last.remove(0);
-            if let Some(kept) = self.kept.as_mut().filter(|kept| kept.len() < KEPT) {
-                kept.push(oldest);
-            }
+            self.last.remove(0);
         }
         self.last.push(direction);
         let Direction {
             values,
             image,
             curvature,
+            ..
         } = &self.last[self.last.len() - 1];
         Ok(Step {
             length: dot(residual, values) / curvature,
@@ -122,12 +129,17 @@ impl Directions {
         let displacement = operator.step(contact, &values)?;
         let mut image = Vec::new();
         contact.gather(displacement, &mut image);
+        let everywhere = match &self.kept {
+            Some(kept) if kept.len() < KEPT => displacement.iter().map(|u| *u as f32).collect(),
+            _ => Vec::new(),
+        };
         let curvature = dot(&values, &image);
         let usable = curvature > 0.0 && curvature.is_finite();
         Ok(usable.then_some(Direction {
             values,
             image,
             curvature,
+            everywhere,
         }))
     }
 }

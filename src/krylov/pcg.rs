@@ -59,24 +59,13 @@ impl LinearSystem<'_> {
         x: &mut [f64],
         residual: &mut Vec<f64>,
     ) -> Result<LinearOutcome, Error> {
-        self.solve_along(b, x, residual, &mut Directions::default())
-    }
-
-    /// The same, continued from the directions of an earlier solution with the same matrix.
-    pub(crate) fn solve_along(
-        &mut self,
-        b: &[f64],
-        x: &mut [f64],
-        residual: &mut Vec<f64>,
-        directions: &mut Directions,
-    ) -> Result<LinearOutcome, Error> {
         let worst = |residual: &[f64]| greatest(residual.len(), 0.0, |i| residual[i].abs());
         let mut outcome = LinearOutcome {
             residual: self.finite(worst(residual), 0)?,
             iterations: 0,
             converged: false,
         };
-        let mut z = Vec::new();
+        let (mut z, mut directions) = (Vec::new(), Directions::default());
         while outcome.residual > self.tolerance && outcome.iterations < self.max_iterations {
             let start = outcome.residual;
             let enough = (MARGIN * self.tolerance).max(REDUCTION * start);

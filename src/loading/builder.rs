@@ -12,7 +12,7 @@ use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
 use crate::contact::{ContactSequence, ContactTarget};
-use crate::updater::{LinearUpdater, RecursiveCholesky};
+use crate::updater::{Handover, LinearUpdater};
 use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface, memory};
 
 /// Which node is taken to touch next.
@@ -21,6 +21,12 @@ pub enum ContactRule {
     /// The node whose gap closes first as the approach grows. Exact.
     #[default]
     FirstContact,
+    /// The same, nearly: where the updater has no factor, windows are long and nothing is settled inside
+    /// them, which is several times faster. States at the ends of windows are exact, and so is the set of
+    /// nodes in contact there; between them some hundredths of a per cent of the nodes change places with
+    /// a neighbour, at approaches that are within a few hundredths of the mean spacing of events of each
+    /// other.
+    ApproximateOrder,
     /// The node with the smallest gap at present: the paper's rule (its step 4). It is not exact: it gives
     /// negative pressures, overlaps, and an approach that goes backwards. It is here so that the paper can be
     /// reproduced, and implies a window of one node.
@@ -30,7 +36,7 @@ pub enum ContactRule {
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Clone)]
 #[must_use = "a builder does nothing until it is built"]
-pub struct LoadingBuilder<'a, U = RecursiveCholesky> {
+pub struct LoadingBuilder<'a, U = Handover> {
     surface: &'a dyn Surface,
     kernel: &'a dyn InfluenceKernel,
     updater: U,
@@ -66,7 +72,7 @@ impl<'a> LoadingBuilder<'a> {
         Self {
             surface,
             kernel,
-            updater: RecursiveCholesky::new(),
+            updater: Handover::new(),
             rule: ContactRule::default(),
             window_size: None,
             max_nodes: None,
@@ -176,7 +182,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let procedure = match (self.rule, growth) {
             (ContactRule::SmallestGap, _) => Procedure::Paper(Paper::default()),
             (_, ContactGrowth::Unknown) => Procedure::Stepwise(Stepwise::default()),
-            _ => Procedure::Windowed(Windowed::new(growth, self.window_size)),
+            (rule, _) => {
+                let settles = rule == ContactRule::FirstContact;
+                Procedure::Windowed(Windowed::new(growth, self.window_size, settles))
+            }
         };
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
         let mut run = LoadingRun {

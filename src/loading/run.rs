@@ -62,7 +62,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
 
     /// Makes the gap field that of the present contact at an approach.
     pub(super) fn renew_field(&mut self, approach: f64) -> Result<(), Error> {
-        let at = [approach, approach];
+        let at = [approach, f64::INFINITY];
         self.field
             .renew(&self.problem, &self.contact, &mut self.updater, at)?;
         self.timings.convolution = self.field.time();
@@ -210,7 +210,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         let request = SolveRequest {
             count: nodes.len(),
             approach,
-            span: approach,
+            span: f64::INFINITY,
         };
         if self.releases.is_prefix(step) {
             let (problem, contact) = (&self.problem, &self.contact);

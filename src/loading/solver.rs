@@ -12,7 +12,7 @@ use super::state::LoadingState;
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
 use crate::contact::{Certificate, Conditions, ContactTarget, LengthScale};
-use crate::updater::{LinearUpdater, RecursiveCholesky};
+use crate::updater::{Handover, LinearUpdater};
 use crate::{Error, Grid, Problem};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
@@ -42,7 +42,7 @@ use crate::{Error, Grid, Problem};
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct LoadingSolver<U = RecursiveCholesky> {
+pub struct LoadingSolver<U = Handover> {
     pub(super) run: LoadingRun<U>,
     pub(super) procedure: Procedure,
     pub(super) limits: Limits,

@@ -28,13 +28,14 @@ pub(super) struct Windowed {
 }
 
 impl Windowed {
-    pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
+    /// Where the updater is not exact, near ties are settled if `settles` says so.
+    pub(super) fn new(growth: ContactGrowth, size: Option<usize>, settles: bool) -> Self {
         Self {
             growth,
             size,
             window: Window::default(),
             ranking: Vec::new(),
-            corrected: Corrected::new(size),
+            corrected: Corrected::new(size, settles),
         }
     }
 

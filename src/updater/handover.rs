@@ -1,4 +1,4 @@
-//! A factor as long as it fits, iterations after.
+//! A factor as long as it pays, iterations after.
 
 use super::{
     ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
@@ -11,15 +11,28 @@ use crate::{Error, Problem};
 /// so few events that iterations are no slower.
 const LEAST_WINDOW: usize = 64;
 
-/// [`RecursiveCholesky`] while its factor fits the memory budget of the path, [`ConjugateGradient`]
-/// from then on: no path ends for want of memory for n² numbers.
+/// Seconds of an event with a factor of n nodes, per n²: a matrix product.
+const FACTOR: f64 = 1.0e-11;
+/// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
+/// goes with them on the contact.
+const ITERATIONS: [f64; 2] = [5.0e-9, 8.0e-9];
+/// The same for any grid.
+const WINDOW: f64 = 5.0e-5;
+
+/// The default: [`RecursiveCholesky`] as long as its events are cheaper than those of [`ConjugateGradient`]
+/// and its factor fits the memory budget of the path, and [`ConjugateGradient`] from then on. No path ends
+/// for want of memory for n² numbers, and full contact on 512 × 512 nodes takes minutes.
 ///
-/// The budget is that of [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
-/// States are the same on both sides of the seam, to the tolerance of the iterations (10⁻¹² of the
-/// right-hand sides); only the time of an event changes. A message of the level `info` goes to the
-/// crate `log`, and [`handed_over_at`](Self::handed_over_at) says where it was.
+/// An event costs some n² times 10 ps with a factor of n nodes, and some 5 ns for each node of the grid and
+/// 8 ns for each one in contact without: the factor is given up at some 3000 contact nodes on a grid of
+/// 128², 6000 on 256², and 13 000 on 512². These are constants and not measurements, so that a path is the
+/// same on every run. The budget is that of
+/// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
-/// The factor is given back to the system, to make room for the columns of the iterations.
+/// Events are the same on both sides of the seam; before it states are exact to rounding, behind it as
+/// [`loading`](crate::loading) says. A message of the level `info` goes to the crate `log`, and
+/// [`handed_over_at`](Self::handed_over_at) says where it was. For a path exact to rounding whatever it
+/// costs, take [`RecursiveCholesky`] itself.
 ///
 /// ```
 /// use asperity::surface::Paraboloid;
@@ -91,30 +104,53 @@ impl Handover {
         }
     }
 
+    /// Seconds that an event with so many nodes in contact takes on a grid of `nodes`, on a machine with
+    /// two cores: for telling how long a path will take.
+    #[must_use]
+    pub fn event_cost(nodes: usize, contact: usize) -> f64 {
+        Self::factor_cost(contact).min(Self::iteration_cost(nodes, contact))
+    }
+
+    fn factor_cost(contact: usize) -> f64 {
+        FACTOR * (contact as f64).powi(2)
+    }
+
+    fn iteration_cost(nodes: usize, contact: usize) -> f64 {
+        WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
+    }
+
+    /// Whether a factor of `contact` nodes pays on a grid, and leaves room for one more window.
+    fn factor_serves(&self, factor: &RecursiveCholesky, nodes: usize, contact: usize) -> bool {
+        self.factor_fits(factor, contact)
+            && Self::factor_cost(contact) <= Self::iteration_cost(nodes, contact)
+    }
+
     /// Whether a factor of `contact` nodes leaves room for one more window.
     fn factor_fits(&self, factor: &RecursiveCholesky, contact: usize) -> bool {
         let needed = factor.bytes(contact + LEAST_WINDOW, LEAST_WINDOW);
         needed.saturating_add(Touched::bytes(LEAST_WINDOW)) <= self.budget
     }
 
-    /// Gives up a factor that leaves no room, with its last solution.
-    fn hand_over(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        solution: &Solution,
-    ) -> Result<(), Error> {
+    /// Gives up the factor, with its last solution.
+    fn hand_over(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        let mut solution = Solution::default();
+        // At any approach: with the rate it is known at all others.
+        let request = SolveRequest {
+            count: contact.len(),
+            approach: 0.0,
+            span: f64::INFINITY,
+        };
+        self.updater_mut()
+            .solve(problem, contact, request, &mut solution)?;
         log::info!(
-            "{} nodes in contact: the factor would exceed {} bytes, conjugate gradients from here",
-            contact.len(),
-            self.budget
+            "{} nodes in contact: without a factor from here",
+            contact.len()
         );
         self.handed_over_at = Some(contact.len());
         // The factor goes before anything takes its place.
         self.stage = Stage::Iterations(Box::default());
         if let Stage::Iterations(iterations) = &mut self.stage {
-            iterations.take_over(problem, contact, approach, solution)?;
+            iterations.take_over(problem, contact, request.approach, &solution)?;
         }
         Ok(())
     }
@@ -131,16 +167,24 @@ impl LinearUpdater for Handover {
         self.updater_mut().watch(problem, contact, nodes, schur)
     }
 
+    /// Gives up the factor once it does not serve any more.
     fn join(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
         touched: &Touched,
     ) -> Result<(), Error> {
-        self.updater_mut().join(problem, contact, touched)
+        self.updater_mut().join(problem, contact, touched)?;
+        match &self.stage {
+            Stage::Factor(factor)
+                if !self.factor_serves(factor, problem.grid().nodes(), contact.len()) =>
+            {
+                self.hand_over(problem, contact)
+            }
+            _ => Ok(()),
+        }
     }
 
-    /// Gives up the factor if it leaves no room for another window.
     fn solve(
         &mut self,
         problem: &Problem,
@@ -148,16 +192,8 @@ impl LinearUpdater for Handover {
         request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let updater = self.updater_mut();
-        updater.solve(problem, contact, request, solution)?;
-        match &self.stage {
-            Stage::Factor(factor)
-                if request.count == contact.len() && !self.factor_fits(factor, contact.len()) =>
-            {
-                self.hand_over(problem, contact, request.approach, solution)
-            }
-            _ => Ok(()),
-        }
+        self.updater_mut()
+            .solve(problem, contact, request, solution)
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

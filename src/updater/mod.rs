@@ -38,8 +38,9 @@ pub struct SolveRequest {
     pub count: usize,
     /// The approach δ \[m\], in the gauge of the kernel.
     pub approach: f64,
-    /// How much further the approach will go with these pressures \[m\]: an updater that is not exact
-    /// needs the rate to its tolerance over this span, and not at all if it is 0.
+    /// How much further the approach will go with these pressures \[m\]: the rate must be so exact that an
+    /// updater keeps its tolerance over this span. Infinite where the rate itself is wanted, and 0 where it
+    /// is not.
     pub span: f64,
 }
 

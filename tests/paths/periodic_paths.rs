@@ -146,10 +146,10 @@ fn conjugate_gradients_follow_a_periodic_path() {
         let first = factored[0].mean_gap;
         for (a, b) in factored.iter().zip(&iterated) {
             assert_eq!((a.step, a.node), (b.step, b.node));
-            // A tolerance of 1e-12 times a condition of some hundred, as for the free half-space.
-            assert!((a.load - b.load).abs() <= 1e-9 * a.load, "{a:?} {b:?}");
+            // Between the ends of windows; see `without_factor`.
+            assert!((a.load - b.load).abs() <= 1e-5 * a.load, "{a:?} {b:?}");
             let error = (a.mean_gap - b.mean_gap).abs();
-            assert!(error <= 1e-10 * first, "{a:?} {b:?}");
+            assert!(error <= 1e-6 * first, "{a:?} {b:?}");
         }
     }
 }

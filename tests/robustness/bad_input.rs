@@ -3,7 +3,7 @@
 use asperity::contact::ContactSequence;
 use asperity::loading::{LoadingEnd, LoadingSolver};
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, Touched};
+use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
 use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface};
 use nalgebra::DMatrix;
 
@@ -201,14 +201,15 @@ impl LinearUpdater for Malformed {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, count, solution)?;
+        self.inner.solve(problem, contact, request, solution)?;
         match self.what {
-            "y1" => solution.y1.push(0.0),
-            "y2" => solution.y2.clear(),
-            "nan y2" => solution.y2.fill(f64::NAN),
+            "pressure" => solution.pressure.push(0.0),
+            "rate" => solution.rate.clear(),
+            "nan rate" => solution.rate.fill(f64::NAN),
+            "displacement" => solution.displacement[0].push(0.0),
             _ => (),
         }
         Ok(())
@@ -217,7 +218,14 @@ impl LinearUpdater for Malformed {
 
 #[test]
 fn malformed_updaters() {
-    for what in ["size", "y1", "y2", "nan", "nan y2"] {
+    for what in [
+        "size",
+        "pressure",
+        "rate",
+        "displacement",
+        "nan",
+        "nan rate",
+    ] {
         let updater = Malformed {
             inner: RecursiveCholesky::new(),
             what,
@@ -228,7 +236,7 @@ fn malformed_updaters() {
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
             "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
-            "nan y2" => matches!(error, Error::NotMonotone { .. }),
+            "nan rate" => matches!(error, Error::NotMonotone { .. }),
             _ => matches!(error, Error::UpdaterMismatch { .. }),
         };
         assert!(typed, "{what}: {error}");

@@ -5,9 +5,10 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use asperity::{LoadingSolver, LoadingState};
+use asperity::LoadingState;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::Solver;
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
 
@@ -16,7 +17,7 @@ const STRIDE: usize = 64;
 
 /// Runs the path to its end, writing each state as it comes; returns all states, and how it ended.
 pub(super) fn follow(
-    solver: &mut LoadingSolver,
+    solver: &mut Solver,
     file: &mut PathFile,
     progress: impl Fn(&LoadingState) -> f64,
 ) -> (Vec<LoadingState>, Result<(), Failure>) {

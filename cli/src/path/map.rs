@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::{Grid, LoadingSolver};
+use asperity::Grid;
 use nalgebra::DMatrix;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::Solver;
 use super::job::Job;
 use asperity_cli::axis::Axis;
 use asperity_cli::number::quantity;
@@ -38,11 +39,7 @@ struct Margin {
 }
 
 /// Draws the present state of a path into a directory.
-pub(super) fn draw(
-    job: &Job,
-    solver: &mut LoadingSolver,
-    directory: &Path,
-) -> Result<PathBuf, Failure> {
+pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<PathBuf, Failure> {
     let name = directory.join("contact_map.png");
     let pressure = solver
         .pressure()

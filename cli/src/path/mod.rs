@@ -14,6 +14,7 @@ mod table;
 use std::time::Instant;
 
 use asperity::LoadingSolver;
+use asperity::updater::LinearUpdater;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 
@@ -21,12 +22,17 @@ use follow::{PathFile, follow};
 use job::Job;
 pub(crate) use options::Options;
 
+/// The path, whatever updater it has.
+type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
+
 /// Does the job and writes its files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
     let kernel = job.kernel()?;
-    let mut builder = LoadingSolver::builder(job.heights(), &kernel).rule(job.rule());
+    let mut builder = LoadingSolver::builder(job.heights(), &kernel)
+        .updater(options.updater.make())
+        .rule(job.rule());
     for &target in job.targets() {
         builder = builder.until(target);
     }

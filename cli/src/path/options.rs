@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use clap::{Args, Parser, ValueEnum};
@@ -45,6 +46,10 @@ pub(crate) struct Options {
     /// Which node touches next
     #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
     pub(super) rule: Rule,
+
+    /// How the contact is solved; the order of events is the same
+    #[arg(long, value_enum, default_value_t = Updater::Auto)]
+    pub(super) updater: Updater,
 
     /// Nodes along each side of the generated surface [default: 256]
     #[arg(long, value_name = "N")]
@@ -111,6 +116,8 @@ const AREA_FRACTION: f64 = 0.1;
 pub(super) enum Rule {
     /// The node whose gap closes first: exact
     FirstContact,
+    /// Nearly that, several times faster where there is no factor: neighbours may change places
+    ApproximateOrder,
     /// The node with the smallest gap, as in the paper: not exact
     SmallestGap,
 }
@@ -119,7 +126,29 @@ impl From<Rule> for ContactRule {
     fn from(rule: Rule) -> Self {
         match rule {
             Rule::FirstContact => Self::FirstContact,
+            Rule::ApproximateOrder => Self::ApproximateOrder,
             Rule::SmallestGap => Self::SmallestGap,
+        }
+    }
+}
+
+/// The updater on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Updater {
+    /// A factor as long as it pays, iterations after
+    Auto,
+    /// A factor: states are exact to rounding, memory grows as the square of the nodes in contact
+    Cholesky,
+    /// Iterations, without a factor, from the first node on
+    Iterative,
+}
+
+impl Updater {
+    pub(super) fn make(self) -> Box<dyn LinearUpdater> {
+        match self {
+            Self::Auto => Box::new(Handover::new()),
+            Self::Cholesky => Box::new(RecursiveCholesky::new()),
+            Self::Iterative => Box::new(ConjugateGradient::new()),
         }
     }
 }

@@ -1,8 +1,9 @@
 //! The short table, and how exact the last state is.
 
 use asperity::loading::{History, LoadingEnd};
-use asperity::{ContactRule, LoadingSolver, LoadingState};
+use asperity::{ContactRule, LoadingState};
 
+use super::Solver;
 use super::job::Job;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -13,7 +14,7 @@ const LOADS: [f64; 10] = [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 /// Prints rows at loads spread over the path, and the certificate of its last state.
 pub(super) fn print(
     job: &Job,
-    solver: &mut LoadingSolver,
+    solver: &mut Solver,
     states: &[LoadingState],
     seconds: f64,
 ) -> Result<(), Failure> {
@@ -91,7 +92,7 @@ fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<
     let mut rows: Vec<LoadingState> = Vec::new();
     for load in LOADS.map(|fraction| fraction * last.load) {
         let state = match rule {
-            ContactRule::FirstContact => history.at_load(load),
+            ContactRule::FirstContact | ContactRule::ApproximateOrder => history.at_load(load),
             ContactRule::SmallestGap => states.iter().find(|s| s.load >= load).copied(),
         };
         rows.extend(state.filter(|state| rows.last() != Some(state)));

@@ -28,6 +28,8 @@ use ties::Settled;
 
 /// Nodes watched at a time: the error of the order grows with their number.
 const WATCHED: usize = 56;
+/// The same if near ties are not settled.
+const WATCHED_UNSETTLED: usize = 256;
 /// The window ends at its widest spacing behind this part of its events.
 const CUT: f64 = 0.85;
 /// How often a contact that contradicts the conditions of contact is mended before the path gives up.
@@ -39,6 +41,8 @@ const SHORTER: f64 = 0.7;
 #[derive(Debug)]
 pub(super) struct Corrected {
     size: usize,
+    /// Whether events that are too close to be told apart get a solution of their own.
+    settles: bool,
     /// The nodes out of contact, at the front.
     ranking: Ranking,
     /// The contact and approach that the ranking belongs to.
@@ -72,9 +76,11 @@ struct Contradictions {
 }
 
 impl Corrected {
-    pub(super) fn new(size: Option<usize>) -> Self {
+    pub(super) fn new(size: Option<usize>, settles: bool) -> Self {
+        let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
         Self {
-            size: size.unwrap_or(WATCHED),
+            size: size.unwrap_or(watched),
+            settles,
             ranking: Vec::new(),
             ranked: None,
             last_span: 0.0,
@@ -117,12 +123,13 @@ impl Corrected {
     fn begin<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         let approach = run.front.approach();
         if !run.field.belongs_to(&run.contact, approach) {
-            self.rate_span = approach.max(self.last_span);
+            if self.rate_span == 0.0 {
+                self.rate_span = f64::INFINITY;
+            }
             run.solve_field(approach, self.rate_span)?;
         }
         if self.ranked != Some((run.contact.revision(), approach)) {
             // The first window of this kind.
-            self.rate_span = self.rate_span.max(approach);
             self.survey(run)?;
         }
         Ok(())
@@ -155,7 +162,8 @@ impl Corrected {
             times.filter(|time| time.is_finite()).fold(0.0, f64::max)
         };
         if furthest > 0.0
-            && scales.rate_tolerance(furthest) < 0.5 * scales.rate_tolerance(self.rate_span) {
+            && scales.rate_tolerance(furthest) < 0.5 * scales.rate_tolerance(self.rate_span)
+        {
             self.rate_span = furthest;
             run.solve_field(run.front.approach(), furthest)?;
             self.survey(run)?;
@@ -232,14 +240,11 @@ impl Corrected {
             if found.is_empty() {
                 let ends = watched.at_end(run);
                 let correction = correct(&watched.schur, &watched.lines, &ends, time);
-                let settled = ties::settle(
-                    run,
-                    scales,
-                    watched,
-                    &correction,
-                    (first, &joined, time),
-                    &start,
-                )?;
+                let played = (first, &joined[..], time);
+                let mut settled = ties::second_pass(watched, &correction, played);
+                if self.settles {
+                    settled = ties::settle(run, scales, watched, &correction, settled, &start)?;
+                }
                 return self
                     .finish(run, watched, &correction, &settled, (&start, time))
                     .map(Ok);

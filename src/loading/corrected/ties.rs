@@ -34,23 +34,20 @@ pub(super) struct Settled {
     pub(super) errors: Vec<f64>,
 }
 
-/// Settles the order of the events of a window. `first` is what they were in the first pass, `joined` the
-/// nodes that joined, at `positions` of the window; `start` is the front at its beginning, and the window ends
-/// after `time`.
+/// Settles what is too close to be told apart in a window, which began at the front `start`.
 pub(super) fn settle<U: LinearUpdater>(
     run: &mut LoadingRun<U>,
     scales: &Scales,
     watched: &Watched,
     correction: &Correction,
-    (first, joined, time): (&[Played], &[usize], f64),
+    settled: Settled,
     start: &Front,
 ) -> Result<Settled, Error> {
-    let settled = second_pass(watched, correction, (first, joined, time));
     let mut ties = Ties {
         watched,
         correction,
         scales,
-        count: run.contact.len() - joined.len(),
+        count: run.contact.len() - settled.events.len(),
         approach: start.approach(),
         settled,
     };
@@ -68,8 +65,10 @@ pub(super) fn settle<U: LinearUpdater>(
     Ok(ties.settled)
 }
 
-/// Plays the events that joined under the corrected Schur complement, and estimates their errors.
-fn second_pass(
+/// Plays the events that joined under the corrected Schur complement, and estimates their errors. `first` is
+/// what they were in the first pass, `joined` the positions of the nodes that joined, and the window ends after
+/// `time`.
+pub(super) fn second_pass(
     watched: &Watched,
     correction: &Correction,
     (first, joined, time): (&[Played], &[usize], f64),

@@ -8,6 +8,8 @@ pub(super) struct Field {
     pub(super) pressure: Vec<f64>,
     /// Empty if it is not known.
     pub(super) displacement: Vec<f64>,
+    /// What changes in single precision may have spoilt of the displacements.
+    pub(super) drift: f64,
 }
 
 /// The pressure at an approach and its rate, on the first `count` nodes of a contact.
@@ -15,6 +17,8 @@ pub(super) struct Field {
 pub(super) struct Equilibrium {
     pub(super) count: usize,
     pub(super) approach: f64,
+    /// How much further the approach may go with the rate.
+    pub(super) span: f64,
     pub(super) load: Field,
     pub(super) rate: Field,
 }
@@ -24,24 +28,20 @@ impl Field {
         Self {
             pressure: vec![0.0; nodes],
             displacement: vec![0.0; nodes],
+            drift: 0.0,
+        }
+    }
+
+    /// Pressures whose displacements are not known.
+    pub(super) fn of(pressure: Vec<f64>) -> Self {
+        Self {
+            pressure,
+            ..Self::default()
         }
     }
 
     pub(super) fn is_known(&self) -> bool {
         !self.displacement.is_empty()
-    }
-
-    /// This field and `factor` times another.
-    pub(super) fn plus(&self, factor: f64, other: &Self) -> Self {
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + factor * b).collect();
-        Self {
-            pressure: sum(&self.pressure, &other.pressure),
-            displacement: if other.is_known() {
-                sum(&self.displacement, &other.displacement)
-            } else {
-                Vec::new()
-            },
-        }
     }
 
     /// Keeps the pressures on nodes in contact; what they cause is not known then.
@@ -54,7 +54,7 @@ impl Field {
         }
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         size_of_val(&self.pressure[..]) + size_of_val(&self.displacement[..])
     }
 }
@@ -71,7 +71,13 @@ impl Equilibrium {
 
     /// The pressure at another approach, as long as no node joins.
     pub(super) fn load_at(&self, approach: f64) -> Field {
-        self.load.plus(approach - self.approach, &self.rate)
+        let (time, load, rate) = (approach - self.approach, &self.load, &self.rate);
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + time * b).collect();
+        Field {
+            pressure: sum(&load.pressure, &rate.pressure),
+            displacement: sum(&load.displacement, &rate.displacement),
+            drift: load.drift + time.abs() * rate.drift,
+        }
     }
 
     pub(super) fn bytes(&self) -> usize {

@@ -28,16 +28,18 @@ struct Source {
 /// differs by the square of the error of x, and is never greater. The lower triangle is written.
 pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     let table = problem.table();
-    let mut sources: Vec<Option<Source>> = locals.iter().map(|_| None).collect();
-    let mut work: Vec<_> = sources.iter_mut().zip(locals).collect();
-    parallel::for_each(&mut work, |(source, local)| {
-        **source = Some(Source::new(problem, local));
-    });
-    let sources: Vec<Source> = sources.into_iter().flatten().collect();
+    let sources: Vec<Source> = locals
+        .iter()
+        .map(|local| Source::new(problem, local))
+        .collect();
     let size = locals.len();
+    let products = sources
+        .iter()
+        .map(|source| source.near.len() * (source.near.len() + size * 64));
+    let products = products.sum();
     let mut columns: Vec<(usize, &mut [f64])> =
         matrix.chunks_mut(size.max(1)).enumerate().collect();
-    parallel::for_each(&mut columns, |(j, column)| {
+    parallel::for_each(products, &mut columns, |(j, column)| {
         for (i, source) in sources.iter().enumerate().skip(*j) {
             column[i] = source.energy(&sources[*j], table);
         }

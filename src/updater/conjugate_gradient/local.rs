@@ -10,6 +10,8 @@ use crate::{Boundary, Grid};
 const NEAREST: usize = 96;
 /// So far away they may be, in cells of the shorter side.
 const REACH: f64 = 32.0;
+/// Products, and look-ups that take as long, of a local solution.
+pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
 /// Lanes of the sums in single precision.
 const LANES: usize = 32;
 

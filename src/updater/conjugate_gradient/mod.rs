@@ -3,12 +3,14 @@
 mod equilibrium;
 mod galerkin;
 mod local;
+mod solver;
 mod state;
 
 use super::{
     LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile, WindowCost, check_count,
 };
 use crate::contact::ContactSequence;
+use crate::parallel::inside;
 use crate::{Error, Problem};
 use state::{Criteria, State};
 
@@ -107,7 +109,7 @@ impl LinearUpdater for ConjugateGradient {
         problem.check_nodes(nodes)?;
         let state = self.state.get_or_insert_with(|| State::new(problem));
         check_count(state.count(), contact.len())?;
-        state.watch(self.criteria, problem, contact, nodes, schur)
+        inside(|| state.watch(self.criteria, problem, contact, nodes, schur))
     }
 
     /// Nothing happens before the next solution, which finds the nodes in the contact.
@@ -138,7 +140,7 @@ impl LinearUpdater for ConjugateGradient {
             return check_count(contact.len(), request.count);
         }
         let state = self.state.get_or_insert_with(|| State::new(problem));
-        state.solve(self.criteria, problem, contact, request, solution)
+        inside(|| state.solve(self.criteria, problem, contact, request, solution))
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

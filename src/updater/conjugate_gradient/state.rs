@@ -1,12 +1,15 @@
-//! The contact, the solutions on it, and the watched nodes.
+//! The solutions on the contact, and the watched nodes.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use std::mem;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::equilibrium::{Equilibrium, Field};
 use super::galerkin;
-use super::local::{Local, Neighbourhood};
+use super::local::{self, Local, Neighbourhood};
+use super::solver::{Equation, Solver};
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, LinearSystem, NodeSet, Operator, SparseInverse, greatest};
+use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
 use crate::{Boundary, Error, Problem, parallel};
 
@@ -30,11 +33,8 @@ pub(super) struct Criteria {
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
 pub(super) struct State {
-    operator: Operator,
-    inverse: SparseInverse,
+    solver: Solver,
     neighbourhood: Neighbourhood,
-    /// The nodes that operator and inverse were last used for.
-    set: NodeSet,
     now: Equilibrium,
     /// Where the last window began: its prefixes start from there.
     before: Option<Equilibrium>,
@@ -43,7 +43,7 @@ pub(super) struct State {
     watched: Vec<Local>,
     /// Their Schur complement.
     schur: Vec<f64>,
-    /// Search directions of the last rate.
+    /// Search directions of the last solution on the whole contact.
     directions: Directions,
 }
 
@@ -51,10 +51,8 @@ impl State {
     pub(super) fn new(problem: &Problem) -> Self {
         let nodes = problem.grid().nodes();
         Self {
-            operator: Operator::new(problem.convolution()),
-            inverse: SparseInverse::new(problem.table()),
+            solver: Solver::new(problem),
             neighbourhood: Neighbourhood::new(problem),
-            set: NodeSet::new(nodes),
             now: Equilibrium::zero(nodes),
             before: None,
             sums: (0, Field::zero(nodes)),
@@ -71,24 +69,24 @@ impl State {
         approach: f64,
         solution: &Solution,
     ) {
-        let values = [&solution.pressure, &solution.rate];
-        let fields = values.map(|values| {
+        let [load, rate] = [&solution.pressure, &solution.rate].map(|values| {
             let mut pressure = vec![0.0; self.now.load.pressure.len()];
             for (&node, value) in contact.order().iter().zip(values) {
                 pressure[node] = *value;
             }
-            Field {
-                pressure,
-                displacement: Vec::new(),
-            }
+            Field::of(pressure)
         });
-        let [load, rate] = fields;
         self.now = Equilibrium {
             count: contact.len(),
             approach,
+            span: 0.0,
             load,
             rate,
         };
+        self.sums = (
+            contact.len(),
+            Field::of(vec![0.0; self.now.rate.pressure.len()]),
+        );
     }
 
     /// Number of nodes in contact that there is a solution or a start for.
@@ -98,31 +96,10 @@ impl State {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        let before = self.before.as_ref().map_or(0, Equilibrium::bytes);
-        let sums = self.sums.1.bytes();
-        self.operator.bytes() + 2 * self.inverse.bytes() + self.now.bytes() + before + sums
-    }
-
-    /// Makes the set the first `count` nodes of a contact.
-    fn choose(&mut self, contact: &ContactSequence, count: usize) {
-        let mut is_in = vec![false; self.set.places().len()];
-        for &node in &contact.order()[..count] {
-            is_in[node] = true;
-        }
-        if self.set.assign(|node| is_in[node]) {
-            self.inverse.update(&self.set);
-        }
-    }
-
-    /// Computes displacements that are not known, of what was taken over.
-    fn complete(&mut self) -> Result<(), Error> {
-        for field in [&mut self.now.load, &mut self.now.rate] {
-            if !field.is_known() {
-                let displacement = self.operator.apply_field(&field.pressure)?;
-                field.displacement = displacement.to_vec();
-            }
-        }
-        Ok(())
+        // What there is before the first window will be there twice.
+        let before = self.before.as_ref().unwrap_or(&self.now).bytes();
+        let sums = self.now.bytes() / 2;
+        self.solver.bytes() + self.now.bytes() + before + sums
     }
 
     pub(super) fn watch(
@@ -133,8 +110,9 @@ impl State {
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        self.choose(contact, contact.len());
-        self.complete()?;
+        self.solver.choose(contact, contact.len());
+        self.solver.complete(&mut self.now.load)?;
+        self.solver.complete(&mut self.now.rate)?;
         let periodic = problem.boundary() == Boundary::Periodic;
         if !periodic {
             self.solve_row_sums(criteria, problem, contact)?;
@@ -149,15 +127,14 @@ impl State {
                 all - self.sums.1.displacement[node]
             };
         }
-        let mut locals: Vec<Local> = nodes
-            .iter()
-            .map(|&node| Local {
-                node,
-                ..Local::default()
-            })
-            .collect();
-        let (neighbourhood, set) = (&self.neighbourhood, &self.set);
-        parallel::for_each(&mut locals, |local| {
+        let of = |&node: &usize| Local {
+            node,
+            ..Local::default()
+        };
+        let mut locals: Vec<Local> = nodes.iter().map(of).collect();
+        let (neighbourhood, set) = (&self.neighbourhood, self.solver.set());
+        let products = locals.len() * local::PRODUCTS;
+        parallel::for_each(products, &mut locals, |local| {
             *local = neighbourhood.solve(problem.table(), set, local.node);
         });
         galerkin::schur(problem, &locals, schur.as_mut_slice());
@@ -167,9 +144,9 @@ impl State {
         Ok(())
     }
 
-    /// The Schur complement of some watched nodes, and what pressure on them does to the others; `None` if
-    /// one was not watched.
-    fn factor_of(&self, joined: &[usize]) -> Option<(Cholesky<f64, nalgebra::Dyn>, Vec<&Local>)> {
+    /// The factor of the Schur complement of some watched nodes, and what pressure on them does to the
+    /// contact; `None` if one was not watched.
+    fn factor_of(&self, joined: &[usize]) -> Option<(Cholesky<f64, Dyn>, Vec<&Local>)> {
         let size = self.watched.len();
         let place = |node: &usize| self.watched.iter().position(|local| local.node == *node);
         let places: Vec<usize> = joined.iter().map(place).collect::<Option<_>>()?;
@@ -181,80 +158,26 @@ impl State {
         Some((matrix.cholesky()?, locals.collect()))
     }
 
-    /// Adds to pressures what nodes that joined, with the right-hand sides `rhs` left for them, change.
-    fn carry(&self, joined: &[usize], rhs: Vec<f64>, pressure: &mut [f64]) {
+    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them.
+    fn carried(&self, field: &Field, joined: &[usize], rhs: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut pressure = field.pressure.clone();
+        if joined.is_empty() || !field.is_known() {
+            return pressure;
+        }
         let Some((factor, locals)) = self.factor_of(joined) else {
-            return;
+            return pressure;
         };
-        let solved = factor.solve(&DVector::from_vec(rhs));
+        let left = joined
+            .iter()
+            .map(|&node| rhs(node) - field.displacement[node]);
+        let solved = factor.solve(&DVector::from_iterator(joined.len(), left));
         for (local, w) in locals.iter().zip(solved.iter()) {
             pressure[local.node] += w;
             for (&node, x) in local.contact.iter().zip(&local.weights) {
                 pressure[node as usize] -= w * x;
             }
         }
-    }
-
-    /// Solves `C_II x = b` on the set from a start, with what is known of its displacements. The result's
-    /// displacements are in double precision.
-    fn settle(
-        &mut self,
-        (b, tolerance, max_iterations): (impl Fn(usize) -> f64, f64, usize),
-        start: &[f64],
-        base: &Field,
-        directions: &mut Directions,
-    ) -> Result<Field, Error> {
-        let (mut x, mut residual) = (Vec::new(), Vec::new());
-        self.set.gather(start, &mut x);
-        let nodes = self.set.nodes().iter().map(|&node| node as usize);
-        let b: Vec<f64> = nodes.clone().map(b).collect();
-        if base.is_known() {
-            // Single precision is enough for the difference.
-            let values = nodes.clone().zip(&x);
-            let change: Vec<f64> = values.map(|(node, x)| x - base.pressure[node]).collect();
-            let image = self.operator.step(&self.set, &change)?;
-            let terms = nodes.zip(&b);
-            residual.extend(terms.map(|(node, b)| b - base.displacement[node] - image[node]));
-        }
-        let mut system = LinearSystem {
-            operator: &mut self.operator,
-            inverse: &mut self.inverse,
-            contact: &self.set,
-            tolerance,
-            max_iterations,
-        };
-        if !base.is_known() {
-            system.residual(&b, &x, &mut residual)?;
-        }
-        directions.project(&mut x, &mut residual);
-        // The residual of a start is one of single precision: what counts is that fresh ones fall.
-        let mut last = f64::INFINITY;
-        let mut iterations = 0;
-        loop {
-            let outcome = system.solve_along(&b, &mut x, &mut residual, directions)?;
-            if outcome.iterations == 0 {
-                system.residual(&b, &x, &mut residual)?;
-            }
-            iterations += outcome.iterations;
-            let worst = greatest(residual.len(), 0.0, |i| residual[i].abs());
-            if worst <= tolerance {
-                break;
-            }
-            if worst.is_nan() || worst > 0.5 * last || iterations >= max_iterations {
-                return Err(Error::NoConvergence {
-                    residual: worst,
-                    tolerance,
-                    iterations,
-                });
-            }
-            last = worst;
-        }
-        let mut pressure = vec![0.0; start.len()];
-        self.set.scatter(&x, &mut pressure);
-        Ok(Field {
-            pressure,
-            displacement: self.operator.displacement().to_vec(),
-        })
+        pressure
     }
 
     /// `C_II⁻¹ s_I` on the whole contact, unless it is known.
@@ -264,27 +187,23 @@ impl State {
         problem: &Problem,
         contact: &ContactSequence,
     ) -> Result<(), Error> {
-        let sums = problem.row_sums();
-        let (count, base) = std::mem::take(&mut self.sums);
-        if count == contact.len() && base.is_known() {
-            self.sums = (count, base);
+        let (count, base) = &self.sums;
+        if *count == contact.len() && base.is_known() {
             return Ok(());
         }
-        let mut start = base.pressure.clone();
-        if base.is_known() {
-            let joined = &contact.order()[count..];
-            let left = joined
-                .iter()
-                .map(|&node| sums[node] - base.displacement[node]);
-            self.carry(joined, left.collect(), &mut start);
-        }
+        let sums = problem.row_sums();
+        let joined = contact.order().get(*count..).unwrap_or_default();
+        let start = self.carried(base, joined, |node| sums[node]);
         let most = greatest(sums.len(), 0.0, |i| sums[i]);
         // What is explained already leaves less to be explained.
         let open = 1.0 - self.now.rate.displacement.iter().sum::<f64>() / sums.len() as f64;
-        let tolerance = SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0);
-        let criteria = (|node: usize| sums[node], tolerance, criteria.max_iterations);
-        let mut directions = self.directions.clone();
-        let field = self.settle(criteria, &start, &base, &mut directions)?;
+        let equation = Equation {
+            rhs: |node: usize| sums[node],
+            tolerance: SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0),
+            max_iterations: criteria.max_iterations,
+        };
+        let mut directions = mem::take(&mut self.directions);
+        let field = self.solver.solve(&equation, start, base, &mut directions)?;
         self.sums = (contact.len(), field);
         Ok(())
     }
@@ -298,33 +217,65 @@ impl State {
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let count = request.count;
-        let whole = count == contact.len();
-        let start = match &self.before {
-            Some(before) if !whole && before.count <= count && count <= self.now.count => {
-                before.clone()
+        // The same contact at another approach is a question: the path must not notice.
+        let is_solved = self.now.count == count && self.now.load.is_known();
+        let is_here = self.now.approach == request.approach;
+        let asked;
+        let solved = if is_solved && is_here && request.span <= self.now.span {
+            &self.now
+        } else if is_solved && !is_here {
+            let now = mem::take(&mut self.now);
+            let solved = self.solve_from(criteria, problem, contact, request, &now);
+            self.now = now;
+            asked = solved?.0;
+            &asked
+        } else if count == contact.len() && self.now.count <= count {
+            let grown = self.now.count < count;
+            let now = mem::take(&mut self.now);
+            let solved = self.solve_from(criteria, problem, contact, request, &now);
+            match solved {
+                Ok((solved, directions)) => {
+                    self.now = solved;
+                    self.directions = directions;
+                    if grown && now.load.is_known() {
+                        self.before = Some(now);
+                    }
+                    &self.now
+                }
+                Err(error) => {
+                    self.now = now;
+                    return Err(error);
+                }
             }
-            _ if self.now.count <= count => self.now.clone(),
-            _ => Equilibrium::zero(problem.grid().nodes()),
+        } else {
+            let before = self.before.take();
+            let within = |from: &&Equilibrium| from.count <= count && count <= self.now.count;
+            let solved = match before.as_ref().filter(within) {
+                Some(from) => self.solve_from(criteria, problem, contact, request, from),
+                None => {
+                    let nothing = Equilibrium::zero(problem.grid().nodes());
+                    self.solve_from(criteria, problem, contact, request, &nothing)
+                }
+            };
+            self.before = before;
+            asked = solved?.0;
+            &asked
         };
-        let solved = self.solve_from(criteria, problem, contact, request, &start)?;
-        let places = contact.order()[..count].iter();
-        let values = |field: &Field| places.clone().map(|&node| field.pressure[node]).collect();
+        let values = |field: &Field| {
+            let nodes = contact.order()[..count].iter();
+            nodes
+                .map(|&node| field.pressure.get(node).copied().unwrap_or(0.0))
+                .collect()
+        };
         solution.pressure = values(&solved.load);
         solution.rate = values(&solved.rate);
-        solution.displacement = [
-            solved.load.displacement.clone(),
-            solved.rate.displacement.clone(),
-        ];
-        if whole {
-            if self.now.count < count && self.now.load.is_known() {
-                self.before = Some(std::mem::take(&mut self.now));
-            }
-            self.now = solved;
-        }
+        solution.displacement[0].clone_from(&solved.load.displacement);
+        solution.displacement[1].clone_from(&solved.rate.displacement);
         Ok(())
     }
 
-    /// Solves for rate and pressure, in this order: the directions of the one serve the other.
+    /// Solves for rate and pressure, in this order: the directions of the one serve the other, and are
+    /// returned. The rate stays empty if it is not asked for.
     fn solve_from(
         &mut self,
         criteria: Criteria,
@@ -332,55 +283,53 @@ impl State {
         contact: &ContactSequence,
         request: SolveRequest,
         from: &Equilibrium,
-    ) -> Result<Equilibrium, Error> {
+    ) -> Result<(Equilibrium, Directions), Error> {
         let SolveRequest {
             count,
             approach,
             span,
         } = request;
-        self.choose(contact, count);
+        self.solver.choose(contact, count);
+        let nodes = &contact.order()[..count];
+        let joined = nodes.get(from.count..).unwrap_or_default();
         let gap = problem.initial_gap();
         let overlap = |node: usize| approach - gap[node];
-        let joined = contact.order()[..count]
-            .get(from.count..)
-            .unwrap_or_default();
-        let base = from.load_at(approach);
-        let length = greatest(count, LEAST_LENGTH * problem.mean_gap(), |k| {
-            overlap(contact.order()[k]).abs()
-        });
+        let least = LEAST_LENGTH * problem.mean_gap();
+        let length = greatest(count, least, |k| overlap(nodes[k]).abs());
         let tolerance = criteria.tolerance * length;
+        let max_iterations = criteria.max_iterations;
         let mut directions = Directions::keeping();
-        let mut rate = from.rate.clone();
+        let mut rate = Field::default();
         if span > 0.0 {
-            let rate_tolerance = (tolerance / span).clamp(RATE_TOLERANCE[0], RATE_TOLERANCE[1]);
-            let mut start = from.rate.pressure.clone();
-            if from.rate.is_known() {
-                let left = joined
-                    .iter()
-                    .map(|&node| 1.0 - from.rate.displacement[node]);
-                self.carry(joined, left.collect(), &mut start);
-            }
-            let criteria = (|_| 1.0, rate_tolerance, criteria.max_iterations);
-            rate = self.settle(criteria, &start, &from.rate, &mut directions)?;
-            if count == contact.len() {
-                self.directions = directions.clone();
-            }
+            let [least, most] = RATE_TOLERANCE;
+            let equation = Equation {
+                rhs: |_| 1.0,
+                tolerance: (tolerance / span).clamp(least, most),
+                max_iterations,
+            };
+            let start = self.carried(&from.rate, joined, equation.rhs);
+            rate = self
+                .solver
+                .solve(&equation, start, &from.rate, &mut directions)?;
         }
-        let mut start = base.pressure.clone();
-        if base.is_known() {
-            let left = joined
-                .iter()
-                .map(|&node| overlap(node) - base.displacement[node]);
-            self.carry(joined, left.collect(), &mut start);
-        }
-        let criteria = (overlap, tolerance, criteria.max_iterations);
-        let load = self.settle(criteria, &start, &base, &mut directions)?;
-        Ok(Equilibrium {
+        let equation = Equation {
+            rhs: overlap,
+            tolerance,
+            max_iterations,
+        };
+        let base = from.load_at(approach);
+        let start = self.carried(&base, joined, overlap);
+        let load = self
+            .solver
+            .solve(&equation, start, &base, &mut directions)?;
+        let solved = Equilibrium {
             count,
             approach,
+            span,
             load,
             rate,
-        })
+        };
+        Ok((solved, directions))
     }
 
     /// Goes back to the first nodes of the contact.

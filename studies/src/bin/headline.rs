@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
+use asperity::updater::RecursiveCholesky;
 use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver};
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
@@ -45,14 +46,16 @@ impl Sphere {
         })
     }
 
-    fn path(&self) -> LoadingBuilder<'_> {
-        LoadingSolver::builder(&self.surface, &self.kernel).max_area_fraction(PI / 16.0)
+    fn path(&self) -> LoadingBuilder<'_, RecursiveCholesky> {
+        LoadingSolver::builder(&self.surface, &self.kernel)
+            .updater(RecursiveCholesky::new())
+            .max_area_fraction(PI / 16.0)
     }
 }
 
 /// A path that was run to its end.
 struct Run {
-    solver: LoadingSolver,
+    solver: LoadingSolver<RecursiveCholesky>,
     nodes: usize,
     seconds: f64,
 }
@@ -60,7 +63,7 @@ struct Run {
 fn run(
     name: &'static str,
     grid_nodes: usize,
-    builder: LoadingBuilder<'_>,
+    builder: LoadingBuilder<'_, RecursiveCholesky>,
 ) -> Result<Run, asperity::Error> {
     let expected = (grid_nodes * grid_nodes) as f64 * PI / 16.0;
     let style = ProgressStyle::with_template("{msg:>24} {wide_bar} {pos}/{len} nodes {elapsed}");

@@ -5,7 +5,9 @@ use super::complementary::{complementary, from_first_touch};
 use super::table::{Table, case};
 use asperity::contact::ContactSequence;
 use asperity::loading::ContactEvent;
-use asperity::updater::{Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, Touched};
+use asperity::updater::{
+    Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+};
 use asperity::{Error, LoadingState, Problem};
 use nalgebra::DVector;
 
@@ -42,10 +44,10 @@ impl LinearUpdater for GrowsOnly {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.0.solve(problem, contact, count, solution)
+        self.0.solve(problem, contact, request, solution)
     }
 }
 
@@ -114,13 +116,13 @@ impl LinearUpdater for Spoiled {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        count: usize,
+        request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, count, solution)?;
+        self.inner.solve(problem, contact, request, solution)?;
         self.solutions += 1;
         if self.solutions == self.spoiled {
-            solution.y1.fill(f64::NAN);
+            solution.pressure.fill(f64::NAN);
         }
         Ok(())
     }

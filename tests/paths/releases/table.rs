@@ -104,7 +104,7 @@ impl Table {
         }
     }
 
-    pub(super) fn path(&self, gaps: &[f64]) -> LoadingSolver {
+    pub(super) fn path(&self, gaps: &[f64]) -> LoadingSolver<RecursiveCholesky> {
         self.path_with(gaps, RecursiveCholesky::new())
     }
 

@@ -11,6 +11,9 @@ const ROUNDING: f64 = 1e-14;
 /// Events on either side over which spacings are averaged.
 const AROUND: usize = 32;
 
+/// How far two states are from each other.
+type Difference<'a> = &'a dyn Fn(&LoadingState, &LoadingState) -> f64;
+
 /// Prints how a path differs from an exact one.
 pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
     let place: HashMap<(usize, usize), usize> = exact
@@ -71,7 +74,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
         .filter(|&k| !is_full(&exact[k]))
         .collect();
     let initial = exact[0].mean_gap;
-    let columns: [(&str, &dyn Fn(&LoadingState, &LoadingState) -> f64); 5] = [
+    let columns: [(&str, Difference<'_>); 5] = [
         ("load", &|a, b| relative(a.load, b.load)),
         ("stiffness", &|a, b| {
             relative(

@@ -1,0 +1,156 @@
+//! Linear systems on the contact, from a start and what is known of its displacements.
+
+use super::equilibrium::Field;
+use crate::contact::ContactSequence;
+use crate::krylov::{Directions, NodeSet, Operator, SparseInverse, add_scaled, greatest};
+use crate::{Error, Problem};
+
+/// Error of a displacement in single precision, relative to the greatest.
+const SINGLE: f64 = 2e-7;
+/// Iterations go on to this part of the tolerance, and displacements are computed afresh once single precision
+/// may have spoilt as much of them: together they stay within it.
+const MARGIN: f64 = 0.5;
+
+/// A right-hand side `C_II x = b`, and when its iteration ends.
+pub(super) struct Equation<F> {
+    /// b, by node.
+    pub(super) rhs: F,
+    /// Greatest residual.
+    pub(super) tolerance: f64,
+    pub(super) max_iterations: usize,
+}
+
+/// The influence matrix of a contact set, and what approximates its inverse.
+#[derive(Debug, Clone)]
+pub(super) struct Solver {
+    operator: Operator,
+    inverse: SparseInverse,
+    set: NodeSet,
+}
+
+impl Solver {
+    pub(super) fn new(problem: &Problem) -> Self {
+        Self {
+            operator: Operator::new(problem.convolution()),
+            inverse: SparseInverse::new(problem.table()),
+            set: NodeSet::new(problem.grid().nodes()),
+        }
+    }
+
+    /// The contact set.
+    pub(super) fn set(&self) -> &NodeSet {
+        &self.set
+    }
+
+    /// Makes the set the first `count` nodes of a contact.
+    pub(super) fn choose(&mut self, contact: &ContactSequence, count: usize) {
+        let mut is_in = vec![false; self.set.places().len()];
+        for &node in &contact.order()[..count] {
+            is_in[node] = true;
+        }
+        if self.set.assign(|node| is_in[node]) {
+            self.inverse.update(&self.set);
+        }
+    }
+
+    /// Computes the displacements of a field, unless they are known.
+    pub(super) fn complete(&mut self, field: &mut Field) -> Result<(), Error> {
+        if !field.is_known() {
+            field.displacement = self.operator.apply_field(&field.pressure)?.to_vec();
+            field.drift = 0.0;
+        }
+        Ok(())
+    }
+
+    /// Solves an equation from pressures `start`, of which `base` knows the displacements of most. Steps are
+    /// in single precision, and so are displacements as long as that is within the tolerance.
+    pub(super) fn solve<F: Fn(usize) -> f64>(
+        &mut self,
+        equation: &Equation<F>,
+        mut start: Vec<f64>,
+        base: &Field,
+        directions: &mut Directions,
+    ) -> Result<Field, Error> {
+        let nodes = self.set.nodes().iter().map(|&node| node as usize);
+        let b: Vec<f64> = nodes.clone().map(&equation.rhs).collect();
+        let mut x = Vec::new();
+        self.set.gather(&start, &mut x);
+        let (mut u, mut drift);
+        if base.is_known() {
+            let change: Vec<f64> = nodes
+                .zip(&x)
+                .map(|(node, x)| x - base.pressure[node])
+                .collect();
+            u = self.operator.step(&self.set, &change)?.to_vec();
+            drift = base.drift + SINGLE * greatest(u.len(), 0.0, |i| u[i].abs());
+            add_scaled(&mut u, 1.0, &base.displacement);
+        } else {
+            u = self.operator.apply(&self.set, &x)?.to_vec();
+            drift = 0.0;
+        }
+        let mut residual = self.residual(&b, &u);
+        let before = worst(&residual);
+        directions.project(&mut x, &mut residual, &mut u);
+        drift += SINGLE * before;
+        let (mut iterations, mut last) = (0, f64::INFINITY);
+        let (mut z, enough) = (Vec::new(), MARGIN * equation.tolerance);
+        let failed = |residual: f64, iterations: usize| Error::NoConvergence {
+            residual,
+            tolerance: equation.tolerance,
+            iterations,
+        };
+        loop {
+            let mut now = worst(&residual);
+            // What lies below the drift means nothing.
+            while now > enough.max(0.1 * drift) {
+                if iterations == equation.max_iterations || !now.is_finite() {
+                    return Err(failed(now, iterations));
+                }
+                self.inverse.apply(&residual, &mut z);
+                let step = directions.advance(&mut self.operator, &self.set, &residual, &z)?;
+                add_scaled(&mut x, step.length, step.values);
+                add_scaled(&mut residual, -step.length, step.image);
+                add_scaled(&mut u, step.length, self.operator.displacement());
+                let next = worst(&residual);
+                drift += SINGLE * (now + next);
+                (now, iterations) = (next, iterations + 1);
+            }
+            if drift <= enough {
+                break;
+            }
+            u.copy_from_slice(self.operator.apply(&self.set, &x)?);
+            drift = 0.0;
+            residual = self.residual(&b, &u);
+            let fresh = worst(&residual);
+            if fresh <= equation.tolerance {
+                break;
+            }
+            // Rounding ends an iteration that no longer halves its residual.
+            if fresh.is_nan() || fresh > 0.5 * last {
+                return Err(failed(fresh, iterations));
+            }
+            last = fresh;
+        }
+        start.fill(0.0);
+        self.set.scatter(&x, &mut start);
+        Ok(Field {
+            pressure: start,
+            displacement: u,
+            drift,
+        })
+    }
+
+    fn residual(&self, b: &[f64], u: &[f64]) -> Vec<f64> {
+        let nodes = self.set.nodes().iter().zip(b);
+        nodes.map(|(&node, b)| b - u[node as usize]).collect()
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.operator.bytes() + 2 * self.inverse.bytes()
+    }
+}
+
+/// The greatest absolute value.
+fn worst(residual: &[f64]) -> f64 {
+    greatest(residual.len(), 0.0, |i| residual[i].abs())
+}
