@@ -11,10 +11,10 @@ use crate::parallel::{self, vectorized};
 
 /// Panels that are solved between two meetings of the threads, which take some 0.1 ms each.
 const GROUP: usize = 4;
-/// Rows of a triangle that is solved row by row.
-const SMALL: usize = 32;
 /// Rows of such a group.
 const GROUP_ROWS: usize = GROUP * ROWS;
+/// Rows of a triangle that is solved row by row.
+const SMALL: usize = 32;
 /// Unknowns that one thread updates at a time in a backward substitution: enough for rows of L to
 /// stream from memory, few enough to stay in cache.
 const COLUMNS_AT_ONCE: usize = 1024;
@@ -26,7 +26,7 @@ impl Panels {
         if length(&x) > 2 * GROUP_ROWS {
             parallel::inside(|| self.solve_groups_transposed(x));
         } else {
-            // There is nothing to share.
+            // No panel lies beyond the neighbouring group: there is nothing to share.
             self.solve_groups_transposed(x);
         }
     }
