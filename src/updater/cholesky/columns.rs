@@ -65,12 +65,15 @@ fn view(values: &[f64], width: usize, rows: usize, columns: Range<usize>) -> Mat
 impl Columns {
     /// Bytes that the columns of `watched` nodes take.
     pub(super) fn bytes(rows: usize, watched: usize) -> usize {
-        rows.saturating_mul(watched)
-            .saturating_mul(size_of::<f64>())
+        rows.checked_next_multiple_of(ROWS)
+            .and_then(|rows| rows.checked_mul(watched))
+            .map_or(usize::MAX, |values| values.saturating_mul(size_of::<f64>()))
     }
 
-    /// Room for so many values and no more, and none yet.
-    fn room(&mut self, values: usize) -> Vec<f64> {
+    /// Room for so many rows, rounded up, and no more, and none yet: a little too large, it is large enough
+    /// for the windows that follow.
+    fn room(&mut self, rows: usize, width: usize) -> Vec<f64> {
+        let values = rows.next_multiple_of(ROWS) * width;
         let spare = self.spare.iter().enumerate();
         let nearest = spare.min_by_key(|(_, room)| room.capacity().abs_diff(values));
         let nearest = nearest.map(|(index, _)| index);
@@ -107,7 +110,7 @@ impl Columns {
         for block in 0..blocks {
             let width = end(block + 1) - end(block);
             if width > 0 {
-                let values = self.room(rows * width);
+                let values = self.room(rows, width);
                 self.blocks.push(Block { width, values });
             }
         }
@@ -135,20 +138,18 @@ impl Columns {
         let operations = (position - first) * factor.rows() * factor.rows() / 2;
         parallel::for_each(operations, &mut starts[new..], |(start, block)| {
             let width = block.width;
-            let mut buffer = vec![0.0; ROWS * width];
             for p in 0..factor.len() {
-                let rows = p * ROWS..p * ROWS + factor.rows_in(p);
-                let here = &mut buffer[..rows.len() * width];
-                for (row, values) in rows.clone().zip(here.chunks_mut(width)) {
+                let (first, count) = (p * ROWS, factor.rows_in(p));
+                block.values.resize((first + count) * width, 0.0);
+                let (above, here) = block.values.split_at_mut(first * width);
+                for (row, values) in (first..).zip(here.chunks_mut(width)) {
                     fill(row, *start, values);
                 }
-                let target = MatMut::from_row_major_slice_mut(here, rows.len(), width);
-                let above = block.view(0..rows.start, 0..width);
-                matmul(target, Accum::Add, factor.left(p), above, -1.0, Par::Seq);
-                block.values.extend_from_slice(here);
-                let solution = &mut block.values[rows.start * width..];
-                let solution = MatMut::from_row_major_slice_mut(solution, rows.len(), width);
-                solve_lower_triangular_in_place(factor.diagonal(p), solution, Par::Seq);
+                let above = view(above, width, first, 0..width);
+                let mut here = MatMut::from_row_major_slice_mut(here, count, width);
+                let left = factor.left(p);
+                matmul(here.as_mut(), Accum::Add, left, above, -1.0, Par::Seq);
+                solve_lower_triangular_in_place(factor.diagonal(p), here, Par::Seq);
             }
         });
     }
@@ -181,7 +182,8 @@ impl Columns {
     /// R −= Fᵀ X for X given row by row.
     pub(super) fn subtract_products<const N: usize>(&self, x: &[[f64; N]], mut r: &mut [[f64; N]]) {
         let tiles = self.tiles();
-        let operations = self.rows * r.len() * N;
+        // As long as a number of F takes to be read.
+        let operations = 16 * self.rows * r.len();
         let mut tasks = Vec::with_capacity(tiles.len());
         for (_, block, columns) in &tiles {
             let (here, rest) = r.split_at_mut(columns.len());
@@ -231,7 +233,7 @@ impl Columns {
     pub(super) fn commit(&mut self, factor: &mut Panels, touched: &Touched, untouched: &[usize]) {
         let before = self.rows;
         let width = untouched.len();
-        let mut values = self.room((before + touched.len()) * width);
+        let mut values = self.room(before + touched.len(), width);
         values.resize(before * width, 0.0);
         factor.push_rows(touched.len());
         let window = |position, event| touched.factor(position, event);
@@ -262,18 +264,13 @@ impl Columns {
                 kept: kept.next().unwrap_or_default(),
             })
             .collect();
-        for (last, ((position, _), row)) in columns.iter().zip(factor.rows_mut(before)).enumerate()
-        {
-            let (left, here) = row.split_at_mut(before);
-            for (event, target) in here[..=last].iter_mut().enumerate() {
-                *target = window(*position, event);
-            }
-            for (piece, target) in pieces.iter_mut().zip(left.chunks_mut(ROWS)) {
+        for row in factor.rows_mut(before) {
+            for (piece, target) in pieces.iter_mut().zip(row[..before].chunks_mut(ROWS)) {
                 piece.rows.push(target);
             }
         }
-        // A number moved takes as long as some operations.
-        let operations = 16 * before * (columns.len() + width);
+        // A number on its way to memory that is new takes as long as so many operations.
+        let operations = 64 * before * (columns.len() + width);
         parallel::for_each(operations, &mut pieces, |Piece { first, rows, kept }| {
             let first = *first;
             let count = ROWS.min(before - first);
@@ -300,6 +297,12 @@ impl Columns {
             }
         });
 
+        for (last, row) in factor.rows_mut(before).enumerate() {
+            let position = touched.positions()[last];
+            for (event, target) in row[before..=before + last].iter_mut().enumerate() {
+                *target = window(position, event);
+            }
+        }
         for event in 0..touched.len() {
             values.extend(untouched.iter().map(|&position| window(position, event)));
         }

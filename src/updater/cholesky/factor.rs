@@ -77,8 +77,8 @@ impl Factor {
 
         schur.resize(nodes.len());
         let matrix = schur.as_mut_slice();
-        for (column, &place) in matrix.chunks_mut(nodes.len().max(1)).zip(&places) {
-            table.fill_column(place, &places, column);
+        for (j, column) in matrix.chunks_mut(nodes.len().max(1)).enumerate() {
+            table.fill_column(places[j], &places[j..], &mut column[j..]);
         }
         self.columns.subtract_gram(matrix);
         self.timings.schur += forward_done.elapsed();
@@ -110,8 +110,11 @@ impl Factor {
         check_count(self.len() + touched.len(), contact.len())?;
         problem.check_nodes(contact.order())?;
         let start = Instant::now();
-        let mut untouched: Vec<usize> = (0..self.watched.len()).collect();
-        untouched.retain(|position| !touched.has_touched(*position));
+        let mut open = vec![true; self.watched.len()];
+        for &position in touched.positions() {
+            open[position] = false;
+        }
+        let untouched: Vec<usize> = (0..open.len()).filter(|&position| open[position]).collect();
         self.columns.commit(&mut self.panels, touched, &untouched);
         self.watched = untouched
             .iter()

@@ -13,6 +13,8 @@ use crate::parallel::{self, vectorized};
 const GROUP: usize = 4;
 /// Rows of such a group.
 const GROUP_ROWS: usize = GROUP * ROWS;
+/// Rows of a triangle that is solved row by row.
+const SMALL: usize = 32;
 /// Unknowns that one thread updates at a time in a backward substitution: enough for rows of L to
 /// stream from memory, few enough to stay in cache.
 const COLUMNS_AT_ONCE: usize = 1024;
@@ -24,7 +26,7 @@ impl Panels {
         if length(&x) > 2 * GROUP_ROWS {
             parallel::inside(|| self.solve_groups_transposed(x));
         } else {
-            // There is nothing to share.
+            // No panel lies beyond the neighbouring group: there is nothing to share.
             self.solve_groups_transposed(x);
         }
     }
@@ -93,25 +95,43 @@ impl Panels {
         subtract_transposed(&self.panel(p)[first..], (p + 1) * ROWS, y, x);
     }
 
-    /// Solves `Lᵀ x = b` in place with the triangle of panel p alone.
-    fn solve_triangle_transposed<const N: usize>(&self, p: usize, x: [&mut [f64]; N]) {
-        let (panel, width) = (self.panel(p), (p + 1) * ROWS);
-        vectorized(
-            #[inline(always)]
-            || {
-                for x in x {
-                    for r in (0..x.len()).rev() {
-                        let row = &panel[r * width + p * ROWS..][..=r];
-                        x[r] /= row[r];
-                        let (earlier, last) = x.split_at_mut(r);
-                        for (x, l) in earlier.iter_mut().zip(row) {
-                            *x -= *l * last[0];
-                        }
+    /// Solves `Lᵀ x = b` in place with the triangle of panel p alone: small triangles one after the other,
+    /// so that most of it is products of several rows at a time.
+    fn solve_triangle_transposed<const N: usize>(&self, p: usize, mut x: [&mut [f64]; N]) {
+        let (panel, width) = (&self.panel(p)[p * ROWS..], (p + 1) * ROWS);
+        let mut end = length(&x);
+        while let Some(last) = end.checked_sub(1) {
+            let start = last / SMALL * SMALL;
+            let block = &panel[start * width..];
+            let small = x.each_mut().map(|x| &mut x[start..end]);
+            solve_small_transposed(&block[start..], width, small);
+            let known = rows(&x, start..end);
+            let before = x.each_mut().map(|x| &mut x[..start]);
+            subtract_transposed(block, width, &known, before);
+            end = start;
+        }
+    }
+}
+
+/// Solves `Lᵀ x = b` in place with a small triangle L, whose rows are `width` apart.
+fn solve_small_transposed<const N: usize>(l: &[f64], width: usize, mut x: [&mut [f64]; N]) {
+    let count = length(&x);
+    vectorized(
+        #[inline(always)]
+        || {
+            for r in (0..count).rev() {
+                let row = &l[r * width..][..=r];
+                // All right-hand sides together: each waits for its quotient.
+                for x in &mut x {
+                    let (earlier, here) = x.split_at_mut(r);
+                    here[0] /= row[r];
+                    for (x, l) in earlier.iter_mut().zip(row) {
+                        *x -= *l * here[0];
                     }
                 }
-            },
-        );
-    }
+            }
+        },
+    );
 }
 
 /// Some of the unknowns, row by row.
