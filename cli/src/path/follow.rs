@@ -3,12 +3,13 @@
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use asperity::LoadingState;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Solver;
+use super::progress::Progress;
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
 
@@ -19,9 +20,10 @@ const STRIDE: usize = 64;
 pub(super) fn follow(
     solver: &mut Solver,
     file: &mut PathFile,
-    progress: impl Fn(&LoadingState) -> f64,
+    progress: impl Fn(&LoadingState) -> Progress,
 ) -> (Vec<LoadingState>, Result<(), Failure>) {
     let bar = ProgressBar::new(100);
+    let start = Instant::now();
     if let Ok(style) =
         ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
     {
@@ -39,9 +41,11 @@ pub(super) fn follow(
                     break;
                 }
                 if state.step.is_multiple_of(STRIDE) {
-                    bar.set_position((100.0 * progress(&state)) as u64);
+                    let progress = progress(&state);
+                    bar.set_position((100.0 * progress.done) as u64);
                     let load = scientific(state.load, 3);
-                    bar.set_message(format!("{} nodes, W = {load} N", state.contact_nodes));
+                    let left = progress.left(start.elapsed());
+                    bar.set_message(format!("{} nodes, W = {load} N{left}", state.contact_nodes));
                 }
             }
             Err(failure) => {

@@ -6,7 +6,8 @@ use std::path::Path;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingState};
 
-use super::options::Options;
+use super::options::{Options, Updater};
+use super::progress::Progress;
 use crate::measured;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
@@ -26,6 +27,7 @@ pub(super) struct Job {
     e_star: f64,
     periodic: Option<Periodic>,
     rule: ContactRule,
+    updater: Updater,
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
 }
@@ -45,6 +47,7 @@ impl Job {
             e_star: options.e_star,
             periodic: options.periodic,
             rule: options.rule.into(),
+            updater: options.updater,
             targets: options.targets(&grid),
         })
     }
@@ -70,16 +73,19 @@ impl Job {
         &self.targets
     }
 
-    /// How far a state is on the way to the nearest target, from 0 to 1: the cost of a path grows with its
-    /// nodes, and its load about in proportion to them.
-    pub(super) fn progress(&self, state: &LoadingState) -> f64 {
+    /// How far a state is on the way to the nearest target: load grows about in proportion to nodes.
+    pub(super) fn progress(&self, state: &LoadingState) -> Progress {
         let shares = self.targets.iter().map(|target| match *target {
             ContactTarget::Load(load) => state.load / load,
             ContactTarget::Approach(approach) => state.approach / approach,
             ContactTarget::AreaFraction(fraction) => state.contact_area_fraction / fraction,
             _ => 0.0,
         });
-        shares.fold(state.contact_area_fraction, f64::max).min(1.0)
+        let share = shares.fold(state.contact_area_fraction, f64::max).min(1.0);
+        let nodes = self.grid.nodes();
+        Progress::new(state.contact_nodes, share, |contact| {
+            self.updater.event_cost(nodes, contact)
+        })
     }
 
     pub(super) fn periodic(&self) -> Option<Periodic> {

@@ -9,6 +9,7 @@ mod follow;
 mod job;
 mod map;
 mod options;
+mod progress;
 mod table;
 
 use std::time::Instant;

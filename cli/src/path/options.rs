@@ -144,6 +144,14 @@ pub(super) enum Updater {
 }
 
 impl Updater {
+    /// What an event costs with so many nodes in contact on a grid, in some unit of time.
+    pub(super) fn event_cost(self, nodes: usize, contact: usize) -> f64 {
+        match self {
+            Self::Cholesky => (contact as f64).powi(2),
+            Self::Auto | Self::Iterative => Handover::event_cost(nodes, contact),
+        }
+    }
+
     pub(super) fn make(self) -> Box<dyn LinearUpdater> {
         match self {
             Self::Auto => Box::new(Handover::new()),
