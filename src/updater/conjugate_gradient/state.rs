@@ -1,7 +1,7 @@
 //! The contact, its solutions and the columns of the watched nodes.
 
 use crate::contact::ContactSequence;
-use crate::krylov::{LinearSystem, NodeSet, Operator, SparseInverse, dot};
+use crate::krylov::{LinearSystem, NodeSet, Operator, Preconditioner, dot};
 use crate::updater::{Schur, Solution, Touched};
 use crate::{Error, Problem};
 
@@ -12,7 +12,7 @@ const ROW_SUMS: usize = 2;
 #[derive(Debug, Clone)]
 pub(super) struct State {
     operator: Operator,
-    inverse: SparseInverse,
+    preconditioner: Preconditioner,
     contact: NodeSet,
     /// `C_II⁻¹ B_I` by place in the contact.
     solutions: [Vec<f64>; Problem::RHS],
@@ -40,7 +40,7 @@ impl State {
     pub(super) fn new(problem: &Problem) -> Self {
         Self {
             operator: Operator::new(problem.convolution()),
-            inverse: SparseInverse::new(problem.table()),
+            preconditioner: Preconditioner::new(problem.table()),
             contact: NodeSet::new(problem.grid().nodes()),
             solutions: Default::default(),
             columns: Vec::new(),
@@ -78,13 +78,13 @@ impl State {
 
     /// Bytes held, besides values for each contact node.
     pub(super) fn bytes(&self) -> usize {
-        self.operator.bytes() + 2 * self.inverse.bytes()
+        self.operator.bytes() + 2 * self.preconditioner.bytes()
     }
 
     /// Makes the contact the nodes for which `is_in` holds.
     fn choose(&mut self, is_in: impl Fn(usize) -> bool) {
         self.contact.assign(is_in);
-        self.inverse.update(&self.contact);
+        self.preconditioner.update(&self.contact);
     }
 
     /// Solves `C_II x = B_I` for one right-hand side, from the start `x`, and returns the residual.
@@ -108,7 +108,7 @@ impl State {
         let greatest = b.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         let mut equations = LinearSystem {
             operator: &mut self.operator,
-            inverse: &mut self.inverse,
+            preconditioner: &mut self.preconditioner,
             contact: &self.contact,
             tolerance: criteria.tolerance * greatest,
             max_iterations: criteria.max_iterations,
@@ -247,7 +247,7 @@ impl State {
         self.solutions = solutions;
         self.columns = columns;
         self.contact = contact;
-        self.inverse.update(&self.contact);
+        self.preconditioner.update(&self.contact);
     }
 
     /// Solves on the first nodes of `contact`, which are not all of them.
