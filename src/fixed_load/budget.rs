@@ -1,11 +1,11 @@
 //! What a solver may hold in memory.
 
-use crate::krylov::SparseInverse;
+use crate::krylov::Preconditioner;
 use crate::{Error, Grid};
 
 /// Numbers for each node of a grid, whatever the load: initial gap and influence coefficients (6), the
-/// convolution in both precisions with its buffers (17), iterate (3) and solution (5).
-const VALUES: usize = 31;
+/// convolution in both precisions with its buffers (17), preconditioner (4), iterate (3) and solution (5).
+const VALUES: usize = 35;
 /// Numbers for each node in contact that conjugate gradients take with their preconditioner.
 const CONTACT_VALUES: usize = 14;
 
@@ -37,7 +37,7 @@ impl MemoryBudget {
     ///
     /// [`Error::MemoryBudget`] otherwise.
     pub(super) fn check(&self, contact_nodes: usize) -> Result<(), Error> {
-        let each = <SparseInverse>::BYTES_A_NODE + CONTACT_VALUES * size_of::<f64>();
+        let each = Preconditioner::BYTES_A_NODE + CONTACT_VALUES * size_of::<f64>();
         let needed = self.grids.saturating_add(contact_nodes * each);
         if needed <= self.budget {
             return Ok(());

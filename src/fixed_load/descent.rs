@@ -35,7 +35,9 @@ impl<'a> Descent<'a> {
         contact.gather(&level.iterate.closure, &mut closure);
         let mut weights = Vec::new();
         if let Prescribed::Sum(_) = prescribed {
-            level.inverse.apply(&vec![1.0; contact.len()], &mut weights);
+            level
+                .preconditioner
+                .apply(&vec![1.0; contact.len()], &mut weights);
         }
         let descent = Self {
             level,
@@ -109,12 +111,12 @@ impl<'a> Descent<'a> {
                 *r = approach - g;
             }
             let Level {
-                inverse,
+                preconditioner,
                 operator,
                 iterate,
                 ..
             } = &mut *self.level;
-            inverse.apply(&residual, &mut z);
+            preconditioner.apply(&residual, &mut z);
             let step = directions.advance(operator, &iterate.contact, &residual, &z)?;
             add_scaled(&mut self.pressure, step.length, step.values);
             add_scaled(&mut self.closure, step.length, step.image);
@@ -128,7 +130,7 @@ impl<'a> Descent<'a> {
     /// Sets nodes with tension free, and goes there or as far as the energy falls.
     fn release(&mut self, start: &Start) -> Result<(), Error> {
         release(
-            &mut self.level.inverse,
+            self.level.preconditioner.sparse(),
             &mut self.pressure,
             &self.weights,
             self.prescribed,

@@ -7,7 +7,7 @@ use super::iterate::Iterate;
 use crate::contact::LengthScale;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
-use crate::krylov::{Operator, SparseInverse, sum};
+use crate::krylov::{Operator, Preconditioner, sum};
 use crate::{Error, Grid};
 
 /// What is prescribed on one grid.
@@ -38,7 +38,7 @@ pub(super) struct Level {
     /// In the zero gauge if the mean displacement is arbitrary.
     pub(super) operator: Operator,
     /// That of the matrix in the gauge `gauge`.
-    pub(super) inverse: SparseInverse,
+    pub(super) preconditioner: Preconditioner,
     /// A gauge of its own to compute in, since the zero gauge is singular in full contact; `None` if
     /// the mean displacement is the kernel's.
     pub(super) gauge: Option<f64>,
@@ -70,7 +70,7 @@ impl Level {
         Self {
             grid: table.grid(),
             operator: Operator::new(convolution),
-            inverse: SparseInverse::new(&own),
+            preconditioner: Preconditioner::new(&own),
             gauge,
             self_influence: own.self_influence(),
             scale: LengthScale::new(rms_height, table),
@@ -136,7 +136,7 @@ impl Level {
         if fits.is_err() {
             contact.assign(|_| false);
         }
-        self.inverse.update(contact);
+        self.preconditioner.update(contact);
         fits
     }
 
@@ -153,7 +153,7 @@ impl Level {
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.gap[..])
             + self.operator.bytes()
-            + self.inverse.bytes()
+            + self.preconditioner.bytes()
             + self.iterate.bytes()
     }
 }

@@ -105,7 +105,7 @@ impl Tangent {
                 *value = 1.0 - *value;
             }
         } else {
-            level.inverse.apply(&ones, &mut y);
+            level.preconditioner.apply(&ones, &mut y);
         }
         // Nodes that have left take their displacements with them.
         let places = contact.places();
@@ -113,7 +113,7 @@ impl Tangent {
         let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == NodeSet::NONE);
         let mut equations = LinearSystem {
             operator: &mut level.operator,
-            inverse: &mut level.inverse,
+            preconditioner: &mut level.preconditioner,
             contact,
             tolerance: settings.tolerance,
             max_iterations: settings.max_iterations,

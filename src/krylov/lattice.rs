@@ -38,7 +38,7 @@ pub(super) struct Lattices {
 }
 
 /// A neighbour found: its node index, and its place in the table of coefficients.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub(super) struct Neighbour {
     pub(super) node: u32,
     pub(super) offset: i32,
@@ -61,13 +61,13 @@ impl Lattices {
 
     /// Collects the earlier nodes with the greatest influence on `node`, as many as `neighbours`
     /// has room for, among those for which `is_in` holds. Returns how many there are, and the
-    /// lattice on which they were found.
+    /// level of the lattice on which they were found.
     pub(super) fn earlier(
         &self,
         node: usize,
         is_in: impl Fn(usize) -> bool,
         neighbours: &mut [Neighbour],
-    ) -> (usize, &Lattice) {
+    ) -> (usize, u32) {
         let [nx, ny] = self.shape;
         let (ix, iy) = (node % nx, node / nx);
         let level = (ix | iy).trailing_zeros().min(self.levels.len() as u32 - 1);
@@ -79,7 +79,7 @@ impl Lattices {
         let reaches_over = |at: isize, end: isize| at < REACH || at + REACH > end;
         if !lattice.around.is_empty() && (reaches_over(a, ends[0]) || reaches_over(b, ends[1])) {
             let found = self.earlier_around(node, level, is_in, neighbours);
-            return (found, lattice);
+            return (found, level);
         }
         let mut count = 0;
         for &[da, db] in &lattice.candidates[class as usize] {
@@ -100,7 +100,12 @@ impl Lattices {
                 }
             }
         }
-        (count, lattice)
+        (count, level)
+    }
+
+    /// The lattice of a level.
+    pub(super) fn level(&self, level: u32) -> &Lattice {
+        &self.levels[level as usize]
     }
 
     /// [`Self::earlier`] on a periodic lattice of level `level`, beyond the edges too: what is earlier
@@ -136,6 +141,37 @@ impl Lattices {
             }
         }
         count
+    }
+
+    /// Calls `found` with nodes that may have `node` for a neighbour, and with its influence on them
+    /// relative to C(0, 0): all that could find it, and some that come before it.
+    pub(super) fn later(&self, node: usize, mut found: impl FnMut(usize, f32)) {
+        let [nx, ny] = self.shape;
+        let (ix, iy) = (node % nx, node / nx);
+        let last = self.levels.len() as u32 - 1;
+        let own = (ix | iy).trailing_zeros().min(last);
+        for (level, lattice) in (0..=own).zip(&self.levels) {
+            let wraps = !lattice.around.is_empty();
+            let along = |at: usize, steps: isize, nodes: usize| {
+                let to = at as isize + (steps << level);
+                let to = if wraps {
+                    to.rem_euclid(nodes as isize)
+                } else {
+                    to
+                };
+                (0..nodes as isize).contains(&to).then_some(to as usize)
+            };
+            for db in -REACH..=REACH {
+                let Some(y) = along(iy, db, ny) else { continue };
+                for da in -REACH..=REACH {
+                    let Some(x) = along(ix, da, nx) else { continue };
+                    if (x | y).trailing_zeros().min(last) == level && (da, db) != (0, 0) {
+                        let offset = (da + db * WIDTH) as i32;
+                        found(x + nx * y, lattice.between(offset, 0));
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -226,7 +262,8 @@ mod tests {
             };
             for node in 0..grid.nodes() {
                 let mut found = [Neighbour::default(); 8];
-                let (count, lattice) = lattices.earlier(node, |_| true, &mut found);
+                let (count, level) = lattices.earlier(node, |_| true, &mut found);
+                let lattice = lattices.level(level);
                 let mut seen = vec![node];
                 for neighbour in &found[..count] {
                     let other = neighbour.node as usize;

@@ -1,17 +1,20 @@
 //! What iterations need: the influence operator on a contact set, a sparse approximation of its
 //! inverse, and preconditioned conjugate gradients, all in O(grid) memory.
 
+mod coarse;
 mod directions;
 mod lattice;
 mod node_set;
 mod operator;
 mod pcg;
+mod preconditioner;
 mod sparse_inverse;
 mod vector;
 
 pub(crate) use directions::Directions;
-pub(crate) use node_set::NodeSet;
+pub(crate) use node_set::{Change, NodeSet};
 pub(crate) use operator::Operator;
 pub(crate) use pcg::LinearSystem;
+pub(crate) use preconditioner::Preconditioner;
 pub(crate) use sparse_inverse::SparseInverse;
 pub(crate) use vector::{add_scaled, dot, greatest, sum, sum_over};

@@ -8,6 +8,13 @@ pub(crate) struct NodeSet {
     places: Vec<u32>,
 }
 
+/// A node that enters a set, or leaves it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Change {
+    pub(crate) node: u32,
+    pub(crate) enters: bool,
+}
+
 impl NodeSet {
     /// Marks a node that is not in contact.
     pub(crate) const NONE: u32 = u32::MAX;
@@ -50,6 +57,21 @@ impl NodeSet {
     /// Number of nodes in contact.
     pub(crate) fn len(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// What must happen to become `other`, in the order of the nodes.
+    pub(crate) fn changes(&self, other: &Self) -> Vec<Change> {
+        let mut changes = Vec::new();
+        for (node, (old, new)) in self.places.iter().zip(&other.places).enumerate() {
+            let enters = *new != Self::NONE;
+            if enters != (*old != Self::NONE) {
+                changes.push(Change {
+                    node: node as u32,
+                    enters,
+                });
+            }
+        }
+        changes
     }
 
     /// The values of a field of the grid at the nodes in contact.

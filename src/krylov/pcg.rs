@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients for one linear system on a contact set.
 
-use super::{Directions, NodeSet, Operator, SparseInverse, add_scaled, greatest};
+use super::{Directions, NodeSet, Operator, Preconditioner, add_scaled, greatest};
 use crate::Error;
 
 /// So far a residual falls on steps of single precision before it is computed afresh: then their
@@ -22,7 +22,7 @@ pub(crate) struct LinearOutcome {
 #[derive(Debug)]
 pub(crate) struct LinearSystem<'a> {
     pub(crate) operator: &'a mut Operator,
-    pub(crate) inverse: &'a mut SparseInverse,
+    pub(crate) preconditioner: &'a mut Preconditioner,
     pub(crate) contact: &'a NodeSet,
     /// Greatest component that a residual may have, in the unit of b.
     pub(crate) tolerance: f64,
@@ -71,7 +71,7 @@ impl LinearSystem<'_> {
             let enough = (MARGIN * self.tolerance).max(REDUCTION * start);
             let mut now = start;
             while now > enough && outcome.iterations < self.max_iterations {
-                self.inverse.apply(residual, &mut z);
+                self.preconditioner.apply(residual, &mut z);
                 // Directions from before a fresh residual are as good as ever.
                 let step = directions.advance(self.operator, self.contact, residual, &z)?;
                 add_scaled(x, step.length, step.values);
@@ -117,11 +117,11 @@ mod tests {
         let table = KernelTable::new(&Boussinesq::new(grid, 1.0)?)?;
         let mut contact = NodeSet::new(grid.nodes());
         contact.assign(|_| true);
-        let mut inverse = SparseInverse::new(&table);
-        inverse.update(&contact);
+        let mut preconditioner = Preconditioner::new(&table);
+        preconditioner.update(&contact);
         let mut system = LinearSystem {
             operator: &mut Operator::new(Convolution::from_table(&table)?),
-            inverse: &mut inverse,
+            preconditioner: &mut preconditioner,
             contact: &contact,
             tolerance: 1e-10,
             max_iterations,

@@ -1,9 +1,13 @@
 //! A sparse inverse Cholesky factor of the influence matrix of a contact set.
 
-use super::NodeSet;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::ops::Range;
+
 use super::lattice::{Lattice, Lattices, Neighbour};
+use super::{Change, NodeSet, greatest};
 use crate::kernel::KernelTable;
-use crate::parallel::{for_each_chunk, vectorized};
+use crate::parallel::{for_each_block, for_each_chunk, vectorized};
 
 /// Neighbours on which a node conditions, chosen by time and not by count.
 ///
@@ -20,8 +24,20 @@ use crate::parallel::{for_each_chunk, vectorized};
 /// | 32 | 12 + 12, 32, 0.44 s | 17 + 17, 43, 0.99 s | 28 + 24, 62, 3.06 s |
 pub(crate) const NEIGHBOURS: usize = 8;
 
-/// Rows a thread takes at a time.
-const CHUNK: usize = 512;
+/// Nodes in contact that a thread takes at a time, to look for neighbours and to copy values.
+const SEARCH: usize = 256;
+const CHUNK: usize = 4096;
+/// Nodes whose neighbours are looked for before their patterns are.
+const BLOCK: usize = 1 << 15;
+/// Parts of the grid whose rows are applied at the same time.
+const PARTS: usize = 8;
+/// If more than one node of so many changes, neighbours are looked for anew at all nodes; and if there
+/// are so many times as many patterns as when that was last done, and `FEW` more.
+const MANY: usize = 128;
+const GROWTH: usize = 2;
+const FEW: usize = 1024;
+/// Influences that differ by less may be the same, relative to C(0, 0).
+const TIE: f32 = 1e-5;
 
 /// ```math
 /// M = U U^T \approx C_{II}^{-1}
@@ -32,181 +48,296 @@ const CHUNK: usize = 512;
 /// their influence on the node, `w = A⁻¹ a` and `v = C(0, 0) − aᵀ w`, its column of U is
 /// `(1, −w) / √v` (Vecchia; Schäfer, Katzfuss and Owhadi, SIAM J. Sci. Comput. 43 (2021) A2019). M is
 /// positive definite by construction, in whatever precision the columns are computed: here single.
+///
+/// Nodes whose neighbours lie at the same offsets share a column: its pattern.
 #[derive(Debug, Clone)]
 pub(crate) struct SparseInverse<const K: usize = NEIGHBOURS> {
     lattices: Lattices,
     /// 1 / C(0, 0).
     unit: f64,
-    rows: Vec<Row<K>>,
-    /// Grid index of the node of each row, and the row of each node of the grid.
     contact: NodeSet,
-    /// Rows of the neighbours; a missing one is the row itself, with no weight.
-    columns: Vec<[u32; K]>,
-    /// The same by neighbour: where its entries begin, and which rows it serves with what weight.
-    starts: Vec<u32>,
-    entries: Vec<(u32, f32)>,
-    scratch: Vec<f64>,
+    /// The pattern of each node of the grid that is in contact.
+    chosen: Vec<u32>,
+    patterns: Vec<Pattern<K>>,
+    index: HashMap<Found<K>, u32>,
+    /// Number of patterns when all neighbours were last looked for.
+    fresh: usize,
+    /// What M is applied to, and what comes of it, on the whole grid; of the nodes of each part what
+    /// lies in others.
+    source: Vec<f32>,
+    result: Vec<f32>,
+    outside: Vec<Vec<(u32, f32)>>,
+}
+
+/// Where the neighbours of a node are; missing ones at the node itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Found<const K: usize> {
+    level: u32,
+    count: u32,
+    neighbours: [Neighbour; K],
 }
 
 /// A column of U.
 #[derive(Debug, Clone, Copy)]
-struct Row<const K: usize> {
-    neighbours: [u32; K],
+struct Pattern<const K: usize> {
+    /// From the index of the node to those of its neighbours.
+    steps: [i32; K],
     weights: [f32; K],
     /// 1 / v, times C(0, 0).
     precision: f32,
-}
-
-impl<const K: usize> Row<K> {
-    const EMPTY: Self = Self {
-        neighbours: [NodeSet::NONE; K],
-        weights: [0.0; K],
-        precision: 1.0,
-    };
+    /// Nodes of less influence, relative to C(0, 0), are no neighbours, whether in contact or not.
+    least: f32,
 }
 
 impl<const K: usize> SparseInverse<K> {
-    /// Bytes taken for each node in contact at most, while it changes.
-    pub(crate) const BYTES_A_NODE: usize = 2 * size_of::<Row<K>>()
-        + size_of::<[u32; K]>()
-        + K * size_of::<(u32, f32)>()
-        + 2 * size_of::<u32>()
-        + size_of::<f64>();
+    /// Bytes taken for each node in contact at most: a pattern of its own, and its entry in an index
+    /// that may be half empty.
+    pub(crate) const BYTES_A_NODE: usize =
+        size_of::<Pattern<K>>() + 2 * size_of::<(Found<K>, u32)>() + size_of::<u32>();
 
     /// For an empty contact set.
     pub(crate) fn new(table: &KernelTable) -> Self {
+        let nodes = table.grid().nodes();
         Self {
             lattices: Lattices::new(table),
             unit: 1.0 / table.self_influence(),
-            rows: Vec::new(),
-            contact: NodeSet::new(table.grid().nodes()),
-            columns: Vec::new(),
-            starts: Vec::new(),
-            entries: Vec::new(),
-            scratch: Vec::new(),
+            contact: NodeSet::new(nodes),
+            chosen: vec![0; nodes],
+            patterns: Vec::new(),
+            index: HashMap::default(),
+            fresh: 0,
+            source: vec![0.0; nodes],
+            result: vec![0.0; nodes],
+            outside: vec![Vec::new(); PARTS],
         }
     }
 
-    /// Makes it that of another contact set. Only nodes whose neighbours change cost anything much.
-    pub(crate) fn update(&mut self, contact: &NodeSet) {
-        let mut rows = vec![Row::EMPTY; contact.len()];
-        let (lattices, nodes, places) = (&self.lattices, contact.nodes(), contact.places());
-        let (old_rows, old_places) = (&self.rows, self.contact.places());
-        for_each_chunk(&mut rows, CHUNK, |chunk, rows| {
-            for (row, &node) in rows.iter_mut().zip(&nodes[chunk * CHUNK..]) {
-                let mut found = [Neighbour::default(); K];
-                let is_in = |node: usize| places[node] != NodeSet::NONE;
-                let (count, lattice) = lattices.earlier(node as usize, is_in, &mut found);
-                for (neighbour, found) in row.neighbours.iter_mut().zip(&found[..count]) {
-                    *neighbour = found.node;
-                }
-                let old = old_rows.get(old_places[node as usize] as usize);
-                match old {
-                    Some(old) if old.neighbours == row.neighbours => *row = *old,
-                    _ => vectorized(
-                        #[inline(always)]
-                        || row.fill(lattice, &found, count),
-                    ),
-                }
-            }
-        });
-        self.rows = rows;
+    /// The contact set it is of.
+    pub(crate) fn contact(&self) -> &NodeSet {
+        &self.contact
+    }
+
+    /// Makes it that of another contact set, and returns whether it was of another. Only nodes whose
+    /// neighbours change cost anything much.
+    pub(crate) fn update(&mut self, contact: &NodeSet) -> bool {
+        let changes = self.contact.changes(contact);
+        if changes.is_empty() {
+            return false;
+        }
+        let all =
+            MANY * changes.len() > contact.len() || self.patterns.len() > GROWTH * self.fresh + FEW;
+        if all {
+            self.patterns.clear();
+            self.index.clear();
+            self.choose(contact, contact.nodes());
+            self.fresh = self.patterns.len();
+        } else {
+            let affected = self.affected(&changes, contact);
+            self.choose(contact, &affected);
+        }
         self.contact.clone_from(contact);
-        self.link();
+        true
     }
 
-    /// Translates neighbours to rows, and transposes.
-    fn link(&mut self) {
-        let (rows, places) = (&self.rows, self.contact.places());
-        self.columns.clear();
-        self.columns.resize(rows.len(), [0; K]);
-        for_each_chunk(&mut self.columns, CHUNK, |chunk, columns| {
-            for (i, columns) in columns.iter_mut().enumerate() {
-                let row = chunk * CHUNK + i;
-                for (column, &neighbour) in columns.iter_mut().zip(&rows[row].neighbours) {
-                    *column = match places.get(neighbour as usize) {
-                        Some(&place) => place,
-                        None => row as u32,
-                    };
+    /// Nodes of the new contact whose neighbours may change, in the order of their indices.
+    fn affected(&self, changes: &[Change], contact: &NodeSet) -> Vec<u32> {
+        let (old, new) = (self.contact.places(), contact.places());
+        let mut affected = Vec::new();
+        for change in changes {
+            if change.enters {
+                affected.push(change.node);
+            }
+            self.lattices
+                .later(change.node as usize, |node, influence| {
+                    let stays = old[node] != NodeSet::NONE && new[node] != NodeSet::NONE;
+                    if stays && influence >= self.patterns[self.chosen[node] as usize].least {
+                        affected.push(node as u32);
+                    }
+                });
+        }
+        affected.sort_unstable();
+        affected.dedup();
+        affected
+    }
+
+    /// Chooses the patterns of some nodes of a contact set.
+    fn choose(&mut self, contact: &NodeSet, nodes: &[u32]) {
+        let (lattices, places) = (&self.lattices, contact.places());
+        let mut found = Vec::new();
+        for nodes in nodes.chunks(BLOCK) {
+            found.resize(nodes.len(), Found::NONE);
+            for_each_chunk(&mut found, SEARCH, |chunk, found| {
+                for (found, &node) in found.iter_mut().zip(&nodes[chunk * SEARCH..]) {
+                    let is_in = |node: usize| places[node] != NodeSet::NONE;
+                    *found = Found::of(lattices, node, is_in);
                 }
+            });
+            let first = self.patterns.len();
+            let mut new = Vec::new();
+            for (found, &node) in found.iter().zip(nodes) {
+                self.chosen[node as usize] = match self.index.entry(*found) {
+                    Entry::Occupied(pattern) => *pattern.get(),
+                    Entry::Vacant(place) => {
+                        let pattern = (first + new.len()) as u32;
+                        new.push(*found);
+                        *place.insert(pattern)
+                    }
+                };
             }
-        });
-        self.starts.clear();
-        self.starts.resize(rows.len() + 1, 0);
-        for (row, columns) in self.columns.iter().enumerate() {
-            for &column in columns.iter().take_while(|&&column| column != row as u32) {
-                self.starts[column as usize + 1] += 1;
-            }
+            self.patterns.resize(first + new.len(), Pattern::ALONE);
+            for_each_chunk(&mut self.patterns[first..], SEARCH, |chunk, patterns| {
+                for (pattern, found) in patterns.iter_mut().zip(&new[chunk * SEARCH..]) {
+                    let lattice = lattices.level(found.level);
+                    vectorized(
+                        #[inline(always)]
+                        || pattern.fill(lattice, found),
+                    );
+                }
+            });
         }
-        let mut total = 0;
-        for start in &mut self.starts {
-            total += *start;
-            *start = total;
-        }
-        self.entries.clear();
-        self.entries.resize(total as usize, (0, 0.0));
-        // Filled from the back, so that `starts` ends where it should.
-        let ends = &mut self.starts[1..];
-        for (row, columns) in self.columns.iter().enumerate().rev() {
-            let used = columns.iter().take_while(|&&column| column != row as u32);
-            for (&column, &weight) in used.zip(&rows[row].weights) {
-                let end = &mut ends[column as usize];
-                *end -= 1;
-                self.entries[*end as usize] = (row as u32, weight);
-            }
-        }
-        // Each of `ends` is now a start: move them down by one.
-        let length = self.starts.len();
-        self.starts.copy_within(1..length, 0);
-        self.starts[length - 1] = total;
-        self.scratch.resize(rows.len(), 0.0);
     }
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.rows[..])
-            + size_of_val(&self.columns[..])
-            + size_of_val(&self.entries[..])
-            + size_of_val(self.contact.places())
+        size_of_val(&self.patterns[..])
+            + self.index.capacity() * size_of::<(Found<K>, u32)>()
+            + self.contact.len() * size_of::<u32>()
+            + 4 * size_of_val(self.contact.places())
     }
 
-    /// y = M x for values at the nodes in contact.
+    /// y = M x for values at the nodes in contact, in single precision.
     pub(crate) fn apply(&mut self, x: &[f64], y: &mut Vec<f64>) {
-        let (rows, columns, unit) = (&self.rows, &self.columns, self.unit);
-        for_each_chunk(&mut self.scratch, CHUNK, |chunk, values| {
+        let nodes = self.contact.nodes();
+        let most = greatest(x.len(), 0.0, |i| x[i].abs());
+        let scale = if most == 0.0 { 1.0 } else { most };
+        let per_scale = 1.0 / scale;
+        for_each_chunk(&mut self.source, CHUNK, |chunk, source| {
             let first = chunk * CHUNK;
-            for (i, value) in values.iter_mut().enumerate() {
-                let (row, columns) = (&rows[first + i], &columns[first + i]);
-                let mut lanes = [0.0; 4];
-                let pairs = columns.chunks_exact(4).zip(row.weights.chunks_exact(4));
-                for (columns, weights) in pairs {
-                    for ((lane, &column), &weight) in lanes.iter_mut().zip(columns).zip(weights) {
-                        *lane += f64::from(weight) * x[column as usize];
-                    }
-                }
-                let explained = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-                *value = (x[first + i] - explained) * (f64::from(row.precision) * unit);
+            let own = range(nodes, first, source.len());
+            for (&node, x) in nodes[own.clone()].iter().zip(&x[own]) {
+                source[node as usize - first] = (x * per_scale) as f32;
             }
         });
+        let (source, chosen, patterns) = (&self.source, &self.chosen, &self.patterns);
+        let part_length = source.len().div_ceil(self.outside.len());
+        for_each_block(
+            &mut self.result,
+            part_length,
+            &mut self.outside,
+            |part, values, outside| {
+                values.fill(0.0);
+                outside.clear();
+                let first = part * part_length;
+                let own = &nodes[range(nodes, first, values.len())];
+                let part = Part {
+                    first,
+                    values,
+                    outside,
+                };
+                part.add(own, chosen, patterns, source);
+            },
+        );
+        for &(node, value) in self.outside.iter().flatten() {
+            self.result[node as usize] += value;
+        }
         y.resize(x.len(), 0.0);
-        let (scratch, starts, entries) = (&self.scratch, &self.starts, &self.entries);
-        for_each_chunk(y, CHUNK, |chunk, values| {
-            let first = chunk * CHUNK;
-            for (i, value) in values.iter_mut().enumerate() {
-                let range = starts[first + i] as usize..starts[first + i + 1] as usize;
-                let served = entries[range].iter();
-                let terms = served.map(|&(row, weight)| f64::from(weight) * scratch[row as usize]);
-                *value = scratch[first + i] - terms.sum::<f64>();
+        let (result, back) = (&self.result, scale * self.unit);
+        for_each_chunk(y, CHUNK, |chunk, y| {
+            for (y, &node) in y.iter_mut().zip(&nodes[chunk * CHUNK..]) {
+                *y = back * f64::from(result[node as usize]);
             }
         });
     }
 }
 
-impl<const K: usize> Row<K> {
-    /// Weights and precision given the neighbours: Gaussian elimination of the k × k influence
-    /// matrix of the first `count`; the others are unit rows.
+/// What comes of the nodes of a part of the grid: there, from node `first` on, and elsewhere.
+struct Part<'a> {
+    first: usize,
+    values: &'a mut [f32],
+    outside: &'a mut Vec<(u32, f32)>,
+}
+
+impl Part<'_> {
+    /// Adds what the columns of some of its nodes make of `source`.
+    fn add<const K: usize>(
+        self,
+        nodes: &[u32],
+        chosen: &[u32],
+        patterns: &[Pattern<K>],
+        source: &[f32],
+    ) {
+        let Self {
+            first,
+            values,
+            outside,
+        } = self;
+        for &node in nodes {
+            let pattern = &patterns[chosen[node as usize] as usize];
+            let at = |step: i32| node.wrapping_add_signed(step) as usize;
+            let (mut even, mut odd) = (source[node as usize], 0.0);
+            let weights = pattern.weights.chunks_exact(2);
+            for (steps, weights) in pattern.steps.chunks_exact(2).zip(weights) {
+                even -= weights[0] * source[at(steps[0])];
+                odd += weights[1] * source[at(steps[1])];
+            }
+            let value = pattern.precision * (even - odd);
+            let start = node as usize - first;
+            values[start] += value;
+            let terms = pattern.steps.iter().zip(&pattern.weights);
+            for (&step, weight) in terms {
+                match values.get_mut(at(step).wrapping_sub(first)) {
+                    Some(other) => *other -= weight * value,
+                    None => outside.push((at(step) as u32, -weight * value)),
+                }
+            }
+        }
+    }
+}
+
+/// Where in `nodes`, which are in order, those from `first` on are, as far as `length`.
+fn range(nodes: &[u32], first: usize, length: usize) -> Range<usize> {
+    let below = |end: usize| nodes.partition_point(|&node| (node as usize) < end);
+    below(first)..below(first + length)
+}
+
+impl<const K: usize> Found<K> {
+    const NONE: Self = Self {
+        level: 0,
+        count: 0,
+        neighbours: [Neighbour { node: 0, offset: 0 }; K],
+    };
+
+    /// The neighbours of a node among those for which `is_in` holds, counted from its own index.
+    fn of(lattices: &Lattices, node: u32, is_in: impl Fn(usize) -> bool) -> Self {
+        let mut found = Self::NONE;
+        let (count, level) = lattices.earlier(node as usize, is_in, &mut found.neighbours);
+        (found.count, found.level) = (count as u32, level);
+        for neighbour in &mut found.neighbours[..count] {
+            neighbour.node = neighbour.node.wrapping_sub(node);
+        }
+        found
+    }
+}
+
+impl<const K: usize> Pattern<K> {
+    /// That of a node without neighbours.
+    const ALONE: Self = Self {
+        steps: [0; K],
+        weights: [0.0; K],
+        precision: 1.0,
+        least: f32::NEG_INFINITY,
+    };
+
+    /// The column given the neighbours: Gaussian elimination of their k × k influence matrix, with
+    /// unit rows for missing ones.
     #[inline(always)]
-    fn fill(&mut self, lattice: &Lattice, found: &[Neighbour; K], count: usize) {
+    fn fill(&mut self, lattice: &Lattice, found: &Found<K>) {
+        let count = found.count as usize;
+        let found = &found.neighbours;
+        self.steps = found.map(|neighbour| neighbour.node as i32);
+        if count == K {
+            self.least = lattice.between(found[K - 1].offset, 0) - TIE;
+        }
         let mut matrix = [[0.0_f32; K]; K];
         let mut rhs = [0.0_f32; K];
         for (i, row) in matrix.iter_mut().enumerate() {

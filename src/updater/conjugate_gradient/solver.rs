@@ -2,7 +2,7 @@
 
 use super::equilibrium::Field;
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, NodeSet, Operator, SparseInverse, add_scaled, greatest};
+use crate::krylov::{Directions, NodeSet, Operator, Preconditioner, add_scaled, greatest};
 use crate::{Error, Problem};
 
 /// Error of a displacement in single precision, relative to the greatest.
@@ -24,7 +24,7 @@ pub(super) struct Equation<F> {
 #[derive(Debug, Clone)]
 pub(super) struct Solver {
     operator: Operator,
-    inverse: SparseInverse,
+    preconditioner: Preconditioner,
     set: NodeSet,
 }
 
@@ -32,7 +32,7 @@ impl Solver {
     pub(super) fn new(problem: &Problem) -> Self {
         Self {
             operator: Operator::new(problem.convolution()),
-            inverse: SparseInverse::new(problem.table()),
+            preconditioner: Preconditioner::new(problem.table()),
             set: NodeSet::new(problem.grid().nodes()),
         }
     }
@@ -49,7 +49,7 @@ impl Solver {
             is_in[node] = true;
         }
         if self.set.assign(|node| is_in[node]) {
-            self.inverse.update(&self.set);
+            self.preconditioner.update(&self.set);
         }
     }
 
@@ -106,7 +106,7 @@ impl Solver {
                 if iterations == equation.max_iterations || !now.is_finite() {
                     return Err(failed(now, iterations));
                 }
-                self.inverse.apply(&residual, &mut z);
+                self.preconditioner.apply(&residual, &mut z);
                 let step = directions.advance(&mut self.operator, &self.set, &residual, &z)?;
                 add_scaled(&mut x, step.length, step.values);
                 add_scaled(&mut residual, -step.length, step.image);
@@ -146,7 +146,7 @@ impl Solver {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        self.operator.bytes() + 2 * self.inverse.bytes()
+        self.operator.bytes() + 2 * self.preconditioner.bytes()
     }
 }
 
