@@ -224,6 +224,10 @@ impl Corrected {
             });
         }
         let (cut, time) = cut(&events, watched.horizon, most, scales);
+        if time <= scales.tie {
+            // All of them touch at once.
+            return self.enter(run, scales, time, most).map(Ok);
+        }
         let start = run.front;
         let (first, count) = (&events[..cut], run.contact.len());
         let mut joined: Vec<usize> = first.iter().map(|event| event.position).collect();
