@@ -124,7 +124,7 @@ fn influence_between_hats() -> Result<(), Error> {
                 let expected = exact[i + size * j];
                 let scale = (exact[i + size * i] * exact[j + size * j]).sqrt();
                 let error = (found - expected).abs() / scale;
-                assert!(error < 0.1, "{i}, {j}: {found} instead of {expected}");
+                assert!(error < 0.15, "{i}, {j}: {found} instead of {expected}");
             }
         }
     }
