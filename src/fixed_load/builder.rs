@@ -44,7 +44,7 @@ impl FixedLoadBuilder<'_> {
     }
 
     /// Bytes that may be held at most, by default three quarters of the machine's memory where the
-    /// system says how much that is: some 330 for each node of the grid, and some 360 for each node in
+    /// system says how much that is: some 370 for each node of the grid, and some 350 for each node in
     /// contact. More is an [`Error::MemoryBudget`], before it is allocated.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.settings.memory_budget = Some(bytes);

@@ -17,7 +17,8 @@
 //! * **Active set, inexact inside.** On the set I of nodes with pressure or overlap, the equations
 //!   `C_II p = δ − g` are solved with `Σ p` fixed by projected conjugate gradients, one convolution a
 //!   step, only until what is left is smaller than the worst error in I itself.
-//! * **Preconditioner**: a sparse inverse Cholesky factor of `C_II`.
+//! * **Preconditioner** of two levels: a sparse inverse Cholesky factor of `C_II`, and bilinear hats for
+//!   the long waves, which are what it misses.
 //! * **Release**: nodes with tension are set free, their neighbours corrected by the
 //!   preconditioner alone, and the step is accepted only if the energy falls.
 //! * **Precision**: search directions go through a convolution in single precision, residuals are

@@ -1,5 +1,5 @@
-//! What iterations need: the influence operator on a contact set, a sparse approximation of its
-//! inverse, and preconditioned conjugate gradients, all in O(grid) memory.
+//! What iterations need: the influence operator on a contact set, a preconditioner of two levels, one
+//! of them a sparse approximation of the inverse, and conjugate gradients, all in O(grid) memory.
 
 mod coarse;
 mod directions;
