@@ -187,11 +187,7 @@ fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
     // From the solution on the nodes before the last window, as at a refresh.
     let mut solution = Solution::default();
     let approach = problem.mean_gap();
-    let at = |count| SolveRequest {
-        count,
-        approach,
-        span: approach,
-    };
+    let at = |count| SolveRequest::exact(count, approach);
     let mut group = short_group(criterion, "solution");
     group.throughput(Throughput::Bytes((n * n / 2 * NUMBER) as u64));
     group.bench_function(&id, |bencher| {

@@ -100,6 +100,7 @@ impl GapField {
             count: contact.len(),
             approach,
             span,
+            gap_error: 0.0,
         };
         solve(problem, contact, request, updater, &mut self.solution)?;
         let [u, rate] = &mut self.solution.displacement;

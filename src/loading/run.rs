@@ -207,11 +207,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         solution: &mut Solution,
     ) -> Result<Vec<usize>, Error> {
         let nodes = self.releases.contact_at(self.contact.order(), step);
-        let request = SolveRequest {
-            count: nodes.len(),
-            approach,
-            span: f64::INFINITY,
-        };
+        let request = SolveRequest::exact(nodes.len(), approach);
         if self.releases.is_prefix(step) {
             let (problem, contact) = (&self.problem, &self.contact);
             gap_field::solve(problem, contact, request, &mut self.updater, solution)?;

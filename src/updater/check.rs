@@ -139,11 +139,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let (problem, contact) = (self.problem, &self.contact);
         // All nodes so far would be under pressure.
         let approach = problem.greatest_gap();
-        let request = SolveRequest {
-            count,
-            approach,
-            span: approach,
-        };
+        let request = SolveRequest::exact(count, approach);
         self.updater.solve(problem, contact, request, &mut found)?;
         Dense.solve(problem, contact, request, &mut expected)?;
         let tolerance = TOLERANCE.max(LOST * self.updater.profile().tolerance);

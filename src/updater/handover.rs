@@ -135,11 +135,7 @@ impl Handover {
     fn hand_over(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let mut solution = Solution::default();
         // At any approach: with the rate it is known at all others.
-        let request = SolveRequest {
-            count: contact.len(),
-            approach: 0.0,
-            span: f64::INFINITY,
-        };
+        let request = SolveRequest::exact(contact.len(), 0.0);
         self.updater_mut()
             .solve(problem, contact, request, &mut solution)?;
         log::info!(

@@ -39,9 +39,24 @@ pub struct SolveRequest {
     /// The approach δ \[m\], in the gauge of the kernel.
     pub approach: f64,
     /// How much further the approach will go with these pressures \[m\]: the rate must be so exact that an
-    /// updater keeps its tolerance over this span. Infinite where the rate itself is wanted, and 0 where it
-    /// is not.
+    /// updater keeps its tolerance over this span. Infinite where the solution itself is wanted, and 0 where
+    /// the rate is not.
     pub span: f64,
+    /// Error that gaps of watched nodes may have \[m\], if that is more than the updater's tolerance.
+    pub gap_error: f64,
+}
+
+impl SolveRequest {
+    /// The solution on the first `count` nodes at an approach, as exact as the updater goes.
+    #[must_use]
+    pub fn exact(count: usize, approach: f64) -> Self {
+        Self {
+            count,
+            approach,
+            span: f64::INFINITY,
+            gap_error: 0.0,
+        }
+    }
 }
 
 /// Pressures on the contact nodes, in the order in which they joined: the paper's `y₁ + h₀ y₂` (eq. 5),

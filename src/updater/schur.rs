@@ -18,6 +18,7 @@ pub struct Schur {
     size: usize,
     matrix: Vec<f64>,
     row_sums: Vec<f64>,
+    displacements: Option<Vec<[f64; 2]>>,
 }
 
 impl Schur {
@@ -32,6 +33,19 @@ impl Schur {
         self.size = size;
         self.matrix.resize(size * size, 0.0);
         self.row_sums.resize(size, 0.0);
+        self.displacements = None;
+    }
+
+    /// Displacements of the watched nodes under the pressure of the last solution and under its rate, if the
+    /// updater knows them better than those of the solution; by default it does not.
+    #[must_use]
+    pub fn displacements(&self) -> Option<&[[f64; 2]]> {
+        self.displacements.as_deref()
+    }
+
+    /// Says that the updater knows better, by watched node.
+    pub fn set_displacements(&mut self, displacements: Vec<[f64; 2]>) {
+        self.displacements = Some(displacements);
     }
 
     /// The Schur complement S, of which only the lower triangle means anything.

@@ -343,11 +343,7 @@ impl LinearUpdater for Rounded {
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        let request = SolveRequest {
-            count: contact.len(),
-            approach: 0.0,
-            span: f64::INFINITY,
-        };
+        let request = SolveRequest::exact(contact.len(), 0.0);
         self.solve(problem, contact, request, &mut Solution::default())
     }
 

@@ -185,10 +185,16 @@ impl Corrected {
             let line = run.field.line(&run.problem, node, approach);
             [line.gap, line.closing]
         };
-        let lines = nodes.iter().map(line).collect();
+        let mut lines: Vec<[f64; 2]> = nodes.iter().map(line).collect();
         run.affordable(nodes.len())?;
         let mut schur = Schur::default();
         run.watch_nodes(&nodes, &mut schur)?;
+        if let Some(displacements) = schur.displacements() {
+            let gap = run.problem.initial_gap();
+            let known = nodes.iter().zip(displacements);
+            let improved = known.map(|(&node, [u, rate])| [gap[node] + u - approach, 1.0 - rate]);
+            lines = improved.collect();
+        }
         let size = nodes.len();
         let matrix = schur.matrix();
         Ok(Watched {

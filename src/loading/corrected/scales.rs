@@ -11,6 +11,8 @@ const ROUNDING: f64 = 1e-14;
 const LEAST_LENGTH: f64 = 1e-6;
 /// Bounds of the tolerance of rates.
 const RATE_TOLERANCE: [f64; 2] = [1e-11, 1e-5];
+/// What the gap of a node that is not watched may be off by, over the tolerance.
+const UNWATCHED: f64 = 100.0;
 
 /// Lengths of a window.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +43,7 @@ impl Scales {
     /// Difference of times below which a node that closes at a rate may be before or after another one, at the
     /// window's beginning.
     pub(super) fn tie_of(&self, closing: f64) -> f64 {
-        let error = 10.0 * self.tolerance * self.length;
+        let error = UNWATCHED * self.tolerance * self.length;
         self.tie.max(error / closing.max(1e-12))
     }
 
@@ -54,6 +56,6 @@ impl Scales {
     /// Overlap that a solution at an approach may leave, and the tension that goes with it times a
     /// compliance.
     pub(super) fn overlap(&self, approach: f64) -> f64 {
-        3.0 * self.tolerance * approach.max(self.length)
+        UNWATCHED * self.tolerance * approach.max(self.length)
     }
 }

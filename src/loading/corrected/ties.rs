@@ -23,6 +23,8 @@ const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 const OF_SPACING: f64 = 1e-3;
 /// An error above this part of the approach is settled by a solution wherever the neighbours are.
 const POOR: f64 = 1e-3;
+/// A solution first leaves this part of the errors.
+const OF_ERROR: f64 = 0.02;
 /// After a solution, errors grow with the way from it by this part.
 const OF_WAY: f64 = 0.05;
 
@@ -50,6 +52,7 @@ pub(super) fn settle<U: LinearUpdater>(
         count: run.contact.len() - settled.events.len(),
         approach: start.approach(),
         settled,
+        asked: None,
     };
     let mut next = 0;
     while next < ties.settled.events.len() {
@@ -114,6 +117,8 @@ struct Ties<'a> {
     count: usize,
     approach: f64,
     settled: Settled,
+    /// The event that the last solution was for, if it did not settle everything.
+    asked: Option<usize>,
 }
 
 impl Ties<'_> {
@@ -182,7 +187,8 @@ impl Ties<'_> {
         last: usize,
     ) -> Result<usize, Error> {
         let time = self.settled.events[first].time;
-        let gaps = self.exact_gaps(run, first, last)?;
+        let gap_error = self.sufficient_error(first, last);
+        let gaps = self.exact_gaps(run, first, last, gap_error)?;
         run.timings.ties += 1;
         let Some((schur, rates)) = self.eliminated(first, last) else {
             return Ok(last + 1);
@@ -208,19 +214,40 @@ impl Ties<'_> {
                 time: time + back + event.time,
             })
             .collect();
-        self.order_ties(&mut events);
+        let exact = gap_error == 0.0;
+        if exact {
+            self.order_ties(&mut events);
+        }
         let start = events[0].time;
-        let least = 2.0 * self.scales.tolerance * (self.approach + time);
+        let left = gap_error + 2.0 * self.scales.tolerance * (self.approach + time);
         for (k, event) in events.iter().enumerate() {
-            self.settled.errors[first + k] = (OF_WAY * (event.time - start)).max(least);
+            let place = before
+                .iter()
+                .position(|position| *position == event.position);
+            let rate = rates[place.unwrap_or_default()];
+            self.settled.errors[first + k] = OF_WAY * (event.time - start) + left / rate;
         }
         self.settled.events[first..=last].copy_from_slice(&events);
-        // Far behind the solution it may not be enough.
-        let again = (first + 1..last).find(|&event| {
+        // Far behind the solution it may not be enough, or the solution was not exact enough.
+        let again = (first + usize::from(exact)..last).find(|&event| {
             let spacing = self.settled.events[event + 1].time - self.settled.events[event].time;
-            spacing > self.scales.tie && self.is_close(event)
+            (spacing > self.scales.tie || !exact) && self.is_close(event)
         });
+        self.asked = again;
         Ok(again.unwrap_or(last + 1))
+    }
+
+    /// The error of gaps with which most runs of events are settled, and after that none.
+    fn sufficient_error(&self, first: usize, last: usize) -> f64 {
+        if self.asked == Some(first) {
+            return 0.0;
+        }
+        let errors = &self.settled.errors[first..=last];
+        let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        let lines = &self.watched.lines;
+        let events = &self.settled.events[first..=last];
+        let rates = events.iter().map(|event| lines[event.position][1]);
+        OF_ERROR * least * rates.fold(f64::INFINITY, f64::min)
     }
 
     /// Events that are ties get the time of the first, and come in the order of their nodes.
@@ -241,6 +268,7 @@ impl Ties<'_> {
         run: &mut LoadingRun<U>,
         first: usize,
         last: usize,
+        gap_error: f64,
     ) -> Result<Vec<f64>, Error> {
         let events = 0..self.settled.events.len();
         let order: Vec<usize> = events.map(|event| self.node(event)).collect();
@@ -250,6 +278,7 @@ impl Ties<'_> {
             count: self.count + first,
             approach,
             span: 0.0,
+            gap_error,
         };
         let mut solution = Solution::default();
         let (problem, contact) = (&run.problem, &run.contact);

@@ -1,6 +1,9 @@
 //! A solution on a contact, as fields of the grid.
 
+use super::local::Local;
+use crate::Problem;
 use crate::contact::ContactSequence;
+use crate::updater::Solution;
 
 /// Pressures of the grid and the displacements that they cause.
 #[derive(Debug, Clone, Default)]
@@ -77,6 +80,62 @@ impl Equilibrium {
             pressure: sum(&load.pressure, &rate.pressure),
             displacement: sum(&load.displacement, &rate.displacement),
             drift: load.drift + time.abs() * rate.drift,
+        }
+    }
+
+    /// What is left of the equations of a node in contact, for pressure and rate.
+    pub(super) fn left(&self, problem: &Problem, node: usize) -> [f64; 2] {
+        let overlap = self.approach - problem.initial_gap()[node];
+        let rate = self.rate.displacement.get(node);
+        [
+            overlap - self.load.displacement[node],
+            rate.map_or(0.0, |rate| 1.0 - rate),
+        ]
+    }
+
+    /// `x_jᵀ r` for what is left on the contact near a watched node.
+    pub(super) fn left_near(&self, problem: &Problem, local: &Local) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for (&node, x) in local.contact.iter().zip(&local.weights) {
+            let left = self.left(problem, node as usize);
+            for (sum, left) in sums.iter_mut().zip(left) {
+                *sum += x * left;
+            }
+        }
+        sums
+    }
+
+    /// Scales pressures and rates so that their sums, load and stiffness, are right to second order: with a
+    /// residual r left they lack `y₂ᵀ r`.
+    pub(super) fn scale(
+        &self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        solution: &mut Solution,
+    ) {
+        if !self.rate.is_known() {
+            return;
+        }
+        let (mut lacking, mut sums) = ([0.0; 2], [0.0; 2]);
+        for &node in &contact.order()[..self.count] {
+            let rate = self.rate.pressure[node];
+            let left = self.left(problem, node);
+            for k in 0..2 {
+                lacking[k] += rate * left[k];
+            }
+            sums[0] += self.load.pressure[node];
+            sums[1] += rate;
+        }
+        for (k, values) in [&mut solution.pressure, &mut solution.rate]
+            .into_iter()
+            .enumerate()
+        {
+            let factor = 1.0 + lacking[k] / sums[k];
+            if factor.is_finite() {
+                for value in values {
+                    *value *= factor;
+                }
+            }
         }
     }
 

@@ -15,10 +15,16 @@ use crate::{Boundary, Error, Problem, parallel};
 
 /// Bounds of the residual of the rate, which is 1 in contact: below the first one rounding ends the
 /// iteration, above the second one a horizon could not be trusted.
-const RATE_TOLERANCE: [f64; 2] = [1e-11, 1e-5];
+const RATE_TOLERANCE: [f64; 2] = [1e-11, 3e-5];
 /// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
 /// exact at the ends of windows anyway.
 const SUMS_TOLERANCE: f64 = 1e-4;
+/// So many times the tolerance residuals may be where gaps of watched nodes are all that matters: what is
+/// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
+/// few per cent.
+const ADJOINT: f64 = 30.0;
+/// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
+const SUMS_WINDOWS: usize = 8;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
 
@@ -38,13 +44,35 @@ pub(super) struct State {
     now: Equilibrium,
     /// Where the last window began: its prefixes start from there.
     before: Option<Equilibrium>,
-    /// `C_II⁻¹ s_I` for the row sums s of C, on the first so many nodes.
-    sums: (usize, Field),
+    sums: RowSums,
     watched: Vec<Local>,
+    /// Nodes in contact when they were watched.
+    watched_at: usize,
     /// Their Schur complement.
     schur: Vec<f64>,
     /// Search directions of the last solution on the whole contact.
     directions: Directions,
+}
+
+/// `C_II⁻¹ s_I` for the row sums s of C.
+#[derive(Debug, Clone)]
+struct RowSums {
+    /// On the first so many nodes.
+    count: usize,
+    field: Field,
+    /// Windows since they were solved for.
+    age: usize,
+}
+
+impl RowSums {
+    /// Of which nothing but a start is known.
+    fn start(count: usize, field: Field) -> Self {
+        Self {
+            count,
+            field,
+            age: SUMS_WINDOWS,
+        }
+    }
 }
 
 impl State {
@@ -55,8 +83,9 @@ impl State {
             neighbourhood: Neighbourhood::new(problem),
             now: Equilibrium::zero(nodes),
             before: None,
-            sums: (0, Field::zero(nodes)),
+            sums: RowSums::start(0, Field::zero(nodes)),
             watched: Vec::new(),
+            watched_at: 0,
             schur: Vec::new(),
             directions: Directions::default(),
         }
@@ -83,10 +112,8 @@ impl State {
             load,
             rate,
         };
-        self.sums = (
-            contact.len(),
-            Field::of(vec![0.0; self.now.rate.pressure.len()]),
-        );
+        let nothing = Field::of(vec![0.0; self.now.rate.pressure.len()]);
+        self.sums = RowSums::start(contact.len(), nothing);
     }
 
     /// Number of nodes in contact that there is a solution or a start for.
@@ -124,7 +151,7 @@ impl State {
                 // All row sums are the same, so that y₂ explains them.
                 all * (1.0 - self.now.rate.displacement[node])
             } else {
-                all - self.sums.1.displacement[node]
+                all - self.sums.field.displacement[node]
             };
         }
         let of = |&node: &usize| Local {
@@ -141,21 +168,92 @@ impl State {
         self.schur.clear();
         self.schur.extend_from_slice(schur.as_mut_slice());
         self.watched = locals;
+        self.watched_at = contact.len();
+        schur.set_displacements(self.improved(problem));
         Ok(())
     }
 
-    /// The factor of the Schur complement of some watched nodes, and what pressure on them does to the
-    /// contact; `None` if one was not watched.
-    fn factor_of(&self, joined: &[usize]) -> Option<(Cholesky<f64, Dyn>, Vec<&Local>)> {
-        let size = self.watched.len();
+    /// Displacements of the watched nodes with what the residuals of the solution say of them: pressures that
+    /// took a residual r out of the contact would change that of node j by `x_jᵀ r`.
+    fn improved(&self, problem: &Problem) -> Vec<[f64; 2]> {
+        let of = |local: &Local| {
+            let left = self.now.left_near(problem, local);
+            let node = local.node;
+            [
+                self.now.load.displacement[node] + left[0],
+                self.now.rate.displacement[node] + left[1],
+            ]
+        };
+        self.watched.iter().map(of).collect()
+    }
+
+    /// Improves what a solution says of the watched nodes, of which some have joined since they were watched:
+    /// the pressures of these, and the displacements of the others.
+    fn improve(
+        &self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        solved: &Equilibrium,
+        solution: &mut Solution,
+    ) {
+        let from = self.watched_at;
+        let Some(joined) = contact.order()[..solved.count].get(from..) else {
+            return;
+        };
+        let Some((factor, places)) = self.factor_of(joined) else {
+            return;
+        };
+        let near: Vec<[f64; 2]> = self
+            .watched
+            .iter()
+            .map(|local| solved.left_near(problem, local))
+            .collect();
+        let fields = if solved.rate.is_known() { 2 } else { 1 };
+        for k in 0..fields {
+            let left = places
+                .iter()
+                .zip(joined)
+                .map(|(&place, &node)| solved.left(problem, node)[k] - near[place][k]);
+            let left = DVector::from_iterator(places.len(), left);
+            let change = if places.is_empty() {
+                left
+            } else {
+                factor.solve(&left)
+            };
+            let pressures = if k == 0 {
+                &mut solution.pressure
+            } else {
+                &mut solution.rate
+            };
+            for (pressure, change) in pressures[from..].iter_mut().zip(change.iter()) {
+                *pressure += change;
+            }
+            let displacement = &mut solution.displacement[k];
+            for (i, local) in self.watched.iter().enumerate() {
+                if places.contains(&i) {
+                    continue;
+                }
+                let of_joined = places.iter().zip(change.iter());
+                let of_joined =
+                    of_joined.map(|(&place, change)| self.complement(i, place) * change);
+                displacement[local.node] += near[i][k] + of_joined.sum::<f64>();
+            }
+        }
+    }
+
+    /// An entry of the Schur complement.
+    fn complement(&self, i: usize, j: usize) -> f64 {
+        self.schur[i.max(j) + self.watched.len() * i.min(j)]
+    }
+
+    /// The factor of the Schur complement of some watched nodes, and their places; `None` if one was not
+    /// watched.
+    fn factor_of(&self, joined: &[usize]) -> Option<(Cholesky<f64, Dyn>, Vec<usize>)> {
         let place = |node: &usize| self.watched.iter().position(|local| local.node == *node);
         let places: Vec<usize> = joined.iter().map(place).collect::<Option<_>>()?;
-        let matrix = DMatrix::from_fn(places.len(), places.len(), |i, j| {
-            let (i, j) = (places[i].max(places[j]), places[i].min(places[j]));
-            self.schur[i + size * j]
-        });
-        let locals = places.iter().map(|&place| &self.watched[place]);
-        Some((matrix.cholesky()?, locals.collect()))
+        let size = places.len();
+        let matrix = DMatrix::from_fn(size, size, |i, j| self.complement(places[i], places[j]));
+        Some((matrix.cholesky()?, places))
     }
 
     /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them.
@@ -164,14 +262,15 @@ impl State {
         if joined.is_empty() || !field.is_known() {
             return pressure;
         }
-        let Some((factor, locals)) = self.factor_of(joined) else {
+        let Some((factor, places)) = self.factor_of(joined) else {
             return pressure;
         };
         let left = joined
             .iter()
             .map(|&node| rhs(node) - field.displacement[node]);
         let solved = factor.solve(&DVector::from_iterator(joined.len(), left));
-        for (local, w) in locals.iter().zip(solved.iter()) {
+        for (&place, w) in places.iter().zip(solved.iter()) {
+            let local = &self.watched[place];
             pressure[local.node] += w;
             for (&node, x) in local.contact.iter().zip(&local.weights) {
                 pressure[node as usize] -= w * x;
@@ -187,24 +286,35 @@ impl State {
         problem: &Problem,
         contact: &ContactSequence,
     ) -> Result<(), Error> {
-        let (count, base) = &self.sums;
-        if *count == contact.len() && base.is_known() {
+        let RowSums { count, field, age } = &self.sums;
+        if *count == contact.len() && field.is_known() {
             return Ok(());
         }
         let sums = problem.row_sums();
         let joined = contact.order().get(*count..).unwrap_or_default();
-        let start = self.carried(base, joined, |node| sums[node]);
-        let most = greatest(sums.len(), 0.0, |i| sums[i]);
-        // What is explained already leaves less to be explained.
-        let open = 1.0 - self.now.rate.displacement.iter().sum::<f64>() / sums.len() as f64;
+        let start = self.carried(field, joined, |node| sums[node]);
+        let (age, tolerance) = if *age < SUMS_WINDOWS {
+            (age + 1, f64::INFINITY)
+        } else {
+            let most = greatest(sums.len(), 0.0, |i| sums[i]);
+            // What is explained already leaves less to be explained.
+            let open = 1.0 - self.now.rate.displacement.iter().sum::<f64>() / sums.len() as f64;
+            (0, SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0))
+        };
         let equation = Equation {
             rhs: |node: usize| sums[node],
-            tolerance: SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0),
+            tolerance,
             max_iterations: criteria.max_iterations,
         };
         let mut directions = mem::take(&mut self.directions);
-        let field = self.solver.solve(&equation, start, base, &mut directions)?;
-        self.sums = (contact.len(), field);
+        let field = self
+            .solver
+            .solve(&equation, start, field, &mut directions)?;
+        self.sums = RowSums {
+            count: contact.len(),
+            field,
+            age,
+        };
         Ok(())
     }
 
@@ -217,50 +327,38 @@ impl State {
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let count = request.count;
-        // The same contact at another approach is a question: the path must not notice.
         let is_solved = self.now.count == count && self.now.load.is_known();
         let is_here = self.now.approach == request.approach;
-        let asked;
-        let solved = if is_solved && is_here && request.span <= self.now.span {
-            &self.now
-        } else if is_solved && !is_here {
+        // The path must not notice questions, which are all that may be asked of a contact that is solved, at
+        // another approach or more exactly than the path needs.
+        let is_question = is_solved && (!is_here || request.span == f64::INFINITY);
+        let asked = if is_solved && is_here && request.span <= self.now.span {
+            None
+        } else if is_question {
             let now = mem::take(&mut self.now);
             let solved = self.solve_from(criteria, problem, contact, request, &now);
             self.now = now;
-            asked = solved?.0;
-            &asked
+            Some(solved?.0)
         } else if count == contact.len() && self.now.count <= count {
-            let grown = self.now.count < count;
             let now = mem::take(&mut self.now);
-            let solved = self.solve_from(criteria, problem, contact, request, &now);
-            match solved {
+            match self.solve_from(criteria, problem, contact, request, &now) {
                 Ok((solved, directions)) => {
-                    self.now = solved;
-                    self.directions = directions;
-                    if grown && now.load.is_known() {
+                    if now.count < count && now.load.is_known() {
                         self.before = Some(now);
                     }
-                    &self.now
+                    self.now = solved;
+                    self.directions = directions;
                 }
                 Err(error) => {
                     self.now = now;
                     return Err(error);
                 }
             }
+            None
         } else {
-            let before = self.before.take();
-            let within = |from: &&Equilibrium| from.count <= count && count <= self.now.count;
-            let solved = match before.as_ref().filter(within) {
-                Some(from) => self.solve_from(criteria, problem, contact, request, from),
-                None => {
-                    let nothing = Equilibrium::zero(problem.grid().nodes());
-                    self.solve_from(criteria, problem, contact, request, &nothing)
-                }
-            };
-            self.before = before;
-            asked = solved?.0;
-            &asked
+            Some(self.solve_prefix(criteria, problem, contact, request)?)
         };
+        let solved = asked.as_ref().unwrap_or(&self.now);
         let values = |field: &Field| {
             let nodes = contact.order()[..count].iter();
             nodes
@@ -271,7 +369,45 @@ impl State {
         solution.rate = values(&solved.rate);
         solution.displacement[0].clone_from(&solved.load.displacement);
         solution.displacement[1].clone_from(&solved.rate.displacement);
+        if request.span < f64::INFINITY {
+            self.improve(problem, contact, solved, solution);
+            solved.scale(problem, contact, solution);
+        }
         Ok(())
+    }
+
+    /// Solves on a part of the contact: inside the last window from its beginning, and otherwise from nothing
+    /// and with nothing that the path uses.
+    fn solve_prefix(
+        &mut self,
+        criteria: Criteria,
+        problem: &Problem,
+        contact: &ContactSequence,
+        request: SolveRequest,
+    ) -> Result<Equilibrium, Error> {
+        let count = request.count;
+        let before = self.before.take();
+        let within = |from: &&Equilibrium| {
+            request.span == 0.0 && from.count <= count && count <= self.now.count
+        };
+        let solved = match before.as_ref().filter(within) {
+            Some(from) => {
+                let solved = self.solve_from(criteria, problem, contact, request, from);
+                solved.map(|(solved, _)| solved)
+            }
+            None => {
+                let solved = Self::new(problem).solve_from(
+                    criteria,
+                    problem,
+                    contact,
+                    request,
+                    &Equilibrium::zero(problem.grid().nodes()),
+                );
+                solved.map(|(solved, _)| solved)
+            }
+        };
+        self.before = before;
+        solved
     }
 
     /// Solves for rate and pressure, in this order: the directions of the one serve the other, and are
@@ -288,6 +424,7 @@ impl State {
             count,
             approach,
             span,
+            gap_error,
         } = request;
         self.solver.choose(contact, count);
         let nodes = &contact.order()[..count];
@@ -296,7 +433,11 @@ impl State {
         let overlap = |node: usize| approach - gap[node];
         let least = LEAST_LENGTH * problem.mean_gap();
         let length = greatest(count, least, |k| overlap(nodes[k]).abs());
-        let tolerance = criteria.tolerance * length;
+        let tolerance = if span == f64::INFINITY {
+            criteria.tolerance * length
+        } else {
+            ADJOINT * gap_error.max(criteria.tolerance * length)
+        };
         let max_iterations = criteria.max_iterations;
         let mut directions = Directions::keeping();
         let mut rate = Field::default();
@@ -338,7 +479,7 @@ impl State {
             Some(before) if before.count == left.len() => {
                 self.now = before;
                 self.directions = Directions::default();
-                if self.sums.0 > left.len() {
+                if self.sums.count > left.len() {
                     self.keep_sums(left);
                 }
             }
@@ -358,7 +499,8 @@ impl State {
     }
 
     fn keep_sums(&mut self, left: &ContactSequence) {
-        self.sums.0 = left.len();
-        self.sums.1.keep(left);
+        let mut field = mem::take(&mut self.sums.field);
+        field.keep(left);
+        self.sums = RowSums::start(left.len(), field);
     }
 }
