@@ -7,6 +7,8 @@ use crate::parallel::{for_each_chunk, vectorized};
 
 /// Values a thread takes at a time: 64 KiB of two vectors.
 const CHUNK: usize = 4096;
+/// Up to so many values a thread does them alone: sharing would take longer.
+const ALONE: usize = 8 * CHUNK;
 
 /// Reduces `0..length` chunk by chunk, and the chunks in their order.
 fn reduce<T: Copy + Send>(
@@ -18,11 +20,13 @@ fn reduce<T: Copy + Send>(
     if length <= CHUNK {
         return join(start, part(0..length));
     }
-    let mut parts = vec![start; length.div_ceil(CHUNK)];
-    for_each_chunk(&mut parts, 1, |chunk, value| {
-        let first = chunk * CHUNK;
-        value[0] = part(first..length.min(first + CHUNK));
-    });
+    let of = |chunk: usize| part(chunk * CHUNK..length.min((chunk + 1) * CHUNK));
+    let chunks = length.div_ceil(CHUNK);
+    if length <= ALONE {
+        return (0..chunks).map(of).fold(start, join);
+    }
+    let mut parts = vec![start; chunks];
+    for_each_chunk(&mut parts, 1, |chunk, value| value[0] = of(chunk));
     parts.into_iter().fold(start, join)
 }
 
@@ -79,12 +83,15 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// y ← y + factor x.
 pub(crate) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
-    for_each_chunk(y, CHUNK, |chunk, y| {
-        let x = &x[chunk * CHUNK..][..y.len()];
+    let add = |y: &mut [f64], x: &[f64]| {
         for (y, x) in y.iter_mut().zip(x) {
             *y += factor * x;
         }
-    });
+    };
+    if y.len() <= ALONE {
+        return add(y, x);
+    }
+    for_each_chunk(y, CHUNK, |chunk, y| add(y, &x[chunk * CHUNK..]));
 }
 
 #[cfg(test)]

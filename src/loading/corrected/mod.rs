@@ -27,7 +27,7 @@ use scales::Scales;
 use ties::Settled;
 
 /// Nodes watched at a time: the error of the order grows with their number.
-const WATCHED: usize = 56;
+const WATCHED: usize = 60;
 /// The same if near ties are not settled.
 const WATCHED_UNSETTLED: usize = 256;
 /// The window ends at its widest spacing behind this part of its events.

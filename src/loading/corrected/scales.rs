@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-14;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
 /// Bounds of the tolerance of rates.
-const RATE_TOLERANCE: [f64; 2] = [1e-11, 1e-5];
+const RATE_TOLERANCE: [f64; 2] = [5e-7, 1e-5];
 /// What the gap of a node that is not watched may be off by, over the tolerance.
 const UNWATCHED: f64 = 100.0;
 

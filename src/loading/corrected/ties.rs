@@ -21,10 +21,12 @@ const OF_CHANGE: f64 = 0.1;
 const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 /// * this part of the mean spacing of events.
 const OF_SPACING: f64 = 1e-3;
+/// To this comes what closing rates may be off by, over the rate.
+const RATE_ERROR: f64 = 2e-7;
 /// An error above this part of the approach is settled by a solution wherever the neighbours are.
 const POOR: f64 = 1e-3;
 /// A solution first leaves this part of the errors.
-const OF_ERROR: f64 = 0.02;
+const OF_ERROR: f64 = 0.04;
 /// After a solution, errors grow with the way from it by this part.
 const OF_WAY: f64 = 0.05;
 
@@ -98,9 +100,11 @@ pub(super) fn second_pass(
         OF_CHANGE_UNCORRECTED
     };
     let error = |event: &Played| {
+        let [_, closing] = watched.lines[event.position];
+        let of_rate = RATE_ERROR * event.time / closing;
         let changed = part * (distance(first, event) + change / count);
         let between = BETWEEN_CORRECTIONS * distance(&other, event);
-        between.max(changed).max(OF_SPACING * time / count)
+        between.max(changed).max(OF_SPACING * time / count) + of_rate
     };
     Settled {
         errors: events.iter().map(error).collect(),

@@ -47,6 +47,12 @@ impl Field {
         !self.displacement.is_empty()
     }
 
+    /// What the displacements leave of 1 on average: the mean closing rate of the gaps if this is a rate.
+    pub(super) fn open(&self) -> f64 {
+        let nodes = self.displacement.len().max(1) as f64;
+        1.0 - self.displacement.iter().sum::<f64>() / nodes
+    }
+
     /// Keeps the pressures on nodes in contact; what they cause is not known then.
     pub(super) fn keep(&mut self, contact: &ContactSequence) {
         self.displacement.clear();

@@ -13,9 +13,15 @@ use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
 use crate::{Boundary, Error, Problem, parallel};
 
-/// Bounds of the residual of the rate, which is 1 in contact: below the first one rounding ends the
-/// iteration, above the second one a horizon could not be trusted.
-const RATE_TOLERANCE: [f64; 2] = [1e-11, 3e-5];
+/// Residual of the rate, which is 1 in contact, where the solution itself is wanted: rounding.
+const LEAST_RATE_TOLERANCE: f64 = 1e-11;
+/// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
+/// puts a time off by some 10⁻⁵ of their spacing.
+const RATE_TOLERANCE: f64 = 1.5e-5;
+/// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events.
+const OF_SPAN: f64 = 2e-6;
+/// The same, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests.
+const OF_OPEN: f64 = 1e-3;
 /// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
 /// exact at the ends of windows anyway.
 const SUMS_TOLERANCE: f64 = 1e-4;
@@ -24,7 +30,9 @@ const SUMS_TOLERANCE: f64 = 1e-4;
 /// few per cent.
 const ADJOINT: f64 = 30.0;
 /// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
-const SUMS_WINDOWS: usize = 8;
+const SUMS_WINDOWS: usize = 3;
+/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
+const SUMS_OPEN: f64 = 0.1;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
 
@@ -208,35 +216,31 @@ impl State {
             .iter()
             .map(|local| solved.left_near(problem, local))
             .collect();
+        let [u, u_rate] = &mut solution.displacement;
+        let of_load = (&mut solution.pressure, u);
+        let of_rate = (&mut solution.rate, u_rate);
         let fields = if solved.rate.is_known() { 2 } else { 1 };
-        for k in 0..fields {
-            let left = places
-                .iter()
-                .zip(joined)
-                .map(|(&place, &node)| solved.left(problem, node)[k] - near[place][k]);
+        let fields = [of_load, of_rate].into_iter().take(fields);
+        for (k, (pressures, displacement)) in fields.enumerate() {
+            let of_near: Vec<f64> = near.iter().map(|near| near[k]).collect();
+            let left = places.iter().zip(joined);
+            let left = left.map(|(&place, &node)| solved.left(problem, node)[k] - of_near[place]);
             let left = DVector::from_iterator(places.len(), left);
             let change = if places.is_empty() {
                 left
             } else {
                 factor.solve(&left)
             };
-            let pressures = if k == 0 {
-                &mut solution.pressure
-            } else {
-                &mut solution.rate
-            };
             for (pressure, change) in pressures[from..].iter_mut().zip(change.iter()) {
                 *pressure += change;
             }
-            let displacement = &mut solution.displacement[k];
-            for (i, local) in self.watched.iter().enumerate() {
-                if places.contains(&i) {
-                    continue;
+            for (i, (local, near)) in self.watched.iter().zip(&of_near).enumerate() {
+                if !places.contains(&i) {
+                    let of_joined = places.iter().zip(change.iter());
+                    let of_joined =
+                        of_joined.map(|(&place, change)| self.complement(i, place) * change);
+                    displacement[local.node] += near + of_joined.sum::<f64>();
                 }
-                let of_joined = places.iter().zip(change.iter());
-                let of_joined =
-                    of_joined.map(|(&place, change)| self.complement(i, place) * change);
-                displacement[local.node] += near[i][k] + of_joined.sum::<f64>();
             }
         }
     }
@@ -293,13 +297,13 @@ impl State {
         let sums = problem.row_sums();
         let joined = contact.order().get(*count..).unwrap_or_default();
         let start = self.carried(field, joined, |node| sums[node]);
-        let (age, tolerance) = if *age < SUMS_WINDOWS {
+        let open = self.now.rate.open().clamp(1e-6, 1.0);
+        let (age, tolerance) = if *age < SUMS_WINDOWS && open > SUMS_OPEN {
             (age + 1, f64::INFINITY)
         } else {
             let most = greatest(sums.len(), 0.0, |i| sums[i]);
             // What is explained already leaves less to be explained.
-            let open = 1.0 - self.now.rate.displacement.iter().sum::<f64>() / sums.len() as f64;
-            (0, SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0))
+            (0, SUMS_TOLERANCE * most * open)
         };
         let equation = Equation {
             rhs: |node: usize| sums[node],
@@ -436,16 +440,22 @@ impl State {
         let tolerance = if span == f64::INFINITY {
             criteria.tolerance * length
         } else {
-            ADJOINT * gap_error.max(criteria.tolerance * length)
+            let least = criteria.tolerance * length;
+            ADJOINT * gap_error.max(OF_SPAN * span).max(least)
         };
         let max_iterations = criteria.max_iterations;
         let mut directions = Directions::keeping();
         let mut rate = Field::default();
         if span > 0.0 {
-            let [least, most] = RATE_TOLERANCE;
+            let rate_tolerance = if span == f64::INFINITY {
+                LEAST_RATE_TOLERANCE
+            } else {
+                let of_open = OF_OPEN * from.rate.open();
+                RATE_TOLERANCE.min(of_open).max(LEAST_RATE_TOLERANCE)
+            };
             let equation = Equation {
                 rhs: |_| 1.0,
-                tolerance: (tolerance / span).clamp(least, most),
+                tolerance: rate_tolerance,
                 max_iterations,
             };
             let start = self.carried(&from.rate, joined, equation.rhs);

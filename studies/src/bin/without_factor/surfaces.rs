@@ -10,6 +10,8 @@ use nalgebra::DMatrix;
 pub(crate) enum Shape {
     /// Self-affine, roll-off at a quarter of the side, short cut-off at four cells.
     Rough,
+    /// The same with its upper half worn flat.
+    Worn,
     /// The same with heights in steps.
     Steps,
     /// The same stretched eightfold along x.
@@ -56,6 +58,13 @@ pub(crate) fn make(
     };
     let heights = match shape {
         Shape::Rough => rough(&grid)?,
+        Shape::Worn => {
+            let heights = rough(&grid)?;
+            let mut sorted: Vec<f64> = heights.iter().copied().collect();
+            sorted.sort_by(f64::total_cmp);
+            let middle = sorted[sorted.len() / 2];
+            heights.map(|height| height.min(middle))
+        }
         Shape::Steps => rough(&grid)?.map(|height| (height / 2.5e-3).round() * 2.5e-3),
         Shape::Anisotropic => rough(&Grid::new(nx, ny, cell, 0.125 * cell)?)?,
         Shape::White => {
