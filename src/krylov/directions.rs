@@ -2,6 +2,7 @@
 
 use super::{NodeSet, Operator, add_scaled, dot};
 use crate::Error;
+use crate::parallel::for_each_chunk;
 
 /// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic; with
 /// the second the iteration does not suffer from steps in single precision.
@@ -9,6 +10,8 @@ const MEMORY: usize = 2;
 /// Directions that are kept if they are to serve another right-hand side: the first ones hold the long
 /// waves, which right-hand sides have in common.
 const KEPT: usize = 12;
+/// Values of a field that a thread changes at a time.
+const CHUNK: usize = 4096;
 
 /// A search direction and what it does to the contact set.
 #[derive(Debug, Clone)]
@@ -29,39 +32,56 @@ pub(crate) struct Step<'a> {
     pub(crate) image: &'a [f64],
 }
 
-/// The last search directions, oldest first.
+/// Search directions, oldest first: the first ones, if they are to serve other right-hand sides, and the
+/// last ones.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directions {
-    last: Vec<Direction>,
-    /// The first ones, if they are to serve other right-hand sides.
-    kept: Option<Vec<Direction>>,
+    list: Vec<Direction>,
+    /// How many of the first are kept.
+    kept: usize,
+    /// Those before this one are not looked back at.
+    since: usize,
 }
 
 impl Directions {
     /// Directions that are to serve other right-hand sides of the same matrix as well.
     pub(crate) fn keeping() -> Self {
         Self {
-            last: Vec::new(),
-            kept: Some(Vec::new()),
+            kept: KEPT,
+            ..Self::default()
         }
     }
 
+    /// The last ones, to which a new one is made conjugate.
+    fn last(&self) -> &[Direction] {
+        let first = self.list.len().saturating_sub(MEMORY).max(self.since);
+        &self.list[first..]
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
-        self.last.is_empty()
+        self.last().is_empty()
     }
 
     /// Takes the parts along all kept directions out of the residual of x, whose displacements of the whole
     /// grid are u: the directions are conjugate, so that each is a step of its own (Chan and Wan, SIAM J.
     /// Sci. Comput. 18 (1997) 1698).
     pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64], u: &mut [f64]) {
-        for direction in self.kept.iter().flatten() {
+        let mut lengths = Vec::new();
+        let kept = &self.list[..self.kept.min(self.list.len())];
+        for direction in kept {
             let length = dot(residual, &direction.values) / direction.curvature;
             add_scaled(x, length, &direction.values);
             add_scaled(residual, -length, &direction.image);
-            for (u, change) in u.iter_mut().zip(&direction.everywhere) {
-                *u += length * f64::from(*change);
-            }
+            lengths.push(length);
         }
+        for_each_chunk(u, CHUNK, |chunk, u| {
+            for (direction, length) in kept.iter().zip(&lengths) {
+                let changes = &direction.everywhere[chunk * CHUNK..];
+                for (u, change) in u.iter_mut().zip(changes) {
+                    *u += length * f64::from(*change);
+                }
+            }
+        });
     }
 
     /// The step that takes most of the energy out of `residual`, along the preconditioned residual
@@ -83,7 +103,7 @@ impl Directions {
     ) -> Result<Step<'_>, Error> {
         let direction = match self.explore(operator, contact, z)? {
             None if !self.is_empty() => {
-                self.last.clear();
+                self.since = self.list.len();
                 self.explore(operator, contact, z)?
             }
             direction => direction,
@@ -93,19 +113,17 @@ impl Directions {
                 nodes: contact.len(),
             });
         };
-        if let Some(kept) = self.kept.as_mut().filter(|kept| kept.len() < KEPT) {
-            kept.push(direction.clone());
+        if self.list.len() == self.kept + MEMORY {
+            self.list.remove(self.kept);
+            self.since = self.since.saturating_sub(1);
         }
-        if self.last.len() == MEMORY {
-            self.last.remove(0);
-        }
-        self.last.push(direction);
+        self.list.push(direction);
         let Direction {
             values,
             image,
             curvature,
             ..
-        } = &self.last[self.last.len() - 1];
+        } = &self.list[self.list.len() - 1];
         Ok(Step {
             length: dot(residual, values) / curvature,
             values,
@@ -122,16 +140,17 @@ impl Directions {
         z: &[f64],
     ) -> Result<Option<Direction>, Error> {
         let mut values = z.to_vec();
-        for earlier in &self.last {
+        for earlier in self.last() {
             let part = dot(z, &earlier.image) / earlier.curvature;
             add_scaled(&mut values, -part, &earlier.values);
         }
         let displacement = operator.step(contact, &values)?;
         let mut image = Vec::new();
         contact.gather(displacement, &mut image);
-        let everywhere = match &self.kept {
-            Some(kept) if kept.len() < KEPT => displacement.iter().map(|u| *u as f32).collect(),
-            _ => Vec::new(),
+        let everywhere = if self.list.len() < self.kept {
+            displacement.iter().map(|u| *u as f32).collect()
+        } else {
+            Vec::new()
         };
         let curvature = dot(&values, &image);
         let usable = curvature > 0.0 && curvature.is_finite();

@@ -32,7 +32,7 @@ const ADJOINT: f64 = 30.0;
 /// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
 const SUMS_WINDOWS: usize = 3;
 /// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
-const SUMS_OPEN: f64 = 0.1;
+const SUMS_OPEN: f64 = 0.03;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
 
@@ -444,7 +444,11 @@ impl State {
             ADJOINT * gap_error.max(OF_SPAN * span).max(least)
         };
         let max_iterations = criteria.max_iterations;
-        let mut directions = Directions::keeping();
+        let mut directions = if span > 0.0 {
+            Directions::keeping()
+        } else {
+            Directions::default()
+        };
         let mut rate = Field::default();
         if span > 0.0 {
             let rate_tolerance = if span == f64::INFINITY {

@@ -52,13 +52,6 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
         let bound = state.approach_error + 0.2 * tie(own);
         if error > bound {
             exceeded += 1;
-            if std::env::var("WHERE").is_ok() {
-                println!(
-                    "   {k} error {error:.2e} estimate {:.2e} spacing here {:.2e} mean {spacing:.2e}",
-                    state.approach_error,
-                    approach((own + 1).min(exact.len() - 1)) - approach(own)
-                );
-            }
         }
         if bound > 0.0 {
             worst = worst.max(error / bound);

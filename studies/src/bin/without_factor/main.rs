@@ -1,9 +1,12 @@
 //! The path without a factor against the path with one: order of events, errors, time and memory.
 
 mod compare;
+mod fixed_loads;
+mod recorded;
 mod surfaces;
 
 use std::error::Error;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use asperity::kernel::KernelTable;
@@ -14,6 +17,7 @@ use asperity::{Boussinesq, LoadingSolver, PeriodicBoussinesq, Spectral};
 use asperity_studies::peak_memory::peak_memory;
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use recorded::Event;
 use surfaces::Shape;
 
 /// Follows a surface without a factor, and compares with the path of a factor.
@@ -45,9 +49,15 @@ struct Options {
     /// Only the path without a factor.
     #[arg(long)]
     alone: bool,
-    /// Says what happens in each window.
+    /// Says how far it is, every 4096 events.
     #[arg(long)]
     list: bool,
+    /// Compares the contacts at so many loads with single solutions.
+    #[arg(long, default_value_t = 0)]
+    fixed_loads: usize,
+    /// Takes the path from a file of `asperity path` instead of following it.
+    #[arg(long, value_name = "path.csv")]
+    path: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -98,6 +108,17 @@ fn run<U: LinearUpdater>(
     Ok((states, path.timings(), start.elapsed().as_secs_f64()))
 }
 
+/// What a comparison with fixed loads needs of states.
+fn events(states: &[LoadingState]) -> Vec<Event> {
+    let event = |state: &LoadingState| Event {
+        node: state.node,
+        approach: state.approach,
+        load: state.load,
+        contact_stiffness: state.contact_stiffness.unwrap_or(f64::NAN),
+    };
+    states.iter().map(event).collect()
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let ny = options.ny.unwrap_or(options.nodes);
@@ -111,6 +132,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         HalfSpace::Periodic => KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?,
         HalfSpace::Spectral => KernelTable::new(&Spectral::new(grid, 1.0)?)?,
     };
+    if let Some(file) = &options.path {
+        let states = recorded::read(file)?;
+        return fixed_loads::compare(&states, &surface, &kernel, options.fixed_loads);
+    }
     let (states, timings, seconds) = run(&options, &surface, &kernel, ConjugateGradient::new())?;
     let peak = peak_memory().unwrap_or(f64::NAN) / 1e6;
     println!(
@@ -120,6 +145,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         timings.ties,
         timings.taken_back
     );
+    if options.fixed_loads > 0 {
+        fixed_loads::compare(&events(&states), &surface, &kernel, options.fixed_loads)?;
+    }
     if options.alone {
         return Ok(());
     }

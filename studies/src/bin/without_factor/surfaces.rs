@@ -5,9 +5,11 @@ use asperity::{Error, Grid, Surface};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
-/// What a surface looks like. All have a side of 1.
+/// What a surface looks like. All but the paper's have a side of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Shape {
+    /// The paper's Table 1, on a side of 10 mm.
+    Paper,
     /// Self-affine, roll-off at a quarter of the side, short cut-off at four cells.
     Rough,
     /// The same with its upper half worn flat.
@@ -36,7 +38,8 @@ pub(crate) fn make(
     (nx, ny, aspect): (usize, usize, f64),
     (hurst, seed): (f64, u64),
 ) -> Result<(Grid, HeightMap), Error> {
-    let cell = (nx as f64).recip();
+    let side = if shape == Shape::Paper { 1e-2 } else { 1.0 };
+    let cell = side / nx as f64;
     let grid = Grid::new(nx, ny, cell * aspect, cell)?;
     let rough = |grid: &Grid| {
         let cutoff = 4.0 * cell * aspect.max(1.0);
@@ -57,6 +60,7 @@ pub(crate) fn make(
         plane
     };
     let heights = match shape {
+        Shape::Paper => SelfAffine::zhang2020(seed).heights(&grid)?,
         Shape::Rough => rough(&grid)?,
         Shape::Worn => {
             let heights = rough(&grid)?;
