@@ -7,9 +7,9 @@
 //!
 //! | updater | memory for n nodes in contact | |
 //! |---|---|---|
-//! | [`RecursiveCholesky`] | 4n² bytes | exact; the default |
-//! | [`ConjugateGradient`] | in proportion to the grid | iterations by fast Fourier transform |
-//! | [`Handover`] | a budget | a factor while it fits, iterations afterwards |
+//! | [`RecursiveCholesky`] | 4n² bytes | exact to rounding |
+//! | [`ConjugateGradient`] | in proportion to the grid | iterations by fast Fourier transform; the same events, and states nearly as exact |
+//! | [`Handover`] | a budget | the default: a factor while it pays and fits, iterations afterwards |
 //! | [`Dense`] | 16n² bytes | for tests: assembles and factors everything anew |
 
 mod check;

@@ -19,7 +19,8 @@ fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> Lo
     builder.build().unwrap()
 }
 
-/// Exact to rounding before the seam; between the ends of windows behind it 3e-5, see `without_factor`.
+/// Exact to rounding before the seam; between the ends of windows behind it 3e-4 at worst, see
+/// `without_factor`.
 fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
     assert_eq!(found.len(), expected.len(), "{context}");
     for (found, expected) in found.iter().zip(expected) {
@@ -44,7 +45,7 @@ fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
         ] {
             let error = (found - expected).abs();
             assert!(
-                error <= 3e-5 * expected.abs(),
+                error <= 3e-4 * expected.abs(),
                 "{context}: {found} {expected}"
             );
         }

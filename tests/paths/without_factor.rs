@@ -373,7 +373,7 @@ fn any_updater_that_is_not_exact_is_corrected() {
         let allowed = Tolerances {
             load: 1e-3,
             stiffness: 5e-3,
-            interfacial: 1e-2,
+            interfacial: 0.1,
             mean_gap: 1e-4,
         };
         compare(name, &found, &exact, &allowed);

@@ -1,15 +1,21 @@
 //! Memory budgets: every state that fits, then an error that says what would have fitted.
 
 use crate::common::Sphere;
-use asperity::loading::LoadingEnd;
+use asperity::loading::{LoadingBuilder, LoadingEnd};
+use asperity::updater::RecursiveCholesky;
 use asperity::{Error, LoadingState};
+
+/// A path that keeps its factor: the default would hand over instead of coming to an end.
+fn factored(sphere: &Sphere) -> LoadingBuilder<'_, RecursiveCholesky> {
+    sphere.builder().updater(RecursiveCholesky::new())
+}
 
 #[test]
 fn memory_budgets() {
     let sphere = Sphere::on(24);
     // Not even the grid fits.
     for budget in [0, 1, 1000] {
-        let error = match sphere.builder().memory_budget(budget).build() {
+        let error = match factored(&sphere).memory_budget(budget).build() {
             Ok(mut path) => path.next().unwrap().unwrap_err(),
             Err(error) => error,
         };
@@ -25,15 +31,14 @@ fn memory_budgets() {
         assert!(needed > budget);
     }
     // Enough for a part of the path.
-    let all: Vec<LoadingState> = sphere
-        .builder()
+    let all: Vec<LoadingState> = factored(&sphere)
         .build()
         .unwrap()
         .map(Result::unwrap)
         .collect();
     let mut seen = Vec::new();
     for budget in (200_000..8_000_000).step_by(100_000) {
-        let mut path = sphere.builder().memory_budget(budget).build().unwrap();
+        let mut path = factored(&sphere).memory_budget(budget).build().unwrap();
         let mut states = Vec::new();
         let error = loop {
             match path.next() {
@@ -89,7 +94,7 @@ fn the_nodes_that_fit_do_fit() {
     let sphere = Sphere::on(24);
     let mut partial = 0;
     for budget in (200_000..8_000_000).step_by(200_000) {
-        let mut path = sphere.builder().memory_budget(budget).build().unwrap();
+        let mut path = factored(&sphere).memory_budget(budget).build().unwrap();
         let Some(Err(Error::MemoryBudget { nodes_that_fit, .. })) = path.find(Result::is_err)
         else {
             continue;
@@ -98,8 +103,7 @@ fn the_nodes_that_fit_do_fit() {
             // No path: that many nodes are refused as a limit.
             continue;
         }
-        let again = sphere
-            .builder()
+        let again = factored(&sphere)
             .memory_budget(budget)
             .max_nodes(nodes_that_fit);
         let count = again.build().unwrap().map_while(Result::ok).count();

@@ -7,9 +7,6 @@ use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
 use crate::updater::{LinearUpdater, Touched};
 
-/// Rates serve at least this part of the approach.
-const LEAST_SPAN: f64 = 1e-5;
-
 impl Corrected {
     /// Lets all nodes that touch at a time join, up to `most`, in the order of their indices. Between them
     /// stiffness and closing rate change in equal steps.
@@ -36,7 +33,8 @@ impl Corrected {
         }
         start.advance(approach + time);
         self.last_span = self.last_span.max(time);
-        self.rate_span = self.last_span.max(LEAST_SPAN * scales.length);
+        // However little is left open by so many nodes: rates must be exact.
+        self.rate_span = f64::INFINITY;
         let entered = run
             .updater
             .join(&run.problem, &run.contact, &Touched::default())

@@ -22,7 +22,7 @@ const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 /// * this part of the mean spacing of events.
 const OF_SPACING: f64 = 1e-3;
 /// To this comes what closing rates may be off by, over the rate.
-const RATE_ERROR: f64 = 2e-7;
+const RATE_ERROR: f64 = 5e-7;
 /// An error above this part of the approach is settled by a solution wherever the neighbours are.
 const POOR: f64 = 1e-3;
 /// A solution first leaves this part of the errors.

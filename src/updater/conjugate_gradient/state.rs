@@ -20,6 +20,8 @@ const LEAST_RATE_TOLERANCE: f64 = 1e-11;
 const RATE_TOLERANCE: f64 = 1.5e-5;
 /// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events.
 const OF_SPAN: f64 = 2e-6;
+/// And relative to the approach, on which loads depend: near first touch windows are long beside it.
+const OF_LENGTH: f64 = 1e-8;
 /// The same, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests.
 const OF_OPEN: f64 = 1e-3;
 /// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
@@ -441,7 +443,8 @@ impl State {
             criteria.tolerance * length
         } else {
             let least = criteria.tolerance * length;
-            ADJOINT * gap_error.max(OF_SPAN * span).max(least)
+            let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
+            ADJOINT * gap_error.max(of_span).max(least)
         };
         let max_iterations = criteria.max_iterations;
         let mut directions = if span > 0.0 {
@@ -455,7 +458,9 @@ impl State {
                 LEAST_RATE_TOLERANCE
             } else {
                 let of_open = OF_OPEN * from.rate.open();
-                RATE_TOLERANCE.min(of_open).max(LEAST_RATE_TOLERANCE)
+                let of_length = ADJOINT * OF_LENGTH * length / span;
+                let least = RATE_TOLERANCE.min(of_open).min(of_length);
+                least.max(LEAST_RATE_TOLERANCE)
             };
             let equation = Equation {
                 rhs: |_| 1.0,
