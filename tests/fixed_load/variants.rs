@@ -1,6 +1,6 @@
 //! What must not change the result: coarser grids, gauges, the way in which a kernel is given.
 
-use asperity::{Boussinesq, FixedLoadSolver, Grid};
+use asperity::{Boussinesq, ContactState, FixedLoadSolver, Grid};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, Plain, rough, solver};
@@ -68,7 +68,7 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     let grid = Grid::square(96, 1.0).unwrap();
     let map = rough(&grid, 3);
     let plain = Plain(Boussinesq::new(grid, 1.0).unwrap());
-    let expected = solver(&map, &plain, 1e-11).solve(0.02).unwrap();
+    let mut expected = solver(&map, &plain, 1e-11).solve(0.02).unwrap();
     let mut plainly = FixedLoadSolver::builder(&map, &plain)
         .tolerance(1e-11)
         .stiffness(false)
@@ -79,5 +79,17 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     let next = plainly.solve_from(&without, 0.022).unwrap();
     check(&plainly, &next, 1e-11);
     plainly.add_stiffness(&mut without).unwrap();
+    // The preconditioner remembers what was solved in between: stiffnesses agree to the tolerance.
+    let stiffnesses = |state: &mut ContactState| {
+        let stiffnesses = [
+            &mut state.contact_stiffness,
+            &mut state.interfacial_stiffness,
+        ];
+        stiffnesses.map(|stiffness| stiffness.take().unwrap())
+    };
+    let found = stiffnesses(&mut without.state);
+    for (found, expected) in found.into_iter().zip(stiffnesses(&mut expected.state)) {
+        assert!((found / expected - 1.0).abs() < 1e-11);
+    }
     assert_eq!(without.state, expected.state);
 }
