@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::play::Course;
 
-/// The least determinant of `WᵀV`, relative to the product of its diagonal, with which the update is used.
+/// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted.
 const LEAST_DETERMINANT: f64 = 1e-6;
 
 /// What the solution at the end says of a watched node.
@@ -101,12 +101,7 @@ fn nystrom(
     for (end, v) in ends.iter().zip(&missing) {
         products += Vector2::new(end.pressure[0] / t, end.pressure[1]) * v.transpose();
     }
-    let products = 0.5 * (products + products.transpose());
-    let least = LEAST_DETERMINANT * (products[(0, 0)] * products[(1, 1)]).abs();
-    if !(products.determinant() > least && products[(0, 0)] > 0.0) {
-        return None;
-    }
-    let inverse = products.try_inverse()?;
+    let inverse = inverse(0.5 * (products + products.transpose()))?;
     let mut updated = schur.clone();
     for (i, v) in missing.iter().enumerate() {
         let row = v.transpose() * inverse;
@@ -119,4 +114,31 @@ fn nystrom(
         .iter()
         .all(|pivot| *pivot > 0.0)
         .then_some(updated)
+}
+
+/// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;
+/// `None` if it is not positive semidefinite.
+fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
+    let [first, second] = [products[(0, 0)], products[(1, 1)]];
+    if !(first > 0.0 && second > 0.0) {
+        return None;
+    }
+    let roots = [first.sqrt(), second.sqrt()];
+    let correlation = products[(0, 1)] / (roots[0] * roots[1]);
+    let determinant = 1.0 - correlation * correlation;
+    // With unit diagonal.
+    let (own, other) = if determinant > LEAST_DETERMINANT {
+        (1.0 / determinant, -correlation / determinant)
+    } else if determinant > -LEAST_DETERMINANT {
+        (0.25, 0.25 * correlation.signum())
+    } else {
+        return None;
+    };
+    let scaled = |value: f64, i: usize, j: usize| value / (roots[i] * roots[j]);
+    Some(Matrix2::new(
+        scaled(own, 0, 0),
+        scaled(other, 0, 1),
+        scaled(other, 1, 0),
+        scaled(own, 1, 1),
+    ))
 }

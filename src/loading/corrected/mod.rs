@@ -402,7 +402,7 @@ fn cut(events: &[Played], horizon: f64, most: usize, scales: &Scales) -> (usize,
         let last = events[events_kept - 1].time;
         match events.get(events_kept) {
             Some(event) => event.time,
-            None if horizon < f64::INFINITY => horizon,
+            None if horizon < f64::INFINITY => horizon.max(last),
             None => 1.05 * last + 1e-12 * scales.length,
         }
     };

@@ -78,7 +78,10 @@ pub(super) fn play(
         else {
             break;
         };
-        if time > horizon || time == f64::INFINITY {
+        // The first one always counts: the horizon is the time of a node that was later, so that anything else is
+        // rounding.
+        let is_late = time > horizon && !events.is_empty();
+        if is_late || time == f64::INFINITY {
             break;
         }
         let pivot = schur[(position, position)];
