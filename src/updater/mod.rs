@@ -234,6 +234,10 @@ pub trait LinearUpdater {
     /// Takes note of the nodes that joined, the last ones of `contact`. They are among the nodes of the
     /// last call of [`watch`](Self::watch), of whose Schur complement `touched` holds the Cholesky factor.
     ///
+    /// If the updater is not exact, the path may put the nodes that joined last into another order before it
+    /// calls `watch` again, and before it solves on a part of them; and more nodes may join than `touched`
+    /// knows of, which is empty then, if too many touch at one approach to be watched.
+    ///
     /// # Errors
     ///
     /// Whatever keeps the updater from growing.
