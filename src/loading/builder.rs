@@ -21,11 +21,10 @@ pub enum ContactRule {
     /// The node whose gap closes first as the approach grows. Exact.
     #[default]
     FirstContact,
-    /// The same, nearly: where the updater has no factor, windows are long and nothing is settled inside
-    /// them, which is several times faster. States at the ends of windows are exact, and so is the set of
-    /// nodes in contact there; between them some hundredths of a per cent of the nodes change places with
-    /// a neighbour, at approaches that are within a few hundredths of the mean spacing of events of each
-    /// other.
+    /// The same, nearly: where the updater has no factor, windows are twice as long and nothing is settled
+    /// inside them, which takes some 0.6 of the time. States at the ends of windows are exact, and so is the
+    /// set of nodes in contact there; between them some thousandths of the nodes change places with a
+    /// neighbour, whose approach is within some hundredths of the mean spacing of events.
     ApproximateOrder,
     /// The node with the smallest gap at present: the paper's rule (its step 4). It is not exact: it gives
     /// negative pressures, overlaps, and an approach that goes backwards. It is here so that the paper can be

@@ -149,7 +149,8 @@ fn rough_surfaces_have_the_events_of_the_factor() {
         }
     }
     println!("{exceeded} of {events} errors exceed their estimate");
-    assert!(100 * exceeded <= events, "{exceeded} of {events}");
+    // On 128² it was 4 in 245 760; a grid as small as these has a path of a few windows.
+    assert!(200 * exceeded <= events, "{exceeded} of {events}");
 }
 
 #[test]

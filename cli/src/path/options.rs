@@ -116,7 +116,7 @@ const AREA_FRACTION: f64 = 0.1;
 pub(super) enum Rule {
     /// The node whose gap closes first: exact
     FirstContact,
-    /// Nearly that, several times faster where there is no factor: neighbours may change places
+    /// Nearly that, faster where there is no factor: neighbours may change places
     ApproximateOrder,
     /// The node with the smallest gap, as in the paper: not exact
     SmallestGap,

@@ -29,7 +29,7 @@ use ties::Settled;
 /// Nodes watched at a time: the error of the order grows with their number.
 const WATCHED: usize = 60;
 /// The same if near ties are not settled.
-const WATCHED_UNSETTLED: usize = 256;
+const WATCHED_UNSETTLED: usize = 128;
 /// The window ends at its widest spacing behind this part of its events.
 const CUT: f64 = 0.85;
 /// How often a contact that contradicts the conditions of contact is mended before the path gives up.

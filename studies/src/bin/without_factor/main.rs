@@ -13,7 +13,7 @@ use asperity::kernel::KernelTable;
 use asperity::loading::{LoadingState, LoadingTimings};
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
-use asperity::{Boussinesq, LoadingSolver, PeriodicBoussinesq, Spectral};
+use asperity::{Boussinesq, ContactRule, LoadingSolver, PeriodicBoussinesq, Spectral};
 use asperity_studies::peak_memory::peak_memory;
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,6 +46,9 @@ struct Options {
     /// Nodes to watch at a time.
     #[arg(long)]
     window: Option<usize>,
+    /// Leaves near ties as they are.
+    #[arg(long)]
+    approximate: bool,
     /// Only the path without a factor.
     #[arg(long)]
     alone: bool,
@@ -82,6 +85,9 @@ fn run<U: LinearUpdater>(
         .max_nodes(most);
     if let Some(size) = options.window {
         builder = builder.window_size(size);
+    }
+    if options.approximate {
+        builder = builder.rule(ContactRule::ApproximateOrder);
     }
     let mut path = builder.build()?;
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} nodes {elapsed}");
