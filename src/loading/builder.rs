@@ -22,7 +22,7 @@ pub enum ContactRule {
     #[default]
     FirstContact,
     /// The same, nearly: where the updater has no factor, windows are twice as long and nothing is settled
-    /// inside them, which takes some 0.6 of the time. States at the ends of windows are exact, and so is the
+    /// inside them, which takes some 0.7 of the time. States at the ends of windows are exact, and so is the
     /// set of nodes in contact there; between them some thousandths of the nodes change places with a
     /// neighbour, whose approach is within some hundredths of the mean spacing of events.
     ApproximateOrder,
