@@ -2,8 +2,8 @@
 //! node that joins.
 //!
 //! A rigid rough surface is pressed without friction into an elastic half-space. Between two events, at which a node
-//! touches, everything is linear in the approach, so that the path is found by linear algebra alone: no load steps, no
-//! tolerance, and exact tangent stiffnesses with every state.
+//! touches, everything is linear in the approach, so that the path is found by linear algebra alone: no load steps, and
+//! tangent stiffnesses with every state.
 //!
 //! ```
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
