@@ -23,9 +23,18 @@ pub(super) fn rank<U: LinearUpdater>(
             return Err(run.not_monotone("pressure per unit of approach", node, y2));
         }
     }
-    ranking.clear();
-    ranking.reserve(run.problem.grid().nodes());
-    run.survey(true, |line| ranking.push((line.touches(), line.node)))?;
+    fill(run, ranking, true)?;
     run.timings.choice += start.elapsed();
     Ok(())
+}
+
+/// Surveys all gaps at the front, and ranks them. With `check` an overlap is an error.
+pub(super) fn fill<U: LinearUpdater>(
+    run: &mut LoadingRun<U>,
+    ranking: &mut Ranking,
+    check: bool,
+) -> Result<(), Error> {
+    ranking.clear();
+    ranking.reserve(run.problem.grid().nodes());
+    run.survey(check, |line| ranking.push((line.touches(), line.node)))
 }

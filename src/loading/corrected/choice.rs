@@ -2,7 +2,6 @@
 
 use super::Corrected;
 use super::scales::Scales;
-use crate::Error;
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
 use crate::updater::LinearUpdater;
@@ -31,18 +30,18 @@ impl Corrected {
         run: &LoadingRun<U>,
         scales: &Scales,
         extra: &[usize],
-    ) -> Result<Choice, Error> {
+    ) -> Choice {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let ranking = &mut self.ranking;
         let size = self.size.min((run.contact.len() / PART).max(FEWEST));
         if ranking.len() <= size {
             let mut watched = ranking.clone();
             watched.sort_by(order);
-            return Ok(Choice {
+            return Choice {
                 watched,
                 horizon: f64::INFINITY,
                 group: None,
-            });
+            };
         }
         let (watched, next, others) = ranking.select_nth_unstable_by(size, order);
         let mut watched = watched.to_vec();
@@ -80,6 +79,6 @@ impl Corrected {
         }
         watched.sort_by(order);
         choice.watched = watched;
-        Ok(choice)
+        choice
     }
 }

@@ -12,26 +12,26 @@ mod play;
 mod scales;
 mod states;
 mod ties;
+mod watched;
 
 use nalgebra::DMatrix;
 
 use super::front::Front;
-use super::ranking::Ranking;
+use super::ranking::{Ranking, fill};
 use super::run::LoadingRun;
 use crate::Error;
 use crate::updater::{LinearUpdater, Schur, Touched};
 use choice::Choice;
-use correction::{AtEnd, Correction, correct};
-use play::{Course, Played, play};
+use correction::{Correction, correct};
+use play::{Course, play};
 use scales::Scales;
 use ties::Settled;
+use watched::{Watched, cut};
 
 /// Nodes watched at a time: the error of the order grows with their number.
 const WATCHED: usize = 60;
 /// The same if near ties are not settled.
 const WATCHED_UNSETTLED: usize = 128;
-/// The window ends at its widest spacing behind this part of its events.
-const CUT: f64 = 0.85;
 /// How often a contact that contradicts the conditions of contact is mended before the path gives up.
 const MOST_TRIES: usize = 10;
 /// What is left of a window that let a node overlap that was not watched.
@@ -50,18 +50,6 @@ pub(super) struct Corrected {
     /// How far the last window went, and the span that the rates at hand serve.
     last_span: f64,
     rate_span: f64,
-}
-
-/// Watched nodes at the front.
-#[derive(Debug)]
-struct Watched {
-    nodes: Vec<usize>,
-    /// a, b: each gap now, and how fast it closes.
-    lines: Vec<[f64; 2]>,
-    schur: DMatrix<f64>,
-    row_sums: Vec<f64>,
-    /// No other node touches before.
-    horizon: f64,
 }
 
 /// What a contact at a window's end contradicts.
@@ -99,7 +87,7 @@ impl Corrected {
         let most = most_nodes - run.contact.len();
         let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
         loop {
-            let mut choice = self.choose(run, &scales, &extra)?;
+            let mut choice = self.choose(run, &scales, &extra);
             self.refine(run, &scales, &mut choice, &extra)?;
             if let Some(time) = choice.group {
                 self.enter(run, &scales, time, most)?;
@@ -139,10 +127,7 @@ impl Corrected {
     fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         run.front.renew_load(problem, contact, field);
-        self.ranking.clear();
-        self.ranking.reserve(run.problem.grid().nodes());
-        let ranking = &mut self.ranking;
-        run.survey(false, |line| ranking.push((line.touches(), line.node)))?;
+        fill(run, &mut self.ranking, false)?;
         self.ranked = Some((run.contact.revision(), run.front.approach()));
         Ok(())
     }
@@ -167,7 +152,7 @@ impl Corrected {
             self.rate_span = furthest;
             run.solve_field(run.front.approach(), furthest)?;
             self.survey(run)?;
-            *choice = self.choose(run, scales, extra)?;
+            *choice = self.choose(run, scales, extra);
         }
         Ok(())
     }
@@ -262,7 +247,7 @@ impl Corrected {
             run.truncate(count)?;
             run.front = start;
             if !found.outside.is_empty() {
-                self.begin_again(run)?;
+                self.begin(run)?;
                 return Ok(Err((found.outside, time)));
             }
             joined.retain(|position| !found.tension.contains(position));
@@ -271,12 +256,6 @@ impl Corrected {
         }
         let node = watched.nodes[first[0].position];
         Err(run.not_monotone("gap or pressure", node, 0.0))
-    }
-
-    /// Makes everything that of the window's beginning again.
-    fn begin_again<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
-        run.solve_field(run.front.approach(), self.rate_span)?;
-        self.survey(run)
     }
 
     /// Lets nodes join, solves at the window's end, and looks for what contradicts them there.
@@ -351,72 +330,4 @@ impl Contradictions {
     fn is_empty(&self) -> bool {
         self.tension.is_empty() && self.overlap.is_empty() && self.outside.is_empty()
     }
-}
-
-impl Watched {
-    /// Gaps as lines.
-    fn courses(&self) -> Vec<Course> {
-        let lines = self.lines.iter();
-        lines.map(|&[a, b]| Course([a, b, 0.0, 0.0])).collect()
-    }
-
-    /// The Schur complement as an updater gives it.
-    fn complement(&self) -> Schur {
-        let mut schur = Schur::default();
-        schur.resize(self.nodes.len());
-        schur.matrix_mut().copy_from(&self.schur);
-        schur
-    }
-
-    /// What the solution at the front, the window's end, says of the watched nodes.
-    fn at_end<U>(&self, run: &LoadingRun<U>) -> Vec<AtEnd> {
-        let approach = run.front.approach();
-        let solution = run.field.solution();
-        let first = run.contact.len().saturating_sub(self.nodes.len());
-        let joined = &run.contact.order()[first..];
-        let at = |&node: &usize| match joined.iter().position(|other| *other == node) {
-            Some(place) => AtEnd {
-                pressure: [
-                    solution.pressure[first + place],
-                    solution.rate[first + place],
-                ],
-                gap: [0.0; 2],
-            },
-            None => {
-                let line = run.field.line(&run.problem, node, approach);
-                AtEnd {
-                    pressure: [0.0; 2],
-                    gap: [line.gap, -line.closing],
-                }
-            }
-        };
-        self.nodes.iter().map(at).collect()
-    }
-}
-
-/// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
-/// most of them.
-fn cut(events: &[Played], horizon: f64, most: usize, scales: &Scales) -> (usize, f64) {
-    let count = events.len().min(most);
-    let next = |events_kept: usize| {
-        let last = events[events_kept - 1].time;
-        match events.get(events_kept) {
-            Some(event) => event.time,
-            None if horizon < f64::INFINITY => horizon.max(last),
-            None => 1.05 * last + 1e-12 * scales.length,
-        }
-    };
-    let spacing = |kept: &usize| next(*kept) - events[*kept - 1].time;
-    let widest = |range: std::ops::RangeInclusive<usize>| {
-        range
-            .rev()
-            .max_by(|a, b| spacing(a).total_cmp(&spacing(b)))
-            .unwrap_or(1)
-    };
-    let least = ((CUT * count as f64) as usize).clamp(1, count);
-    let mut kept = widest(least..=count);
-    if spacing(&kept) <= scales.tie {
-        kept = widest(1..=count);
-    }
-    (kept, 0.5 * (events[kept - 1].time + next(kept)))
 }

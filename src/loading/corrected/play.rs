@@ -94,19 +94,13 @@ pub(super) fn play(
             return (events, Some(bad));
         }
         now = time;
-        open.retain(|&i| i != position);
         events.push(Played { position, time });
         let Course(own) = courses[position];
-        let column: Vec<f64> = schur.column(position).iter().copied().collect();
-        for &i in &open {
-            let factor = column[i] / pivot;
+        eliminate(&mut schur, &mut open, position, |i, factor| {
             for (c, own) in courses[i].0.iter_mut().zip(own) {
                 *c -= factor * own;
             }
-            for (value, other) in schur.column_mut(i).iter_mut().zip(&column) {
-                *value -= factor * other;
-            }
-        }
+        });
     }
     (events, None)
 }
@@ -129,17 +123,31 @@ pub(super) fn increments(
             b[position] * b[position] / pivot,
             b[position] * sigma[position] / pivot,
         ]);
-        open.retain(|&i| i != position);
-        let column: Vec<f64> = schur.column(position).iter().copied().collect();
         let (own_b, own_sigma) = (b[position], sigma[position]);
-        for &i in &open {
-            let factor = column[i] / pivot;
+        eliminate(&mut schur, &mut open, position, |i, factor| {
             b[i] -= factor * own_b;
             sigma[i] -= factor * own_sigma;
-            for (value, other) in schur.column_mut(i).iter_mut().zip(&column) {
-                *value -= factor * other;
-            }
-        }
+        });
     }
     increments
+}
+
+/// Eliminates an open node from a Schur complement; `follow(i, factor)` is told by which factor its own
+/// equation is subtracted from that of each other open node.
+fn eliminate(
+    schur: &mut DMatrix<f64>,
+    open: &mut Vec<usize>,
+    position: usize,
+    mut follow: impl FnMut(usize, f64),
+) {
+    open.retain(|&i| i != position);
+    let pivot = schur[(position, position)];
+    let column: Vec<f64> = schur.column(position).iter().copied().collect();
+    for &i in open.iter() {
+        let factor = column[i] / pivot;
+        follow(i, factor);
+        for (value, other) in schur.column_mut(i).iter_mut().zip(&column) {
+            *value -= factor * other;
+        }
+    }
 }

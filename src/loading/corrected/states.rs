@@ -1,9 +1,9 @@
 //! States of a window, pinned to the exact ones at both ends.
 
-use super::Watched;
 use super::correction::Correction;
 use super::play::increments;
 use super::ties::Settled;
+use super::watched::Watched;
 use crate::Error;
 use crate::loading::front::Front;
 use crate::loading::run::LoadingRun;

@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Watched;
 use super::correction::Correction;
 use super::play::{Course, Played, play};
 use super::scales::Scales;
+use super::watched::Watched;
 use crate::Error;
 use crate::loading::front::Front;
 use crate::loading::gap_field;
