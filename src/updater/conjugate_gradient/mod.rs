@@ -5,6 +5,7 @@ mod galerkin;
 mod local;
 mod solver;
 mod state;
+mod tolerances;
 
 use super::{
     LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile, WindowCost, check_count,
@@ -12,7 +13,8 @@ use super::{
 use crate::contact::ContactSequence;
 use crate::parallel::inside;
 use crate::{Error, Problem};
-use state::{Criteria, State};
+use state::State;
+use tolerances::Criteria;
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).

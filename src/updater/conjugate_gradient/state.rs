@@ -8,43 +8,21 @@ use super::equilibrium::{Equilibrium, Field};
 use super::galerkin;
 use super::local::{self, Local, Neighbourhood};
 use super::solver::{Equation, Solver};
+use super::tolerances::{Criteria, Tolerances};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
 use crate::{Boundary, Error, Problem, parallel};
 
-/// Residual of the rate, which is 1 in contact, where the solution itself is wanted: rounding.
-const LEAST_RATE_TOLERANCE: f64 = 1e-11;
-/// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
-/// puts a time off by some 10⁻⁵ of their spacing.
-const RATE_TOLERANCE: f64 = 1.5e-5;
-/// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events.
-const OF_SPAN: f64 = 2e-6;
-/// And relative to the approach, on which loads depend: near first touch windows are long beside it.
-const OF_LENGTH: f64 = 1e-8;
-/// The same, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests.
-const OF_OPEN: f64 = 1e-3;
 /// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
 /// exact at the ends of windows anyway.
 const SUMS_TOLERANCE: f64 = 1e-4;
-/// So many times the tolerance residuals may be where gaps of watched nodes are all that matters: what is
-/// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
-/// few per cent.
-const ADJOINT: f64 = 30.0;
 /// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
 const SUMS_WINDOWS: usize = 3;
 /// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
 const SUMS_OPEN: f64 = 0.03;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
-
-/// When iterations end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Criteria {
-    /// Greatest residual of a gap in contact, relative to the approach.
-    pub(super) tolerance: f64,
-    pub(super) max_iterations: usize,
-}
 
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
@@ -430,7 +408,7 @@ impl State {
             count,
             approach,
             span,
-            gap_error,
+            ..
         } = request;
         self.solver.choose(contact, count);
         let nodes = &contact.order()[..count];
@@ -439,13 +417,7 @@ impl State {
         let overlap = |node: usize| approach - gap[node];
         let least = LEAST_LENGTH * problem.mean_gap();
         let length = greatest(count, least, |k| overlap(nodes[k]).abs());
-        let tolerance = if span == f64::INFINITY {
-            criteria.tolerance * length
-        } else {
-            let least = criteria.tolerance * length;
-            let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
-            ADJOINT * gap_error.max(of_span).max(least)
-        };
+        let tolerances = Tolerances::of(criteria, request, length, from.rate.open());
         let max_iterations = criteria.max_iterations;
         let mut directions = if span > 0.0 {
             Directions::keeping()
@@ -454,17 +426,9 @@ impl State {
         };
         let mut rate = Field::default();
         if span > 0.0 {
-            let rate_tolerance = if span == f64::INFINITY {
-                LEAST_RATE_TOLERANCE
-            } else {
-                let of_open = OF_OPEN * from.rate.open();
-                let of_length = ADJOINT * OF_LENGTH * length / span;
-                let least = RATE_TOLERANCE.min(of_open).min(of_length);
-                least.max(LEAST_RATE_TOLERANCE)
-            };
             let equation = Equation {
                 rhs: |_| 1.0,
-                tolerance: rate_tolerance,
+                tolerance: tolerances.rate,
                 max_iterations,
             };
             let start = self.carried(&from.rate, joined, equation.rhs);
@@ -474,7 +438,7 @@ impl State {
         }
         let equation = Equation {
             rhs: overlap,
-            tolerance,
+            tolerance: tolerances.load,
             max_iterations,
         };
         let base = from.load_at(approach);

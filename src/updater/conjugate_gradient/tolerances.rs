@@ -1,0 +1,56 @@
+//! How exact solutions have to be.
+
+use crate::updater::SolveRequest;
+
+/// Residual of the rate, which is 1 in contact, where the solution itself is wanted: rounding.
+const LEAST_RATE_TOLERANCE: f64 = 1e-11;
+/// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
+/// puts a time off by some 10⁻⁵ of their spacing.
+const RATE_TOLERANCE: f64 = 1.5e-5;
+/// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events.
+const OF_SPAN: f64 = 2e-6;
+/// And relative to the approach, on which loads depend: near first touch windows are long beside it.
+const OF_LENGTH: f64 = 1e-8;
+/// The same, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests.
+const OF_OPEN: f64 = 1e-3;
+/// So many times the tolerance residuals may be where gaps of watched nodes are all that matters: what is
+/// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
+/// few per cent.
+const ADJOINT: f64 = 30.0;
+/// When iterations end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Criteria {
+    /// Greatest residual of a gap in contact, relative to the approach.
+    pub(super) tolerance: f64,
+    pub(super) max_iterations: usize,
+}
+
+/// Greatest residuals of a solution.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tolerances {
+    pub(super) load: f64,
+    pub(super) rate: f64,
+}
+
+impl Tolerances {
+    /// For overlaps of up to `length`, and gaps that close at the rate `open` on average.
+    pub(super) fn of(criteria: Criteria, request: SolveRequest, length: f64, open: f64) -> Self {
+        let SolveRequest {
+            span, gap_error, ..
+        } = request;
+        let least = criteria.tolerance * length;
+        if span == f64::INFINITY {
+            return Self {
+                load: least,
+                rate: LEAST_RATE_TOLERANCE,
+            };
+        }
+        let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
+        let of_length = ADJOINT * OF_LENGTH * length / span;
+        let rate = RATE_TOLERANCE.min(OF_OPEN * open).min(of_length);
+        Self {
+            load: ADJOINT * gap_error.max(of_span).max(least),
+            rate: rate.max(LEAST_RATE_TOLERANCE),
+        }
+    }
+}
