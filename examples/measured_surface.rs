@@ -16,7 +16,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/selfaffine_4
 const SIDE: f64 = 1e-3;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let heights = HeightMap::from_npy(FILE)?;
+    let heights = HeightMap::new(asperity::io::read_npy(FILE)?)?;
     let (nx, ny) = heights.shape();
     let cell = SIDE / nx as f64;
     let grid = Grid::new(nx, ny, cell, cell)?;

@@ -12,7 +12,7 @@ pub(crate) fn read(
     side_y: Option<f64>,
 ) -> Result<(Grid, HeightMap), Failure> {
     let read = || {
-        let heights = HeightMap::from_npy(file)?;
+        let heights = HeightMap::new(asperity::io::read_npy(file)?)?;
         let (nx, ny) = heights.shape();
         let dx = side / nx as f64;
         let dy = side_y.map_or(dx, |side| side / ny as f64);

@@ -1,5 +1,80 @@
 //! Files of heights and other fields.
+//!
+//! [`read_surface`] reads what instruments write, [`ReadOptions`] says what a file leaves open (its side, its unit,
+//! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`] and [`write_x3p`] pass
+//! fields on.
+//!
+//! | format | extension | read | written |
+//! |---|---|---|---|
+//! | NumPy | `.npy` | floating-point numbers and integers | float64 |
+//! | Gwyddion Simple Field | `.gsf` | float32 | float32 |
+//! | Gwyddion | `.gwy` | all maps, masks | |
+//! | ISO 25178-71 and BCR | `.sdf` | ASCII and binary, 1.0 and 2.0 | |
+//! | ISO 25178-72 | `.x3p` | all four types of number, missing points | float64 |
+//! | Digital Surf | `.sur` | plain and compressed | |
+//! | Alicona | `.al3d` | depth image | |
+//! | Keyence | `.vk4` | height image | |
+//! | text | `.txt`, `.asc`, `.csv`, `.xyz` | matrices, and lists of points | |
+//!
+//! A file is known by its first bytes, not by its name.
+//!
+//! # Which index is x
+//!
+//! Everywhere in this crate x is the first index, `[(ix, iy)]`. In all formats but `.npy` the rows of the file are
+//! those of an image: row `iy`, and within it column `ix`. No row is turned round:
+//!
+//! ```text
+//!   the file (an image)               the matrix                on the half-space
+//!
+//!        ix → 0   1   2               [(ix, iy)]                 y
+//!   iy   0   a   b   c                [(0,0)] = a                ↑  d  e  f
+//!   ↓    1   d   e   f                [(2,0)] = c                |  a  b  c
+//!                                     [(0,1)] = d                └────────→ x
+//! ```
+//!
+//! An array in a `.npy` file is taken as it is: `array[ix, iy]`. An image in NumPy, `image[row, column]`, has to be
+//! transposed before it is saved. Formats differ in whether their first row is the top or the bottom of the surface: maps
+//! may therefore look mirrored beside another program, which changes no result of an isotropic half-space.
 
+mod bytes;
+mod fault;
 mod npy;
 
+#[cfg(feature = "io")]
+mod al3d;
+#[cfg(feature = "io")]
+mod format;
+#[cfg(feature = "io")]
+mod gsf;
+#[cfg(feature = "io")]
+mod gwy;
+#[cfg(feature = "io")]
+mod measured;
+#[cfg(feature = "io")]
+mod options;
+#[cfg(feature = "io")]
+mod raw;
+#[cfg(feature = "io")]
+mod sdf;
+#[cfg(feature = "io")]
+mod sur;
+#[cfg(feature = "io")]
+mod text;
+#[cfg(feature = "io")]
+mod unit;
+#[cfg(feature = "io")]
+mod vk4;
+#[cfg(feature = "io")]
+mod x3p;
+
 pub use npy::{read_npy, write_npy};
+
+#[cfg(feature = "io")]
+pub use self::{
+    format::Format,
+    gsf::write_gsf,
+    measured::MeasuredSurface,
+    options::{ReadOptions, channels, read_surface},
+    unit::LengthUnit,
+    x3p::write_x3p,
+};

@@ -1,11 +1,8 @@
 //! Heights given node by node: measured, or computed elsewhere.
 
-use std::path::Path;
-
 use nalgebra::DMatrix;
 
 use super::placement::all_finite;
-use crate::io::read_npy;
 use crate::{Error, Grid, Surface};
 
 /// Heights \[m\] of the nodes of a grid, positive towards the half-space.
@@ -58,16 +55,6 @@ impl HeightMap {
         let heights = surface.heights(grid)?;
         grid.check_shape(heights.shape())?;
         Self::new(heights)
-    }
-
-    /// Reads a NumPy `.npy` file; array element `[ix, iy]` becomes the height of node (ix, iy). x is
-    /// the first index; an image `[row, column]` must be transposed.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`read_npy`](crate::io::read_npy), and [`Error::HeightNotFinite`].
-    pub fn from_npy(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::new(read_npy(path)?)
     }
 
     /// The heights \[m\].

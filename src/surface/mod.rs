@@ -10,18 +10,22 @@
 //! highest node touches first.
 
 mod height_map;
+mod missing;
 mod placement;
 mod self_affine;
 mod shapes;
 mod sum;
+mod topography;
 mod turns;
 mod waves;
 
 pub use height_map::HeightMap;
+pub use missing::{count_missing, fill_missing};
 pub use placement::Axis;
 pub use self_affine::{Amplitude, SelfAffine, Spectrum};
 pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
 pub use sum::Sum;
+pub use topography::Topography;
 pub use waves::{BiWave, Wave};
 
 use std::sync::Arc;

@@ -96,7 +96,7 @@ fn data(name: String) -> PathBuf {
 
 /// Heights of a reference surface.
 pub fn surface(name: &str) -> HeightMap {
-    HeightMap::from_npy(data(format!("{name}.npy"))).unwrap()
+    HeightMap::new(asperity::io::read_npy(data(format!("{name}.npy"))).unwrap()).unwrap()
 }
 
 /// The events of a reference path.

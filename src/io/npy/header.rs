@@ -3,52 +3,86 @@
 //! A matrix of floating-point numbers needs very little of that language. The parser therefore never
 //! recurses, and it believes no length before it has compared it with the file.
 
-use std::io::Read;
-
-use super::fault::Fault;
+use crate::io::bytes::Bytes;
+use crate::io::fault::Fault;
 
 /// Longest header text accepted. NumPy's own limit is 10 000, and a matrix needs about 100.
 const MAX_TEXT: usize = 1 << 16;
 
-/// Type of the elements, with their byte order.
+/// Type of the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Element {
-    LittleF64,
-    BigF64,
-    LittleF32,
-    BigF32,
+pub(super) struct Element {
+    kind: Kind,
+    big_endian: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    F64,
+    F32,
+    I8,
+    I16,
+    I32,
+    I64,
+    U8,
+    U16,
+    U32,
+    U64,
 }
 
 impl Element {
     fn from_descr(descr: &str) -> Result<Self, Fault> {
-        match descr {
-            "<f8" => Ok(Self::LittleF64),
-            ">f8" => Ok(Self::BigF64),
-            "<f4" => Ok(Self::LittleF32),
-            ">f4" => Ok(Self::BigF32),
-            other => Err(Fault::malformed(format!(
-                "the elements are of type '{other}', but only float64 and float32 are read"
-            ))),
-        }
+        let big_endian = descr.starts_with('>');
+        let kind = match descr.trim_start_matches(['<', '>', '|', '=']) {
+            "f8" => Kind::F64,
+            "f4" => Kind::F32,
+            "i1" => Kind::I8,
+            "i2" => Kind::I16,
+            "i4" => Kind::I32,
+            "i8" => Kind::I64,
+            "u1" => Kind::U8,
+            "u2" => Kind::U16,
+            "u4" => Kind::U32,
+            "u8" => Kind::U64,
+            _ => {
+                return Err(Fault::malformed(format!(
+                    "the elements are of type '{descr}', but only float64, float32 and integers are read"
+                )));
+            }
+        };
+        Ok(Self { kind, big_endian })
     }
 
     /// Bytes an element takes.
     pub(super) fn size(self) -> usize {
-        match self {
-            Self::LittleF64 | Self::BigF64 => 8,
-            Self::LittleF32 | Self::BigF32 => 4,
+        match self.kind {
+            Kind::F64 | Kind::I64 | Kind::U64 => 8,
+            Kind::F32 | Kind::I32 | Kind::U32 => 4,
+            Kind::I16 | Kind::U16 => 2,
+            Kind::I8 | Kind::U8 => 1,
         }
     }
 
-    /// The value of [`Element::size`] bytes, NaN for another number of bytes.
+    /// The value of [`Element::size`] bytes, NaN for another number of bytes. Integers beyond 2⁵³ are rounded.
     pub(super) fn decode(self, bytes: &[u8]) -> f64 {
-        let value = match self {
-            Self::LittleF64 => bytes.try_into().map(f64::from_le_bytes),
-            Self::BigF64 => bytes.try_into().map(f64::from_be_bytes),
-            Self::LittleF32 => bytes.try_into().map(|b| f64::from(f32::from_le_bytes(b))),
-            Self::BigF32 => bytes.try_into().map(|b| f64::from(f32::from_be_bytes(b))),
+        let mut little = [0; 8];
+        let Some(raw) = little.get_mut(..bytes.len()) else {
+            return f64::NAN;
         };
-        value.unwrap_or(f64::NAN)
+        raw.copy_from_slice(bytes);
+        if self.big_endian {
+            raw.reverse();
+        }
+        let bits = u64::from_le_bytes(little);
+        match self.kind {
+            Kind::F64 => f64::from_bits(bits),
+            Kind::F32 => f64::from(f32::from_bits(bits as u32)),
+            Kind::I8 => f64::from(bits as i8),
+            Kind::I16 => f64::from(bits as i16),
+            Kind::I32 => f64::from(bits as i32),
+            Kind::I64 => bits as i64 as f64,
+            Kind::U8 | Kind::U16 | Kind::U32 | Kind::U64 => bits as f64,
+        }
     }
 }
 
@@ -79,54 +113,37 @@ pub(super) struct Header {
     pub(super) shape: (usize, usize),
     pub(super) fortran_order: bool,
     pub(super) element: Element,
-    /// Length of the header itself: the elements begin there.
-    pub(super) bytes: u64,
 }
 
 impl Header {
-    /// Reads the header of a file of `length` bytes.
-    pub(super) fn read(input: &mut impl Read, length: u64) -> Result<Self, Fault> {
-        let cut = || Fault::malformed("the file ends within its header");
-        let mut preamble = [0; 8];
-        if length < preamble.len() as u64 {
-            return Err(Fault::malformed("the file is too short for a .npy file"));
-        }
-        input.read_exact(&mut preamble)?;
+    /// Reads the header, up to the first element.
+    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
+        let preamble: [u8; 8] = bytes.array()?;
         if preamble[..6] != PREAMBLE[..6] {
-            return Err(Fault::malformed("the file does not begin like a .npy file"));
+            return Err(Fault::at(0, "the file does not begin like a .npy file"));
         }
-        let (width, version) = match preamble[6] {
-            1 => (2, 1),
-            major @ (2 | 3) => (4, major),
+        let size = match preamble[6] {
+            1 => usize::from(bytes.u16()?),
+            2 | 3 => bytes.u32()? as usize,
             major => {
-                return Err(Fault::malformed(format!(
-                    "version {major} of the format is unknown"
-                )));
+                return Err(Fault::at(
+                    6,
+                    format!("version {major} of the format is unknown"),
+                ));
             }
         };
-        let start = preamble.len() as u64 + width as u64;
-        if length < start {
-            return Err(cut());
+        if size > MAX_TEXT {
+            return Err(Fault::at(
+                8,
+                format!("a header of {size} bytes is longer than that of any matrix"),
+            ));
         }
-        let mut size = [0; 4];
-        input.read_exact(&mut size[..width])?;
-        let size = u32::from_le_bytes(size);
-        if length < start + u64::from(size) {
-            return Err(cut());
-        }
-        if size as usize > MAX_TEXT {
-            return Err(Fault::malformed(format!(
-                "a header of {size} bytes (version {version}) is longer than that of any matrix"
-            )));
-        }
-        let mut text = vec![0; size as usize];
-        input.read_exact(&mut text)?;
-        let text =
-            String::from_utf8(text).map_err(|_| Fault::malformed("the header is not text"))?;
-        Self::parse(&text, start + u64::from(size))
+        let text = std::str::from_utf8(bytes.take(size)?)
+            .map_err(|_| Fault::malformed("the header is not text"))?;
+        Self::parse(text)
     }
 
-    fn parse(text: &str, bytes: u64) -> Result<Self, Fault> {
+    fn parse(text: &str) -> Result<Self, Fault> {
         let mut text = Cursor(text);
         let (mut descr, mut order, mut shape) = (None, None, None);
         text.expect('{')?;
@@ -156,7 +173,6 @@ impl Header {
             element: Element::from_descr(descr.ok_or_else(|| missing("descr"))?)?,
             fortran_order: order.ok_or_else(|| missing("fortran_order"))?,
             shape: shape.ok_or_else(|| missing("shape"))?,
-            bytes,
         })
     }
 }
@@ -261,8 +277,7 @@ mod tests {
         let expected = Header {
             shape: (3, 40),
             fortran_order: true,
-            element: Element::BigF32,
-            bytes: 0,
+            element: Element::from_descr(">f4")?,
         };
         for text in [
             "{'descr': '>f4', 'fortran_order': True, 'shape': (3, 40), }          \n",
@@ -270,7 +285,7 @@ mod tests {
             "{\"descr\":\">f4\",\"shape\":(3,40,),\"fortran_order\":True}\n",
             "  { 'descr' :\t'>f4' , 'fortran_order' : True , 'shape' : ( 3 , 40 ) } ",
         ] {
-            assert_eq!(Header::parse(text, 0)?, expected, "{text}");
+            assert_eq!(Header::parse(text)?, expected, "{text}");
         }
         Ok(())
     }
@@ -283,7 +298,7 @@ mod tests {
             "{'descr': '<f8', 'fortran_order': False}",
             "{'descr': '<f8', 'shape': (3, 4)}",
             "{'fortran_order': False, 'shape': (3, 4)}",
-            "{'descr': '<i4', 'fortran_order': False, 'shape': (3, 4)}",
+            "{'descr': '<c8', 'fortran_order': False, 'shape': (3, 4)}",
             "{'descr': '|O', 'fortran_order': False, 'shape': (3, 4)}",
             "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (3, 4)}",
             "{'descr': '<f8', 'fortran_order': 0, 'shape': (3, 4)}",
@@ -300,8 +315,8 @@ mod tests {
             "{{{{{{{{",
             "{'é",
         ] {
-            let refused = Header::parse(text, 0);
-            assert!(matches!(refused, Err(Fault::Malformed(_))), "{text}");
+            let refused = Header::parse(text);
+            assert!(matches!(refused, Err(Fault::Malformed { .. })), "{text}");
         }
     }
 }

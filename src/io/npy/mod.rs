@@ -1,19 +1,21 @@
 //! NumPy's `.npy` files.
 
-mod fault;
 mod header;
 
-use std::fs::{self, File};
-use std::io::{BufReader, BufWriter, ErrorKind, Read, Write};
+use std::fs::File;
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use self::fault::Fault;
 use self::header::Header;
-use crate::{Error, Grid};
+use super::bytes::{Bytes, read_file, shape};
+use super::fault::Fault;
+#[cfg(feature = "io")]
+use super::raw::Channel;
+use crate::Error;
 
-/// Reads a two-dimensional array of `float64` or `float32` from a NumPy `.npy` file.
+/// Reads a two-dimensional array of `float64`, `float32` or integers from a NumPy `.npy` file.
 ///
 /// Element `[ix, iy]` of the array is element `[(ix, iy)]` of the matrix, whichever order (C or
 /// Fortran) and byte order it has in the file: x is the first index, so an image `[row, column]`
@@ -26,12 +28,14 @@ use crate::{Error, Grid};
 ///
 /// [`Error::Io`] if the file cannot be read, or there is not enough memory for it;
 /// [`Error::EmptyGrid`] for an array without elements; [`Error::GridTooLarge`] beyond
-/// [`Grid::MAX_SIDE`] a side; [`Error::BadNpy`] for another type of elements or number of dimensions,
+/// [`Grid::MAX_SIDE`](crate::Grid::MAX_SIDE) a side; [`Error::BadFile`] for another type of elements or number of dimensions,
 /// a malformed header, a file that is shorter or longer than its header says, and anything that is
 /// not a regular file (a directory, a pipe), which is not opened.
 pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
     let path = path.as_ref();
-    read_file(path).map_err(|fault| fault.in_file(path))
+    read_file(path)
+        .and_then(|bytes| matrix(&bytes))
+        .map_err(|fault| fault.in_file(path, NAME))
 }
 
 /// Writes a matrix to a NumPy `.npy` file, as `float64`, little-endian, in C order.
@@ -47,43 +51,37 @@ pub fn write_npy(path: impl AsRef<Path>, matrix: &DMatrix<f64>) -> Result<(), Er
     let path = path.as_ref();
     File::create(path)
         .and_then(|file| write(BufWriter::new(file), matrix))
-        .map_err(|error| Fault::Io(error).in_file(path))
+        .map_err(|error| Fault::Io(error).in_file(path, NAME))
 }
 
-fn read_file(path: &Path) -> Result<DMatrix<f64>, Fault> {
-    // Opening a pipe would wait for somebody to write into it.
-    if !fs::metadata(path)?.is_file() {
-        return Err(Fault::malformed("it is not a regular file"));
-    }
-    let file = File::open(path)?;
-    let length = file.metadata()?.len();
-    read(BufReader::new(file), length)
+/// What errors call the format.
+const NAME: &str = "NumPy";
+
+/// The map in a file, in metres, without a size.
+#[cfg(feature = "io")]
+pub(super) fn parse(file: &[u8]) -> Result<Channel, Fault> {
+    let matrix = matrix(file)?;
+    let shape = matrix.shape();
+    Ok(Channel::in_metres(shape, matrix.data.into(), None))
 }
 
-fn read(mut input: impl Read, length: u64) -> Result<DMatrix<f64>, Fault> {
+fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
+    let mut input = Bytes::new(file);
     let Header {
         shape: (nx, ny),
         fortran_order,
         element,
-        bytes: header_bytes,
-    } = Header::read(&mut input, length)?;
-    if nx == 0 || ny == 0 {
-        return Err(Fault::Shape(Error::EmptyGrid { nx, ny }));
-    }
-    if nx > Grid::MAX_SIDE || ny > Grid::MAX_SIDE {
-        return Err(Fault::Shape(Error::GridTooLarge {
-            nx,
-            ny,
-            max_side: Grid::MAX_SIDE,
-        }));
-    }
-    let expected = header_bytes + (nx * ny) as u64 * element.size() as u64;
-    if length != expected {
-        return Err(Fault::malformed(format!(
-            "{nx} x {ny} elements of {} bytes make a file of {expected} bytes, \
-             but this one has {length}",
-            element.size()
-        )));
+    } = Header::read(&mut input)?;
+    let (nx, ny) = shape(nx as u64, ny as u64)?;
+    let elements = input.elements(nx * ny, element.size())?;
+    if input.left() > 0 {
+        return Err(Fault::at(
+            input.offset(),
+            format!(
+                "{nx} x {ny} elements end here, but {} bytes follow",
+                input.left()
+            ),
+        ));
     }
     let mut values = Vec::new();
     values
@@ -91,10 +89,8 @@ fn read(mut input: impl Read, length: u64) -> Result<DMatrix<f64>, Fault> {
         .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
     values.resize(nx * ny, 0.0);
     // The file holds runs of the faster index; (slow, fast) is (ix, iy) in C order.
-    let (runs, run) = if fortran_order { (ny, nx) } else { (nx, ny) };
-    let mut bytes = vec![0; run * element.size()];
-    for slow in 0..runs {
-        input.read_exact(&mut bytes)?;
+    let run = if fortran_order { nx } else { ny };
+    for (slow, bytes) in elements.chunks_exact(run * element.size()).enumerate() {
         for (fast, value) in bytes.chunks_exact(element.size()).enumerate() {
             let node = if fortran_order {
                 fast + nx * slow

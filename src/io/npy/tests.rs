@@ -19,16 +19,16 @@ fn file(header: &str, data: &[u8]) -> Vec<u8> {
 }
 
 fn parse(bytes: &[u8]) -> Result<DMatrix<f64>, Fault> {
-    read(bytes, bytes.len() as u64)
+    matrix(bytes)
 }
 
 /// The error of a file that only exists here.
 fn named(fault: Fault) -> Error {
-    fault.in_file(Path::new("test.npy"))
+    fault.in_file(Path::new("test.npy"), NAME)
 }
 
 fn is_bad(result: Result<DMatrix<f64>, Fault>) -> bool {
-    matches!(result, Err(Fault::Malformed(_)))
+    matches!(result, Err(Fault::Malformed { .. }))
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn every_type_and_order_gives_the_same_matrix() -> TestResult {
 #[test]
 fn a_file_written_by_numpy_is_read() -> TestResult {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/selfaffine_48.npy");
-    let map = HeightMap::from_npy(&path)?;
+    let map = HeightMap::new(read_npy(&path)?)?;
     assert_eq!(map.shape(), (48, 48));
     let bytes = fs::read(path)?;
     // What NumPy has written, this crate writes again to the last byte.
@@ -108,7 +108,7 @@ fn the_elements_begin_at_a_multiple_of_64() {
         assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"));
         let length = u16::from_le_bytes([header[8], header[9]]);
         assert_eq!(header.len(), 10 + usize::from(length));
-        let understood = Header::read(&mut &header[..], header.len() as u64);
+        let understood = Header::read(&mut Bytes::new(&header));
         assert!(matches!(understood, Ok(header) if header.shape == shape));
     }
 }
@@ -121,7 +121,7 @@ fn errors_name_the_file() -> TestResult {
     assert!(matches!(&error, Error::Io { path, .. } if *path == absent));
     assert!(error.to_string().contains("asperity-absent"), "{error}");
     let error = read_npy(&folder).err().ok_or("a directory")?;
-    assert!(matches!(&error, Error::BadNpy { path, .. } if *path == folder));
+    assert!(matches!(&error, Error::BadFile { path, .. } if *path == folder));
     let unwritable = absent.join("below-a-file-that-is-not-there.npy");
     let error = write_npy(&unwritable, &dmatrix![1.0])
         .err()
@@ -140,7 +140,7 @@ fn a_pipe_is_refused() -> TestResult {
     if made.is_ok_and(|status| status.success()) {
         let refused = read_npy(&path);
         fs::remove_file(&path)?;
-        assert!(matches!(refused, Err(Error::BadNpy { .. })));
+        assert!(matches!(refused, Err(Error::BadFile { .. })));
     }
     Ok(())
 }
