@@ -68,6 +68,7 @@
 
 pub mod contact;
 pub mod convolution;
+mod doubt;
 mod elasticity;
 mod error;
 pub mod fixed_load;
@@ -86,6 +87,7 @@ pub mod updater;
 pub use nalgebra;
 
 pub use contact::{Certificate, ContactState, ContactTarget};
+pub use doubt::Doubt;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{Error, KernelError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};

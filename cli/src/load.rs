@@ -3,37 +3,32 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use asperity::FixedLoadSolver;
+
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
+use asperity::{Doubt, FixedLoadSolver};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
-use crate::measured;
-use crate::values::positive;
+use crate::elasticity::Elasticity;
+use crate::reading::Reading;
 
 /// The contact of a measured surface under given loads, each solved by itself: one line for each
 ///
 /// Results go to stdout, progress to stderr. Memory grows with the grid and not with the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// Heights [m] in a NumPy file, positive towards the half-space; element [ix, iy] is the node
-    /// (ix, iy): the first index is x, so that an image [row, column] must be transposed
-    #[arg(long, value_name = "FILE.npy")]
+    /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
+    /// rows of an image are y; an array of NumPy is [ix, iy]
+    #[arg(long, value_name = "FILE")]
     surface: PathBuf,
 
-    /// Side of the nominal area along x
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
-    side: f64,
+    #[command(flatten)]
+    reading: Reading,
 
-    /// Side along y [default: as many square cells as there are nodes]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
-    side_y: Option<f64>,
-
-    /// Composite modulus E* = E / (1 - ν²) against a rigid body
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
-    e_star: f64,
+    #[command(flatten)]
+    elasticity: Elasticity,
 
     /// Load; may be given several times
     #[arg(
@@ -66,12 +61,21 @@ pub(crate) struct Options {
 
 /// Solves for each load in turn.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let (grid, heights) = measured::read(&options.surface, options.side, options.side_y)?;
+    let Some(e_star) = options.elasticity.e_star()? else {
+        return Err(Failure::request(
+            "how stiff are the bodies? Give --e-star or --material",
+        ));
+    };
+    let surface = options.reading.surface(&options.surface)?;
+    for doubt in Doubt::of_surface(&surface) {
+        eprintln!("warning: {doubt}");
+    }
+    let grid = *surface.grid();
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let mut solver = half_space(options.periodic, grid, options.e_star)
+    let mut solver = half_space(options.periodic, grid, e_star)
         .and_then(|half_space| {
-            FixedLoadSolver::builder(&heights, &half_space)
+            FixedLoadSolver::builder(&surface, &half_space)
                 .tolerance(options.tolerance)
                 .stiffness(false)
                 .build()

@@ -1,8 +1,10 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
+mod elasticity;
+mod info;
 mod load;
-mod measured;
 mod path;
+mod reading;
 mod values;
 
 use std::process::ExitCode;
@@ -12,7 +14,7 @@ use clap::{Parser, Subcommand};
 /// Exact elastic contact of rough surfaces.
 ///
 /// Without a command, `path` of a generated surface: the whole loading to 10 % contact, in seconds.
-/// `asperity path --help` and `asperity load --help` list the options of each.
+/// `asperity path --help`, `asperity load --help` and `asperity info --help` list the options of each.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true)]
 struct Arguments {
@@ -24,6 +26,7 @@ struct Arguments {
 enum Command {
     Path(path::Options),
     Load(load::Options),
+    Info(info::Options),
 }
 
 fn main() -> ExitCode {
@@ -31,6 +34,7 @@ fn main() -> ExitCode {
         None => path::run(&path::Options::parse_from(["asperity path"])),
         Some(Command::Path(options)) => path::run(&options),
         Some(Command::Load(options)) => load::run(&options),
+        Some(Command::Info(options)) => info::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -23,3 +23,8 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
 fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())
 }
+
+/// A unit of length.
+pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::Error> {
+    text.parse()
+}

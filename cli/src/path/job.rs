@@ -3,12 +3,11 @@
 use std::fmt;
 use std::path::Path;
 
-use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
 use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingState};
 
 use super::options::{Options, Updater};
 use super::progress::Progress;
-use crate::measured;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -18,10 +17,12 @@ const SIDE: f64 = 1e-2;
 const NODES: usize = 256;
 const SEED: u64 = 1;
 
+/// E* of two bodies of steel, if there is no surface and no material \[Pa\].
+const STEEL_ON_STEEL: f64 = 0.5 * 210e9 / (1.0 - 0.3 * 0.3);
+
 /// A surface on its grid and what is asked of it.
 pub(super) struct Job {
-    grid: Grid,
-    heights: HeightMap,
+    surface: Topography,
     name: String,
     rms_gradient: f64,
     e_star: f64,
@@ -35,29 +36,42 @@ pub(super) struct Job {
 impl Job {
     /// Makes or reads the surface.
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
-        let (grid, heights, name, rms_gradient) = match &options.surface {
+        let e_star = match (options.elasticity.e_star()?, &options.surface) {
+            (Some(e_star), _) => e_star,
+            (None, None) => STEEL_ON_STEEL,
+            (None, Some(_)) => {
+                return Err(Failure::request(
+                    "how stiff are the bodies? Give --e-star or --material",
+                ));
+            }
+        };
+        let (surface, name, rms_gradient) = match &options.surface {
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
+        let targets = options.targets(surface.grid());
         Ok(Self {
-            grid,
-            heights,
+            surface,
             name,
             rms_gradient,
-            e_star: options.e_star,
+            e_star,
             periodic: options.periodic,
             rule: options.rule.into(),
             updater: options.updater,
-            targets: options.targets(&grid),
+            targets,
         })
     }
 
     pub(super) fn grid(&self) -> Grid {
-        self.grid
+        *self.surface.grid()
+    }
+
+    pub(super) fn surface(&self) -> &Topography {
+        &self.surface
     }
 
     pub(super) fn heights(&self) -> &HeightMap {
-        &self.heights
+        self.surface.map()
     }
 
     pub(super) fn e_star(&self) -> f64 {
@@ -82,7 +96,7 @@ impl Job {
             _ => 0.0,
         });
         let share = shares.fold(state.contact_area_fraction, f64::max).min(1.0);
-        let nodes = self.grid.nodes();
+        let nodes = self.grid().nodes();
         Progress::new(state.contact_nodes, share, |contact| {
             self.updater.event_cost(nodes, contact)
         })
@@ -93,15 +107,15 @@ impl Job {
     }
 
     pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
-        half_space(self.periodic, self.grid, self.e_star)
+        half_space(self.periodic, self.grid(), self.e_star)
             .map_err(|error| Failure::new("no such half-space", error))
     }
 }
 
 impl fmt::Display for Job {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (nx, ny) = self.grid.shape();
-        let (lx, ly) = self.grid.sides();
+        let (nx, ny) = self.grid().shape();
+        let (lx, ly) = self.grid().sides();
         writeln!(f, "surface    {}", self.name)?;
         writeln!(
             f,
@@ -112,7 +126,7 @@ impl fmt::Display for Job {
         writeln!(
             f,
             "roughness  rms height Sq {}, rms gradient {:.4}",
-            quantity(self.heights.rms_height(), "m", 5),
+            quantity(self.heights().rms_height(), "m", 5),
             self.rms_gradient.abs()
         )?;
         match self.periodic {
@@ -139,20 +153,18 @@ impl fmt::Display for Job {
     }
 }
 
-/// Grid, heights, name and rms gradient of a surface.
-type Made = (Grid, HeightMap, String, f64);
+/// A surface, its name and its rms gradient.
+type Made = (Topography, String, f64);
 
 /// The surface of a file.
 fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
-    let Some(side) = options.side else {
-        return Err(Failure::request("--surface needs --side"));
-    };
-    let (grid, heights) = measured::read(file, side, options.side_y)?;
+    let surface = options.reading.surface(file)?;
     let name = file.display().to_string();
-    let rms_gradient = heights
-        .rms_gradient(&grid)
+    let rms_gradient = surface
+        .map()
+        .rms_gradient(surface.grid())
         .map_err(|error| Failure::new(format!("cannot use {name}"), error))?;
-    Ok((grid, heights, name, rms_gradient))
+    Ok((surface, name, rms_gradient))
 }
 
 /// The surface of the paper's Table 1, with its short cut-off moved to two cells if the grid cannot
@@ -160,8 +172,8 @@ fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
 fn generate(options: &Options) -> Result<Made, Failure> {
     let nodes = options.nodes.unwrap_or(NODES);
     let seed = options.seed.unwrap_or(SEED);
-    let side = options.side.unwrap_or(SIDE);
-    let side_y = options.side_y.unwrap_or(side);
+    let side = options.reading.side.unwrap_or(SIDE);
+    let side_y = options.reading.side_y.unwrap_or(side);
     let failed = |error: asperity::Error| {
         Failure::new(
             format!("cannot put the surface on {nodes} x {nodes} nodes"),
@@ -195,8 +207,8 @@ fn generate(options: &Options) -> Result<Made, Failure> {
         )
         .map_err(failed)?;
     }
-    let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
+    let heights = Topography::sample(&surface, grid).map_err(failed)?;
     let rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
     let name = format!("self-affine, Table 1 of Zhang et al. (2020), seed {seed}");
-    Ok((grid, heights, name, rms_gradient))
+    Ok((heights, name, rms_gradient))
 }

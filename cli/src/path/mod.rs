@@ -14,7 +14,7 @@ mod table;
 
 use std::time::Instant;
 
-use asperity::LoadingSolver;
+use asperity::{Doubt, LoadingSolver};
 use asperity::updater::LinearUpdater;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
@@ -30,6 +30,9 @@ type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
+    for doubt in Doubt::of_surface(job.surface()) {
+        eprintln!("warning: {doubt}");
+    }
     let kernel = job.kernel()?;
     let mut builder = LoadingSolver::builder(job.heights(), &kernel)
         .updater(options.updater.make())

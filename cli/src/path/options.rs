@@ -7,6 +7,8 @@ use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use clap::{Args, Parser, ValueEnum};
 
+use crate::elasticity::Elasticity;
+use crate::reading::Reading;
 use crate::values::{fraction, positive};
 
 /// The exact loading path of a rough surface: one state of contact for each node that touches
@@ -14,25 +16,20 @@ use crate::values::{fraction, positive};
 /// Writes path.csv, loading_curve.svg and contact_map.png, and prints a short table.
 ///
 /// Without --surface, a self-affine surface with the spectrum of Zhang, Zhang & Jin (2020), Table 1:
-/// rms height 50 µm, Hurst exponent 0.8, roll-off at 2.5 mm, short cut-off at 78.125 µm.
+/// rms height 50 µm, Hurst exponent 0.8, roll-off at 2.5 mm, short cut-off at 78.125 µm; both bodies
+/// are steel unless the command line says otherwise.
 #[derive(Debug, Parser)]
 pub(crate) struct Options {
-    /// Heights [m] in a NumPy file, positive towards the half-space; element [ix, iy] is the node
-    /// (ix, iy): the first index is x, so that an image [row, column] must be transposed
-    #[arg(long, value_name = "FILE.npy", requires = "side", conflicts_with_all = ["nodes", "seed"])]
+    /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
+    /// rows of an image are y; an array of NumPy is [ix, iy]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
 
-    /// Side of the nominal area along x [default: 1e-2 for the generated surface]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
-    pub(super) side: Option<f64>,
+    #[command(flatten)]
+    pub(super) reading: Reading,
 
-    /// Side along y [default: as many square cells as there are nodes]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "side")]
-    pub(super) side_y: Option<f64>,
-
-    /// Composite modulus E* = E / (1 - ν²) against a rigid body
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, default_value = "1")]
-    pub(super) e_star: f64,
+    #[command(flatten)]
+    pub(super) elasticity: Elasticity,
 
     /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
     /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and

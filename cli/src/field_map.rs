@@ -1,0 +1,190 @@
+//! Maps of fields on a grid, coloured, with axes and a colour bar.
+
+use std::path::{Path, PathBuf};
+
+use asperity::Grid;
+use nalgebra::DMatrix;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use crate::axis::Axis;
+use crate::outcome::Failure;
+use crate::panel::{Area, Drawn, Panel, anchor, shade};
+use crate::picture;
+
+/// Pixels along the longer side of the map, about.
+const SIDE: f64 = 860.0;
+/// Pixels a side of the map has at least.
+const SHORTEST: i32 = 60;
+/// Pixels along x that the caption needs.
+const CAPTION: i32 = 640;
+const FONT: i32 = 20;
+const MARGIN: Margin = Margin {
+    left: 130,
+    right: 200,
+    top: 80,
+    bottom: 100,
+};
+/// Values below the range.
+const BELOW: RGBColor = RGBColor(230, 0, 0);
+
+struct Margin {
+    left: i32,
+    right: i32,
+    top: i32,
+    bottom: i32,
+}
+
+/// A field to be drawn.
+pub struct FieldMap<'a> {
+    /// The grid; without one, nodes are the unit of length.
+    pub grid: &'a Grid,
+    /// Unit of the sides of the grid.
+    pub length_unit: &'a str,
+    /// The values, NaN where nothing is to be drawn.
+    pub values: &'a DMatrix<f64>,
+    /// Values of the lightest and the darkest colour; what lies below is red.
+    pub range: (f64, f64),
+    /// What is drawn, and its SI unit.
+    pub label: (&'a str, &'a str),
+}
+
+impl FieldMap<'_> {
+    /// Draws the map with a line above it, and writes the picture.
+    pub fn write(&self, name: &Path, caption: &str) -> Result<PathBuf, Failure> {
+        let (width, height) = map_size(self.grid);
+        let inner = (CAPTION - MARGIN.left - MARGIN.right).max(width);
+        let size = (
+            inner + MARGIN.left + MARGIN.right,
+            height + MARGIN.top + MARGIN.bottom,
+        );
+        let panel = Panel {
+            left: MARGIN.left + (inner - width) / 2,
+            top: MARGIN.top,
+            width,
+            height,
+            font: FONT,
+            stroke: 1,
+            text_rise: 0.2,
+        };
+        picture::draw(name, size, |area| {
+            // The middle of the picture is further right than that of the map.
+            let free = (size.0 - CAPTION) / 2;
+            let middle = (panel.left + panel.width / 2).min(CAPTION / 2 + free);
+            let middle = (middle, MARGIN.top / 2);
+            let centred = anchor(HPos::Center, VPos::Center);
+            panel.write(area, caption, middle, FONT + 2, centred)?;
+            self.draw(area, &panel)?;
+            area.present()
+        })
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, panel: &Panel) -> Drawn<DB> {
+        let (least, greatest) = self.range;
+        for (place, value) in (0_i32..).zip(self.pixels(panel)) {
+            let Some(value) = value else { continue };
+            let at = (
+                panel.left + place % panel.width,
+                panel.top + panel.height - 1 - place / panel.width,
+            );
+            area.draw_pixel(at, &self.colour(value))?;
+        }
+        let (lx, ly) = self.grid.sides();
+        // One unit for both axes, that of the longer side.
+        let longer = lx.max(ly);
+        let [x, y] = [("x", lx), ("y", ly)].map(|(name, side)| {
+            let excess = (longer - side) / longer;
+            let axis = Axis::linear(name, self.length_unit, 0.0, longer);
+            axis.with_room(0.0, -excess)
+        });
+        panel.frame(area, &x, &y)?;
+        if greatest > least {
+            self.colour_bar(area, panel)?;
+        }
+        Ok(())
+    }
+
+    /// The greatest value of the nodes that fall on each pixel, row by row from the lower left corner: however
+    /// many nodes share a pixel, no contact is lost.
+    fn pixels(&self, panel: &Panel) -> Vec<Option<f64>> {
+        let (width, height) = (panel.width as usize, panel.height as usize);
+        let (nx, ny) = self.grid.shape();
+        let span = |node: usize, nodes: usize, pixels: usize| {
+            let first = node * pixels / nodes;
+            first..((node + 1) * pixels / nodes).max(first + 1)
+        };
+        let mut pixels = vec![None; width * height];
+        for iy in 0..ny {
+            for ix in 0..nx {
+                let value = self.values[(ix, iy)];
+                if value.is_nan() {
+                    continue;
+                }
+                for row in span(iy, ny, height) {
+                    for column in span(ix, nx, width) {
+                        let pixel: &mut Option<f64> = &mut pixels[column + width * row];
+                        *pixel = Some(pixel.map_or(value, |other| other.max(value)));
+                    }
+                }
+            }
+        }
+        pixels
+    }
+
+    fn colour_bar<DB: DrawingBackend>(&self, area: &Area<DB>, panel: &Panel) -> Drawn<DB> {
+        let (least, greatest) = self.range;
+        let (label, unit) = self.label;
+        let bar = Panel {
+            left: panel.left + panel.width + 28,
+            width: 26,
+            ..*panel
+        };
+        bar.colour_bar(area, &Axis::linear(label, unit, least, greatest))?;
+        if self.values.iter().any(|value| self.is_below(*value)) {
+            let at = (bar.left + bar.width, bar.top - FONT);
+            let pos = anchor(HPos::Right, VPos::Center);
+            area.draw(&Rectangle::new(
+                [(at.0 + 8, at.1 - 8), (at.0 + 24, at.1 + 8)],
+                BELOW.filled(),
+            ))?;
+            bar.write(area, "below 0", at, FONT, pos)?;
+        }
+        Ok(())
+    }
+
+    fn is_below(&self, value: f64) -> bool {
+        let (least, greatest) = self.range;
+        value < least - 1e-9 * (greatest - least).abs()
+    }
+
+    fn colour(&self, value: f64) -> RGBColor {
+        let (least, greatest) = self.range;
+        if self.is_below(value) {
+            return BELOW;
+        }
+        let share = if greatest > least {
+            (value - least) / (greatest - least)
+        } else {
+            0.0
+        };
+        shade(share)
+    }
+}
+
+/// Pixels of the map: whole ones for each node if there are enough, in the proportions of the
+/// nominal area.
+fn map_size(grid: &Grid) -> (i32, i32) {
+    let (lx, ly) = grid.sides();
+    let pixels = |side: f64, nodes: usize| {
+        let exact = SIDE * side / lx.max(ly);
+        let nodes = nodes as f64;
+        let whole = (exact / nodes).round().max(1.0) * nodes;
+        let pixels = if whole < 1.2 * SIDE && nodes <= exact {
+            whole
+        } else {
+            exact
+        };
+        (pixels.round() as i32).max(SHORTEST)
+    };
+    (pixels(lx, grid.nx()), pixels(ly, grid.ny()))
+}

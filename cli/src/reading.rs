@@ -1,0 +1,133 @@
+//! The surface that a command line names: read, filled and levelled as it asks.
+
+use std::path::Path;
+
+use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
+use asperity::surface::{Topography, Trend};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+use clap::{Args, ValueEnum};
+
+use crate::values::{positive, unit};
+
+/// What a file does not say of itself, and how its surface is prepared.
+#[derive(Debug, Args)]
+pub(crate) struct Reading {
+    /// Side of the surface along x, in place of what the file says [generated surface: 1e-2]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    pub(crate) side: Option<f64>,
+
+    /// Side along y [default: as many square cells as there are nodes]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "side")]
+    pub(crate) side_y: Option<f64>,
+
+    /// Unit of the heights in the file, in place of what it says: m, mm, um, nm, ...
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    height_unit: Option<LengthUnit>,
+
+    /// Unit of the lengths along x and y in the file, in place of what it says
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    lateral_unit: Option<LengthUnit>,
+
+    /// Which map, in a file with several
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
+
+    /// Keep heights that a mask in the file marks; otherwise they are missing
+    #[arg(long)]
+    ignore_mask: bool,
+
+    /// Fill missing nodes from those around them
+    #[arg(long)]
+    fill: bool,
+
+    /// Take a trend out of the heights, by least squares
+    #[arg(long, value_enum)]
+    level: Option<Level>,
+
+    /// Turn peaks into valleys: for the replica of a surface
+    #[arg(long)]
+    invert: bool,
+}
+
+/// [`Trend`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Level {
+    /// A tilted plane
+    Plane,
+    /// A surface of second degree: tilt and bow
+    Quadratic,
+}
+
+impl From<Level> for Trend {
+    fn from(level: Level) -> Self {
+        match level {
+            Level::Plane => Self::Plane,
+            Level::Quadratic => Self::Quadratic,
+        }
+    }
+}
+
+impl Reading {
+    /// What is in a file, as it is.
+    pub(crate) fn measured(&self, file: &Path) -> Result<MeasuredSurface, Failure> {
+        let mut options = ReadOptions::new();
+        if let Some(side) = self.side {
+            options = options.side(side);
+        }
+        if let Some(side) = self.side_y {
+            options = options.side_y(side);
+        }
+        if let Some(unit) = self.height_unit {
+            options = options.height_unit(unit);
+        }
+        if let Some(unit) = self.lateral_unit {
+            options = options.lateral_unit(unit);
+        }
+        if let Some(name) = &self.channel {
+            options = options.channel(name);
+        }
+        if self.ignore_mask {
+            options = options.ignore_mask();
+        }
+        options
+            .read(file)
+            .map_err(|error| Failure::new(format!("cannot read {}", file.display()), error))
+    }
+
+    /// The surface in a file, as it is to touch; what is done to it is said on stderr.
+    pub(crate) fn surface(&self, file: &Path) -> Result<Topography, Failure> {
+        let failed = |error| Failure::new(format!("cannot use {}", file.display()), error);
+        let mut measured = self.measured(file)?;
+        eprintln!("file       {measured}");
+        for note in &measured.notes {
+            eprintln!("note: {note}");
+        }
+        if measured.missing > 0 && self.fill {
+            let missing = measured.missing;
+            measured = measured.fill_missing().map_err(failed)?;
+            eprintln!("filled     {missing} nodes from those around them");
+        }
+        self.prepare(measured.topography().map_err(failed)?)
+            .map_err(failed)
+    }
+
+    /// Levels and inverts.
+    fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
+        let mut surface = surface;
+        if let Some(level) = self.level {
+            let levelled = surface.level(level.into())?;
+            eprintln!(
+                "levelled   Sq {} before, {} now",
+                quantity(surface.map().rms_height(), "m", 5),
+                quantity(levelled.map().rms_height(), "m", 5)
+            );
+            surface = levelled;
+        }
+        Ok(if self.invert {
+            surface.invert()
+        } else {
+            surface
+        })
+    }
+}
