@@ -1,0 +1,140 @@
+//! `asperity info`: what is in a file of an instrument.
+//!
+//! Prints what was found, and draws `surface_map.png` and `surface_statistics.png`.
+
+mod picture;
+mod summary;
+
+use std::path::PathBuf;
+
+use asperity::Doubt;
+use asperity::io::{MeasuredSurface, channels};
+use asperity::surface::Trend;
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::panel;
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::reading::Reading;
+use summary::Summary;
+
+/// What is in a file of an instrument: size, units, missing nodes, roughness, and pictures of it
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Heights in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+
+    #[command(flatten)]
+    reading: Reading,
+
+    /// Print one JSON object with format, nx, ny, side_x, side_y, missing, min, max, mean, sq and rms_gradient (metres; null where
+    /// the file does not say), and draw nothing unless --out is given
+    #[arg(long)]
+    json: bool,
+
+    /// Directory for the pictures, made if it is not there [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Reads the file, says what is in it, and draws it.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let measured = options.reading.measured(&options.file)?;
+    let summary = Summary::of(&measured);
+    if options.json {
+        println!("{}", object(&measured, &summary));
+    } else {
+        print(options, &measured, &summary)?;
+    }
+    let directory = match (&options.out, options.json) {
+        (Some(directory), _) => directory.clone(),
+        (None, false) => PathBuf::from("out"),
+        (None, true) => return Ok(()),
+    };
+    panel::register_font()?;
+    std::fs::create_dir_all(&directory)
+        .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
+    let mut outcome = Outcome::default();
+    outcome.written(picture::map(&measured, &summary, &directory));
+    outcome.written(picture::statistics(&measured, &directory));
+    if options.json {
+        return outcome.finish_quietly();
+    }
+    outcome.finish()
+}
+
+/// One object for programs.
+fn object(measured: &MeasuredSurface, summary: &Summary) -> Value {
+    let (nx, ny) = measured.heights.shape();
+    let side = |n: usize, cell: f64| n as f64 * cell;
+    json!({
+        "format": measured.format.name(),
+        "title": measured.title,
+        "nx": nx,
+        "ny": ny,
+        "side_x": measured.cell.map(|(dx, _)| side(nx, dx)),
+        "side_y": measured.cell.map(|(_, dy)| side(ny, dy)),
+        "missing": measured.missing,
+        "min": summary.min,
+        "max": summary.max,
+        "mean": summary.mean,
+        "sq": summary.sq,
+        "rms_gradient": summary.rms_gradient,
+        "notes": measured.notes,
+    })
+}
+
+/// Lines for people.
+fn print(
+    options: &Options,
+    measured: &MeasuredSurface,
+    summary: &Summary,
+) -> Result<(), Failure> {
+    let length = |value: f64| quantity(value, "m", 5);
+    println!("file          {}", options.file.display());
+    println!("found         {measured}");
+    let maps = channels(&options.file)
+        .map_err(|error| Failure::new(format!("cannot read {}", options.file.display()), error))?;
+    if maps.len() > 1 {
+        println!("maps          {}", maps.join(", "));
+    }
+    if !measured.title.is_empty() {
+        println!("title         {}", measured.title);
+    }
+    for note in &measured.notes {
+        println!("note          {note}");
+    }
+    println!(
+        "heights       {} to {}, mean {}, Sq {}",
+        length(summary.min),
+        length(summary.max),
+        length(summary.mean),
+        length(summary.sq)
+    );
+    if let Some(gradient) = summary.rms_gradient {
+        println!("rms gradient  {gradient:.4}");
+    }
+    let whole = if measured.missing > 0 {
+        measured.clone().fill_missing()
+    } else {
+        Ok(measured.clone())
+    };
+    let Ok(surface) = whole.and_then(MeasuredSurface::topography) else {
+        println!("no statistics: the file does not give the size of the surface; give it with --side");
+        return Ok(());
+    };
+    if let Ok(levelled) = surface.level(Trend::Plane) {
+        let tilt = surface.map().rms_height().powi(2) - levelled.map().rms_height().powi(2);
+        println!(
+            "tilt          {} rms; without it Sq {}",
+            length(tilt.max(0.0).sqrt()),
+            length(levelled.map().rms_height())
+        );
+    }
+    for doubt in Doubt::of_surface(&surface) {
+        println!("warning       {doubt}");
+    }
+    Ok(())
+}
