@@ -18,6 +18,7 @@ use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface, memory};
 
 /// Which node is taken to touch next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactRule {
     /// The node whose gap closes first as the approach grows. Exact.
     #[default]

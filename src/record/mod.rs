@@ -31,6 +31,11 @@
 //! # }
 //! ```
 
+#[cfg(feature = "io")]
+mod npz;
+#[cfg(feature = "serde")]
+mod parts;
+
 use nalgebra::DMatrix;
 
 use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
@@ -45,6 +50,11 @@ const SAME_KERNEL: f64 = 1e-12;
 
 /// A path as a record. See the [module](self).
 #[derive(Debug, Clone)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "parts::Parts", into = "parts::Parts")
+)]
 pub struct LoadingRecord {
     grid: Grid,
     /// Heights from the highest node.
@@ -57,6 +67,7 @@ pub struct LoadingRecord {
 
 /// What a record remembers of a kernel.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRecord {
     /// What it was made from.
     pub origin: KernelOrigin,
