@@ -80,6 +80,7 @@ pub mod loading;
 mod memory;
 mod parallel;
 mod problem;
+pub mod record;
 pub mod reference;
 pub mod surface;
 pub mod updater;

@@ -6,6 +6,7 @@
 /// touches it carries nothing yet. Stiffnesses are exact derivatives *on further loading* of the nodes
 /// in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ContactState {
     /// Number of nodes in contact, n.

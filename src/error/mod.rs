@@ -189,6 +189,21 @@ pub enum Error {
         expected: &'static str,
     },
 
+    /// A record of a path on a kernel that is not one of this crate.
+    #[error("the path was on a kernel that is not one of this crate: it has to be given")]
+    ForeignKernel,
+
+    /// A kernel that is not the one of a record.
+    #[error(
+        "this is not the kernel of the record: one of its coefficients is {found} and not {expected} m/Pa"
+    )]
+    WrongKernel {
+        /// The coefficient on record \[m/Pa\].
+        expected: f64,
+        /// That of the kernel given \[m/Pa\].
+        found: f64,
+    },
+
     /// A path that ended with an error cannot go on.
     #[error("the path ended with an error after {steps} events, and cannot go on")]
     CannotContinue {

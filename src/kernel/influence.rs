@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Boundary, ContactGrowth, MeanDisplacement};
+use super::{Boundary, ContactGrowth, KernelOrigin, MeanDisplacement};
 use crate::Grid;
 
 /// Influence coefficients of a translation-invariant elastic body on a grid.
@@ -53,6 +53,11 @@ pub trait InfluenceKernel {
     fn mean_displacement(&self) -> MeanDisplacement {
         MeanDisplacement::Arbitrary
     }
+
+    /// What the kernel was made from, for a record of a path: [`KernelOrigin::Other`] unless it is one of this crate.
+    fn origin(&self) -> KernelOrigin {
+        KernelOrigin::Other
+    }
 }
 
 /// Pointers to a kernel are that kernel.
@@ -73,6 +78,9 @@ macro_rules! forward {
             }
             fn mean_displacement(&self) -> MeanDisplacement {
                 (**self).mean_displacement()
+            }
+            fn origin(&self) -> KernelOrigin {
+                (**self).origin()
             }
         }
     )*};

@@ -17,6 +17,7 @@ mod gauss;
 mod growth;
 mod influence;
 mod mean;
+mod origin;
 mod periodic;
 mod table;
 
@@ -27,6 +28,7 @@ pub(crate) use gauge::Gauge;
 pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
 pub use mean::MeanDisplacement;
+pub use origin::KernelOrigin;
 pub use periodic::{PeriodicBoussinesq, Spectral};
 pub(crate) use table::Blocks;
 pub use table::KernelTable;

@@ -6,6 +6,7 @@ use crate::{Error, Grid};
 
 /// Why a path has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LoadingEnd {
     /// All nodes are in contact: from here on everything is linear in the load.

@@ -2,16 +2,14 @@
 
 use std::iter::FusedIterator;
 
-use nalgebra::DMatrix;
-
+use super::builder::ContactRule;
 use super::limits::{Limits, LoadingEnd};
 use super::paper::Paper;
 use super::run::{LoadingRun, LoadingTimings};
-use super::snapshot::Snapshot;
 use super::state::LoadingState;
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
-use crate::contact::{Certificate, Conditions, ContactTarget, LengthScale};
+use crate::contact::ContactTarget;
 use crate::updater::{Handover, LinearUpdater};
 use crate::{Error, Grid, Problem};
 
@@ -45,6 +43,7 @@ use crate::{Error, Grid, Problem};
 pub struct LoadingSolver<U = Handover> {
     pub(super) run: LoadingRun<U>,
     pub(super) procedure: Procedure,
+    pub(super) rule: ContactRule,
     pub(super) limits: Limits,
     /// The state yielded last.
     pub(super) state: Option<LoadingState>,
@@ -192,6 +191,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         &self.run.problem
     }
 
+    /// Which node is taken to touch next.
+    #[must_use]
+    pub fn rule(&self) -> ContactRule {
+        self.rule
+    }
+
     /// The grid.
     #[must_use]
     pub fn grid(&self) -> Grid {
@@ -228,121 +233,5 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let run = &self.run;
         run.fixed_bytes()
             .saturating_add(run.updater.bytes(run.contact.len(), 0))
-    }
-
-    /// Node indices in contact at the present state, in the order in which they touched.
-    #[must_use]
-    pub fn contact_order(&self) -> Vec<usize> {
-        let step = self.state.map_or(0, |state| state.step);
-        let run = &self.run;
-        run.releases.contact_at(run.contact.order(), step)
-    }
-
-    /// Which nodes are in contact at the present state.
-    #[must_use]
-    pub fn contact_map(&self) -> DMatrix<bool> {
-        let (nx, ny) = self.grid().shape();
-        let mut map = DMatrix::from_element(nx, ny, false);
-        for node in self.contact_order() {
-            map.as_mut_slice()[node] = true;
-        }
-        map
-    }
-
-    /// Pressure \[Pa\] at the present state, zero before the first: one backward substitution with the
-    /// factor at hand.
-    ///
-    /// # Errors
-    ///
-    /// Those of the updater.
-    pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
-        match self.state {
-            Some(state) => Ok(Snapshot::of(&mut self.run, &state)?.pressure),
-            None => Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny())),
-        }
-    }
-
-    /// Pressure \[Pa\] at any state of this path up to the present one, or at a state between two events
-    /// that [`History`](super::History) has read.
-    ///
-    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
-    /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
-    /// contact.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
-    /// a state of this path; those of the updater; before the last node that left,
-    /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
-    pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
-        let (step, present) = (state.step, self.state.map_or(0, |state| state.step));
-        if step > present {
-            return Err(Error::StateNotReached { step, present });
-        }
-        let snapshot = Snapshot::of(&mut self.run, state)?;
-        let keeps_conditions = !matches!(self.procedure, Procedure::Paper(_));
-        snapshot.recognise(&mut self.run, state, keeps_conditions)?;
-        Ok(snapshot.pressure)
-    }
-
-    /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean if the
-    /// half-space is periodic and its mean displacement arbitrary.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
-        let pressure = self.pressure()?;
-        let load = self.state.map_or(0.0, |state| state.load);
-        let uniform = self.run.front.uniform_displacement(load);
-        let field = self.run.field.displace(pressure.as_slice())?.iter();
-        let (nx, ny) = pressure.shape();
-        Ok(DMatrix::from_iterator(nx, ny, field.map(|u| u - uniform)))
-    }
-
-    /// Gap `g + u − δ` \[m\] at the present state: zero in contact, to rounding.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
-        let approach = self.state.map_or(0.0, |state| state.approach);
-        let mut gap = self.displacement()?;
-        for (value, initial) in gap.iter_mut().zip(self.run.problem.initial_gap()) {
-            *value = initial + *value - approach;
-        }
-        Ok(gap)
-    }
-
-    /// Greatest pressure \[Pa\] at the present state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn max_pressure(&mut self) -> Result<f64, Error> {
-        Ok(self.pressure()?.iter().copied().fold(0.0, f64::max))
-    }
-
-    /// How well the present state fulfils the conditions of contact, computed afresh.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Self::pressure`].
-    pub fn certificate(&mut self) -> Result<Certificate, Error> {
-        let contact = self.contact_map();
-        let pressure = self.pressure()?;
-        let state = self.state.map(|state| state.contact);
-        let run = &mut self.run;
-        let approach = state.map_or(0.0, |state| run.front.own_approach(&state));
-        let reported = state.map_or(0.0, |state| state.approach);
-        let gaps = run.field.displace(pressure.as_slice())?;
-        let gaps = gaps.iter().zip(run.problem.initial_gap());
-        let gaps = gaps.map(|(u, g)| g + u - approach);
-        let nodes = pressure.iter().zip(gaps).zip(&contact);
-        let nodes = nodes.map(|((p, gap), in_contact)| (*p, gap, *in_contact));
-        let load = state.map_or(0.0, |state| state.load);
-        let scale = LengthScale::new(run.problem.rms_height(), run.problem.table());
-        let sum = load / run.problem.grid().cell_area();
-        Ok(Conditions::new(sum, reported, scale).check(nodes))
     }
 }

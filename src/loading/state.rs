@@ -6,6 +6,7 @@ use crate::contact::ContactState;
 
 /// What happens at a state of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactEvent {
     /// The gap of a node has closed, and it joins the contact.
     Touch,
@@ -21,6 +22,7 @@ pub enum ContactEvent {
 /// The node that touches or leaves has no pressure at that instant. All scalars of
 /// [`contact`](Self::contact) are fields of the state too: `state.load` is `state.contact.load`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct LoadingState {
     /// Number of events up to here, 1 for first touch. Where no node ever leaves the contact it is the

@@ -36,6 +36,8 @@ pub(super) struct Stepwise {
     touches: Vec<(f64, usize)>,
     /// Events so far at the approach of the front.
     tied: usize,
+    /// Whether the next event has been looked for.
+    has_begun: bool,
 }
 
 impl Stepwise {
@@ -45,8 +47,9 @@ impl Stepwise {
         run: &mut LoadingRun<U>,
         most_nodes: usize,
     ) -> Result<(), Error> {
-        if run.steps() == 0 {
+        if !self.has_begun {
             self.survey(run)?;
+            self.has_begun = true;
         }
         let enough = run.contact.len() >= most_nodes;
         let within = |next: &Upcoming| next.event == ContactEvent::Release || !enough;

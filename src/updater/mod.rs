@@ -17,6 +17,7 @@ mod cholesky;
 mod conjugate_gradient;
 mod dense;
 mod handover;
+mod join;
 mod schur;
 mod touched;
 
@@ -25,6 +26,7 @@ pub use cholesky::{CholeskyTimings, RecursiveCholesky};
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
+pub(crate) use join::{JOINED, join_all};
 pub use schur::Schur;
 pub use touched::Touched;
 

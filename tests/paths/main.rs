@@ -15,6 +15,7 @@ mod path_properties;
 mod periodic_paths;
 mod physical_mean;
 mod problems;
+mod records;
 mod reference_paths;
 mod releases;
 mod smallest_gap;

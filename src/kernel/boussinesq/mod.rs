@@ -6,7 +6,7 @@ mod near;
 use std::f64::consts::PI;
 
 use self::far::Far;
-use super::{Boundary, ContactGrowth, InfluenceKernel};
+use super::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
 use crate::{Error, Grid};
 
 /// The elastic half-space with a free boundary, $`C(\mathbf d)`$ of a cell under uniform pressure
@@ -161,6 +161,12 @@ impl InfluenceKernel for Boussinesq {
             self.near_scale * near::integral(self.aspect, x, y)
         } else {
             self.self_influence
+        }
+    }
+
+    fn origin(&self) -> KernelOrigin {
+        KernelOrigin::Boussinesq {
+            e_star: self.e_star(),
         }
     }
 }

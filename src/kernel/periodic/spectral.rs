@@ -3,7 +3,7 @@
 use super::even::Even;
 use super::symmetric::{Symmetric, in_long_sides, wave_number};
 use crate::kernel::gauge::of_half_space;
-use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel};
+use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
 use crate::{Error, Grid};
 
 /// The periodic half-space, seen by the waves of the grid alone: symbol 2 / (E* |q|) \[m/Pa\].
@@ -141,5 +141,11 @@ impl InfluenceKernel for Spectral {
     /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
         self.half_space.coefficient(di, dj)
+    }
+
+    fn origin(&self) -> KernelOrigin {
+        KernelOrigin::Spectral {
+            e_star: self.e_star(),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The same kernel on a grid of half as many nodes a side.
 
 use super::KernelTable;
+use crate::kernel::KernelOrigin;
 use crate::{Boundary, ContactGrowth, Error, Grid};
 
 /// Blocks of 2 × 2 nodes of a grid, each a node of a coarser grid. A direction with a single node
@@ -185,6 +186,7 @@ impl KernelTable {
             boundary: self.boundary,
             growth: ContactGrowth::Unknown,
             mean: self.mean,
+            origin: KernelOrigin::Other,
             values,
         }
     }

@@ -6,7 +6,7 @@ mod symbol;
 pub(crate) use coarse::Blocks;
 
 use super::gauge::of_coefficients;
-use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, MeanDisplacement};
+use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
@@ -65,6 +65,7 @@ pub struct KernelTable {
     boundary: Boundary,
     growth: ContactGrowth,
     mean: MeanDisplacement,
+    origin: KernelOrigin,
     /// (2 nx − 1) × (2 ny − 1) coefficients, di fastest, offset (0, 0) in the middle.
     values: Vec<f64>,
 }
@@ -79,7 +80,10 @@ impl KernelTable {
         let (grid, boundary) = (kernel.grid(), kernel.boundary());
         let coefficient = |di, dj| kernel.coefficient(di, dj);
         let table = Self::from_fn(grid, boundary, kernel.contact_growth(), coefficient)?;
-        Ok(table.with_mean_displacement(kernel.mean_displacement()))
+        Ok(Self {
+            origin: kernel.origin(),
+            ..table.with_mean_displacement(kernel.mean_displacement())
+        })
     }
 
     /// A kernel of the coefficients `coefficient(di, dj)` \[m/Pa\], see
@@ -115,6 +119,7 @@ impl KernelTable {
             boundary,
             growth,
             mean: MeanDisplacement::default(),
+            origin: KernelOrigin::Other,
             values,
         };
         table.check_reciprocity()?;
@@ -375,6 +380,10 @@ impl InfluenceKernel for KernelTable {
 
     fn mean_displacement(&self) -> MeanDisplacement {
         self.mean
+    }
+
+    fn origin(&self) -> KernelOrigin {
+        self.origin
     }
 }
 

@@ -10,11 +10,10 @@ pub use factor::CholeskyTimings;
 
 use std::time::Instant;
 
-use super::{LinearUpdater, Schur, Solution, SolveRequest, Touched, check_count};
+use super::{JOINED, LinearUpdater, Schur, Solution, SolveRequest, Touched, check_count, join_all};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 use factor::Factor;
-use panels::ROWS;
 
 /// The Cholesky factor of the contact's influence matrix, grown by one row for each node that touches
 /// (paper, eqs. 14-19), in blocks.
@@ -59,23 +58,14 @@ impl RecursiveCholesky {
     pub(crate) fn of(problem: &Problem, nodes: &[usize]) -> Result<(Self, ContactSequence), Error> {
         let mut updater = Self::new();
         let mut contact = ContactSequence::new(problem.grid());
-        for block in nodes.chunks(ROWS) {
-            let mut schur = Schur::default();
-            updater.watch(problem, &contact, block, &mut schur)?;
-            let positions: Vec<usize> = (0..block.len()).collect();
-            let touched = Touched::of(schur, &positions)?;
-            for &node in block {
-                contact.push(node)?;
-            }
-            updater.join(problem, &contact, &touched)?;
-        }
+        join_all(&mut updater, problem, &mut contact, nodes, usize::MAX)?;
         Ok((updater, contact))
     }
 
     /// Bytes held at most while [`Self::of`] factors `contact` nodes.
     pub(crate) fn bytes_of(contact: usize) -> usize {
-        let updater = Self::new().bytes(contact, ROWS);
-        updater.saturating_add(Touched::bytes(ROWS))
+        let updater = Self::new().bytes(contact, JOINED);
+        updater.saturating_add(Touched::bytes(JOINED))
     }
 
     /// Where the time went so far.

@@ -5,7 +5,7 @@ mod short_range;
 use super::even::{Even, cosine_of_turn};
 use super::symmetric::{Symmetric, in_long_sides, least_gauge, wave_number};
 use crate::kernel::gauge::of_half_space;
-use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel};
+use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
 use crate::{Error, Grid};
 use short_range::{ALPHA, ShortRange};
 
@@ -197,6 +197,12 @@ impl InfluenceKernel for PeriodicBoussinesq {
     /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
         self.half_space.coefficient(di, dj)
+    }
+
+    fn origin(&self) -> KernelOrigin {
+        KernelOrigin::PeriodicBoussinesq {
+            e_star: self.e_star(),
+        }
     }
 }
 

@@ -1,0 +1,154 @@
+//! Archives of arrays, `.npz`.
+
+use std::io::{Cursor, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use nalgebra::DMatrix;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+use super::bytes::read_file;
+use super::fault::Fault;
+use super::npy::array::{Array, header_of};
+use crate::Error;
+
+/// How many times the size of its archive a member may take: arrays of one number compress a thousand times.
+const MOST: usize = 1 << 11;
+/// Members from which on the archive needs longer numbers.
+const LARGE: usize = u32::MAX as usize / 2;
+
+/// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
+pub(crate) struct ArchiveWriter<W: Write + Seek> {
+    zip: ZipWriter<W>,
+}
+
+impl<W: Write + Seek> ArchiveWriter<W> {
+    pub(crate) fn new(output: W) -> Self {
+        Self {
+            zip: ZipWriter::new(output),
+        }
+    }
+
+    fn begin(&mut self, name: &str, descr: &str, shape: &[usize], bytes: usize) -> std::io::Result<()> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .large_file(bytes > LARGE);
+        self.zip.start_file(format!("{name}.npy"), options)?;
+        self.zip.write_all(&header_of(descr, shape))
+    }
+
+    /// An array of no dimension that holds a text.
+    pub(crate) fn text(&mut self, name: &str, text: &str) -> std::io::Result<()> {
+        let length = text.chars().count();
+        self.begin(name, &format!("<U{length}"), &[], 4 * length)?;
+        for letter in text.chars() {
+            self.zip.write_all(&u32::from(letter).to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// An array of one dimension.
+    pub(crate) fn numbers(
+        &mut self,
+        name: &str,
+        length: usize,
+        values: impl Iterator<Item = f64>,
+    ) -> std::io::Result<()> {
+        self.begin(name, "<f8", &[length], 8 * length)?;
+        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+        self.zip.write_all(&bytes)
+    }
+
+    /// The same of whole numbers.
+    pub(crate) fn integers(
+        &mut self,
+        name: &str,
+        length: usize,
+        values: impl Iterator<Item = i64>,
+    ) -> std::io::Result<()> {
+        self.begin(name, "<i8", &[length], 8 * length)?;
+        let bytes: Vec<u8> = values.flat_map(i64::to_le_bytes).collect();
+        self.zip.write_all(&bytes)
+    }
+
+    /// An array `[ix, iy]`.
+    pub(crate) fn matrix(&mut self, name: &str, matrix: &DMatrix<f64>) -> std::io::Result<()> {
+        let (nx, ny) = matrix.shape();
+        self.begin(name, "<f8", &[nx, ny], 8 * nx * ny)?;
+        for row in matrix.row_iter() {
+            let bytes: Vec<u8> = row.iter().flat_map(|value| value.to_le_bytes()).collect();
+            self.zip.write_all(&bytes)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn finish(self) -> std::io::Result<()> {
+        self.zip.finish()?.flush()
+    }
+}
+
+/// An archive whose members are read by name.
+pub(crate) struct Archive {
+    path: PathBuf,
+    /// What errors call it.
+    format: &'static str,
+    bytes: Vec<u8>,
+}
+
+impl Archive {
+    pub(crate) fn open(path: &Path, format: &'static str) -> Result<Self, Error> {
+        let bytes = read_file(path).map_err(|fault| fault.in_file(path, format))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            format,
+            bytes,
+        })
+    }
+
+    fn member(&self, name: &str) -> Result<Array, Error> {
+        self.read(name).map_err(|fault| fault.in_file(&self.path, self.format))
+    }
+
+    fn read(&self, name: &str) -> Result<Array, Fault> {
+        let bad = |error: zip::result::ZipError| Fault::malformed(format!("member '{name}': {error}"));
+        let mut zip = ZipArchive::new(Cursor::new(&self.bytes[..])).map_err(bad)?;
+        let member = zip.by_name(&format!("{name}.npy")).map_err(bad)?;
+        let most = self.bytes.len().saturating_mul(MOST);
+        let mut bytes = Vec::new();
+        let mut limited = member.take(most as u64 + 1);
+        limited
+            .read_to_end(&mut bytes)
+            .map_err(|error| Fault::malformed(format!("member '{name}': {error}")))?;
+        if bytes.len() > most {
+            return Err(Fault::malformed(format!(
+                "member '{name}' is more than {MOST} times as large as the file"
+            )));
+        }
+        Array::parse(&bytes)
+    }
+
+    /// The text of a member.
+    pub(crate) fn text(&self, name: &str) -> Result<String, Error> {
+        self.member(name)?
+            .into_text()
+            .ok_or_else(|| self.unexpected(name, "a text"))
+    }
+
+    /// An array of one dimension, of a length if one is given.
+    pub(crate) fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, Error> {
+        let values = self.member(name)?.into_vector();
+        values
+            .filter(|values| length.is_none_or(|length| values.len() == length))
+            .ok_or_else(|| self.unexpected(name, "one number for each state"))
+    }
+
+    /// An array `[ix, iy]`.
+    pub(crate) fn matrix(&self, name: &str) -> Result<DMatrix<f64>, Error> {
+        let matrix = self.member(name)?.into_matrix();
+        matrix.ok_or_else(|| self.unexpected(name, "an array of two dimensions"))
+    }
+
+    fn unexpected(&self, name: &str, expected: &str) -> Error {
+        Fault::malformed(format!("member '{name}' is not {expected}")).in_file(&self.path, self.format)
+    }
+}

@@ -1,0 +1,181 @@
+//! Fields of the states of a path, computed on demand.
+
+use nalgebra::DMatrix;
+
+use super::snapshot::Snapshot;
+use super::solver::{LoadingSolver, Procedure};
+use super::state::LoadingState;
+use crate::Error;
+use crate::contact::{Certificate, Conditions, LengthScale};
+use crate::updater::LinearUpdater;
+
+impl<U: LinearUpdater> LoadingSolver<U> {
+    /// Node indices in contact at the present state, in the order in which they touched.
+    #[must_use]
+    pub fn contact_order(&self) -> Vec<usize> {
+        self.order_at(self.state.map_or(0, |state| state.step))
+    }
+
+    /// Which nodes are in contact at the present state.
+    #[must_use]
+    pub fn contact_map(&self) -> DMatrix<bool> {
+        self.map_of(self.state.map_or(0, |state| state.step))
+    }
+
+    /// The same at any state up to the present one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`].
+    pub fn contact_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error> {
+        self.check_reached(state)?;
+        Ok(self.map_of(state.step))
+    }
+
+    fn map_of(&self, step: usize) -> DMatrix<bool> {
+        let (nx, ny) = self.grid().shape();
+        let mut map = DMatrix::from_element(nx, ny, false);
+        for node in self.order_at(step) {
+            map.as_mut_slice()[node] = true;
+        }
+        map
+    }
+
+    fn order_at(&self, step: usize) -> Vec<usize> {
+        let run = &self.run;
+        run.releases.contact_at(run.contact.order(), step)
+    }
+
+    fn check_reached(&self, state: &LoadingState) -> Result<(), Error> {
+        let (step, present) = (state.step, self.state.map_or(0, |state| state.step));
+        if step > present {
+            return Err(Error::StateNotReached { step, present });
+        }
+        Ok(())
+    }
+
+    /// Pressure \[Pa\] at the present state, zero before the first: one backward substitution with the
+    /// factor at hand.
+    ///
+    /// # Errors
+    ///
+    /// Those of the updater.
+    pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
+        match self.state {
+            Some(state) => Ok(Snapshot::of(&mut self.run, &state)?.pressure),
+            None => Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny())),
+        }
+    }
+
+    /// Pressure \[Pa\] at any state of this path up to the present one, or at a state between two events
+    /// that [`History`](super::History) has read.
+    ///
+    /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
+    /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
+    /// contact.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`] if the state lies beyond the present one; [`Error::NotOnPath`] if it is not
+    /// a state of this path; those of the updater; before the last node that left,
+    /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
+    pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+        self.check_reached(state)?;
+        let snapshot = Snapshot::of(&mut self.run, state)?;
+        let keeps_conditions = !matches!(self.procedure, Procedure::Paper(_));
+        snapshot.recognise(&mut self.run, state, keeps_conditions)?;
+        Ok(snapshot.pressure)
+    }
+
+    /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean if the
+    /// half-space is periodic and its mean displacement arbitrary.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
+        let pressure = self.pressure()?;
+        let load = self.state.map_or(0.0, |state| state.load);
+        self.displacement_under(&pressure, load)
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn displacement_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+        let pressure = self.pressure_at(state)?;
+        self.displacement_under(&pressure, state.load)
+    }
+
+    fn displacement_under(
+        &mut self,
+        pressure: &DMatrix<f64>,
+        load: f64,
+    ) -> Result<DMatrix<f64>, Error> {
+        let uniform = self.run.front.uniform_displacement(load);
+        let field = self.run.field.displace(pressure.as_slice())?.iter();
+        let (nx, ny) = pressure.shape();
+        Ok(DMatrix::from_iterator(nx, ny, field.map(|u| u - uniform)))
+    }
+
+    /// Gap `g + u − δ` \[m\] at the present state: zero in contact, to rounding.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
+        let displacement = self.displacement()?;
+        Ok(self.gap_over(displacement, self.state.map_or(0.0, |state| state.approach)))
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+        let displacement = self.displacement_at(state)?;
+        Ok(self.gap_over(displacement, state.approach))
+    }
+
+    fn gap_over(&self, mut displacement: DMatrix<f64>, approach: f64) -> DMatrix<f64> {
+        for (value, initial) in displacement.iter_mut().zip(self.run.problem.initial_gap()) {
+            *value = initial + *value - approach;
+        }
+        displacement
+    }
+
+    /// Greatest pressure \[Pa\] at the present state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn max_pressure(&mut self) -> Result<f64, Error> {
+        Ok(self.pressure()?.iter().copied().fold(0.0, f64::max))
+    }
+
+    /// How well the present state fulfils the conditions of contact, computed afresh.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn certificate(&mut self) -> Result<Certificate, Error> {
+        let contact = self.contact_map();
+        let pressure = self.pressure()?;
+        let state = self.state.map(|state| state.contact);
+        let run = &mut self.run;
+        let approach = state.map_or(0.0, |state| run.front.own_approach(&state));
+        let reported = state.map_or(0.0, |state| state.approach);
+        let gaps = run.field.displace(pressure.as_slice())?;
+        let gaps = gaps.iter().zip(run.problem.initial_gap());
+        let gaps = gaps.map(|(u, g)| g + u - approach);
+        let nodes = pressure.iter().zip(gaps).zip(&contact);
+        let nodes = nodes.map(|((p, gap), in_contact)| (*p, gap, *in_contact));
+        let load = state.map_or(0.0, |state| state.load);
+        let scale = LengthScale::new(run.problem.rms_height(), run.problem.table());
+        let sum = load / run.problem.grid().cell_area();
+        Ok(Conditions::new(sum, reported, scale).check(nodes))
+    }
+}

@@ -1,0 +1,128 @@
+//! A path that goes on where an earlier one stopped.
+
+use super::history::History;
+use super::snapshot::Snapshot;
+use super::solver::{LoadingSolver, Procedure};
+use super::state::{ContactEvent, LoadingState};
+use crate::contact::ContactSequence;
+use crate::updater::{LinearUpdater, join_all};
+use crate::{Error, Grid};
+
+impl<U: LinearUpdater> LoadingSolver<U> {
+    /// Puts a path that has not begun behind the states of an earlier one, of the same surface and kernel:
+    /// contact and order are taken from them, and nothing is solved yet.
+    pub(crate) fn restore(&mut self, history: &History) -> Result<(), Error> {
+        let run = &mut self.run;
+        let releases = &mut run.releases;
+        let contact = replay(&run.problem.grid(), history, |step, node, position| {
+            releases.push(step, node, position);
+        })?;
+        let events = history.states().iter().rev();
+        let last_event = events
+            .clone()
+            .find(|state| state.event != ContactEvent::Limit);
+        if let Some(state) = last_event {
+            run.front.place_at(run.front.own_approach(state));
+        }
+        run.contact = contact;
+        self.state = history.states().last().copied();
+        Ok(())
+    }
+
+    /// Makes the updater that of the restored contact, solves there, and compares the solution with the last
+    /// state.
+    pub(super) fn rebuild(&mut self) -> Result<(), Error> {
+        let Some(last) = self.state else {
+            return Ok(());
+        };
+        let run = &mut self.run;
+        let order = run.contact.order().to_vec();
+        let grid = run.problem.grid();
+        run.contact = ContactSequence::new(grid);
+        let budget = run.memory_budget.saturating_sub(run.fixed_bytes());
+        join_all(
+            &mut run.updater,
+            &run.problem,
+            &mut run.contact,
+            &order,
+            budget,
+        )?;
+        let approach = run.front.approach();
+        run.renew_field(approach)?;
+        run.front.renew_load(&run.problem, &run.contact, &run.field);
+        let keeps_conditions = !matches!(self.procedure, Procedure::Paper(_));
+        let snapshot = Snapshot::of(run, &last)?;
+        snapshot.recognise(run, &last, keeps_conditions)
+    }
+}
+
+/// The contact after the states of a path, which are checked to be in an order that a path may have; `left` is told of
+/// each node that leaves: the number of the event, the node, and its place in the order of contact.
+pub(crate) fn replay(
+    grid: &Grid,
+    history: &History,
+    mut left: impl FnMut(usize, usize, usize),
+) -> Result<ContactSequence, Error> {
+    let mut contact = ContactSequence::new(*grid);
+    let mut step = 0;
+    let states = history.states();
+    for (k, state) in states.iter().enumerate() {
+        let is_last = k + 1 == states.len();
+        if state.event != ContactEvent::Limit {
+            step += 1;
+            let node = node_of(grid, state)?;
+            if state.event == ContactEvent::Release {
+                let position = contact.remove(node)?;
+                left(step, node, position);
+            } else {
+                contact.push(node)?;
+            }
+        } else if !is_last || step == 0 {
+            return Err(not_a_path(
+                state,
+                "number of the event",
+                "no limit but the last state",
+            ));
+        }
+        if state.step != step {
+            return Err(not_a_path(
+                state,
+                "number of the event",
+                "one more than before",
+            ));
+        }
+        if state.contact_nodes != contact.len() {
+            return Err(not_a_path(
+                state,
+                "number of nodes in contact",
+                "that of the events",
+            ));
+        }
+    }
+    Ok(contact)
+}
+
+/// The node of a state.
+fn node_of(grid: &Grid, state: &LoadingState) -> Result<usize, Error> {
+    let (ix, iy) = state.node;
+    if ix < grid.nx() && iy < grid.ny() {
+        Ok(grid.index(ix, iy))
+    } else {
+        Err(Error::NodeOutOfGrid {
+            node: iy.saturating_mul(grid.nx()).saturating_add(ix),
+            nodes: grid.nodes(),
+        })
+    }
+}
+
+/// States that no path has yielded in this order.
+fn not_a_path(state: &LoadingState, quantity: &'static str, expected: &'static str) -> Error {
+    Error::NotOnPath {
+        step: state.step,
+        load: state.load,
+        approach: state.approach,
+        quantity,
+        value: state.contact_nodes as f64,
+        expected,
+    }
+}

@@ -1,0 +1,279 @@
+//! What a path leaves behind: to be read, kept, and gone on from.
+//!
+//! A [`LoadingRecord`] holds the surface, what kernel it was, the states and why they end: enough to read the path at
+//! any load, approach, mean gap or area ([`history`](LoadingRecord::history)), to compute the fields of any of its states
+//! ([`replay`](LoadingRecord::replay)), and to go on in another process ([`resume`](LoadingRecord::resume)).
+//!
+//! ```
+//! use asperity::loading::History;
+//! use asperity::record::LoadingRecord;
+//! use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
+//!
+//! # fn main() -> Result<(), asperity::Error> {
+//! let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+//! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
+//!     .max_load(500.0)
+//!     .build()?;
+//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let record = LoadingRecord::new(&path, history)?;
+//!
+//! // Fields of a state, without the path:
+//! let at_100_newtons = record.history().at_load(100.0);
+//! let mut replay = record.replay()?;
+//! let pressure = replay.pressure_at(&at_100_newtons.ok_or(asperity::Error::NotFinite { step: 0 })?)?;
+//! # assert!(pressure.max() > 0.0);
+//!
+//! // And on to 600 N:
+//! let mut path = record.resume()?;
+//! path.continue_to(ContactTarget::Load(600.0))?;
+//! # assert_eq!(path.last().transpose()?.map(|state| state.load), Some(600.0));
+//! # Ok(())
+//! # }
+//! ```
+
+#[cfg(feature = "io")]
+mod npz;
+#[cfg(feature = "serde")]
+mod parts;
+
+use nalgebra::DMatrix;
+
+use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
+use crate::loading::{ContactRule, History, LoadingEnd, LoadingState, replay};
+use crate::surface::HeightMap;
+use crate::updater::{ConjugateGradient, LinearUpdater};
+use crate::{Error, Grid, LoadingSolver};
+
+/// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
+/// formulas on another machine differ by the last bits of elementary functions.
+const SAME_KERNEL: f64 = 1e-12;
+
+/// A path as a record. See the [module](self).
+#[derive(Debug, Clone)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "parts::Parts", into = "parts::Parts")
+)]
+pub struct LoadingRecord {
+    grid: Grid,
+    /// Heights from the highest node.
+    heights: HeightMap,
+    kernel: KernelRecord,
+    rule: ContactRule,
+    history: History,
+    end: Option<LoadingEnd>,
+}
+
+/// What a record remembers of a kernel.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct KernelRecord {
+    /// What it was made from.
+    pub origin: KernelOrigin,
+    /// Some of its coefficients \[m/Pa\], from which it is known again: see [`KernelRecord::OFFSETS`].
+    pub coefficients: Vec<f64>,
+}
+
+impl KernelRecord {
+    /// Number of coefficients that are remembered: at the offsets 0, 1, half a side and a whole one in either
+    /// direction.
+    pub const OFFSETS: usize = 16;
+
+    fn of(table: &KernelTable) -> Self {
+        let along = |n: usize| [0, 1.min(n - 1), n / 2, n - 1];
+        let (nx, ny) = table.grid().shape();
+        let offsets = along(nx).into_iter();
+        let offsets = offsets.flat_map(|di| along(ny).map(|dj| (di as isize, dj as isize)));
+        Self {
+            origin: table.origin(),
+            coefficients: offsets
+                .map(|(di, dj)| table.coefficient(di, dj).unwrap_or(f64::NAN))
+                .collect(),
+        }
+    }
+
+    /// `Ok` if the coefficients are those of a kernel.
+    fn check(&self, table: &KernelTable) -> Result<(), Error> {
+        let found = Self::of(table).coefficients;
+        let greatest = found.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        if found.len() != self.coefficients.len() {
+            return Err(Error::LengthMismatch {
+                expected: found.len(),
+                found: self.coefficients.len(),
+            });
+        }
+        let mut pairs = self.coefficients.iter().zip(&found);
+        // NaN is another kernel as well.
+        let is_same = |a: f64, b: f64| (a - b).abs() <= SAME_KERNEL * greatest;
+        match pairs.find(|(a, b)| !is_same(**a, **b)) {
+            None => Ok(()),
+            Some((expected, found)) => Err(Error::WrongKernel {
+                expected: *expected,
+                found: *found,
+            }),
+        }
+    }
+}
+
+impl LoadingRecord {
+    /// The record of a path and of the states that it has yielded.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`] if the last state lies beyond the present one of the path, and those of
+    /// [`Self::from_parts`].
+    pub fn new<U: LinearUpdater>(path: &LoadingSolver<U>, history: History) -> Result<Self, Error> {
+        let present = path.state().map_or(0, |state| state.step);
+        if let Some(step) = history.states().last().map(|state| state.step)
+            && step > present
+        {
+            return Err(Error::StateNotReached { step, present });
+        }
+        let problem = path.problem();
+        let grid = problem.grid();
+        let heights = problem.initial_gap().iter().map(|gap| -gap);
+        let (nx, ny) = grid.shape();
+        let heights = HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?;
+        let kernel = KernelRecord::of(problem.table());
+        Self::from_parts(grid, heights, kernel, path.rule(), history, path.end())
+    }
+
+    /// A record made of what it consists of: from a file, for example.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] for heights of another grid; [`Error::NotFinite`] for a state with a scalar that no state has;
+    /// [`Error::NotOnPath`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for states that
+    /// are in no order of a path.
+    pub fn from_parts(
+        grid: Grid,
+        heights: HeightMap,
+        kernel: KernelRecord,
+        rule: ContactRule,
+        history: History,
+        end: Option<LoadingEnd>,
+    ) -> Result<Self, Error> {
+        grid.check_shape(heights.shape())?;
+        replay(&grid, &history, |_, _, _| {})?;
+        for state in history.states() {
+            if !state.contact.is_finite() || state.approach_error.is_nan() {
+                return Err(Error::NotFinite { step: state.step });
+            }
+        }
+        Ok(Self {
+            grid,
+            heights,
+            kernel,
+            rule,
+            history,
+            end,
+        })
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Heights of the surface from its highest node \[m\]: none is positive.
+    #[must_use]
+    pub fn heights(&self) -> &HeightMap {
+        &self.heights
+    }
+
+    /// What is remembered of the kernel.
+    #[must_use]
+    pub fn kernel(&self) -> &KernelRecord {
+        &self.kernel
+    }
+
+    /// The kernel, made again.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes another one
+    /// of it.
+    pub fn make_kernel(&self) -> Result<KernelTable, Error> {
+        let kernel = self.kernel.origin.kernel(self.grid)?;
+        let table = KernelTable::new(&kernel.ok_or(Error::ForeignKernel)?)?;
+        self.kernel.check(&table)?;
+        Ok(table)
+    }
+
+    /// Which node was taken to touch next.
+    #[must_use]
+    pub fn rule(&self) -> ContactRule {
+        self.rule
+    }
+
+    /// The states, to be read at any load, approach, mean gap or area up to the last one.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// The states.
+    #[must_use]
+    pub fn states(&self) -> &[LoadingState] {
+        self.history.states()
+    }
+
+    /// Why the path ended, `None` if it had not.
+    #[must_use]
+    pub fn end(&self) -> Option<LoadingEnd> {
+        self.end
+    }
+
+    /// The nodes in contact at the last state, in the order in which they touched.
+    #[must_use]
+    pub fn contact_order(&self) -> Vec<usize> {
+        let contact = replay(&self.grid, &self.history, |_, _, _| {});
+        contact.map_or_else(|_| Vec::new(), |contact| contact.order().to_vec())
+    }
+
+    /// The path once more, behind its last state, with the default updater and without limits: see
+    /// [`LoadingSolver::continue_to`], and [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
+    /// what it costs and for other settings.
+    ///
+    /// The same nodes touch next as on a path that was never interrupted. States are the same to rounding, and without a
+    /// factor to their estimated error: windows begin elsewhere.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume).
+    pub fn resume(&self) -> Result<LoadingSolver, Error> {
+        LoadingSolver::builder(&self.heights, &self.make_kernel()?)
+            .rule(self.rule)
+            .resume(&self.history)
+    }
+
+    /// The path as it was, for the fields of its states
+    /// ([`LoadingSolver::pressure_at`]): each is one solution on a known contact set, without a factor.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::build`](crate::loading::LoadingBuilder::build).
+    pub fn replay(&self) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+        self.replay_on(&self.make_kernel()?)
+    }
+
+    /// The same on the kernel given, which must be the one of the record: for kernels that are not of this crate.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongKernel`] if it is another one, and as above.
+    pub fn replay_on(
+        &self,
+        kernel: &dyn InfluenceKernel,
+    ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
+        let mut solver = LoadingSolver::builder(&self.heights, kernel)
+            .updater(ConjugateGradient::new())
+            .rule(self.rule)
+            .build()?;
+        self.kernel.check(solver.problem().table())?;
+        solver.restore(&self.history)?;
+        Ok(solver)
+    }
+}

@@ -1,0 +1,287 @@
+//! Records on disk: archives of arrays that `numpy.load` opens.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use super::{KernelRecord, LoadingRecord};
+use crate::contact::ContactState;
+use crate::io::archive::{Archive, ArchiveWriter};
+use crate::kernel::KernelOrigin;
+use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingState};
+use crate::surface::HeightMap;
+use crate::{Error, Grid};
+
+/// What the format is called in errors, and in the file itself.
+const NAME: &str = "asperity record";
+/// Grows with every change that older readers would misunderstand.
+const VERSION: u32 = 1;
+
+/// What a record is of, as JSON in the member `parameters`.
+#[derive(Debug, Serialize, Deserialize)]
+struct Parameters {
+    format: String,
+    version: u32,
+    /// Which program wrote it.
+    program: String,
+    nx: usize,
+    ny: usize,
+    dx: f64,
+    dy: f64,
+    kernel: KernelOrigin,
+    /// [`KernelRecord::coefficients`].
+    coefficients: Vec<f64>,
+    rule: ContactRule,
+    end: Option<LoadingEnd>,
+    units: String,
+}
+
+/// A scalar of a state, as a column of the archive.
+struct Column {
+    name: &'static str,
+    get: fn(&LoadingState) -> f64,
+    set: fn(&mut LoadingState, f64),
+}
+
+/// The columns of numbers that are not whole; NaN stands for a stiffness that there is not.
+const COLUMNS: [Column; 9] = [
+    Column {
+        name: "approach",
+        get: |s| s.contact.approach,
+        set: |s, x| s.contact.approach = x,
+    },
+    Column {
+        name: "load",
+        get: |s| s.contact.load,
+        set: |s, x| s.contact.load = x,
+    },
+    Column {
+        name: "contact_area",
+        get: |s| s.contact.contact_area,
+        set: |s, x| s.contact.contact_area = x,
+    },
+    Column {
+        name: "contact_area_fraction",
+        get: |s| s.contact.contact_area_fraction,
+        set: |s, x| s.contact.contact_area_fraction = x,
+    },
+    Column {
+        name: "mean_gap",
+        get: |s| s.contact.mean_gap,
+        set: |s, x| s.contact.mean_gap = x,
+    },
+    Column {
+        name: "contact_stiffness",
+        get: |s| s.contact.contact_stiffness.unwrap_or(f64::NAN),
+        set: |s, x| s.contact.contact_stiffness = (!x.is_nan()).then_some(x),
+    },
+    Column {
+        name: "interfacial_stiffness",
+        get: |s| s.contact.interfacial_stiffness.unwrap_or(f64::NAN),
+        set: |s, x| s.contact.interfacial_stiffness = (!x.is_nan()).then_some(x),
+    },
+    Column {
+        name: "energy",
+        get: |s| s.contact.energy,
+        set: |s, x| s.contact.energy = x,
+    },
+    Column {
+        name: "approach_error",
+        get: |s| s.approach_error,
+        set: |s, x| s.approach_error = x,
+    },
+];
+
+impl LoadingRecord {
+    /// Writes the record as an `.npz` archive, which `numpy.load` opens: an array for each column of the states,
+    /// `heights`, `activation` (the load at which each node touched, NaN where none has), the fields given, and `parameters`, a text
+    /// of JSON with units and versions.
+    ///
+    /// The file is written under another name beside its place and then renamed: what has the name is whole.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] for fields of another grid, and [`Error::Io`].
+    pub fn write_npz(
+        &self,
+        path: impl AsRef<Path>,
+        fields: &[(&str, &DMatrix<f64>)],
+    ) -> Result<(), Error> {
+        let path = path.as_ref();
+        for (_, field) in fields {
+            self.grid.check_shape(field.shape())?;
+        }
+        let failed = |source| Error::Io {
+            path: path.to_path_buf(),
+            source,
+        };
+        let unfinished = unfinished(path);
+        let written = File::create(&unfinished).and_then(|file| {
+            let mut output = BufWriter::new(file);
+            self.write(&mut output, fields)?;
+            output.into_inner()?.sync_all()?;
+            fs::rename(&unfinished, path)
+        });
+        if written.is_err() {
+            // It may not even be there.
+            let _ = fs::remove_file(&unfinished);
+        }
+        written.map_err(failed)
+    }
+
+    fn write(
+        &self,
+        output: impl Write + Seek,
+        fields: &[(&str, &DMatrix<f64>)],
+    ) -> std::io::Result<()> {
+        let states = self.states();
+        let parameters = serde_json::to_string(&self.parameters())?;
+        let mut archive = ArchiveWriter::new(output);
+        archive.text("parameters", &parameters)?;
+        let whole: [(&str, fn(&LoadingState) -> usize); 4] = [
+            ("step", |state| state.step),
+            ("ix", |state| state.node.0),
+            ("iy", |state| state.node.1),
+            ("contact_nodes", |state| state.contact_nodes),
+        ];
+        for (name, get) in whole {
+            archive.integers(name, states.len(), states.iter().map(|s| get(s) as i64))?;
+        }
+        let events = states.iter().map(|state| code(state.event));
+        archive.integers("event", states.len(), events)?;
+        for Column { name, get, .. } in COLUMNS {
+            archive.numbers(name, states.len(), states.iter().map(get))?;
+        }
+        archive.matrix("heights", self.heights.matrix())?;
+        archive.matrix("activation", &self.activation())?;
+        for (name, field) in fields {
+            archive.matrix(name, field)?;
+        }
+        archive.finish()
+    }
+
+    /// The load at which each node touched first \[N\], NaN where none has.
+    fn activation(&self) -> DMatrix<f64> {
+        let (nx, ny) = self.grid.shape();
+        let mut activation = DMatrix::from_element(nx, ny, f64::NAN);
+        let touches = self.states().iter().rev();
+        for state in touches.filter(|state| state.event == ContactEvent::Touch) {
+            activation[state.node] = state.load;
+        }
+        activation
+    }
+
+    fn parameters(&self) -> Parameters {
+        Parameters {
+            format: NAME.to_string(),
+            version: VERSION,
+            program: concat!("asperity ", env!("CARGO_PKG_VERSION")).to_string(),
+            nx: self.grid.nx(),
+            ny: self.grid.ny(),
+            dx: self.grid.dx(),
+            dy: self.grid.dy(),
+            kernel: self.kernel.origin,
+            coefficients: self.kernel.coefficients.clone(),
+            rule: self.rule,
+            end: self.end,
+            units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit"
+                .to_string(),
+        }
+    }
+
+    /// Reads a record that [`write_npz`](Self::write_npz) has written.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`]; [`Error::BadFile`] for a file that is damaged, not a record, or of a newer version; those of
+    /// [`Self::from_parts`].
+    pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let archive = Archive::open(path, NAME)?;
+        let bad = |reason: String| Error::BadFile {
+            path: path.to_path_buf(),
+            format: NAME,
+            offset: None,
+            reason,
+        };
+        let text = archive.text("parameters")?;
+        let parameters: Parameters = serde_json::from_str(&text)
+            .map_err(|error| bad(format!("its parameters are not understood: {error}")))?;
+        if parameters.format != NAME {
+            return Err(bad(format!("it holds '{}'", parameters.format)));
+        }
+        if parameters.version > VERSION {
+            return Err(bad(format!(
+                "version {} is newer than {VERSION}, which this program reads",
+                parameters.version
+            )));
+        }
+        let Parameters { nx, ny, dx, dy, .. } = parameters;
+        let grid = Grid::new(nx, ny, dx, dy)?;
+        let heights = HeightMap::new(archive.matrix("heights")?)?;
+        let steps = archive.vector("step", None)?;
+        let length = Some(steps.len());
+        let whole = |value: f64| value as usize;
+        let [ix, iy, nodes, events] =
+            ["ix", "iy", "contact_nodes", "event"].map(|name| archive.vector(name, length));
+        let (ix, iy, nodes, events) = (ix?, iy?, nodes?, events?);
+        let mut states = Vec::with_capacity(steps.len());
+        for k in 0..steps.len() {
+            let event = event(events[k]).ok_or_else(|| bad(format!("no event is {}", events[k])))?;
+            states.push(LoadingState {
+                step: whole(steps[k]),
+                event,
+                node: (whole(ix[k]), whole(iy[k])),
+                approach_error: 0.0,
+                contact: ContactState {
+                    contact_nodes: whole(nodes[k]),
+                    approach: 0.0,
+                    load: 0.0,
+                    contact_area: 0.0,
+                    contact_area_fraction: 0.0,
+                    mean_gap: 0.0,
+                    contact_stiffness: None,
+                    interfacial_stiffness: None,
+                    energy: 0.0,
+                },
+            });
+        }
+        for Column { name, set, .. } in COLUMNS {
+            let values = archive.vector(name, length)?;
+            for (state, value) in states.iter_mut().zip(values) {
+                set(state, value);
+            }
+        }
+        let kernel = KernelRecord {
+            origin: parameters.kernel,
+            coefficients: parameters.coefficients,
+        };
+        let history: History = states.into_iter().collect();
+        Self::from_parts(grid, heights, kernel, parameters.rule, history, parameters.end)
+    }
+}
+
+/// The number of an event in a file.
+fn code(event: ContactEvent) -> i64 {
+    match event {
+        ContactEvent::Touch => 0,
+        ContactEvent::Release => 1,
+        ContactEvent::Limit => 2,
+    }
+}
+
+/// The event of a number.
+fn event(code: f64) -> Option<ContactEvent> {
+    let all = [ContactEvent::Touch, ContactEvent::Release, ContactEvent::Limit];
+    all.into_iter().find(|event| self::code(*event) as f64 == code)
+}
+
+/// The name of a file while it is written.
+fn unfinished(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(format!(".{}.unfinished", std::process::id()));
+    path.with_file_name(name)
+}

@@ -1,0 +1,65 @@
+//! A record as plain data, for the feature `serde`.
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use super::{KernelRecord, LoadingRecord};
+use crate::loading::{ContactRule, LoadingEnd, LoadingState};
+use crate::surface::HeightMap;
+use crate::{Error, Grid};
+
+/// What a record consists of.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Parts {
+    /// Nodes along x and y.
+    shape: (usize, usize),
+    /// Cell along x and y \[m\].
+    cell: (f64, f64),
+    /// Heights \[m\], x fast.
+    heights: Vec<f64>,
+    kernel: KernelRecord,
+    rule: ContactRule,
+    states: Vec<LoadingState>,
+    end: Option<LoadingEnd>,
+}
+
+impl From<LoadingRecord> for Parts {
+    fn from(record: LoadingRecord) -> Self {
+        let grid = record.grid;
+        Self {
+            shape: grid.shape(),
+            cell: (grid.dx(), grid.dy()),
+            heights: record.heights.into_matrix().data.into(),
+            kernel: record.kernel,
+            rule: record.rule,
+            states: record.history.states().to_vec(),
+            end: record.end,
+        }
+    }
+}
+
+impl TryFrom<Parts> for LoadingRecord {
+    type Error = Error;
+
+    fn try_from(parts: Parts) -> Result<Self, Error> {
+        let ((nx, ny), (dx, dy)) = (parts.shape, parts.cell);
+        let grid = Grid::new(nx, ny, dx, dy)?;
+        if parts.heights.len() != grid.nodes() {
+            return Err(Error::LengthMismatch {
+                expected: grid.nodes(),
+                found: parts.heights.len(),
+            });
+        }
+        let heights = HeightMap::new(DMatrix::from_vec(nx, ny, parts.heights))?;
+        let mut states = parts.states;
+        for state in &mut states {
+            let contact = &mut state.contact;
+            // Formats without infinity, such as JSON, lose the one there is.
+            if contact.contact_area_fraction == 1.0 {
+                contact.interfacial_stiffness.get_or_insert(f64::INFINITY);
+            }
+        }
+        let history = states.into_iter().collect();
+        Self::from_parts(grid, heights, parts.kernel, parts.rule, history, parts.end)
+    }
+}

@@ -1,0 +1,185 @@
+//! Records of paths: read, replayed, and gone on from.
+
+use crate::problems::{assert_close, grid, kernels, rough};
+use asperity::loading::History;
+use asperity::record::LoadingRecord;
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::{
+    Boussinesq, ContactRule, ContactTarget, Error, InfluenceKernel, LoadingSolver, LoadingState,
+    PeriodicBoussinesq, Spectral,
+};
+
+/// Records of a path cut at a state.
+fn cut(path: &LoadingSolver<RecursiveCholesky>, all: &[LoadingState], at: usize) -> LoadingRecord {
+    let history: History = all[..at].iter().copied().collect();
+    LoadingRecord::new(path, history).unwrap()
+}
+
+fn whole<U: LinearUpdater>(
+    kernel: &dyn InfluenceKernel,
+    updater: U,
+) -> (LoadingSolver<U>, Vec<LoadingState>) {
+    let surface = rough(&kernel.grid(), 5);
+    let mut path = LoadingSolver::builder(&surface, kernel)
+        .updater(updater)
+        .build()
+        .unwrap();
+    let all = path.by_ref().map(Result::unwrap).collect();
+    (path, all)
+}
+
+/// Resumed anywhere, with any updater, a path has the events of one that was never interrupted. States of a
+/// factor agree to rounding; 1e-10 is what the whole crate promises of columns.
+#[test]
+fn resumed_paths_are_uninterrupted_ones() {
+    for (name, kernel) in kernels(grid()) {
+        let (path, all) = whole(&*kernel, RecursiveCholesky::new());
+        for at in [1, 2, 60, 200, all.len() - 1] {
+            let record = cut(&path, &all, at);
+            let surface = record.heights().clone();
+            let resumed = LoadingSolver::builder(&surface, &*kernel)
+                .updater(RecursiveCholesky::new())
+                .resume(record.history())
+                .unwrap();
+            assert_eq!(resumed.state(), Some(all[at - 1]));
+            let rest: Vec<LoadingState> = resumed.map(Result::unwrap).collect();
+            assert_eq!(rest.len(), all.len() - at, "{name} {at}");
+            for (found, expected) in rest.iter().zip(&all[at..]) {
+                assert_eq!(found.node, expected.node, "{name} {at}");
+                assert_close(found, expected, 1e-10, all[0].mean_gap);
+            }
+        }
+    }
+}
+
+/// Without a factor the nodes are the same.
+#[test]
+fn paths_without_a_factor_go_on_at_the_same_nodes() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (path, all) = whole(&kernel, RecursiveCholesky::new());
+    for at in [3, 100, 250] {
+        let record = cut(&path, &all, at);
+        let resumed = LoadingSolver::builder(record.heights(), &kernel)
+            .updater(ConjugateGradient::new())
+            .resume(record.history())
+            .unwrap();
+        let nodes: Vec<_> = resumed.map(|state| state.unwrap().node).collect();
+        let expected: Vec<_> = all[at..].iter().map(|state| state.node).collect();
+        assert_eq!(nodes, expected);
+    }
+}
+
+#[test]
+fn records_make_their_kernel_again() {
+    let grid = grid();
+    let kernels: [Box<dyn InfluenceKernel>; 3] = [
+        Box::new(Boussinesq::new(grid, 1e9).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid, 1e9).unwrap()),
+        Box::new(Spectral::new(grid, 1e9).unwrap()),
+    ];
+    for kernel in kernels {
+        let (path, all) = whole(&*kernel, Handover::new());
+        let history: History = all[..150].iter().copied().collect();
+        let record = LoadingRecord::new(&path, history).unwrap();
+        let mut resumed = record.resume().unwrap();
+        resumed
+            .continue_to(ContactTarget::Load(0.5 * (all[170].load + all[171].load)))
+            .unwrap();
+        let last = resumed.by_ref().last().unwrap().unwrap();
+        assert_eq!(last.step, 171);
+        assert_eq!(record.resume().unwrap().count(), all.len() - 150);
+    }
+}
+
+/// Fields of any state, from the record alone, are those that the path itself gives.
+#[test]
+fn records_know_the_fields_of_their_states() {
+    let kernel = PeriodicBoussinesq::new(grid(), 1e9).unwrap();
+    let (mut path, all) = whole(&kernel, RecursiveCholesky::new());
+    let record = cut(&path, &all, 180);
+    let mut replay = record.replay().unwrap();
+    let history = record.history();
+    let between = history
+        .at_load(0.4 * (all[90].load + all[91].load))
+        .unwrap();
+    for state in [all[0], all[40], between, all[179]] {
+        let expected = path.pressure_at(&state).unwrap();
+        let found = replay.pressure_at(&state).unwrap();
+        let greatest = expected.max();
+        // Iterations end at a residual of 1e-10 of the approach.
+        assert!((&found - &expected).amax() <= 1e-7 * greatest);
+        let gap = (replay.gap_at(&state).unwrap(), path.gap_at(&state).unwrap());
+        assert!((gap.0 - gap.1).amax() <= 1e-9 * state.approach.max(1e-9));
+        let contact = replay.contact_map_at(&state).unwrap();
+        assert_eq!(contact, path.contact_map_at(&state).unwrap());
+        assert_eq!(
+            contact.iter().filter(|is_in| **is_in).count(),
+            state.contact_nodes
+        );
+    }
+    let beyond = replay.pressure_at(&all[180]);
+    assert!(matches!(beyond, Err(Error::StateNotReached { .. })));
+}
+
+#[test]
+fn records_of_other_surfaces_and_kernels_are_refused() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (path, all) = whole(&kernel, RecursiveCholesky::new());
+    let record = cut(&path, &all, 120);
+    let other = rough(&grid(), 6);
+    let resumed = LoadingSolver::builder(&other, &kernel).resume(record.history());
+    assert!(matches!(resumed, Err(Error::NotOnPath { .. })));
+    let stiffer = Boussinesq::new(grid(), 2e9).unwrap();
+    let resumed = LoadingSolver::builder(record.heights(), &stiffer).resume(record.history());
+    assert!(matches!(resumed, Err(Error::NotOnPath { .. })));
+    let replayed = record.replay_on(&stiffer);
+    assert!(matches!(replayed, Err(Error::WrongKernel { .. })));
+}
+
+#[test]
+fn states_in_no_order_of_a_path_are_refused() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (path, all) = whole(&kernel, RecursiveCholesky::new());
+    let record =
+        |states: Vec<LoadingState>| LoadingRecord::new(&path, states.into_iter().collect());
+    assert!(record(all[..50].to_vec()).is_ok());
+    // Without its beginning, with a node twice, with one outside the grid, and with a number that is none.
+    assert!(matches!(
+        record(all[1..50].to_vec()),
+        Err(Error::NotOnPath { .. })
+    ));
+    let changed = |change: &dyn Fn(&mut LoadingState)| {
+        let mut states = all[..50].to_vec();
+        change(&mut states[20]);
+        record(states)
+    };
+    let twice = changed(&|state| state.node = all[3].node);
+    assert!(matches!(twice, Err(Error::AlreadyInContact { .. })));
+    let outside = changed(&|state| state.node = (usize::MAX, 3));
+    assert!(matches!(outside, Err(Error::NodeOutOfGrid { .. })));
+    let nan = changed(&|state| state.contact.load = f64::NAN);
+    assert!(matches!(nan, Err(Error::NotFinite { step: 21 })));
+}
+
+/// A record that ends at a limit goes on from there.
+#[test]
+fn a_limit_is_no_event() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (_, all) = whole(&kernel, RecursiveCholesky::new());
+    let load = 0.3 * all[99].load + 0.7 * all[100].load;
+    let surface = rough(&grid(), 5);
+    let mut path = LoadingSolver::builder(&surface, &kernel)
+        .max_load(load)
+        .build()
+        .unwrap();
+    let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+    let record = LoadingRecord::new(&path, history).unwrap();
+    assert_eq!(record.states().len(), 101);
+    assert_eq!(record.contact_order().len(), 100);
+    assert_eq!(record.history().at_load(load).unwrap().load, load);
+    assert_eq!(record.rule(), ContactRule::FirstContact);
+    let mut resumed = record.resume().unwrap();
+    assert_eq!(resumed.state().unwrap().load, load);
+    let next = resumed.next().unwrap().unwrap();
+    assert_close(&next, &all[100], 1e-10, all[0].mean_gap);
+}
