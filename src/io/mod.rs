@@ -60,6 +60,8 @@ mod sdf;
 mod sur;
 #[cfg(feature = "io")]
 mod text;
+#[cfg(all(test, feature = "io"))]
+mod truth;
 #[cfg(feature = "io")]
 mod unit;
 #[cfg(feature = "io")]

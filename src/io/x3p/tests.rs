@@ -1,0 +1,348 @@
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use nalgebra::dmatrix;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use super::*;
+use crate::io::ReadOptions;
+use crate::io::truth::{assert_read, path};
+use crate::{Error, Grid};
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+/// A compressed archive.
+fn archive(members: &[(&str, &[u8])]) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in members {
+        zip.start_file(*name, SimpleFileOptions::default())?;
+        zip.write_all(bytes)?;
+    }
+    Ok(zip.finish()?.into_inner())
+}
+
+/// A description of 2 x 1 points.
+const DESCRIPTION: &str = "<ISO5436_2><Record1><FeatureType>SUR</FeatureType><Axes>\
+    <CX><AxisType>I</AxisType><Increment>2e-6</Increment></CX>\
+    <CY><AxisType>I</AxisType><Increment>3e-6</Increment></CY>\
+    <CZ><AxisType>A</AxisType><DataType>I</DataType></CZ></Axes></Record1>\
+    <Record3><MatrixDimension><SizeX>2</SizeX><SizeY>1</SizeY><SizeZ>1</SizeZ></MatrixDimension>\
+    <DataLink><PointDataLink>data.bin</PointDataLink></DataLink></Record3></ISO5436_2>";
+
+/// The heights 1 m and -2 m.
+const DATA: [u8; 4] = [1, 0, 0xfe, 0xff];
+
+fn parsed(file: &[u8]) -> Result<Channel, Error> {
+    parse(file)
+        .map_err(|fault| fault.in_file(Path::new("test.x3p"), "X3P"))
+        .map(|mut channels| channels.swap_remove(0))
+}
+
+/// What is read with a part of the description replaced.
+fn with(part: &str, by: &str) -> Result<Result<Channel, Error>, Box<dyn std::error::Error>> {
+    assert!(DESCRIPTION.contains(part), "{part}");
+    let description = DESCRIPTION.replace(part, by);
+    let file = archive(&[("main.xml", description.as_bytes()), ("data.bin", &DATA)])?;
+    Ok(parsed(&file))
+}
+
+#[test]
+fn the_map_of_every_file_is_that_of_its_formula() -> TestResult {
+    for (name, digits) in [
+        // Single precision has 24 bits.
+        ("missing_f32.x3p", 6e-8),
+        // Of doubles and integers two products round: with the increment, and in the formula.
+        ("missing_f64.x3p", 5e-16),
+        ("missing_f64_scaled_folder_stored.x3p", 5e-16),
+        ("missing_i16_mask.x3p", 5e-16),
+        ("plain_i16.x3p", 5e-16),
+        ("plain_i32.x3p", 5e-16),
+    ] {
+        let measured = assert_read(name, &ReadOptions::new(), digits, true)?;
+        assert!(measured.notes.is_empty(), "{:?}", measured.notes);
+    }
+    Ok(())
+}
+
+#[test]
+fn what_is_written_is_read_back_to_the_last_bit() -> TestResult {
+    let heights = dmatrix![
+        0.1, -0.0, f64::NAN;
+        f64::MIN_POSITIVE / 3.0, -1e300, f64::INFINITY
+    ];
+    let grid = Grid::new(2, 3, 1e-6 / 3.0, 0.1)?;
+    let folder = std::env::temp_dir();
+    let path = folder.join(format!("asperity-x3p-{}.x3p", std::process::id()));
+    write_x3p(&path, &grid, &heights)?;
+    let first = std::fs::read(&path)?;
+    write_x3p(&path, &grid, &heights)?;
+    let second = std::fs::read(&path)?;
+    let back = ReadOptions::new().read(&path);
+    std::fs::remove_file(&path)?;
+    assert!(first == second, "two files of the same heights differ");
+    let back = back?;
+    assert!(back.notes.is_empty(), "{:?}", back.notes);
+    assert_eq!((back.cell, back.missing), (Some((grid.dx(), 0.1)), 2));
+    for (found, written) in back.heights.iter().zip(&heights) {
+        let expected = if written.is_finite() {
+            *written
+        } else {
+            f64::NAN
+        };
+        assert_eq!(found.to_bits(), expected.to_bits());
+    }
+    let other = Grid::square(2, 1.0)?;
+    assert!(matches!(
+        write_x3p(&path, &other, &heights),
+        Err(Error::GridMismatch { .. })
+    ));
+    let nowhere = folder.join("no such folder").join("file.x3p");
+    assert!(matches!(
+        write_x3p(&nowhere, &grid, &heights),
+        Err(Error::Io { .. })
+    ));
+    Ok(())
+}
+
+#[test]
+fn a_plane_is_read_back() -> TestResult {
+    // Deflate would make this a thousandth, which readers refuse.
+    let grid = Grid::square(256, 1e-6)?;
+    let mut file = Cursor::new(Vec::new());
+    write::write(&mut file, &grid, &nalgebra::DMatrix::zeros(256, 256))?;
+    assert!(parsed(file.get_ref())?.values.iter().all(|z| *z == 0.0));
+    Ok(())
+}
+
+#[test]
+fn the_simplest_file_is_read() -> TestResult {
+    let expected = (vec![1.0, -2.0], Some((2e-6, 3e-6)));
+    let variants: [Vec<(&str, &[u8])>; 5] = [
+        vec![("main.xml", DESCRIPTION.as_bytes()), ("data.bin", &DATA)],
+        vec![
+            ("a/b/main.xml", b"not this one"),
+            ("a/data.bin", &DATA),
+            ("a/main.xml", DESCRIPTION.as_bytes()),
+        ],
+        // Packed on Windows, and on macOS.
+        vec![
+            ("a\\main.xml", DESCRIPTION.as_bytes()),
+            ("a\\data.bin", &DATA),
+        ],
+        vec![
+            ("__MACOSX/main.xml", b""),
+            ("a/main.xml", DESCRIPTION.as_bytes()),
+            ("a/data.bin", &DATA),
+        ],
+        vec![("main.xml", b""), ("data.bin", &DATA)],
+    ];
+    for (k, mut members) in variants.into_iter().enumerate() {
+        let marked = format!("\u{feff}{DESCRIPTION}");
+        if k == 4 {
+            members[0].1 = marked.as_bytes();
+        }
+        let found = parsed(&archive(&members)?)?;
+        assert_eq!((found.values, found.cell), expected, "{members:?}");
+        assert!(found.notes.is_empty());
+    }
+    Ok(())
+}
+
+#[test]
+fn increments_and_offsets_are_lengths() -> TestResult {
+    let cz = "<DataType>I</DataType>";
+    let scaled = with(
+        cz,
+        "<DataType>I</DataType><Increment>-0.5</Increment><Offset>10</Offset>",
+    )??;
+    assert_eq!(scaled.values, [9.5, 11.0]);
+    let empty = with(cz, "<DataType>I</DataType><Increment/><Offset/>")??;
+    assert_eq!(empty.values, [1.0, -2.0]);
+    for wrong in ["0", "x", "inf", "NaN"] {
+        let wrong = format!("<DataType>I</DataType><Increment>{wrong}</Increment>");
+        assert!(matches!(with(cz, &wrong)?, Err(Error::BadFile { .. })));
+    }
+    Ok(())
+}
+
+#[test]
+fn heights_may_stand_in_the_description() -> TestResult {
+    let link = "<DataLink><PointDataLink>data.bin</PointDataLink></DataLink>";
+    let list = |inner: &str| format!("<DataList>{inner}</DataList>");
+    let all = with(link, &list("<Datum>1.5e-6</Datum>\n<Datum> ;;-2 </Datum>"))??;
+    assert_eq!(all.values, [1.5e-6, -2.0]);
+    let missing = with(link, &list("<Datum/><Datum>3</Datum>"))??;
+    assert!(missing.values[0].is_nan() && missing.values[1] == 3.0);
+    for wrong in ["<Datum>1</Datum>", "<Datum>1</Datum><Datum>x</Datum>"] {
+        assert!(matches!(
+            with(link, &list(wrong))?,
+            Err(Error::BadFile { .. })
+        ));
+    }
+    Ok(())
+}
+
+#[test]
+fn checksums_and_rotations_are_noted() -> TestResult {
+    let sum = |sum: &str| {
+        format!("data.bin</PointDataLink><MD5ChecksumPointData>{sum}</MD5ChecksumPointData>")
+    };
+    // What `md5sum` says of the four bytes, in capital letters.
+    let right = md5_of(&DATA).to_uppercase();
+    assert!(
+        with("data.bin</PointDataLink>", &sum(&right))??
+            .notes
+            .is_empty()
+    );
+    let wrong = with("data.bin</PointDataLink>", &sum(&"0".repeat(32)))??;
+    assert!(wrong.notes.len() == 1 && wrong.notes[0].contains("'data.bin'"));
+    let members: [(&str, &[u8]); 3] = [
+        ("main.xml", DESCRIPTION.as_bytes()),
+        ("data.bin", &DATA),
+        (
+            "md5checksum.hex",
+            b"0123456789abcdef0123456789ABCDEF *main.xml\r\n",
+        ),
+    ];
+    let wrong = parsed(&archive(&members)?)?;
+    assert!(wrong.notes.len() == 1 && wrong.notes[0].contains("'main.xml'"));
+    let turned = |r11: &str| {
+        let rotation = format!("<Rotation><r11>{r11}</r11><r12>0</r12></Rotation></Axes>");
+        with("</Axes>", &rotation)
+    };
+    assert!(turned("1.0")??.notes.is_empty());
+    assert_eq!(turned("0.5")??.notes.len(), 1);
+    Ok(())
+}
+
+/// RFC 1321, appendix A.5.
+#[test]
+fn md5_is_that_of_the_standard() {
+    assert_eq!(md5_of(b""), "d41d8cd98f00b204e9800998ecf8427e");
+    assert_eq!(md5_of(b"abc"), "900150983cd24fb0d6963f7d28e17f72");
+}
+
+#[test]
+fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
+    for (part, by, expected) in [
+        ("SUR", "PRF", "the FeatureType is 'PRF'"),
+        ("SUR", "PCL", "the FeatureType is 'PCL'"),
+        ("<SizeZ>1", "<SizeZ>2", "SizeZ is 2"),
+        ("<SizeX>2", "<SizeX>two", "SizeX is 'two'"),
+        ("<SizeX>2", "<SizeX>3", "has to have 6 bytes, but it has 4"),
+        (
+            "<SizeX>2",
+            "<SizeX>1",
+            "has to have 2 bytes, but it has more",
+        ),
+        (
+            "<SizeX>2</SizeX><SizeY>1",
+            "<SizeX>32768</SizeX><SizeY>9",
+            "more than 256 times",
+        ),
+        (
+            "<CX><AxisType>I",
+            "<CX><AxisType>A",
+            "CX has the AxisType 'A'",
+        ),
+        (
+            "<CZ><AxisType>A",
+            "<CZ><AxisType>I",
+            "CZ has the AxisType 'I'",
+        ),
+        ("<DataType>I", "<DataType>X", "the DataType 'X'"),
+        ("2e-6", "-2e-6", "a spacing was expected"),
+        ("<CX>", "<CW>", "'main.xml'"),
+        ("data.bin", "../data.bin", "leaves the archive"),
+        ("data.bin", "/data.bin", "leaves the archive"),
+        ("data.bin", "C:\\data.bin", "leaves the archive"),
+        (
+            "data.bin",
+            "http://opengps.eu/data.bin",
+            "leaves the archive",
+        ),
+        ("data.bin", "other.bin", "has no member 'other.bin'"),
+        ("data.bin", "", "names no PointDataLink"),
+        ("Record3>", "Record5>", "expected an element Record3"),
+        ("ISO5436_2>", "html>", "expected the element ISO5436_2"),
+        (
+            "<ISO5436_2>",
+            "<!DOCTYPE a [<!ENTITY b 'c'>]><ISO5436_2>",
+            "DTD",
+        ),
+    ] {
+        let message = with(part, by)?.map_err(|error| error.to_string());
+        assert!(
+            message.as_ref().is_err_and(|text| text.contains(expected)),
+            "{by}: {message:?} says nothing of {expected}"
+        );
+    }
+    assert!(matches!(
+        with("<SizeX>2", "<SizeX>0")?,
+        Err(Error::EmptyGrid { .. })
+    ));
+    assert!(matches!(
+        with("<SizeX>2", "<SizeX>99999")?,
+        Err(Error::GridTooLarge { .. })
+    ));
+    assert!(parsed(&archive(&[("other.xml", b"<a/>")])?).is_err());
+    Ok(())
+}
+
+#[test]
+fn an_archive_that_only_wants_to_fill_the_memory_is_refused() -> TestResult {
+    let zeros = vec![b' '; 1 << 20];
+    let message = |members: &[(&str, &[u8])]| -> Result<String, Box<dyn std::error::Error>> {
+        Ok(parsed(&archive(members)?)
+            .err()
+            .ok_or("it was read")?
+            .to_string())
+    };
+    // A megabyte of blanks takes a kilobyte.
+    assert!(message(&[("main.xml", &zeros)])?.contains("longer than 64 times"));
+    let large = DESCRIPTION
+        .replace("<SizeX>2", "<SizeX>32768")
+        .replace("<SizeY>1", "<SizeY>16");
+    let data = message(&[("main.xml", large.as_bytes()), ("data.bin", &zeros)])?;
+    assert!(data.contains("more than 256 times"), "{data}");
+    let elements = [DESCRIPTION, &"<a/>".repeat(3000)].concat();
+    assert!(message(&[("main.xml", elements.as_bytes())])?.contains("elements"));
+    let attributes: String = (0..2000).map(|k| format!(" a{k}='{k}'")).collect();
+    let attributes = format!("<ISO5436_2{attributes}/>");
+    assert!(message(&[("main.xml", attributes.as_bytes())])?.contains("attributes"));
+    Ok(())
+}
+
+#[test]
+fn no_depth_of_elements_exhausts_the_stack() -> TestResult {
+    // Names that hardly repeat, so that the archive is not refused for shrinking too much.
+    let names: Vec<String> = (0_u64..100_000)
+        .map(|k| format!("a{:x}", k.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+        .collect();
+    let opened: String = names.iter().map(|name| format!("<{name}>")).collect();
+    let closed: String = names
+        .iter()
+        .rev()
+        .map(|name| format!("</{name}>"))
+        .collect();
+    let deep = format!("{opened}{closed}</ISO5436_2>");
+    let description = DESCRIPTION.replace("</ISO5436_2>", &deep);
+    let file = archive(&[("main.xml", description.as_bytes()), ("data.bin", &DATA)])?;
+    assert_eq!(parsed(&file)?.values, [1.0, -2.0]);
+    Ok(())
+}
+
+#[test]
+fn no_beginning_of_a_file_is_taken_for_the_file() -> TestResult {
+    for name in [
+        "missing_i16_mask.x3p",
+        "missing_f64_scaled_folder_stored.x3p",
+    ] {
+        let bytes = std::fs::read(path(name))?;
+        for length in 0..bytes.len() {
+            assert!(parsed(&bytes[..length]).is_err(), "{name}, {length} bytes");
+        }
+    }
+    Ok(())
+}

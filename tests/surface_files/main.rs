@@ -1,0 +1,3 @@
+//! Files of instruments, and what other readers find in them.
+
+mod third_party_archives_and_text;
