@@ -64,6 +64,11 @@ impl Outcome {
         for file in &self.files {
             println!("wrote {}", file.display());
         }
+        self.finish_quietly()
+    }
+
+    /// Reports all failures but the first, which it returns.
+    pub fn finish_quietly(self) -> Result<(), Failure> {
         let mut failures = self.failures.into_iter();
         let first = failures.next();
         failures.for_each(|failure| failure.report());

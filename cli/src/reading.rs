@@ -69,6 +69,16 @@ impl From<Level> for Trend {
 }
 
 impl Reading {
+    /// `Ok` if nothing was asked for: a surface on record is as it is.
+    pub(crate) fn untouched(&self) -> Result<(), Failure> {
+        if self.fill || self.level.is_some() || self.invert {
+            return Err(Failure::request(
+                "the surface of a record is not filled, levelled or inverted",
+            ));
+        }
+        Ok(())
+    }
+
     /// What is in a file, as it is.
     pub(crate) fn measured(&self, file: &Path) -> Result<MeasuredSurface, Failure> {
         let mut options = ReadOptions::new();

@@ -3,6 +3,7 @@
 /// What a state of contact is asked to have; a plain number is a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactTarget {
     /// This load \[N\].
     Load(f64),

@@ -95,6 +95,19 @@ impl Limits {
         Ok(())
     }
 
+    /// The same as targets, on a grid.
+    pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
+        let most = self.most_nodes();
+        let fraction = most as f64 / grid.nodes() as f64;
+        let given = [
+            (self.load < f64::INFINITY).then_some(ContactTarget::Load(self.load)),
+            (self.approach < f64::INFINITY).then_some(ContactTarget::Approach(self.approach)),
+            (self.least_mean_gap >= 0.0).then_some(ContactTarget::MeanGap(self.least_mean_gap)),
+            (most <= grid.nodes()).then_some(ContactTarget::AreaFraction(fraction)),
+        ];
+        given.into_iter().flatten().collect()
+    }
+
     /// The greatest number of nodes in contact.
     pub(super) fn most_nodes(&self) -> usize {
         self.nodes.min(self.area_nodes)

@@ -191,6 +191,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         &self.run.problem
     }
 
+    /// Where the path is to end, whichever comes first; a number of nodes is given as a fraction of the area.
+    #[must_use]
+    pub fn targets(&self) -> Vec<ContactTarget> {
+        self.limits.targets(&self.grid())
+    }
+
     /// Which node is taken to touch next.
     #[must_use]
     pub fn rule(&self) -> ContactRule {

@@ -42,7 +42,7 @@ use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
 use crate::loading::{ContactRule, History, LoadingEnd, LoadingState, replay};
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
-use crate::{Error, Grid, LoadingSolver};
+use crate::{ContactTarget, Error, Grid, LoadingSolver};
 
 /// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
 /// formulas on another machine differ by the last bits of elementary functions.
@@ -60,9 +60,19 @@ pub struct LoadingRecord {
     /// Heights from the highest node.
     heights: HeightMap,
     kernel: KernelRecord,
-    rule: ContactRule,
+    settings: Settings,
     history: History,
     end: Option<LoadingEnd>,
+}
+
+/// What was asked of a path.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Settings {
+    /// Which node was taken to touch next.
+    pub rule: ContactRule,
+    /// Where it was to end, whichever came first.
+    pub targets: Vec<ContactTarget>,
 }
 
 /// What a record remembers of a kernel.
@@ -136,7 +146,11 @@ impl LoadingRecord {
         let (nx, ny) = grid.shape();
         let heights = HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?;
         let kernel = KernelRecord::of(problem.table());
-        Self::from_parts(grid, heights, kernel, path.rule(), history, path.end())
+        let settings = Settings {
+            rule: path.rule(),
+            targets: path.targets(),
+        };
+        Self::from_parts(grid, heights, kernel, settings, history, path.end())
     }
 
     /// A record made of what it consists of: from a file, for example.
@@ -150,7 +164,7 @@ impl LoadingRecord {
         grid: Grid,
         heights: HeightMap,
         kernel: KernelRecord,
-        rule: ContactRule,
+        settings: Settings,
         history: History,
         end: Option<LoadingEnd>,
     ) -> Result<Self, Error> {
@@ -165,7 +179,7 @@ impl LoadingRecord {
             grid,
             heights,
             kernel,
-            rule,
+            settings,
             history,
             end,
         })
@@ -202,10 +216,10 @@ impl LoadingRecord {
         Ok(table)
     }
 
-    /// Which node was taken to touch next.
+    /// What was asked of the path.
     #[must_use]
-    pub fn rule(&self) -> ContactRule {
-        self.rule
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The states, to be read at any load, approach, mean gap or area up to the last one.
@@ -233,9 +247,9 @@ impl LoadingRecord {
         contact.map_or_else(|_| Vec::new(), |contact| contact.order().to_vec())
     }
 
-    /// The path once more, behind its last state, with the default updater and without limits: see
-    /// [`LoadingSolver::continue_to`], and [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
-    /// what it costs and for other settings.
+    /// The path once more, behind its last state, with the default updater: to where it was to end, or beyond, by
+    /// [`LoadingSolver::continue_to`]. See [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
+    /// what it costs, and for other updaters.
     ///
     /// The same nodes touch next as on a path that was never interrupted. States are the same to rounding, and without a
     /// factor to their estimated error: windows begin elsewhere.
@@ -244,9 +258,12 @@ impl LoadingRecord {
     ///
     /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume).
     pub fn resume(&self) -> Result<LoadingSolver, Error> {
-        LoadingSolver::builder(&self.heights, &self.make_kernel()?)
-            .rule(self.rule)
-            .resume(&self.history)
+        let kernel = self.make_kernel()?;
+        let mut builder = LoadingSolver::builder(&self.heights, &kernel).rule(self.settings.rule);
+        for &target in &self.settings.targets {
+            builder = builder.until(target);
+        }
+        builder.resume(&self.history)
     }
 
     /// The path as it was, for the fields of its states
@@ -270,7 +287,7 @@ impl LoadingRecord {
     ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
         let mut solver = LoadingSolver::builder(&self.heights, kernel)
             .updater(ConjugateGradient::new())
-            .rule(self.rule)
+            .rule(self.settings.rule)
             .build()?;
         self.kernel.check(solver.problem().table())?;
         solver.restore(&self.history)?;

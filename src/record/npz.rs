@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::{KernelRecord, LoadingRecord};
+use super::{KernelRecord, LoadingRecord, Settings};
 use crate::contact::ContactState;
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::kernel::KernelOrigin;
-use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingState};
+use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
@@ -34,7 +34,7 @@ struct Parameters {
     kernel: KernelOrigin,
     /// [`KernelRecord::coefficients`].
     coefficients: Vec<f64>,
-    rule: ContactRule,
+    settings: Settings,
     end: Option<LoadingEnd>,
     units: String,
 }
@@ -185,7 +185,7 @@ impl LoadingRecord {
             dy: self.grid.dy(),
             kernel: self.kernel.origin,
             coefficients: self.kernel.coefficients.clone(),
-            rule: self.rule,
+            settings: self.settings.clone(),
             end: self.end,
             units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit"
                 .to_string(),
@@ -260,7 +260,7 @@ impl LoadingRecord {
             coefficients: parameters.coefficients,
         };
         let history: History = states.into_iter().collect();
-        Self::from_parts(grid, heights, kernel, parameters.rule, history, parameters.end)
+        Self::from_parts(grid, heights, kernel, parameters.settings, history, parameters.end)
     }
 }
 

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::{KernelRecord, LoadingRecord};
-use crate::loading::{ContactRule, LoadingEnd, LoadingState};
+use super::{KernelRecord, LoadingRecord, Settings};
+use crate::loading::{LoadingEnd, LoadingState};
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
@@ -18,7 +18,7 @@ pub(super) struct Parts {
     /// Heights \[m\], x fast.
     heights: Vec<f64>,
     kernel: KernelRecord,
-    rule: ContactRule,
+    settings: Settings,
     states: Vec<LoadingState>,
     end: Option<LoadingEnd>,
 }
@@ -31,7 +31,7 @@ impl From<LoadingRecord> for Parts {
             cell: (grid.dx(), grid.dy()),
             heights: record.heights.into_matrix().data.into(),
             kernel: record.kernel,
-            rule: record.rule,
+            settings: record.settings,
             states: record.history.states().to_vec(),
             end: record.end,
         }
@@ -60,6 +60,6 @@ impl TryFrom<Parts> for LoadingRecord {
             }
         }
         let history = states.into_iter().collect();
-        Self::from_parts(grid, heights, parts.kernel, parts.rule, history, parts.end)
+        Self::from_parts(grid, heights, parts.kernel, parts.settings, history, parts.end)
     }
 }

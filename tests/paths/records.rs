@@ -177,7 +177,7 @@ fn a_limit_is_no_event() {
     assert_eq!(record.states().len(), 101);
     assert_eq!(record.contact_order().len(), 100);
     assert_eq!(record.history().at_load(load).unwrap().load, load);
-    assert_eq!(record.rule(), ContactRule::FirstContact);
+    assert_eq!(record.settings().rule, ContactRule::FirstContact);
     let mut resumed = record.resume().unwrap();
     assert_eq!(resumed.state().unwrap().load, load);
     let next = resumed.next().unwrap().unwrap();

@@ -1,86 +1,137 @@
-//! Following the path, and its file.
+//! Following the path, and its files.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::LoadingState;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::Solver;
+use super::options::Options;
 use super::progress::Progress;
+use super::{Solver, save};
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
 
 /// States between two looks at the progress bar and two visits to the disk.
 const STRIDE: usize = 64;
 
-/// Runs the path to its end, writing each state as it comes; returns all states, and how it ended.
-pub(super) fn follow(
-    solver: &mut Solver,
-    file: &mut PathFile,
-    progress: impl Fn(&LoadingState) -> Progress,
-) -> (Vec<LoadingState>, Result<(), Failure>) {
-    let bar = ProgressBar::new(100);
-    let start = Instant::now();
-    if let Ok(style) =
-        ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
-    {
-        bar.set_style(style.progress_chars("━╸─"));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let mut states = Vec::new();
-    let mut ended = Ok(());
-    for state in solver {
-        match state.map_err(|error| Failure::new("the path broke off", error)) {
-            Ok(state) => {
-                states.push(state);
-                if let Err(failure) = file.write(&state) {
-                    ended = Err(failure);
-                    break;
-                }
-                if state.step.is_multiple_of(STRIDE) {
-                    let progress = progress(&state);
-                    bar.set_position((100.0 * progress.done) as u64);
-                    let load = scientific(state.load, 3);
-                    let left = progress.left(start.elapsed());
-                    bar.set_message(format!("{} nodes, W = {load} N{left}", state.contact_nodes));
-                }
-            }
-            Err(failure) => {
-                ended = Err(failure);
-                break;
-            }
-        }
-    }
-    bar.finish_and_clear();
-    (states, ended)
+/// A path as far as it has come, with its files.
+pub(super) struct Followed {
+    states: Vec<LoadingState>,
+    file: PathFile,
+    /// The record, and the states after which it is written.
+    saves: Option<(PathBuf, usize)>,
 }
 
-/// The file `path.csv`: one line for each state, on the disk soon after it is known.
+impl Followed {
+    /// Begins with the states that there are already.
+    pub(super) fn new(
+        begun: &[LoadingState],
+        mut file: PathFile,
+        options: &Options,
+    ) -> Result<Self, Failure> {
+        for state in begun {
+            file.write(state)?;
+        }
+        let every = options.save_every.map(usize::from);
+        Ok(Self {
+            states: begun.to_vec(),
+            file,
+            saves: options.record.clone().zip(every),
+        })
+    }
+
+    /// Runs the path to its end, writing each state as it comes.
+    pub(super) fn follow(
+        &mut self,
+        solver: &mut Solver,
+        progress: impl Fn(&LoadingState) -> Progress,
+    ) -> Result<(), Failure> {
+        let bar = ProgressBar::new(100);
+        let start = Instant::now();
+        if let Ok(style) =
+            ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
+        {
+            bar.set_style(style.progress_chars("━╸─"));
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let mut ended = Ok(());
+        while let (Ok(()), Some(state)) = (&ended, solver.next()) {
+            ended = state
+                .map_err(|error| Failure::new("the path broke off", error))
+                .and_then(|state| {
+                    if state.step.is_multiple_of(STRIDE) {
+                        let progress = progress(&state);
+                        bar.set_position((100.0 * progress.done) as u64);
+                        let load = scientific(state.load, 3);
+                        let left = progress.left(start.elapsed());
+                        bar.set_message(format!(
+                            "{} nodes, W = {load} N{left}",
+                            state.contact_nodes
+                        ));
+                    }
+                    self.add(state, solver)
+                });
+        }
+        bar.finish_and_clear();
+        ended
+    }
+
+    fn add(&mut self, state: LoadingState, solver: &Solver) -> Result<(), Failure> {
+        self.states.push(state);
+        self.file.write(&state)?;
+        match &self.saves {
+            Some((name, every)) if self.states.len().is_multiple_of(*every) => {
+                save(name, solver, &self.states).map(|_| ())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// All states, and their file.
+    pub(super) fn end(self) -> (Vec<LoadingState>, PathFile) {
+        (self.states, self.file)
+    }
+}
+
+/// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
+/// are whole lines.
 pub(super) struct PathFile {
     name: PathBuf,
-    output: BufWriter<File>,
+    part: PathBuf,
+    output: File,
+    /// Lines that are not in the file yet, and their number.
+    lines: String,
+    waiting: usize,
 }
 
 impl PathFile {
-    /// Begins the file in a directory.
+    /// Begins the file in a directory, in place of one that may be there from another path.
     pub(super) fn create(directory: &Path) -> Result<Self, Failure> {
-        let name = directory.join("path.csv");
+        let (name, part) = (
+            directory.join("path.csv"),
+            directory.join("path.csv.part"),
+        );
         let begin = || {
-            let mut output = BufWriter::new(File::create(&name)?);
-            writeln!(
-                output,
-                "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                 contact_stiffness,interfacial_stiffness"
-            )?;
-            Ok(output)
+            match fs::remove_file(&name) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+            File::create(&part)
         };
-        match begin() {
-            Ok(output) => Ok(Self { name, output }),
-            Err(error) => Err(failed(&name, error)),
-        }
+        let output = begin().map_err(|error| failed(&part, error))?;
+        Ok(Self {
+            name,
+            part,
+            output,
+            lines: "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
+                    contact_stiffness,interfacial_stiffness\n"
+                .to_string(),
+            waiting: 0,
+        })
     }
 
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
@@ -90,8 +141,9 @@ impl PathFile {
         let printed = |stiffness: Option<f64>| {
             stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
         };
-        let line = writeln!(
-            self.output,
+        // Writing to a text cannot fail.
+        let _ = writeln!(
+            self.lines,
             "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{}",
             state.step,
             state.approach,
@@ -102,19 +154,26 @@ impl PathFile {
             printed(state.contact_stiffness),
             printed(state.interfacial_stiffness),
         );
-        let done = match line {
-            Ok(()) if state.step.is_multiple_of(STRIDE) => self.output.flush(),
-            other => other,
-        };
-        done.map_err(|error| failed(&self.name, error))
+        self.waiting += 1;
+        if self.waiting == STRIDE {
+            self.flush().map_err(|error| failed(&self.part, error))?;
+        }
+        Ok(())
     }
 
-    /// Ends the file.
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.output.write_all(self.lines.as_bytes())?;
+        self.lines.clear();
+        self.waiting = 0;
+        Ok(())
+    }
+
+    /// Ends the file, and gives it its name.
     pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
-        match self.output.flush() {
-            Ok(()) => Ok(self.name),
-            Err(error) => Err(failed(&self.name, error)),
-        }
+        self.flush()
+            .and_then(|()| fs::rename(&self.part, &self.name))
+            .map_err(|error| failed(&self.part, error))?;
+        Ok(self.name)
     }
 }
 

@@ -4,9 +4,14 @@ use std::fmt;
 use std::path::Path;
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
-use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingState};
+use asperity::kernel::KernelOrigin;
+use asperity::record::LoadingRecord;
+use asperity::{
+    ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+};
 
-use super::options::{Options, Updater};
+use super::Solver;
+use super::options::{AREA_FRACTION, Options, Updater};
 use super::progress::Progress;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
@@ -31,11 +36,16 @@ pub(super) struct Job {
     updater: Updater,
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
+    /// What there is of the path already.
+    begun: Option<LoadingRecord>,
 }
 
 impl Job {
-    /// Makes or reads the surface.
+    /// Makes or reads the surface, or the record of a path.
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
+        if let Some(file) = &options.resume {
+            return Self::resumed(file, options);
+        }
         let e_star = match (options.elasticity.e_star()?, &options.surface) {
             (Some(e_star), _) => e_star,
             (None, None) => STEEL_ON_STEEL,
@@ -49,7 +59,8 @@ impl Job {
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
-        let targets = options.targets(surface.grid());
+        let otherwise = [ContactTarget::AreaFraction(AREA_FRACTION)];
+        let targets = options.targets(surface.grid(), &otherwise);
         Ok(Self {
             surface,
             name,
@@ -59,7 +70,58 @@ impl Job {
             rule: options.rule.into(),
             updater: options.updater,
             targets,
+            begun: None,
         })
+    }
+
+    /// The path of a record.
+    fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
+        let failed = |error| Failure::new(format!("cannot go on from {}", file.display()), error);
+        let record = LoadingRecord::read_npz(file).map_err(failed)?;
+        let (periodic, e_star) = match record.kernel().origin {
+            KernelOrigin::Boussinesq { e_star } => (None, e_star),
+            KernelOrigin::PeriodicBoussinesq { e_star } => (Some(Periodic::Love), e_star),
+            KernelOrigin::Spectral { e_star } => (Some(Periodic::Spectral), e_star),
+            _ => return Err(failed(asperity::Error::ForeignKernel)),
+        };
+        let heights = record.heights().matrix().clone();
+        let surface = options
+            .reading
+            .untouched()
+            .and_then(|()| Topography::new(record.grid(), heights).map_err(failed))?;
+        let rms_gradient = surface.map().rms_gradient(surface.grid()).map_err(failed)?;
+        Ok(Self {
+            name: format!("{}, {} states", file.display(), record.states().len()),
+            rms_gradient,
+            e_star,
+            periodic,
+            rule: record.settings().rule,
+            updater: options.updater,
+            targets: options.targets(surface.grid(), &record.settings().targets),
+            surface,
+            begun: Some(record),
+        })
+    }
+
+    /// The states that the path had already, in a record.
+    pub(super) fn begun(&self) -> &[LoadingState] {
+        self.begun.as_ref().map_or(&[], LoadingRecord::states)
+    }
+
+    /// The path, at its beginning or where it was interrupted.
+    pub(super) fn solver(&self) -> Result<Solver, Failure> {
+        let kernel = self.kernel()?;
+        let mut builder = LoadingSolver::builder(&self.surface, &kernel)
+            .updater(self.updater.make())
+            .rule(self.rule);
+        for &target in &self.targets {
+            builder = builder.until(target);
+        }
+        match &self.begun {
+            None => builder.build(),
+            Some(record) => builder.resume(record.history()),
+        }
+        .map_err(|error| Failure::new("the path cannot begin", error))
     }
 
     pub(super) fn grid(&self) -> Grid {
@@ -82,11 +144,6 @@ impl Job {
         self.rule
     }
 
-    /// Where the path ends, whichever comes first.
-    pub(super) fn targets(&self) -> &[ContactTarget] {
-        &self.targets
-    }
-
     /// How far a state is on the way to the nearest target: load grows about in proportion to nodes.
     pub(super) fn progress(&self, state: &LoadingState) -> Progress {
         let shares = self.targets.iter().map(|target| match *target {
@@ -106,7 +163,7 @@ impl Job {
         self.periodic
     }
 
-    pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
+    fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
         half_space(self.periodic, self.grid(), self.e_star)
             .map_err(|error| Failure::new("no such half-space", error))
     }

@@ -1,8 +1,8 @@
 //! `asperity path`: from a rough surface to its whole loading path.
 //!
 //! Writes `path.csv` with one line for each state, `loading_curve.svg` and
-//! `contact_map.png`, and prints a short table. If the path ends with an error, everything up to
-//! there is written all the same, and the exit code is 1.
+//! `contact_map.png`, the record of the path if it is asked for, and prints a short table. If the path ends with
+//! an error, everything up to there is written all the same, and the exit code is 1.
 
 mod curves;
 mod follow;
@@ -12,14 +12,16 @@ mod options;
 mod progress;
 mod table;
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use asperity::{Doubt, LoadingSolver};
+use asperity::record::LoadingRecord;
+use asperity::{Doubt, LoadingSolver, LoadingState};
 use asperity::updater::LinearUpdater;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 
-use follow::{PathFile, follow};
+use follow::{Followed, PathFile};
 use job::Job;
 pub(crate) use options::Options;
 
@@ -33,31 +35,35 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     for doubt in Doubt::of_surface(job.surface()) {
         eprintln!("warning: {doubt}");
     }
-    let kernel = job.kernel()?;
-    let mut builder = LoadingSolver::builder(job.heights(), &kernel)
-        .updater(options.updater.make())
-        .rule(job.rule());
-    for &target in job.targets() {
-        builder = builder.until(target);
-    }
-    let mut solver = builder
-        .build()
-        .map_err(|error| Failure::new("the path cannot begin", error))?;
+    let mut solver = job.solver()?;
     panel::register_font()?;
 
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let start = Instant::now();
-    let mut file = PathFile::create(&options.out)?;
-    let (states, ended) = follow(&mut solver, &mut file, |state| job.progress(state));
+    let file = PathFile::create(&options.out)?;
+    let mut followed = Followed::new(job.begun(), file, options)?;
+    let ended = followed.follow(&mut solver, |state| job.progress(state));
+    let (states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
 
     // Each of these is tried whatever became of the others: nothing computed is lost.
     let mut outcome = Outcome::default();
     outcome.note(ended);
+    if let Some(name) = &options.record {
+        outcome.written(save(name, &solver, &states));
+    }
     outcome.note(table::print(&job, &mut solver, &states, seconds));
     outcome.written(file.finish());
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
     outcome.finish()
+}
+
+/// Writes the record of the path so far.
+fn save(name: &Path, solver: &Solver, states: &[LoadingState]) -> Result<PathBuf, Failure> {
+    LoadingRecord::new(solver, states.iter().copied().collect())
+        .and_then(|record| record.write_npz(name, &[]))
+        .map(|()| name.to_path_buf())
+        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
 }

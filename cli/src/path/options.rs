@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
@@ -56,6 +57,18 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S")]
     pub(super) seed: Option<u64>,
 
+    /// Keep the path in this file, which numpy.load opens and --resume goes on from
+    #[arg(long, value_name = "FILE.npz")]
+    pub(super) record: Option<PathBuf>,
+
+    /// Write the record each time so many states have been added to it, and not only at the end
+    #[arg(long, value_name = "STATES", requires = "record")]
+    pub(super) save_every: Option<NonZeroUsize>,
+
+    /// Go on with the path of a record, to where it was to end unless another end is given
+    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "side", "side_y", "e_star", "material", "periodic", "rule"])]
+    pub(super) resume: Option<PathBuf>,
+
     /// Directory for the files, made if it is not there
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(super) out: PathBuf,
@@ -86,8 +99,8 @@ struct Ends {
 }
 
 impl Options {
-    /// Where the path ends, whichever comes first.
-    pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
+    /// Where the path ends, whichever comes first: at `otherwise` if nothing is said.
+    pub(super) fn targets(&self, grid: &Grid, otherwise: &[ContactTarget]) -> Vec<ContactTarget> {
         let ends = &self.ends;
         let pressure = ends.mean_pressure.map(|p| p * grid.nominal_area());
         let given = [
@@ -99,14 +112,14 @@ impl Options {
         ];
         let mut targets: Vec<ContactTarget> = given.into_iter().flatten().collect();
         if targets.is_empty() {
-            targets.push(ContactTarget::AreaFraction(AREA_FRACTION));
+            targets.extend(otherwise);
         }
         targets
     }
 }
 
 /// Contact area over nominal area at which a path ends if nobody says where.
-const AREA_FRACTION: f64 = 0.1;
+pub(super) const AREA_FRACTION: f64 = 0.1;
 
 /// [`ContactRule`] on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
