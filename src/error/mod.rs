@@ -54,15 +54,29 @@ pub enum Error {
         expected: &'static str,
     },
 
-    /// A height is NaN or infinite.
-    #[error("the height at node ({ix}, {iy}) is {value}, which is not finite")]
+    /// Heights that are NaN or infinite: missing data of a measurement, or an overflow.
+    #[error(
+        "{count} of the heights are not finite, the first at node ({ix}, {iy}), which is {value}; missing data of a \
+         measurement can be filled by `surface::fill_missing` (`--fill`)"
+    )]
     HeightNotFinite {
-        /// Node index along x.
+        /// Index of the first along x, in storage order.
         ix: usize,
-        /// Node index along y.
+        /// Its index along y.
         iy: usize,
-        /// The height.
+        /// Its value.
         value: f64,
+        /// How many there are.
+        count: usize,
+    },
+
+    /// A map without a single height that is finite: nothing to fill the others from.
+    #[error("none of the {nx} x {ny} heights is finite: there is nothing to fill them from")]
+    NothingMeasured {
+        /// Nodes along x.
+        nx: usize,
+        /// Nodes along y.
+        ny: usize,
     },
 
     /// A short cut-off wavelength has less than two nodes on the grid.
