@@ -79,6 +79,19 @@ pub enum Error {
         ny: usize,
     },
 
+    /// A piece of a map that reaches beyond it.
+    #[error("nodes {start} to {end} along {axis} are no part of {nodes} nodes")]
+    CropOutOfGrid {
+        /// The direction, x or y.
+        axis: char,
+        /// First node of the piece.
+        start: usize,
+        /// The node after its last.
+        end: usize,
+        /// Nodes of the map.
+        nodes: usize,
+    },
+
     /// A short cut-off wavelength has less than two nodes on the grid.
     #[error(
         "the short cut-off wavelength {wavelength} is shorter than {shortest}, \

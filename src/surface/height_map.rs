@@ -46,6 +46,11 @@ impl HeightMap {
         })
     }
 
+    /// A map of heights, at least one, that are known to be finite.
+    pub(super) fn of_finite(heights: DMatrix<f64>) -> Self {
+        Self { heights }
+    }
+
     /// The heights of any surface on a grid, for its statistics or to keep them.
     ///
     /// # Errors
