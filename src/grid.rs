@@ -72,6 +72,17 @@ impl Grid {
         Self::with_sides(n, n, side, side)
     }
 
+    /// The grid with x and y exchanged.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        Self {
+            nx: self.ny,
+            ny: self.nx,
+            dx: self.dy,
+            dy: self.dx,
+        }
+    }
+
     /// Nodes along x.
     #[must_use]
     pub fn nx(&self) -> usize {

@@ -54,15 +54,42 @@ pub enum Error {
         expected: &'static str,
     },
 
-    /// A height is NaN or infinite.
-    #[error("the height at node ({ix}, {iy}) is {value}, which is not finite")]
+    /// Heights that are NaN or infinite: missing data of a measurement, or an overflow.
+    #[error(
+        "{count} of the heights are not finite, the first at node ({ix}, {iy}), which is {value}; missing data of a \
+         measurement can be filled by `surface::fill_missing` (`--fill`)"
+    )]
     HeightNotFinite {
-        /// Node index along x.
+        /// Index of the first along x, in storage order.
         ix: usize,
-        /// Node index along y.
+        /// Its index along y.
         iy: usize,
-        /// The height.
+        /// Its value.
         value: f64,
+        /// How many there are.
+        count: usize,
+    },
+
+    /// A map without a single height that is finite: nothing to fill the others from.
+    #[error("none of the {nx} x {ny} heights is finite: there is nothing to fill them from")]
+    NothingMeasured {
+        /// Nodes along x.
+        nx: usize,
+        /// Nodes along y.
+        ny: usize,
+    },
+
+    /// A piece of a map that reaches beyond it.
+    #[error("nodes {start} to {end} along {axis} are no part of {nodes} nodes")]
+    CropOutOfGrid {
+        /// The direction, x or y.
+        axis: char,
+        /// First node of the piece.
+        start: usize,
+        /// The node after its last.
+        end: usize,
+        /// Nodes of the map.
+        nodes: usize,
     },
 
     /// A short cut-off wavelength has less than two nodes on the grid.

@@ -33,9 +33,9 @@ impl HeightMap {
     ///
     /// # Errors
     ///
-    /// [`Error::EmptyGrid`] without any height, and [`Error::HeightNotFinite`], which names the
-    /// first node in storage order whose height is NaN or infinite: missing data of a measurement
-    /// must be filled in first.
+    /// [`Error::EmptyGrid`] without any height, and [`Error::HeightNotFinite`], which counts the
+    /// heights that are NaN or infinite and names the first of them: missing data of a measurement
+    /// must be filled first, by [`fill_missing`](super::fill_missing).
     pub fn new(heights: DMatrix<f64>) -> Result<Self, Error> {
         let (nx, ny) = heights.shape();
         if nx == 0 || ny == 0 {
@@ -44,6 +44,11 @@ impl HeightMap {
         Ok(Self {
             heights: all_finite(heights)?,
         })
+    }
+
+    /// A map of heights, at least one, that are known to be finite.
+    pub(super) fn of_finite(heights: DMatrix<f64>) -> Self {
+        Self { heights }
     }
 
     /// The heights of any surface on a grid, for its statistics or to keep them.

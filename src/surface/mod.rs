@@ -4,11 +4,14 @@
 //! * [`SelfAffine`]: random surfaces with a prescribed power spectrum.
 //! * [`Paraboloid`], [`EllipticParaboloid`], [`Cylinder`], [`Cone`], [`FlatPunch`], [`Wave`],
 //!   [`BiWave`]: shapes whose contact has a closed-form solution.
+//! * [`Topography`]: heights with their lengths, which can be levelled, cropped, filtered, resampled
+//!   and described by statistics; [`fill_missing`] comes before it.
 //! * [`Sum`]: the composite roughness of two surfaces.
 //!
 //! Only differences of height matter for contact. Heights are positive towards the half-space: the
 //! highest node touches first.
 
+mod fourier;
 mod height_map;
 mod missing;
 mod placement;
@@ -25,7 +28,7 @@ pub use placement::Axis;
 pub use self_affine::{Amplitude, SelfAffine, Spectrum};
 pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
 pub use sum::Sum;
-pub use topography::Topography;
+pub use topography::{Filter, FittedTrend, Interpolation, Topography, Trend, Window};
 pub use waves::{BiWave, Wave};
 
 use std::sync::Arc;

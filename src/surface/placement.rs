@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::missing::count_missing;
 use crate::{Error, Grid};
 
 /// A direction of the grid.
@@ -81,6 +82,7 @@ pub(super) fn all_finite(heights: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
             ix: node % heights.nrows(),
             iy: node / heights.nrows(),
             value: heights[node],
+            count: count_missing(&heights),
         }),
     }
 }
