@@ -138,7 +138,8 @@ mod tests {
 
     #[test]
     fn a_tilt_that_hides_the_roughness_is_noticed() -> Result<(), Error> {
-        let tilted = |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (1.7 * y).sin()) + slope * x;
+        let tilted =
+            |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (1.7 * y).sin()) + slope * x;
         assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
         let found = doubts(1e-5, tilted(1e-8))?;
         assert!(matches!(found[..], [Doubt::Tilted { .. }]), "{found:?}");

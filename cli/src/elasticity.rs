@@ -79,10 +79,7 @@ impl FromStr for Material {
             Some((Some(e), Some(nu))) => Ok(Self((e, nu))),
             _ => {
                 let names: Vec<&str> = MATERIALS.iter().map(|(name, ..)| *name).collect();
-                Err(format!(
-                    "neither 'E,NU' nor one of {}",
-                    names.join(", ")
-                ))
+                Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))
             }
         }
     }
@@ -113,7 +110,15 @@ mod tests {
 
     #[test]
     fn what_is_no_material_is_refused() {
-        for text in ["", "stone", "210e9", "210e9;0.3", "a,b", "210e9,0.7", "-1,0.3"] {
+        for text in [
+            "",
+            "stone",
+            "210e9",
+            "210e9;0.3",
+            "a,b",
+            "210e9,0.7",
+            "-1,0.3",
+        ] {
             assert!(modulus(text, None).is_err(), "{text}");
         }
     }
@@ -121,7 +126,10 @@ mod tests {
     #[test]
     fn every_named_material_exists() {
         for (name, ..) in MATERIALS {
-            assert!(matches!(modulus(name, Some("steel")), Ok(Some(_))), "{name}");
+            assert!(
+                matches!(modulus(name, Some("steel")), Ok(Some(_))),
+                "{name}"
+            );
         }
     }
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
 use asperity::{Doubt, FixedLoadSolver};

@@ -9,7 +9,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::bytes::read_file;
 use super::fault::Fault;
-use super::npy::array::{Array, header_of};
+use super::npy::{self, header_of};
 use crate::Error;
 
 /// How many times the size of its archive a member may take: arrays of one number compress a thousand times.
@@ -29,7 +29,13 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         }
     }
 
-    fn begin(&mut self, name: &str, descr: &str, shape: &[usize], bytes: usize) -> std::io::Result<()> {
+    fn begin(
+        &mut self,
+        name: &str,
+        descr: &str,
+        shape: &[usize],
+        bytes: usize,
+    ) -> std::io::Result<()> {
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Stored)
             .large_file(bytes > LARGE);
@@ -105,50 +111,58 @@ impl Archive {
         })
     }
 
-    fn member(&self, name: &str) -> Result<Array, Error> {
-        self.read(name).map_err(|fault| fault.in_file(&self.path, self.format))
+    /// What `parse` makes of a member.
+    fn member<T>(&self, name: &str, parse: impl Fn(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
+        let parsed = self.bytes_of(name).and_then(|bytes| parse(&bytes));
+        let in_member = |fault| match fault {
+            Fault::Malformed { offset, reason } => Fault::Malformed {
+                offset,
+                reason: format!("member '{name}': {reason}"),
+            },
+            other => other,
+        };
+        parsed.map_err(|fault| in_member(fault).in_file(&self.path, self.format))
     }
 
-    fn read(&self, name: &str) -> Result<Array, Fault> {
-        let bad = |error: zip::result::ZipError| Fault::malformed(format!("member '{name}': {error}"));
+    fn bytes_of(&self, name: &str) -> Result<Vec<u8>, Fault> {
+        let bad = |error: zip::result::ZipError| Fault::malformed(error.to_string());
         let mut zip = ZipArchive::new(Cursor::new(&self.bytes[..])).map_err(bad)?;
         let member = zip.by_name(&format!("{name}.npy")).map_err(bad)?;
         let most = self.bytes.len().saturating_mul(MOST);
         let mut bytes = Vec::new();
-        let mut limited = member.take(most as u64 + 1);
-        limited
+        member
+            .take(most as u64 + 1)
             .read_to_end(&mut bytes)
-            .map_err(|error| Fault::malformed(format!("member '{name}': {error}")))?;
+            .map_err(|error| Fault::malformed(error.to_string()))?;
         if bytes.len() > most {
             return Err(Fault::malformed(format!(
-                "member '{name}' is more than {MOST} times as large as the file"
+                "it is more than {MOST} times as large as the file"
             )));
         }
-        Array::parse(&bytes)
+        Ok(bytes)
     }
 
     /// The text of a member.
     pub(crate) fn text(&self, name: &str) -> Result<String, Error> {
-        self.member(name)?
-            .into_text()
-            .ok_or_else(|| self.unexpected(name, "a text"))
+        self.member(name, npy::text)
     }
 
     /// An array of one dimension, of a length if one is given.
     pub(crate) fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, Error> {
-        let values = self.member(name)?.into_vector();
-        values
-            .filter(|values| length.is_none_or(|length| values.len() == length))
-            .ok_or_else(|| self.unexpected(name, "one number for each state"))
+        self.member(name, |bytes| {
+            let values = npy::vector(bytes)?;
+            match length {
+                Some(length) if length != values.len() => Err(Fault::malformed(format!(
+                    "it has {} numbers, but there are {length} states",
+                    values.len()
+                ))),
+                _ => Ok(values),
+            }
+        })
     }
 
     /// An array `[ix, iy]`.
     pub(crate) fn matrix(&self, name: &str) -> Result<DMatrix<f64>, Error> {
-        let matrix = self.member(name)?.into_matrix();
-        matrix.ok_or_else(|| self.unexpected(name, "an array of two dimensions"))
-    }
-
-    fn unexpected(&self, name: &str, expected: &str) -> Error {
-        Fault::malformed(format!("member '{name}' is not {expected}")).in_file(&self.path, self.format)
+        self.member(name, npy::matrix)
     }
 }

@@ -39,9 +39,12 @@
 mod bytes;
 mod fault;
 mod npy;
+mod number;
 
 #[cfg(feature = "io")]
 mod al3d;
+#[cfg(feature = "io")]
+pub(crate) mod archive;
 #[cfg(feature = "io")]
 mod format;
 #[cfg(feature = "io")]

@@ -230,7 +230,8 @@ impl LoadingRecord {
         let (ix, iy, nodes, events) = (ix?, iy?, nodes?, events?);
         let mut states = Vec::with_capacity(steps.len());
         for k in 0..steps.len() {
-            let event = event(events[k]).ok_or_else(|| bad(format!("no event is {}", events[k])))?;
+            let event =
+                event(events[k]).ok_or_else(|| bad(format!("no event is {}", events[k])))?;
             states.push(LoadingState {
                 step: whole(steps[k]),
                 event,
@@ -260,7 +261,14 @@ impl LoadingRecord {
             coefficients: parameters.coefficients,
         };
         let history: History = states.into_iter().collect();
-        Self::from_parts(grid, heights, kernel, parameters.settings, history, parameters.end)
+        Self::from_parts(
+            grid,
+            heights,
+            kernel,
+            parameters.settings,
+            history,
+            parameters.end,
+        )
     }
 }
 
@@ -275,8 +283,13 @@ fn code(event: ContactEvent) -> i64 {
 
 /// The event of a number.
 fn event(code: f64) -> Option<ContactEvent> {
-    let all = [ContactEvent::Touch, ContactEvent::Release, ContactEvent::Limit];
-    all.into_iter().find(|event| self::code(*event) as f64 == code)
+    let all = [
+        ContactEvent::Touch,
+        ContactEvent::Release,
+        ContactEvent::Limit,
+    ];
+    all.into_iter()
+        .find(|event| self::code(*event) as f64 == code)
 }
 
 /// The name of a file while it is written.

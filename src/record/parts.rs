@@ -60,6 +60,13 @@ impl TryFrom<Parts> for LoadingRecord {
             }
         }
         let history = states.into_iter().collect();
-        Self::from_parts(grid, heights, parts.kernel, parts.settings, history, parts.end)
+        Self::from_parts(
+            grid,
+            heights,
+            parts.kernel,
+            parts.settings,
+            history,
+            parts.end,
+        )
     }
 }

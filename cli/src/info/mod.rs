@@ -87,11 +87,7 @@ fn object(measured: &MeasuredSurface, summary: &Summary) -> Value {
 }
 
 /// Lines for people.
-fn print(
-    options: &Options,
-    measured: &MeasuredSurface,
-    summary: &Summary,
-) -> Result<(), Failure> {
+fn print(options: &Options, measured: &MeasuredSurface, summary: &Summary) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
     println!("file          {}", options.file.display());
     println!("found         {measured}");
@@ -122,7 +118,9 @@ fn print(
         Ok(measured.clone())
     };
     let Ok(surface) = whole.and_then(MeasuredSurface::topography) else {
-        println!("no statistics: the file does not give the size of the surface; give it with --side");
+        println!(
+            "no statistics: the file does not give the size of the surface; give it with --side"
+        );
         return Ok(());
     };
     if let Ok(levelled) = surface.level(Trend::Plane) {

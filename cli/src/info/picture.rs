@@ -27,7 +27,10 @@ pub(super) fn map(
         // Of unknown size: counted in cells.
         Err(_) => {
             let grid = Grid::new(nx, ny, 1.0, 1.0);
-            (grid.map_err(|error| Failure::new("no map", error))?, "cells")
+            (
+                grid.map_err(|error| Failure::new("no map", error))?,
+                "cells",
+            )
         }
     };
     FieldMap {
@@ -41,4 +44,58 @@ pub(super) fn map(
         &directory.join("surface_map.png"),
         &format!("{nx} × {ny} nodes, Sq = {}", quantity(summary.sq, "m", 4)),
     )
+}
+
+/// The distribution of heights.
+pub(super) fn statistics(measured: &MeasuredSurface, directory: &Path) -> Result<PathBuf, Failure> {
+    chart::draw(
+        &[distribution(measured)],
+        1,
+        &directory.join("surface_statistics.png"),
+    )
+}
+
+fn distribution(measured: &MeasuredSurface) -> Chart {
+    let heights = measured.heights.iter().copied();
+    let heights: Vec<f64> = heights.filter(|height| height.is_finite()).collect();
+    let count = heights.len().max(1) as f64;
+    let mean = heights.iter().sum::<f64>() / count;
+    let sq = (heights.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let least = heights.iter().copied().fold(f64::INFINITY, f64::min) - mean;
+    let greatest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max) - mean;
+    let width = (greatest - least) / BINS as f64;
+    let mut counts = vec![0.0; BINS];
+    for height in &heights {
+        let bin = ((height - mean - least) / width) as usize;
+        counts[bin.min(BINS - 1)] += 1.0;
+    }
+    // In units of 1/Sq, so that a normal distribution is always the same curve.
+    let density = |count: f64| count / count_times(heights.len(), width) * sq;
+    let middle = |bin: usize| least + (bin as f64 + 0.5) * width;
+    let bars = counts.iter().enumerate();
+    let bars: Vec<(f64, f64)> = bars.map(|(bin, n)| (middle(bin), density(*n))).collect();
+    let normal = bars.iter().map(|(z, _)| {
+        let x = z / sq;
+        (
+            *z,
+            (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt(),
+        )
+    });
+    let highest = bars.iter().map(|(_, d)| *d).fold(0.4, f64::max);
+    Chart {
+        title: "distribution of heights".to_string(),
+        x: Axis::linear("height above the mean", "m", least, greatest),
+        y: Axis::plain("probability density × Sq", 0.0, 1.1 * highest),
+        series: vec![
+            Series::new("normal", GREY, Style::Dashed, normal.collect::<Vec<_>>()),
+            Series::new("this surface", BLUE, Style::Line, bars.clone()),
+        ],
+        legend: Corner::TopLeft,
+    }
+}
+
+/// Never zero.
+fn count_times(count: usize, width: f64) -> f64 {
+    let product = count as f64 * width;
+    if product > 0.0 { product } else { 1.0 }
 }

@@ -43,11 +43,11 @@ fn rms_gradient(heights: &DMatrix<f64>, (dx, dy): (f64, f64)) -> f64 {
         sum / count.max(1) as f64
     };
     let at = |ix: usize, iy: usize| heights[(ix, iy)];
-    let mut along_x = (0..ny).flat_map(|iy| {
-        (1..nx).map(move |ix| (ix, iy))
-    }).map(|(ix, iy)| (at(ix, iy) - at(ix - 1, iy)) / dx);
-    let mut along_y = (1..ny).flat_map(|iy| {
-        (0..nx).map(move |ix| (ix, iy))
-    }).map(|(ix, iy)| (at(ix, iy) - at(ix, iy - 1)) / dy);
+    let mut along_x = (0..ny)
+        .flat_map(|iy| (1..nx).map(move |ix| (ix, iy)))
+        .map(|(ix, iy)| (at(ix, iy) - at(ix - 1, iy)) / dx);
+    let mut along_y = (1..ny)
+        .flat_map(|iy| (0..nx).map(move |ix| (ix, iy)))
+        .map(|(ix, iy)| (at(ix, iy) - at(ix, iy - 1)) / dy);
     (mean_square(&mut along_x) + mean_square(&mut along_y)).sqrt()
 }

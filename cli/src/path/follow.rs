@@ -111,10 +111,7 @@ pub(super) struct PathFile {
 impl PathFile {
     /// Begins the file in a directory, in place of one that may be there from another path.
     pub(super) fn create(directory: &Path) -> Result<Self, Failure> {
-        let (name, part) = (
-            directory.join("path.csv"),
-            directory.join("path.csv.part"),
-        );
+        let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
             match fs::remove_file(&name) {
                 Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),

@@ -3,12 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
-use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
 use asperity::kernel::KernelOrigin;
 use asperity::record::LoadingRecord;
-use asperity::{
-    ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-};
+use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
+use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState};
 
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater};

@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use asperity::record::LoadingRecord;
-use asperity::{Doubt, LoadingSolver, LoadingState};
 use asperity::updater::LinearUpdater;
+use asperity::{Doubt, LoadingSolver, LoadingState};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 

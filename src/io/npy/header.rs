@@ -5,6 +5,7 @@
 
 use crate::io::bytes::Bytes;
 use crate::io::fault::Fault;
+use crate::io::number::Number;
 
 /// Longest header text accepted. NumPy's own limit is 10 000, and a matrix needs about 100.
 const MAX_TEXT: usize = 1 << 16;
@@ -12,77 +13,50 @@ const MAX_TEXT: usize = 1 << 16;
 /// Type of the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Element {
-    kind: Kind,
+    number: Number,
     big_endian: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    F64,
-    F32,
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
-}
-
 impl Element {
-    fn from_descr(descr: &str) -> Result<Self, Fault> {
+    pub(super) fn from_descr(descr: &str) -> Result<Self, Fault> {
         let big_endian = descr.starts_with('>');
-        let kind = match descr.trim_start_matches(['<', '>', '|', '=']) {
-            "f8" => Kind::F64,
-            "f4" => Kind::F32,
-            "i1" => Kind::I8,
-            "i2" => Kind::I16,
-            "i4" => Kind::I32,
-            "i8" => Kind::I64,
-            "u1" => Kind::U8,
-            "u2" => Kind::U16,
-            "u4" => Kind::U32,
-            "u8" => Kind::U64,
+        let number = match descr.trim_start_matches(['<', '>', '|', '=']) {
+            "f8" => Number::F64,
+            "f4" => Number::F32,
+            "i1" => Number::I8,
+            "i2" => Number::I16,
+            "i4" => Number::I32,
+            "i8" => Number::I64,
+            "u1" => Number::U8,
+            "u2" => Number::U16,
+            "u4" => Number::U32,
+            "u8" => Number::U64,
             _ => {
                 return Err(Fault::malformed(format!(
                     "the elements are of type '{descr}', but only float64, float32 and integers are read"
                 )));
             }
         };
-        Ok(Self { kind, big_endian })
+        Ok(Self { number, big_endian })
     }
 
     /// Bytes an element takes.
     pub(super) fn size(self) -> usize {
-        match self.kind {
-            Kind::F64 | Kind::I64 | Kind::U64 => 8,
-            Kind::F32 | Kind::I32 | Kind::U32 => 4,
-            Kind::I16 | Kind::U16 => 2,
-            Kind::I8 | Kind::U8 => 1,
-        }
+        self.number.size()
     }
 
-    /// The value of [`Element::size`] bytes, NaN for another number of bytes. Integers beyond 2⁵³ are rounded.
+    /// The value of [`Element::size`] bytes, NaN for another number of bytes.
     pub(super) fn decode(self, bytes: &[u8]) -> f64 {
+        if !self.big_endian {
+            return self.number.decode(bytes);
+        }
         let mut little = [0; 8];
         let Some(raw) = little.get_mut(..bytes.len()) else {
             return f64::NAN;
         };
         raw.copy_from_slice(bytes);
-        if self.big_endian {
-            raw.reverse();
-        }
-        let bits = u64::from_le_bytes(little);
-        match self.kind {
-            Kind::F64 => f64::from_bits(bits),
-            Kind::F32 => f64::from(f32::from_bits(bits as u32)),
-            Kind::I8 => f64::from(bits as i8),
-            Kind::I16 => f64::from(bits as i16),
-            Kind::I32 => f64::from(bits as i32),
-            Kind::I64 => bits as i64 as f64,
-            Kind::U8 | Kind::U16 | Kind::U32 | Kind::U64 => bits as f64,
-        }
+        raw.reverse();
+        self.number.decode(raw)
     }
 }
 
@@ -92,11 +66,17 @@ const PREAMBLE: &[u8; 8] = b"\x93NUMPY\x01\x00";
 /// The elements of a file begin at a multiple of this many bytes.
 const ALIGNMENT: usize = 64;
 
-/// The header of a matrix of `float64`, little-endian, in C order, as NumPy itself writes it.
-pub(super) fn of_doubles((nx, ny): (usize, usize)) -> Vec<u8> {
-    let mut text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({nx}, {ny}), }}");
+/// The header of an array in C order, as NumPy itself writes it.
+pub(crate) fn header_of(descr: &str, shape: &[usize]) -> Vec<u8> {
+    let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
+    // Python's tuple of one has a comma.
+    let comma = if shape.len() == 1 { "," } else { "" };
+    let mut text = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}{comma}), }}",
+        sides.join(", ")
+    );
     // The text ends with a line feed, and its length stands before it in two bytes, which are
-    // enough: two numbers have at most 40 digits.
+    // enough: no array of this crate has more than two dimensions, of at most 20 digits each.
     let unpadded = PREAMBLE.len() + 2 + text.len() + 1;
     let padding = unpadded.next_multiple_of(ALIGNMENT) - unpadded;
     text.extend(std::iter::repeat_n(' ', padding));
@@ -108,11 +88,12 @@ pub(super) fn of_doubles((nx, ny): (usize, usize)) -> Vec<u8> {
 }
 
 /// What a header says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Header {
-    pub(super) shape: (usize, usize),
+    pub(super) shape: Vec<usize>,
     pub(super) fortran_order: bool,
-    pub(super) element: Element,
+    /// Type of the elements, as the file writes it.
+    pub(super) descr: String,
 }
 
 impl Header {
@@ -156,7 +137,7 @@ impl Header {
                 }
                 "descr" => descr = Some(text.string()?),
                 "fortran_order" => order = Some(text.boolean()?),
-                "shape" => shape = Some(text.pair()?),
+                "shape" => shape = Some(text.sides()?),
                 other => {
                     return Err(Fault::malformed(format!(
                         "the header has an unknown key '{other}'"
@@ -170,7 +151,7 @@ impl Header {
         text.end()?;
         let missing = |key| Fault::malformed(format!("the header lacks the key '{key}'"));
         Ok(Self {
-            element: Element::from_descr(descr.ok_or_else(|| missing("descr"))?)?,
+            descr: descr.ok_or_else(|| missing("descr"))?.to_string(),
             fortran_order: order.ok_or_else(|| missing("fortran_order"))?,
             shape: shape.ok_or_else(|| missing("shape"))?,
         })
@@ -235,8 +216,8 @@ impl<'a> Cursor<'a> {
         Err(self.unexpected())
     }
 
-    /// A tuple of two integers; numbers too large for the computer become the largest.
-    fn pair(&mut self) -> Result<(usize, usize), Fault> {
+    /// A tuple of integers; numbers too large for the computer become the largest.
+    fn sides(&mut self) -> Result<Vec<usize>, Fault> {
         self.expect('(')?;
         let mut sides = Vec::new();
         while !self.take(')') {
@@ -245,13 +226,7 @@ impl<'a> Cursor<'a> {
                 return Err(self.unexpected());
             }
         }
-        match sides[..] {
-            [nx, ny] => Ok((nx, ny)),
-            _ => Err(Fault::malformed(format!(
-                "the array has {} dimensions, but a height map has 2",
-                sides.len()
-            ))),
-        }
+        Ok(sides)
     }
 
     fn integer(&mut self) -> Result<usize, Fault> {
@@ -275,9 +250,9 @@ mod tests {
     #[test]
     fn headers_of_every_writer_are_understood() -> Result<(), Fault> {
         let expected = Header {
-            shape: (3, 40),
+            shape: vec![3, 40],
             fortran_order: true,
-            element: Element::from_descr(">f4")?,
+            descr: ">f4".to_string(),
         };
         for text in [
             "{'descr': '>f4', 'fortran_order': True, 'shape': (3, 40), }          \n",
@@ -298,13 +273,8 @@ mod tests {
             "{'descr': '<f8', 'fortran_order': False}",
             "{'descr': '<f8', 'shape': (3, 4)}",
             "{'fortran_order': False, 'shape': (3, 4)}",
-            "{'descr': '<c8', 'fortran_order': False, 'shape': (3, 4)}",
-            "{'descr': '|O', 'fortran_order': False, 'shape': (3, 4)}",
             "{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (3, 4)}",
             "{'descr': '<f8', 'fortran_order': 0, 'shape': (3, 4)}",
-            "{'descr': '<f8', 'fortran_order': False, 'shape': (3,)}",
-            "{'descr': '<f8', 'fortran_order': False, 'shape': ()}",
-            "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4, 5)}",
             "{'descr': '<f8', 'fortran_order': False, 'shape': (-3, 4)}",
             "{'descr': '<f8', 'fortran_order': False, 'shape': (3 4)}",
             "{'descr': '<f8', 'fortran_order': False, 'shape': 3}",

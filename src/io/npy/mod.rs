@@ -8,11 +8,12 @@ use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use self::header::Header;
+pub(super) use self::header::header_of;
+use self::header::{Element, Header};
 use super::bytes::{Bytes, read_file, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
-use super::raw::Channel;
+use super::raw::{Channel, decode};
 use crate::Error;
 
 /// Reads a two-dimensional array of `float64`, `float32` or integers from a NumPy `.npy` file.
@@ -65,34 +66,26 @@ pub(super) fn parse(file: &[u8]) -> Result<Channel, Fault> {
     Ok(Channel::in_metres(shape, matrix.data.into(), None))
 }
 
-fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
+/// An array of two dimensions.
+pub(super) fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
     let mut input = Bytes::new(file);
-    let Header {
-        shape: (nx, ny),
-        fortran_order,
-        element,
-    } = Header::read(&mut input)?;
-    let (nx, ny) = shape(nx as u64, ny as u64)?;
-    let elements = input.elements(nx * ny, element.size())?;
-    if input.left() > 0 {
-        return Err(Fault::at(
-            input.offset(),
-            format!(
-                "{nx} x {ny} elements end here, but {} bytes follow",
-                input.left()
-            ),
-        ));
-    }
+    let header = Header::read(&mut input)?;
+    let (nx, ny) = match header.shape[..] {
+        [nx, ny] => shape(nx as u64, ny as u64)?,
+        _ => return Err(dimensions(&header, 2)),
+    };
+    let element = Element::from_descr(&header.descr)?;
+    let elements = rest(input, nx * ny, element.size())?;
     let mut values = Vec::new();
     values
         .try_reserve_exact(nx * ny)
         .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
     values.resize(nx * ny, 0.0);
     // The file holds runs of the faster index; (slow, fast) is (ix, iy) in C order.
-    let run = if fortran_order { nx } else { ny };
+    let run = if header.fortran_order { nx } else { ny };
     for (slow, bytes) in elements.chunks_exact(run * element.size()).enumerate() {
         for (fast, value) in bytes.chunks_exact(element.size()).enumerate() {
-            let node = if fortran_order {
+            let node = if header.fortran_order {
                 fast + nx * slow
             } else {
                 slow + nx * fast
@@ -103,8 +96,69 @@ fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
     Ok(DMatrix::from_vec(nx, ny, values))
 }
 
+/// An array of one dimension.
+#[cfg(feature = "io")]
+pub(super) fn vector(file: &[u8]) -> Result<Vec<f64>, Fault> {
+    let mut input = Bytes::new(file);
+    let header = Header::read(&mut input)?;
+    let [length] = header.shape[..] else {
+        return Err(dimensions(&header, 1));
+    };
+    let element = Element::from_descr(&header.descr)?;
+    let elements = rest(input, length, element.size())?;
+    decode(elements, element.size(), |bytes| element.decode(bytes))
+}
+
+/// An array without dimensions that holds a text.
+#[cfg(feature = "io")]
+pub(super) fn text(file: &[u8]) -> Result<String, Fault> {
+    let mut input = Bytes::new(file);
+    let header = Header::read(&mut input)?;
+    if !header.shape.is_empty() {
+        return Err(dimensions(&header, 0));
+    }
+    let length = header.descr.strip_prefix("<U");
+    let length: Option<usize> = length.and_then(|length| length.parse().ok());
+    let length = length.ok_or_else(|| {
+        Fault::malformed(format!(
+            "the element is of type '{}', not a text",
+            header.descr
+        ))
+    })?;
+    let letters = rest(input, length, 4)?.chunks_exact(4);
+    letters
+        .map(|bytes| {
+            let code = bytes.try_into().map_or(u32::MAX, u32::from_le_bytes);
+            char::from_u32(code).ok_or_else(|| Fault::malformed(format!("{code:#x} is no letter")))
+        })
+        .collect()
+}
+
+/// All bytes that are left: so many elements.
+fn rest<'a>(mut input: Bytes<'a>, count: usize, size: usize) -> Result<&'a [u8], Fault> {
+    let elements = input.elements(count, size)?;
+    if input.left() > 0 {
+        return Err(Fault::at(
+            input.offset(),
+            format!(
+                "{count} elements end here, but {} bytes follow",
+                input.left()
+            ),
+        ));
+    }
+    Ok(elements)
+}
+
+fn dimensions(header: &Header, expected: usize) -> Fault {
+    let found = header.shape.len();
+    Fault::malformed(format!(
+        "the array has {found} dimensions, but {expected} were expected"
+    ))
+}
+
 fn write(mut output: impl Write, matrix: &DMatrix<f64>) -> std::io::Result<()> {
-    output.write_all(&header::of_doubles(matrix.shape()))?;
+    let (nx, ny) = matrix.shape();
+    output.write_all(&header_of("<f8", &[nx, ny]))?;
     for row in matrix.row_iter() {
         for value in row.iter() {
             output.write_all(&value.to_le_bytes())?;
