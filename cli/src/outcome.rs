@@ -29,9 +29,15 @@ impl Failure {
     /// Prints the whole chain of causes on stderr.
     pub fn report(&self) {
         eprintln!("error: {}", self.what);
+        let mut said = String::new();
         let mut cause: Option<&dyn Error> = self.source.as_deref();
         while let Some(error) = cause {
-            eprintln!("  because: {error}");
+            let text = error.to_string();
+            // Some errors quote their causes.
+            if !said.ends_with(&text) {
+                eprintln!("  because: {text}");
+            }
+            said = text;
             cause = error.source();
         }
     }

@@ -1,6 +1,6 @@
 //! A finished path as a record that can be read at any load, approach, area or mean gap.
 
-use super::LoadingState;
+use super::{ContactEvent, LoadingState};
 use crate::contact::ContactState;
 
 /// The states of a path in the order of loading, to be read at any instant between them.
@@ -47,6 +47,15 @@ impl History {
     #[must_use]
     pub fn states(&self) -> &[LoadingState] {
         &self.states
+    }
+
+    /// The states without the one at a limit, if there is one.
+    #[must_use]
+    pub fn events(&self) -> &[LoadingState] {
+        match self.states.split_last() {
+            Some((last, events)) if last.event == ContactEvent::Limit => events,
+            _ => &self.states,
+        }
     }
 
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended

@@ -17,15 +17,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let contact = replay(&run.problem.grid(), history, |step, node, position| {
             releases.push(step, node, position);
         })?;
-        let events = history.states().iter().rev();
-        let last_event = events
-            .clone()
-            .find(|state| state.event != ContactEvent::Limit);
-        if let Some(state) = last_event {
+        // A limit is no event: it comes again if the path is still to end there.
+        let events = history.events().iter();
+        self.state = events.last().copied();
+        if let Some(state) = &self.state {
             run.front.place_at(run.front.own_approach(state));
         }
         run.contact = contact;
-        self.state = history.states().last().copied();
         Ok(())
     }
 

@@ -179,7 +179,12 @@ fn a_limit_is_no_event() {
     assert_eq!(record.history().at_load(load).unwrap().load, load);
     assert_eq!(record.settings().rule, ContactRule::FirstContact);
     let mut resumed = record.resume().unwrap();
-    assert_eq!(resumed.state().unwrap().load, load);
+    // It is to end where it ended, and then goes on.
+    let last = resumed.by_ref().last().unwrap().unwrap();
+    assert_eq!((last.step, last.load), (100, load));
+    resumed
+        .continue_to(ContactTarget::AreaFraction(1.0))
+        .unwrap();
     let next = resumed.next().unwrap().unwrap();
     assert_close(&next, &all[100], 1e-10, all[0].mean_gap);
 }

@@ -101,9 +101,10 @@ impl Job {
         })
     }
 
-    /// The states that the path had already, in a record.
+    /// The events that the path had already, in a record.
     pub(super) fn begun(&self) -> &[LoadingState] {
-        self.begun.as_ref().map_or(&[], LoadingRecord::states)
+        let record = self.begun.as_ref();
+        record.map_or(&[], |record| record.history().events())
     }
 
     /// The path, at its beginning or where it was interrupted.
