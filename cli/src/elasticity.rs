@@ -9,7 +9,7 @@ use clap::Args;
 use crate::values::positive;
 
 /// How stiff the two bodies are.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Elasticity {
     /// Composite modulus E*: 1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]

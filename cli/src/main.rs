@@ -1,6 +1,8 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
 mod elasticity;
+mod ensemble;
+mod gather;
 mod info;
 mod load;
 mod path;
@@ -27,6 +29,7 @@ enum Command {
     Path(path::Options),
     Load(load::Options),
     Info(info::Options),
+    Gather(gather::Options),
 }
 
 fn main() -> ExitCode {
@@ -35,6 +38,7 @@ fn main() -> ExitCode {
         Some(Command::Path(options)) => path::run(&options),
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
+        Some(Command::Gather(options)) => gather::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

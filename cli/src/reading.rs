@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use crate::values::{positive, unit};
 
 /// What a file does not say of itself, and how its surface is prepared.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
     /// Side of the surface along x, in place of what the file says [generated surface: 1e-2]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]

@@ -111,6 +111,25 @@ impl Handover {
         Self::factor_cost(contact).min(Self::iteration_cost(nodes, contact))
     }
 
+    /// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: where it is given up if
+    /// memory allows.
+    #[must_use]
+    pub fn last_factor(nodes: usize) -> usize {
+        // Both costs grow with the contact, and that of a factor faster: one crossing.
+        let dearer =
+            |contact: &usize| Self::factor_cost(*contact) > Self::iteration_cost(nodes, *contact);
+        let (mut low, mut high) = (0, nodes);
+        while low < high {
+            let middle = low.midpoint(high);
+            if dearer(&middle) {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        low
+    }
+
     fn factor_cost(contact: usize) -> f64 {
         FACTOR * (contact as f64).powi(2)
     }

@@ -5,12 +5,15 @@ use std::path::Path;
 
 use asperity::kernel::KernelOrigin;
 use asperity::record::LoadingRecord;
+use asperity::reference::AreaLoadLaw;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
+use asperity::updater::Handover;
 use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState};
 
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater};
 use super::progress::Progress;
+use crate::ensemble::Expected;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -22,6 +25,11 @@ const SEED: u64 = 1;
 
 /// E* of two bodies of steel, if there is no surface and no material \[Pa\].
 const STEEL_ON_STEEL: f64 = 0.5 * 210e9 / (1.0 - 0.3 * 0.3);
+
+/// Points of the sum over all events of a path.
+const SAMPLES: usize = 200;
+/// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
+const BYTES_A_NODE: f64 = 1000.0;
 
 /// A surface on its grid and what is asked of it.
 pub(super) struct Job {
@@ -156,6 +164,31 @@ impl Job {
         Progress::new(state.contact_nodes, share, |contact| {
             self.updater.event_cost(nodes, contact)
         })
+    }
+
+    /// What the path will take, by the load that Persson's theory gives an area.
+    pub(super) fn expected(&self) -> Expected {
+        let grid = self.grid();
+        let nodes = grid.nodes() as f64;
+        let pressure = |load: f64| load / grid.nominal_area();
+        let share = |target: &ContactTarget| match *target {
+            ContactTarget::AreaFraction(fraction) => fraction,
+            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star)
+                .map_or(1.0, |law| law.persson(pressure(load))),
+            // Not more than all.
+            _ => 1.0,
+        };
+        let share = self.targets.iter().map(share).fold(1.0, f64::min);
+        let contact = share * nodes;
+        let step = contact / SAMPLES as f64;
+        let events = (0..SAMPLES).map(|k| ((k as f64 + 0.5) * step) as usize);
+        let costs = events.map(|event| Handover::event_cost(grid.nodes(), event));
+        let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
+        Expected {
+            nodes: contact,
+            seconds: costs.sum::<f64>() * step,
+            bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
+        }
     }
 
     pub(super) fn periodic(&self) -> Option<Periodic> {

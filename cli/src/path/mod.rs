@@ -28,8 +28,28 @@ pub(crate) use options::Options;
 /// The path, whatever updater it has.
 type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 
-/// Does the job and writes its files.
+/// Follows one path, or that of each seed.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.ensemble.seeds.is_none() {
+        return follow_one(options);
+    }
+    let (members, there) = options.ensemble.members(&options.out);
+    println!("{} paths to follow, {there} are there", members.len());
+    if options.ensemble.dry_run {
+        if let Some(first) = members.first() {
+            println!("{}", Job::new(&options.of(first))?.expected());
+        }
+        return Ok(());
+    }
+    for member in &members {
+        follow_one(&options.of(member))?;
+        member.finish()?;
+    }
+    Ok(())
+}
+
+/// Does one job and writes its files.
+fn follow_one(options: &Options) -> Result<(), Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
     for doubt in Doubt::of_surface(job.surface()) {

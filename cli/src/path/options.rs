@@ -9,6 +9,7 @@ use asperity_cli::half_space::Periodic;
 use clap::{Args, Parser, ValueEnum};
 
 use crate::elasticity::Elasticity;
+use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
 use crate::values::{fraction, positive};
 
@@ -19,7 +20,7 @@ use crate::values::{fraction, positive};
 /// Without --surface, a self-affine surface with the spectrum of Zhang, Zhang & Jin (2020), Table 1:
 /// rms height 50 µm, Hurst exponent 0.8, roll-off at 2.5 mm, short cut-off at 78.125 µm; both bodies
 /// are steel unless the command line says otherwise.
-#[derive(Debug, Parser)]
+#[derive(Debug, Clone, Parser)]
 pub(crate) struct Options {
     /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
     /// rows of an image are y; an array of NumPy is [ix, iy]
@@ -69,13 +70,16 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "side", "side_y", "e_star", "material", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
+    #[command(flatten)]
+    pub(super) ensemble: Ensemble,
+
     /// Directory for the files, made if it is not there
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(super) out: PathBuf,
 }
 
 /// Where the path ends.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 struct Ends {
     /// Load over nominal area at which the path ends, exactly
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, conflicts_with = "max_load")]
@@ -99,6 +103,16 @@ struct Ends {
 }
 
 impl Options {
+    /// Those of one path of many.
+    pub(super) fn of(&self, member: &Member) -> Self {
+        Self {
+            seed: Some(member.seed),
+            out: member.unfinished(),
+            ensemble: Ensemble::default(),
+            ..self.clone()
+        }
+    }
+
     /// Where the path ends, whichever comes first: at `otherwise` if nothing is said.
     pub(super) fn targets(&self, grid: &Grid, otherwise: &[ContactTarget]) -> Vec<ContactTarget> {
         let ends = &self.ends;
@@ -159,6 +173,15 @@ impl Updater {
         match self {
             Self::Cholesky => (contact as f64).powi(2),
             Self::Auto | Self::Iterative => Handover::event_cost(nodes, contact),
+        }
+    }
+
+    /// Nodes that a factor has at most on the way to so many in contact.
+    pub(super) fn factor_nodes(self, nodes: usize, contact: usize) -> usize {
+        match self {
+            Self::Cholesky => contact,
+            Self::Iterative => 0,
+            Self::Auto => contact.min(Handover::last_factor(nodes)),
         }
     }
 

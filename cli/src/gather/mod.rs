@@ -1,0 +1,133 @@
+//! `asperity gather`: mean and spread of many paths, at common loads.
+
+mod picture;
+mod table;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::panel;
+use clap::Args;
+
+use table::Table;
+
+/// Mean and spread of the paths that `asperity path --seeds` has left, at common loads
+///
+/// Writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Folders that are
+/// not finished are left out.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// The folder that holds one folder for each path
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+
+    /// Number of loads, evenly spaced on a logarithmic axis
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    loads: usize,
+
+    /// Directory for the files, made if it is not there [default: DIR]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Reads all paths, and writes what they have in common.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let files = paths(&options.directory)?;
+    let tables = files.iter().map(|file| Table::read(file));
+    let tables: Vec<Table> = tables.collect::<Result<_, _>>()?;
+    let Some((first, last)) = common(&tables) else {
+        return Err(Failure::request(format!(
+            "no two paths in {} have a load in common",
+            options.directory.display()
+        )));
+    };
+    let steps = options.loads.max(2) - 1;
+    let ratio = (last / first).powf(1.0 / steps as f64);
+    let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
+    let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
+    println!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
+    let out = options.out.as_ref().unwrap_or(&options.directory);
+    fs::create_dir_all(out)
+        .map_err(|error| Failure::new(format!("cannot make {}", out.display()), error))?;
+    panel::register_font()?;
+    let mut outcome = Outcome::default();
+    outcome.written(write(&rows, &out.join("gather.csv")));
+    outcome.written(picture::draw(&rows, tables.len(), &out.join("gather.png")));
+    outcome.finish()
+}
+
+/// The files `path.csv` of the folders in a folder, in the order of their names.
+fn paths(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error| Failure::new(format!("cannot read {}", directory.display()), error);
+    let mut found = Vec::new();
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let folder = entry.map_err(failed)?.path();
+        let unfinished = folder.extension().is_some_and(|name| name == "unfinished");
+        let file = folder.join("path.csv");
+        if !unfinished && file.is_file() {
+            found.push(file);
+        }
+    }
+    if found.is_empty() {
+        return Err(Failure::request(format!(
+            "no folder in {} holds a path.csv",
+            directory.display()
+        )));
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The least and the greatest load that all paths have.
+fn common(tables: &[Table]) -> Option<(f64, f64)> {
+    let ends = tables
+        .iter()
+        .map(Table::loads)
+        .collect::<Option<Vec<_>>>()?;
+    let first = ends.iter().map(|(first, _)| *first).fold(0.0, f64::max);
+    let last = ends
+        .iter()
+        .map(|(_, last)| *last)
+        .fold(f64::INFINITY, f64::min);
+    (first > 0.0 && first < last).then_some((first, last))
+}
+
+/// Mean and standard deviation of every column at a load; without a stiffness, NaN.
+struct Row {
+    load: f64,
+    columns: Vec<(f64, f64)>,
+}
+
+impl Row {
+    fn at(load: f64, tables: &[Table]) -> Self {
+        let states: Vec<Vec<f64>> = tables.iter().map(|table| table.at(load)).collect();
+        let count = states.len() as f64;
+        let column = |k: usize| {
+            let values = states.iter().map(|state| state[k]);
+            let mean = values.clone().sum::<f64>() / count;
+            let spread = values.map(|value| (value - mean).powi(2)).sum::<f64>();
+            // Of a sample.
+            (mean, (spread / (count - 1.0).max(1.0)).sqrt())
+        };
+        Self {
+            load,
+            columns: (0..table::COLUMNS.len()).map(column).collect(),
+        }
+    }
+}
+
+/// One line for each load.
+fn write(rows: &[Row], name: &Path) -> Result<PathBuf, Failure> {
+    let names = table::COLUMNS.iter();
+    let names = names.map(|(name, _)| format!(",{name}_mean,{name}_std"));
+    let mut text = format!("load{}\n", names.collect::<String>());
+    for row in rows {
+        let columns = row.columns.iter();
+        let columns = columns.map(|(mean, spread)| format!(",{mean:e},{spread:e}"));
+        text += &format!("{:e}{}\n", row.load, columns.collect::<String>());
+    }
+    fs::write(name, text)
+        .map(|()| name.to_path_buf())
+        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+}
