@@ -39,6 +39,7 @@
 mod bytes;
 mod fault;
 mod npy;
+mod number;
 
 #[cfg(feature = "io")]
 mod al3d;

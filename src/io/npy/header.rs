@@ -5,6 +5,7 @@
 
 use crate::io::bytes::Bytes;
 use crate::io::fault::Fault;
+use crate::io::number::Number;
 
 /// Longest header text accepted. NumPy's own limit is 10 000, and a matrix needs about 100.
 const MAX_TEXT: usize = 1 << 16;
@@ -12,77 +13,50 @@ const MAX_TEXT: usize = 1 << 16;
 /// Type of the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Element {
-    kind: Kind,
+    number: Number,
     big_endian: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    F64,
-    F32,
-    I8,
-    I16,
-    I32,
-    I64,
-    U8,
-    U16,
-    U32,
-    U64,
 }
 
 impl Element {
     fn from_descr(descr: &str) -> Result<Self, Fault> {
         let big_endian = descr.starts_with('>');
-        let kind = match descr.trim_start_matches(['<', '>', '|', '=']) {
-            "f8" => Kind::F64,
-            "f4" => Kind::F32,
-            "i1" => Kind::I8,
-            "i2" => Kind::I16,
-            "i4" => Kind::I32,
-            "i8" => Kind::I64,
-            "u1" => Kind::U8,
-            "u2" => Kind::U16,
-            "u4" => Kind::U32,
-            "u8" => Kind::U64,
+        let number = match descr.trim_start_matches(['<', '>', '|', '=']) {
+            "f8" => Number::F64,
+            "f4" => Number::F32,
+            "i1" => Number::I8,
+            "i2" => Number::I16,
+            "i4" => Number::I32,
+            "i8" => Number::I64,
+            "u1" => Number::U8,
+            "u2" => Number::U16,
+            "u4" => Number::U32,
+            "u8" => Number::U64,
             _ => {
                 return Err(Fault::malformed(format!(
                     "the elements are of type '{descr}', but only float64, float32 and integers are read"
                 )));
             }
         };
-        Ok(Self { kind, big_endian })
+        Ok(Self { number, big_endian })
     }
 
     /// Bytes an element takes.
     pub(super) fn size(self) -> usize {
-        match self.kind {
-            Kind::F64 | Kind::I64 | Kind::U64 => 8,
-            Kind::F32 | Kind::I32 | Kind::U32 => 4,
-            Kind::I16 | Kind::U16 => 2,
-            Kind::I8 | Kind::U8 => 1,
-        }
+        self.number.size()
     }
 
-    /// The value of [`Element::size`] bytes, NaN for another number of bytes. Integers beyond 2⁵³ are rounded.
+    /// The value of [`Element::size`] bytes, NaN for another number of bytes.
     pub(super) fn decode(self, bytes: &[u8]) -> f64 {
+        if !self.big_endian {
+            return self.number.decode(bytes);
+        }
         let mut little = [0; 8];
         let Some(raw) = little.get_mut(..bytes.len()) else {
             return f64::NAN;
         };
         raw.copy_from_slice(bytes);
-        if self.big_endian {
-            raw.reverse();
-        }
-        let bits = u64::from_le_bytes(little);
-        match self.kind {
-            Kind::F64 => f64::from_bits(bits),
-            Kind::F32 => f64::from(f32::from_bits(bits as u32)),
-            Kind::I8 => f64::from(bits as i8),
-            Kind::I16 => f64::from(bits as i16),
-            Kind::I32 => f64::from(bits as i32),
-            Kind::I64 => bits as i64 as f64,
-            Kind::U8 | Kind::U16 | Kind::U32 | Kind::U64 => bits as f64,
-        }
+        raw.reverse();
+        self.number.decode(raw)
     }
 }
 
