@@ -115,7 +115,7 @@ impl<'a> Bytes<'a> {
             .map_err(|_| Fault::at(at, "the file ends"))
     }
 
-    numbers!(u8: u8, u16: u16, i16: i16, u32: u32, i32: i32, f32: f32, f64: f64);
+    numbers!(u8: u8, u16: u16, u32: u32, i32: i32, f32: f32, f64: f64);
 }
 
 /// A shape that a grid can have.

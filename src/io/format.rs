@@ -33,7 +33,7 @@ pub enum Format {
 impl Format {
     /// The format of a file with these bytes: by how it begins, and text if nothing else.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], Format); 17] = [
+        const MAGIC: [(&[u8], Format); 16] = [
             (b"\x93NUMPY", Format::Npy),
             (b"Gwyddion Simple Field 1.0\n", Format::GwyddionSimpleField),
             (b"GWYP", Format::Gwyddion),
@@ -50,7 +50,6 @@ impl Format {
             (b"DSCOMPRESSED", Format::DigitalSurf),
             (b"AliconaImaging\0", Format::Alicona),
             (b"VK4_", Format::Keyence),
-            (b"VK4\0", Format::Keyence),
         ];
         MAGIC
             .iter()

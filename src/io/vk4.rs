@@ -1,8 +1,109 @@
-//! To be written.
+//! Keyence, `.vk4`: the height images.
+//!
+//! Sources: Gwyddion's `keyence.c`, SurfaceTopography's `VK.py`, surfalize's `vk.py`, itom's `DataObjectIO`, and the
+//! `vk4-python-driver` of Torkian and Gunn (OSTI 1419732), which agree on the layout. No file of an instrument was at
+//! hand.
+//!
+//! After `VK4_`, a version and four zeros comes a table of places in the file: that of the conditions of the
+//! measurement, and those of up to three height images, zero where there is none. The conditions give the size of a
+//! pixel and of a step in height in picometres. An image is a header, a palette, and unsigned integers of 8, 16 or
+//! 32 bits.
+//!
+//! Nodes of value zero are marked, and so are missing unless the caller ignores the mask: to itom they are nodes
+//! without a measurement, to the other readers heights.
 
+use super::bytes::{Bytes, shape};
 use super::fault::Fault;
-use super::raw::Parsed;
+use super::number::Number;
+use super::raw::{Channel, Parsed, decode, positive};
 
-pub(super) fn parse(_file: &[u8]) -> Parsed {
-    Err(Fault::malformed("to be written"))
+const MAGIC: &[u8] = b"VK4_";
+
+/// Where the table of places begins, and the place of the first height image in it.
+const TABLE: usize = 12;
+const HEIGHT: usize = TABLE + 6 * 4;
+
+/// Where the conditions give the size of a pixel along x and y, and then the step in height.
+const PIXEL: usize = 42 * 4;
+const STEP: usize = PIXEL + 8;
+
+/// Bytes of the palette of an image.
+const PALETTE: usize = 768;
+
+/// Metres in a picometre.
+const PICOMETRE: f64 = 1e-12;
+
+pub(super) fn parse(file: &[u8]) -> Parsed {
+    let mut bytes = Bytes::new(file);
+    if bytes.take(MAGIC.len())? != MAGIC {
+        return Err(Fault::at(0, "the file does not begin with 'VK4_'"));
+    }
+    bytes.seek(TABLE)?;
+    let conditions = bytes.u32()? as usize;
+    bytes.seek(HEIGHT)?;
+    let places = [bytes.u32()?, bytes.u32()?, bytes.u32()?];
+
+    bytes.seek(conditions.saturating_add(PIXEL))?;
+    let mut length = || Ok::<_, Fault>(f64::from(bytes.u32()?) * PICOMETRE);
+    let cell = (length()?, length()?);
+    let step = positive("the step in height", length()?, conditions + STEP)?;
+
+    let mut channels = Vec::new();
+    for (k, place) in places
+        .into_iter()
+        .enumerate()
+        .filter(|(_, place)| *place > 0)
+    {
+        bytes.seek(place as usize)?;
+        let mut channel = image(&mut bytes, step)?;
+        channel.name = format!("Height {}", k + 1);
+        channel.cell = Some(cell);
+        channels.push(channel);
+    }
+    Ok(channels)
 }
+
+/// The image that begins here.
+fn image(bytes: &mut Bytes, step: f64) -> Result<Channel, Fault> {
+    let at = bytes.offset();
+    let (nx, ny) = shape(u64::from(bytes.u32()?), u64::from(bytes.u32()?))?;
+    let bits = bytes.u32()?;
+    let number = match bits {
+        8 => Number::U8,
+        16 => Number::U16,
+        32 => Number::U32,
+        _ => {
+            return Err(Fault::at(
+                at + 8,
+                format!("the heights have {bits} bits each, but 8, 16 or 32 were expected"),
+            ));
+        }
+    };
+    let compression = bytes.u32()?;
+    let length = bytes.u32()? as usize;
+    if length != (nx * ny).saturating_mul(number.size()) {
+        return Err(Fault::at(
+            at + 16,
+            format!(
+                "{nx} x {ny} heights of {bits} bits are said to take {length} bytes (compression {compression})"
+            ),
+        ));
+    }
+    let _range = (bytes.u32()?, bytes.u32()?);
+    bytes.take(PALETTE)?;
+    let values = decode(bytes.take(length)?, number.size(), |value| {
+        number.decode(value) * step
+    })?;
+    let zeros = values.iter().filter(|value| **value == 0.0).count();
+    let mut channel = Channel::in_metres((nx, ny), values, None);
+    if zeros > 0 {
+        channel.mask = Some(channel.values.iter().map(|value| *value == 0.0).collect());
+        channel.notes.push(format!(
+            "{zeros} nodes hold 0, and are marked: they may not have been measured"
+        ));
+    }
+    Ok(channel)
+}
+
+#[cfg(test)]
+mod tests;

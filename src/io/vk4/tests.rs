@@ -1,0 +1,120 @@
+use super::*;
+
+/// Where the conditions lie in the files made here: not where they usually begin.
+const CONDITIONS: usize = 100;
+
+/// A file of these height images, each of so many bits: pixels of 2 µm x 3 µm, steps of 0.1 nm.
+fn file(images: &[(u32, Vec<u8>)]) -> Vec<u8> {
+    let mut file = b"VK4_\0\0\0\x01\0\0\0\0".to_vec();
+    file.resize(400, 0);
+    put(&mut file, TABLE, CONDITIONS as u32);
+    for (k, length) in [2_000_000, 3_000_000, 100].into_iter().enumerate() {
+        put(&mut file, CONDITIONS + PIXEL + 4 * k, length);
+    }
+    for (k, (bits, data)) in images.iter().enumerate() {
+        let place = file.len() as u32;
+        put(&mut file, HEIGHT + 4 * k, place);
+        for field in [3, 2, *bits, 0, data.len() as u32, 0, 9] {
+            file.extend(u32::to_le_bytes(field));
+        }
+        file.extend([7; PALETTE]);
+        file.extend(data);
+    }
+    file
+}
+
+fn put(file: &mut [u8], place: usize, number: u32) {
+    file[place..place + 4].copy_from_slice(&number.to_le_bytes());
+}
+
+const VALUES: [u8; 6] = [1, 2, 3, 0, 5, 255];
+
+fn reason(file: &[u8]) -> String {
+    match parse(file) {
+        Err(Fault::Malformed { reason, .. }) => reason,
+        other => format!("{other:?}"),
+    }
+}
+
+/// Each image on its own, and all three in a file. Oracle: the layout that the readers named in the module agree on.
+#[test]
+fn images_of_every_depth_are_read() -> Result<(), Fault> {
+    let images = [
+        (8, VALUES.to_vec()),
+        (16, VALUES.map(|z| u16::from(z).to_le_bytes()).concat()),
+        (32, VALUES.map(|z| u32::from(z).to_le_bytes()).concat()),
+    ];
+    let check = |channel: &Channel| {
+        assert_eq!((channel.shape, channel.cell), ((3, 2), Some((2e-6, 3e-6))));
+        for (found, value) in channel.values.iter().zip(VALUES) {
+            // Two products, rounded once each.
+            let expected = f64::from(value) * 1e-10;
+            assert!((found - expected).abs() <= 2.0 * f64::EPSILON * expected);
+        }
+        let mask = [false, false, false, true, false, false];
+        assert_eq!(channel.mask.as_deref(), Some(&mask[..]));
+        assert_eq!(channel.notes.len(), 1);
+    };
+    for image in &images {
+        let whole = file(std::slice::from_ref(image));
+        let channels = parse(&whole)?;
+        assert_eq!(channels.len(), 1);
+        channels.iter().for_each(check);
+        for end in 0..whole.len() {
+            assert!(
+                parse(&whole[..end]).map_or(true, |channels| channels.is_empty()),
+                "{end} bytes"
+            );
+        }
+    }
+    let channels = parse(&file(&images))?;
+    let names: Vec<&str> = channels.iter().map(|channel| &channel.name[..]).collect();
+    assert_eq!(names, ["Height 1", "Height 2", "Height 3"]);
+    channels.iter().for_each(check);
+    Ok(())
+}
+
+#[test]
+fn without_zeros_nothing_is_marked() -> Result<(), Fault> {
+    for channel in parse(&file(&[(8, vec![1; 6])]))? {
+        assert_eq!((channel.mask, channel.notes.len()), (None, 0));
+    }
+    Ok(())
+}
+
+#[test]
+fn defects_are_named() {
+    let image = [(8, VALUES.to_vec())];
+    for (place, number, reason_given) in [
+        (
+            TABLE,
+            u32::MAX,
+            "is referred to, but the file has 1202 bytes",
+        ),
+        (HEIGHT, 5000, "byte 5000 is referred to"),
+        (
+            400,
+            4,
+            "4 x 2 heights of 8 bits are said to take 6 bytes (compression 0)",
+        ),
+        (404, 30000, "3 x 30000 heights"),
+        (408, 24, "24 bits"),
+        (416, 7, "said to take 7 bytes"),
+        (
+            CONDITIONS + STEP,
+            0,
+            "step in height is 0, but a positive number",
+        ),
+    ] {
+        let mut file = file(&image);
+        put(&mut file, place, number);
+        let reason = reason(&file);
+        assert!(reason.contains(reason_given), "{place}: {reason}");
+    }
+    for (place, number) in [(400, 0), (400, 32769), (404, u32::MAX)] {
+        let mut file = file(&image);
+        put(&mut file, place, number);
+        assert!(matches!(parse(&file), Err(Fault::Refused(_))), "{place}");
+    }
+    assert!(reason(b"VK6\0 and more of it").contains("does not begin with 'VK4_'"));
+}

@@ -1,0 +1,61 @@
+//! What is no file of heights at all.
+
+use std::fs;
+use std::io::ErrorKind;
+
+use asperity::Error;
+use asperity::io::read_surface;
+
+use super::{Scratch, own};
+
+#[test]
+fn a_file_that_is_not_there_is_named_with_the_cause() {
+    let absent = Scratch::new("absent.sdf");
+    let error = read_surface(&absent.0).unwrap_err();
+    let Error::Io { path, source } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!(*path, absent.0);
+    assert_eq!(source.kind(), ErrorKind::NotFound);
+    let message = error.to_string();
+    assert!(message.contains("absent.sdf"), "{message}");
+    assert!(message.contains(&source.to_string()), "{message}");
+}
+
+#[test]
+fn a_folder_is_refused() {
+    let error = read_surface(own()).unwrap_err();
+    assert!(
+        matches!(&error, Error::BadFile { path, reason, .. } if *path == own() && reason.contains("regular")),
+        "{error}"
+    );
+}
+
+/// A pipe into which nobody writes: opening it would never return.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused() {
+    let pipe = Scratch::new("pipe.sdf");
+    let made = std::process::Command::new("mkfifo").arg(&pipe.0).status();
+    // Without the program there is nothing to try.
+    if made.is_ok_and(|status| status.success()) {
+        let error = read_surface(&pipe.0).unwrap_err();
+        assert!(
+            matches!(&error, Error::BadFile { path, reason, .. } if *path == pipe.0 && reason.contains("regular")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn bytes_of_no_format_are_shown() {
+    let unknown = Scratch::new("unknown.sdf");
+    fs::write(&unknown.0, b"\x00\x01\x02 something else").unwrap();
+    let error = read_surface(&unknown.0).unwrap_err();
+    // Text is what is left: a reader of text may take it, and then says what is wrong.
+    assert!(
+        matches!(&error, Error::UnknownFormat { .. } | Error::BadFile { .. }),
+        "{error}"
+    );
+    assert!(error.to_string().contains("unknown.sdf"), "{error}");
+}
