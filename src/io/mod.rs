@@ -35,6 +35,20 @@
 //! An array in a `.npy` file is taken as it is: `array[ix, iy]`. An image in NumPy, `image[row, column]`, has to be
 //! transposed before it is saved. Formats differ in whether their first row is the top or the bottom of the surface: maps
 //! may therefore look mirrored beside another program, which changes no result of an isotropic half-space.
+//!
+//! # Text
+//!
+//! Numbers may be parted by blanks, tabs, `;` or commas, with decimal points or commas. Empty cells, `NaN`, `BAD`, `***` and
+//! the like are missing. The header that Gwyddion writes gives sides, units and name; without one, the options have to.
+//!
+//! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may be
+//! absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the extension
+//! `.xyz`, or by having three columns where no header gives the sides of a matrix.
+//!
+//! # What a file may ask for
+//!
+//! Sizes are compared with the length of the file before memory is taken. A member of an archive (X3P) may be at most 256
+//! times as long as the archive, and a list of points needs a sixteenth of the nodes of its grid.
 
 mod bytes;
 mod fault;

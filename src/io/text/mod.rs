@@ -1,7 +1,7 @@
 //! Text: rows of numbers, and lists of points.
 //!
-//! Rows of a matrix are those of an image, [`[(ix, iy)]`](super) is column ix of row iy: the transpose of an array
-//! `[ix, iy]` in `.npy`. Lists have a point x, y, z in each row; they make a map if the points lie on a regular grid, on
+//! Rows of a matrix are those of an image, and node (ix, iy) is in column ix of row iy: the transpose of an array `[ix, iy]`
+//! in `.npy`. Lists have a point x, y, z in each row; they make a map if the points lie on a regular grid, on
 //! which some may be absent.
 //!
 //! Numbers are parted by blanks, tabs, `;` or commas, with a decimal point, or a comma where something else parts them.
