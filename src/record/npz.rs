@@ -39,6 +39,9 @@ struct Parameters {
     units: String,
 }
 
+/// A whole number of a state.
+type Whole = fn(&LoadingState) -> usize;
+
 /// A scalar of a state, as a column of the archive.
 struct Column {
     name: &'static str,
@@ -141,7 +144,7 @@ impl LoadingRecord {
         let parameters = serde_json::to_string(&self.parameters())?;
         let mut archive = ArchiveWriter::new(output);
         archive.text("parameters", &parameters)?;
-        let whole: [(&str, fn(&LoadingState) -> usize); 4] = [
+        let whole: [(&str, Whole); 4] = [
             ("step", |state| state.step),
             ("ix", |state| state.node.0),
             ("iy", |state| state.node.1),

@@ -14,7 +14,7 @@ mod record;
 mod write;
 
 use self::archive::{Archive, md5_of};
-use self::record::{Link, Number, Points, Record};
+use self::record::{Link, Points, Record};
 use super::fault::Fault;
 use super::raw::{Channel, Parsed, decode};
 
@@ -84,29 +84,7 @@ fn linked(
     let bytes = archive.data(&link.path, (nx * ny).saturating_mul(size))?;
     compare(&link.path, &bytes, link.md5.as_deref(), notes);
     let scale = scale(record);
-    match record.number {
-        Number::I16 => decode(&bytes, size, |b| {
-            scale(
-                b.try_into()
-                    .map_or(f64::NAN, |b| i16::from_le_bytes(b).into()),
-            )
-        }),
-        Number::I32 => decode(&bytes, size, |b| {
-            scale(
-                b.try_into()
-                    .map_or(f64::NAN, |b| i32::from_le_bytes(b).into()),
-            )
-        }),
-        Number::F32 => decode(&bytes, size, |b| {
-            scale(
-                b.try_into()
-                    .map_or(f64::NAN, |b| f32::from_le_bytes(b).into()),
-            )
-        }),
-        Number::F64 => decode(&bytes, size, |b| {
-            scale(b.try_into().map_or(f64::NAN, f64::from_le_bytes))
-        }),
-    }
+    decode(&bytes, size, |bytes| scale(record.number.decode(bytes)))
 }
 
 /// Takes away the heights of points that are marked as not valid.

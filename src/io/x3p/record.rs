@@ -7,6 +7,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::archive::DESCRIPTION;
 use crate::io::bytes::{latin1, shape};
 use crate::io::fault::Fault;
+use crate::io::number::Number;
 
 /// Attributes in a description, which needs some five: the time to look names up grows with a power of their number.
 const MAX_ATTRIBUTES: usize = 1024;
@@ -30,26 +31,6 @@ pub(super) struct Record {
     pub(super) checksum: String,
     /// Whether axes are turned against those of the instrument.
     pub(super) rotated: bool,
-}
-
-/// Types of stored numbers, all little-endian and signed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
-    I16,
-    I32,
-    F32,
-    F64,
-}
-
-impl Number {
-    /// Bytes of each.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I16 => 2,
-            Self::I32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
 }
 
 /// Where the heights are.
