@@ -64,6 +64,14 @@ impl Outcome {
         }
     }
 
+    /// Keeps the names of files, or the failure to write them.
+    pub fn all_written(&mut self, result: Result<Vec<PathBuf>, Failure>) {
+        match result {
+            Ok(files) => self.files.extend(files),
+            Err(failure) => self.failures.push(failure),
+        }
+    }
+
     /// Prints the files; reports all failures but the first, which it returns.
     pub fn finish(self) -> Result<(), Failure> {
         println!();

@@ -1,8 +1,8 @@
 //! Files of heights and other fields.
 //!
 //! [`read_surface`] reads what instruments write, [`ReadOptions`] says what a file leaves open (its side, its unit,
-//! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`] and [`write_x3p`] pass
-//! fields on.
+//! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`], [`write_x3p`] and
+//! [`write_vti`] pass fields on.
 //!
 //! | format | extension | read | written |
 //! |---|---|---|---|
@@ -54,6 +54,7 @@ mod bytes;
 mod fault;
 mod npy;
 mod number;
+mod vti;
 
 #[cfg(feature = "io")]
 mod al3d;
@@ -87,6 +88,7 @@ mod vk4;
 mod x3p;
 
 pub use npy::{read_npy, write_npy};
+pub use vti::write_vti;
 
 #[cfg(feature = "io")]
 pub use self::{

@@ -16,6 +16,8 @@ mod periodic_paths;
 mod physical_mean;
 mod problems;
 mod records;
+#[cfg(feature = "io")]
+mod records_on_disk;
 mod reference_paths;
 mod releases;
 mod smallest_gap;

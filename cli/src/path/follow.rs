@@ -85,7 +85,7 @@ impl Followed {
         self.file.write(&state)?;
         match &self.saves {
             Some((name, every)) if self.states.len().is_multiple_of(*every) => {
-                save(name, solver, &self.states).map(|_| ())
+                save(name, solver, &self.states, &[]).map(|_| ())
             }
             _ => Ok(()),
         }

@@ -166,6 +166,24 @@ impl Job {
         })
     }
 
+    /// A load or an approach that was asked for and not reached, in words.
+    pub(super) fn missed(&self, state: Option<LoadingState>) -> Option<String> {
+        let state = state?;
+        self.targets.iter().find_map(|target| match *target {
+            ContactTarget::Load(load) if state.load < load => Some(format!(
+                "the load asked for, {}, at {}",
+                quantity(load, "N", 4),
+                quantity(state.load, "N", 4)
+            )),
+            ContactTarget::Approach(approach) if state.approach < approach => Some(format!(
+                "the approach asked for, {}, at {}",
+                quantity(approach, "m", 4),
+                quantity(state.approach, "m", 4)
+            )),
+            _ => None,
+        })
+    }
+
     /// What the path will take, by the load that Persson's theory gives an area.
     pub(super) fn expected(&self) -> Expected {
         let grid = self.grid();

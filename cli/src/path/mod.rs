@@ -5,6 +5,7 @@
 //! an error, everything up to there is written all the same, and the exit code is 1.
 
 mod curves;
+mod fields;
 mod follow;
 mod job;
 mod map;
@@ -20,6 +21,7 @@ use asperity::updater::LinearUpdater;
 use asperity::{Doubt, LoadingSolver, LoadingState};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
+use nalgebra::DMatrix;
 
 use follow::{Followed, PathFile};
 use job::Job;
@@ -70,8 +72,17 @@ fn follow_one(options: &Options) -> Result<(), Failure> {
     // Each of these is tried whatever became of the others: nothing computed is lost.
     let mut outcome = Outcome::default();
     outcome.note(ended);
-    if let Some(name) = &options.record {
-        outcome.written(save(name, &solver, &states));
+    match fields::of(&mut solver) {
+        Ok(fields) => {
+            if let Some(name) = &options.record {
+                outcome.written(save(name, &solver, &states, &fields));
+            }
+            if let Some(format) = options.fields {
+                let written = fields::write(&fields, &job.grid(), format, &options.out);
+                outcome.all_written(written);
+            }
+        }
+        Err(failure) => outcome.note(Err(failure)),
     }
     outcome.note(table::print(&job, &mut solver, &states, seconds));
     outcome.written(file.finish());
@@ -80,10 +91,17 @@ fn follow_one(options: &Options) -> Result<(), Failure> {
     outcome.finish()
 }
 
-/// Writes the record of the path so far.
-fn save(name: &Path, solver: &Solver, states: &[LoadingState]) -> Result<PathBuf, Failure> {
+/// Writes the record of the path so far, and fields of its last state.
+fn save(
+    name: &Path,
+    solver: &Solver,
+    states: &[LoadingState],
+    fields: &[(&str, DMatrix<f64>)],
+) -> Result<PathBuf, Failure> {
+    let fields = fields.iter().map(|(name, field)| (*name, field));
+    let fields: Vec<_> = fields.collect();
     LoadingRecord::new(solver, states.iter().copied().collect())
-        .and_then(|record| record.write_npz(name, &[]))
+        .and_then(|record| record.write_npz(name, &fields))
         .map(|()| name.to_path_buf())
         .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
 }

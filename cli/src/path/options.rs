@@ -8,6 +8,7 @@ use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use clap::{Args, Parser, ValueEnum};
 
+use super::fields::Format;
 use crate::elasticity::Elasticity;
 use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
@@ -61,6 +62,10 @@ pub(crate) struct Options {
     /// Keep the path in this file, which numpy.load opens and --resume goes on from
     #[arg(long, value_name = "FILE.npz")]
     pub(super) record: Option<PathBuf>,
+
+    /// Write pressure and gap of the last state
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(super) fields: Option<Format>,
 
     /// Write the record each time so many states have been added to it, and not only at the end
     #[arg(long, value_name = "STATES", requires = "record")]

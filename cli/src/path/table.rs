@@ -1,11 +1,11 @@
 //! The short table, and how exact the last state is.
 
 use asperity::loading::{History, LoadingEnd};
-use asperity::{ContactRule, LoadingState};
+use asperity::{ContactRule, Doubt, LoadingState};
 
 use super::Solver;
 use super::job::Job;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
 
 /// Loads of the rows, as fractions of the last.
@@ -59,6 +59,9 @@ pub(super) fn print(
         );
     }
     failed?;
+    for doubt in doubts(job, solver)? {
+        println!("\nwarning: {doubt}");
+    }
 
     let certificate = solver
         .certificate()
@@ -83,6 +86,24 @@ pub(super) fn print(
         certificate.load_error
     );
     Ok(())
+}
+
+/// What looks wrong with the end of the path.
+fn doubts(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
+    let pressure = solver
+        .max_pressure()
+        .map_err(|error| Failure::new("no pressure of the last state", error))?;
+    let high = Doubt::of_pressure(pressure, job.e_star());
+    let mut doubts: Vec<String> = high.iter().map(Doubt::to_string).collect();
+    if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
+        (solver.end(), job.missed(solver.state()))
+    {
+        doubts.push(format!(
+            "the path ended before {target}. If that was not to be expected, look at the units: E* is {} in Pa",
+            scientific(job.e_star(), 3)
+        ));
+    }
+    Ok(doubts)
 }
 
 /// States at given loads: exactly there on an exact path, the next event on the paper's, which is

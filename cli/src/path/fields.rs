@@ -1,0 +1,70 @@
+//! Fields of the last state, for other programs.
+
+use std::path::{Path, PathBuf};
+
+use asperity::Grid;
+use asperity::io::{write_gsf, write_npy, write_vti};
+use clap::ValueEnum;
+use nalgebra::DMatrix;
+
+use super::Solver;
+use asperity_cli::outcome::Failure;
+
+/// How fields are written.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Format {
+    /// pressure.npy and gap.npy, for numpy.load: [ix, iy]
+    Npy,
+    /// pressure.gsf and gap.gsf, for Gwyddion
+    Gsf,
+    /// fields.vti with both, for ParaView
+    Vti,
+}
+
+/// Pressure and gap.
+pub(super) type Fields = [(&'static str, DMatrix<f64>); 2];
+
+/// Those of the present state.
+pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
+    let failed = |error| Failure::new("no fields of the last state", error);
+    Ok([
+        ("pressure", solver.pressure().map_err(failed)?),
+        ("gap", solver.gap().map_err(failed)?),
+    ])
+}
+
+/// Writes fields into a directory; returns the names of the files.
+pub(super) fn write(
+    fields: &Fields,
+    grid: &Grid,
+    format: Format,
+    directory: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
+    let named = |name: PathBuf, written: Result<(), asperity::Error>| {
+        written
+            .map(|()| name.clone())
+            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+    };
+    if let Format::Vti = format {
+        let name = directory.join("fields.vti");
+        let both = fields.each_ref().map(|(name, field)| (*name, field));
+        let written = write_vti(&name, grid, &both);
+        return named(name, written).map(|name| vec![name]);
+    }
+    let one = |(field, values): &(&str, DMatrix<f64>)| {
+        let (name, written) = match format {
+            Format::Gsf => {
+                let name = directory.join(format!("{field}.gsf"));
+                let written = write_gsf(&name, grid, values);
+                (name, written)
+            }
+            _ => {
+                let name = directory.join(format!("{field}.npy"));
+                let written = write_npy(&name, values);
+                (name, written)
+            }
+        };
+        named(name, written)
+    };
+    fields.iter().map(one).collect()
+}
