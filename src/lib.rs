@@ -29,6 +29,7 @@
 //! |---|---|
 //! | the path, all of it | [`LoadingSolver`], an iterator of [`LoadingState`]; read it with [`loading::History`] |
 //! | one load, or a sweep of loads | [`FixedLoadSolver`] |
+//! | patches, percolation, leakage, distributions | [`patches`] |
 //! | my surface | [`HeightMap`], [`io::read_npy`], the trait [`Surface`] |
 //! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
 //! | which half-space | [`Boussinesq`] for a measured or finite body, where the edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
@@ -79,6 +80,7 @@ mod krylov;
 pub mod loading;
 mod memory;
 mod parallel;
+pub mod patches;
 mod problem;
 pub mod record;
 pub mod reference;

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use nalgebra::DMatrix;
+
 use crate::{Error, Grid};
 
 /// The nodes in contact, in the order in which they joined.
@@ -46,6 +48,36 @@ impl ContactSequence {
             is_in: vec![false; grid.nodes()],
             revision: next_revision(),
         }
+    }
+
+    /// The nodes of an order of contact, the first to touch first.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`push`](Self::push).
+    pub fn with_order(grid: Grid, order: impl IntoIterator<Item = usize>) -> Result<Self, Error> {
+        let mut contact = Self::new(grid);
+        for node in order {
+            contact.push(node)?;
+        }
+        Ok(contact)
+    }
+
+    /// The grid that the nodes belong to.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Which nodes were in contact when there were `contact_nodes` of them; all of them beyond the last.
+    #[must_use]
+    pub fn map_at(&self, contact_nodes: usize) -> DMatrix<bool> {
+        let (nx, ny) = self.grid.shape();
+        let mut map = DMatrix::from_element(nx, ny, false);
+        for &node in self.order.iter().take(contact_nodes) {
+            map.as_mut_slice()[node] = true;
+        }
+        map
     }
 
     /// Node indices in the order in which they joined.
@@ -167,6 +199,25 @@ mod tests {
         contact.truncate(1);
         let members: Vec<usize> = (0..7).filter(|&node| contact.contains(node)).collect();
         assert_eq!(members, [4]);
+        Ok(())
+    }
+
+    #[test]
+    fn the_contact_of_any_state_is_a_beginning_of_the_order() -> Result<(), Error> {
+        let grid = Grid::new(3, 2, 1.0, 1.0)?;
+        let contact = ContactSequence::with_order(grid, [4, 0, 5])?;
+        for nodes in 0..5 {
+            let map = contact.map_at(nodes);
+            assert_eq!(map.shape(), (3, 2));
+            let members: Vec<usize> = (0..6).filter(|&node| map.as_slice()[node]).collect();
+            let expected: [&[usize]; 5] = [&[], &[4], &[0, 4], &[0, 4, 5], &[0, 4, 5]];
+            assert_eq!(members, expected[nodes]);
+        }
+        let twice = ContactSequence::with_order(grid, [1, 3, 1]);
+        assert!(matches!(
+            twice,
+            Err(Error::AlreadyInContact { ix: 1, iy: 0 })
+        ));
         Ok(())
     }
 

@@ -307,6 +307,20 @@ pub enum Error {
         iy: usize,
     },
 
+    /// An order of contact was asked for, and a node leaves: from there on nodes have none.
+    #[error(
+        "event {event}: node ({ix}, {iy}) leaves the contact, which then has no order of contact; \
+         look at single states instead"
+    )]
+    NodeLeaves {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// Number of the event, from 1 on.
+        event: usize,
+    },
+
     /// Nodes touch and leave at one approach without end: they do so together, and what tells them
     /// apart lies below the rounding errors.
     #[error("{events} events at the approach {approach}, and no end of them")]

@@ -17,7 +17,7 @@
 //! | cone | [`Cone`] |
 //! | flat punches | [`CircularPunch`], [`SQUARE_PUNCH_STIFFNESS`] |
 //! | wavy surfaces | [`Westergaard`], [`DoubleWave`] |
-//! | area of rough contacts | [`AreaLoadLaw`] |
+//! | area of rough contacts, and its pressures | [`AreaLoadLaw`] |
 //! | electrical and thermal contact conductance | [`contact_conductance`] |
 
 mod area_load;

@@ -1,0 +1,119 @@
+//! When contact percolates, and when the last channel between the surfaces closes.
+
+use super::Connectivity;
+use super::forest::Forest;
+use super::lattice::Lattice;
+use crate::Boundary;
+use crate::contact::ContactSequence;
+use crate::surface::Axis;
+
+/// The states at which contact percolates and leakage ends, each given as a number of nodes in contact.
+///
+/// *Contact percolates* along x at the first state at which one patch alone leads all the way along x. *Leakage ends*
+/// along x at the first state at which the nodes out of contact no longer do: the last channel for a fluid along x is
+/// closed. `None` stands for what had not happened at the last state.
+///
+/// What all the way is depends on the boundary:
+///
+/// * [`of`](Self::of): on a free boundary, from one end of the grid to the other; on a periodic one, around it: a
+///   patch that goes on without end in the periodic surface. A patch that climbs as it winds around goes on
+///   along both directions.
+/// * [`spanning`](Self::spanning): from one end of the grid to the other, whatever the boundary. On a periodic one the
+///   border is closed along the direction asked for, and open along the other: a piece of a seal, with
+///   the fluid before one end and behind the other.
+///
+/// Channels have the [dual](Connectivity::dual) connectivity of contact, so that a patch and a channel cannot cross.
+/// From end to end, one of the two leads along one direction exactly if the other does not lead along the other: on a
+/// free boundary `leak_x` is `contact_y`, and `leak_y` is `contact_x`.
+///
+/// Nodes that never touch are open throughout. Both take O(n α(n)), the channels from the last state backwards.
+///
+/// ```
+/// use asperity::contact::ContactSequence;
+/// use asperity::patches::{Connectivity, Percolation};
+/// use asperity::{Boundary, Grid};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let grid = Grid::square(3, 1.0)?;
+/// // A row along x, from end to end at the third node.
+/// let contact = ContactSequence::with_order(grid, [3, 5, 4])?;
+/// let found = Percolation::of(&contact, Boundary::Free, Connectivity::Eight);
+/// assert_eq!((found.contact_x, found.contact_y), (Some(3), None));
+/// assert_eq!((found.leak_x, found.leak_y), (None, Some(3)));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Percolation {
+    /// The first state at which a patch percolates along x.
+    pub contact_x: Option<usize>,
+    /// The same along y.
+    pub contact_y: Option<usize>,
+    /// The first state at which no channel leads along x.
+    pub leak_x: Option<usize>,
+    /// The same along y.
+    pub leak_y: Option<usize>,
+}
+
+impl Percolation {
+    /// From end to end on a free boundary, around a periodic one.
+    #[must_use]
+    pub fn of(contact: &ContactSequence, boundary: Boundary, connectivity: Connectivity) -> Self {
+        Self::on(contact, boundary, connectivity, |lattice, _| lattice)
+    }
+
+    /// From end to end on any boundary.
+    #[must_use]
+    pub fn spanning(
+        contact: &ContactSequence,
+        boundary: Boundary,
+        connectivity: Connectivity,
+    ) -> Self {
+        Self::on(contact, boundary, connectivity, Lattice::cut)
+    }
+
+    /// On the lattices that `ends` makes for each direction.
+    fn on(
+        contact: &ContactSequence,
+        boundary: Boundary,
+        connectivity: Connectivity,
+        ends: impl Fn(Lattice, Axis) -> Lattice,
+    ) -> Self {
+        let nodes = contact.grid().nodes();
+        let last = contact.len();
+        let of_contact = |axis| {
+            let lattice = Lattice::new(contact.grid(), boundary, connectivity);
+            percolates(ends(lattice, axis), axis, contact.order().iter().copied())
+        };
+        let of_channels = |axis| {
+            let lattice = Lattice::new(contact.grid(), boundary, connectivity.dual());
+            let never = (0..nodes).filter(|&node| !contact.contains(node));
+            let backwards = contact.order().iter().rev().copied();
+            let open = percolates(ends(lattice, axis), axis, never.chain(backwards))?;
+            // With so many nodes out of contact there is a channel, with one less there is none.
+            let step = nodes - open + 1;
+            (step <= last).then_some(step)
+        };
+        Self {
+            contact_x: of_contact(Axis::X),
+            contact_y: of_contact(Axis::Y),
+            leak_x: of_channels(Axis::X),
+            leak_y: of_channels(Axis::Y),
+        }
+    }
+}
+
+/// How many nodes it takes, in this order, until one patch of them percolates along an axis.
+fn percolates(
+    lattice: Lattice,
+    axis: Axis,
+    mut nodes: impl Iterator<Item = usize>,
+) -> Option<usize> {
+    let mut forest = Forest::new(lattice);
+    let before = nodes.position(|node| {
+        forest.add(node);
+        forest.percolates(node, axis)
+    })?;
+    Some(before + 1)
+}
