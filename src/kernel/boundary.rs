@@ -5,6 +5,7 @@
 /// It belongs to the kernel, which alone knows how far a displacement reaches, and it has no default:
 /// every [`InfluenceKernel`](super::InfluenceKernel) states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Boundary {
     /// The grid lies on an unbounded half-space without pressure outside; the displacement at
     /// infinity is zero, and the approach is measured from there.

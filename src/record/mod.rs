@@ -38,11 +38,12 @@ mod parts;
 
 use nalgebra::DMatrix;
 
+use crate::contact::ContactSequence;
 use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
 use crate::loading::{ContactRule, History, LoadingEnd, LoadingState, replay};
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
-use crate::{ContactTarget, Error, Grid, LoadingSolver};
+use crate::{Boundary, ContactTarget, Error, Grid, LoadingSolver};
 
 /// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
 /// formulas on another machine differ by the last bits of elementary functions.
@@ -81,6 +82,8 @@ pub struct Settings {
 pub struct KernelRecord {
     /// What it was made from.
     pub origin: KernelOrigin,
+    /// What surrounds the grid.
+    pub boundary: Boundary,
     /// Some of its coefficients \[m/Pa\], from which it is known again: see [`KernelRecord::OFFSETS`].
     pub coefficients: Vec<f64>,
 }
@@ -97,6 +100,7 @@ impl KernelRecord {
         let offsets = offsets.flat_map(|di| along(ny).map(|dj| (di as isize, dj as isize)));
         Self {
             origin: table.origin(),
+            boundary: table.boundary(),
             coefficients: offsets
                 .map(|(di, dj)| table.coefficient(di, dj).unwrap_or(f64::NAN))
                 .collect(),
@@ -241,10 +245,12 @@ impl LoadingRecord {
     }
 
     /// The nodes in contact at the last state, in the order in which they touched.
-    #[must_use]
-    pub fn contact_order(&self) -> Vec<usize> {
-        let contact = replay(&self.grid, &self.history, |_, _, _| {});
-        contact.map_or_else(|_| Vec::new(), |contact| contact.order().to_vec())
+    ///
+    /// # Errors
+    ///
+    /// None, of a record that was made by this crate.
+    pub fn contact(&self) -> Result<ContactSequence, Error> {
+        replay(&self.grid, &self.history, |_, _, _| {})
     }
 
     /// The path once more, behind its last state, with the default updater: to where it was to end, or beyond, by

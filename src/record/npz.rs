@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::{KernelRecord, LoadingRecord, Settings};
 use crate::contact::ContactState;
 use crate::io::archive::{Archive, ArchiveWriter};
-use crate::kernel::KernelOrigin;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
+use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, contact_sequence};
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
@@ -31,9 +31,7 @@ struct Parameters {
     ny: usize,
     dx: f64,
     dy: f64,
-    kernel: KernelOrigin,
-    /// [`KernelRecord::coefficients`].
-    coefficients: Vec<f64>,
+    kernel: KernelRecord,
     settings: Settings,
     end: Option<LoadingEnd>,
     units: String,
@@ -100,8 +98,8 @@ const COLUMNS: [Column; 9] = [
 
 impl LoadingRecord {
     /// Writes the record as an `.npz` archive, which `numpy.load` opens: an array for each column of the states,
-    /// `heights`, `activation` (the load at which each node touched, NaN where none has), the fields given, and `parameters`, a text
-    /// of JSON with units and versions.
+    /// `patches`, `largest_patch` and `perimeter` beside them, `heights`, `activation` (the load at which each node touched, NaN
+    /// where none has), the fields given, and `parameters`, a text of JSON with units and versions.
     ///
     /// The file is written under another name beside its place and then renamed: what has the name is whole.
     ///
@@ -158,23 +156,39 @@ impl LoadingRecord {
         for Column { name, get, .. } in COLUMNS {
             archive.numbers(name, states.len(), states.iter().map(get))?;
         }
+        self.write_patches(&mut archive)?;
         archive.matrix("heights", self.heights.matrix())?;
-        archive.matrix("activation", &self.activation())?;
+        if let Ok(load) = activation_map(&self.grid, self.states(), |state| state.load) {
+            archive.matrix("activation", &load)?;
+        }
         for (name, field) in fields {
             archive.matrix(name, field)?;
         }
         archive.finish()
     }
 
-    /// The load at which each node touched first \[N\], NaN where none has.
-    fn activation(&self) -> DMatrix<f64> {
-        let (nx, ny) = self.grid.shape();
-        let mut activation = DMatrix::from_element(nx, ny, f64::NAN);
-        let touches = self.states().iter().rev();
-        for state in touches.filter(|state| state.event == ContactEvent::Touch) {
-            activation[state.node] = state.load;
+    /// Number of patches, nodes of the largest one and length of all edges \[m\] at each state, 4-connected; nothing
+    /// where nodes leave the contact.
+    fn write_patches(&self, archive: &mut ArchiveWriter<impl Write + Seek>) -> std::io::Result<()> {
+        let events = self.states().iter().map(|state| (state.event, state.node));
+        let Ok(contact) = contact_sequence(self.grid, events) else {
+            return Ok(());
+        };
+        let patches = PatchHistory::new(&contact, self.kernel.boundary, Connectivity::Four);
+        let mut patches: Vec<PatchState> = patches.collect();
+        // At a limit nothing has happened since the last event.
+        if let Some(last) = patches.last().copied() {
+            patches.resize(self.states().len(), last);
         }
-        activation
+        let count = patches.len();
+        archive.integers("patches", count, patches.iter().map(|s| s.patches as i64))?;
+        archive.integers(
+            "largest_patch",
+            count,
+            patches.iter().map(|s| s.largest as i64),
+        )?;
+        let lengths = patches.iter().map(|s| s.perimeter.length(&self.grid));
+        archive.numbers("perimeter", count, lengths)
     }
 
     fn parameters(&self) -> Parameters {
@@ -186,8 +200,7 @@ impl LoadingRecord {
             ny: self.grid.ny(),
             dx: self.grid.dx(),
             dy: self.grid.dy(),
-            kernel: self.kernel.origin,
-            coefficients: self.kernel.coefficients.clone(),
+            kernel: self.kernel.clone(),
             settings: self.settings.clone(),
             end: self.end,
             units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit"
@@ -259,15 +272,11 @@ impl LoadingRecord {
                 set(state, value);
             }
         }
-        let kernel = KernelRecord {
-            origin: parameters.kernel,
-            coefficients: parameters.coefficients,
-        };
         let history: History = states.into_iter().collect();
         Self::from_parts(
             grid,
             heights,
-            kernel,
+            parameters.kernel,
             parameters.settings,
             history,
             parameters.end,

@@ -175,7 +175,7 @@ fn a_limit_is_no_event() {
     let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.states().len(), 101);
-    assert_eq!(record.contact_order().len(), 100);
+    assert_eq!(record.contact().unwrap().len(), 100);
     assert_eq!(record.history().at_load(load).unwrap().load, load);
     assert_eq!(record.settings().rule, ContactRule::FirstContact);
     let mut resumed = record.resume().unwrap();
