@@ -113,6 +113,17 @@ pub enum Error {
         longest: f64,
     },
 
+    /// A map with too few waves to fit a spectrum to.
+    #[error(
+        "a fit of the spectrum needs waves of {needed} lengths at least, but there are {found}"
+    )]
+    TooFewWaves {
+        /// Different wavelengths that the map has in the band.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+
     /// A pressure or another field given by the caller is NaN or infinite.
     #[error("the {field} at node ({ix}, {iy}) is {value}, which is not finite")]
     FieldNotFinite {

@@ -82,6 +82,12 @@ impl Waves {
         }
     }
 
+    /// The same waves about a mean of 0.
+    pub(super) fn without_mean(mut self) -> Self {
+        self.mean = 0.0;
+        self
+    }
+
     /// All waves but the mean.
     pub(super) fn iter(&self) -> impl Iterator<Item = Wave> {
         let ny = self.grid.ny();

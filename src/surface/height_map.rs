@@ -98,6 +98,23 @@ impl HeightMap {
         self.mean(|z| z)
     }
 
+    /// Height of the highest node above the lowest \[m\]: S_z of ISO 25178-2.
+    #[must_use]
+    pub fn peak_to_valley(&self) -> f64 {
+        self.max_height() - self.min_height()
+    }
+
+    /// Arithmetical mean height \[m\], ISO 25178-2; no tilt is removed.
+    ///
+    /// ```math
+    /// S_a = \langle |h - \bar h| \rangle
+    /// ```
+    #[must_use]
+    pub fn mean_absolute_height(&self) -> f64 {
+        let mean = self.mean_height();
+        self.mean(|z| (z - mean).abs())
+    }
+
     /// Root mean square height about the mean height \[m\]; no tilt is removed.
     ///
     /// ```math
@@ -149,6 +166,13 @@ impl HeightMap {
     /// [`Error::GridMismatch`] if the grid has another shape than the map.
     pub fn rms_gradient(&self, grid: &Grid) -> Result<f64, Error> {
         grid.check_shape(self.shape())?;
+        let (along_x, along_y) = self.mean_square_slopes(grid);
+        Ok((along_x + along_y).sqrt())
+    }
+
+    /// Mean squares of the forward differences along x and along y, over the cells of `grid`, which has the shape of
+    /// the map.
+    pub(super) fn mean_square_slopes(&self, grid: &Grid) -> (f64, f64) {
         let (nx, ny) = self.shape();
         let along_x = mean_square_difference(
             self.heights.rows(0, nx - 1).iter(),
@@ -160,7 +184,7 @@ impl HeightMap {
             self.heights.columns(1, ny - 1).iter(),
             grid.dy(),
         );
-        Ok((along_x + along_y).sqrt())
+        (along_x, along_y)
     }
 
     /// Mean of a function of the height, summed column by column to keep rounding small.
@@ -241,6 +265,9 @@ mod tests {
         let map = HeightMap::new(dmatrix![1.0, 1.0, 1.0; 1.0, 1.0, 7.0])?;
         assert_eq!(map.mean_height(), 2.0);
         assert_eq!((map.min_height(), map.max_height()), (1.0, 7.0));
+        assert_eq!(map.peak_to_valley(), 6.0);
+        // (5 * 1 + 5) / 6: a rounding.
+        assert!((map.mean_absolute_height() - 5.0 / 3.0).abs() < 1e-15);
         // (5 * 1 + 25) / 6 = 5, and likewise (125 - 5) / 6 and (625 + 5) / 6: a few roundings.
         assert!((map.rms_height() - 5.0_f64.sqrt()).abs() < 1e-15);
         assert!((map.skewness() - 20.0 / 5.0_f64.powf(1.5)).abs() < 1e-14);

@@ -183,12 +183,14 @@ impl Stencil {
 
     fn set_diagonal(&mut self, given: &[f32]) {
         let pitch = self.nx + 2;
-        self.diagonal = vec![0.0; given.len()];
+        self.diagonal = given.to_vec();
         for iy in 1..=self.ny {
-            for node in pitch * iy + 1..=pitch * iy + self.nx {
+            let first = pitch * iy + 1;
+            let diagonal = &mut self.diagonal[first..first + self.nx];
+            for (diagonal, node) in diagonal.iter_mut().zip(first..) {
                 let (east, west) = (self.east[node], self.east[node - 1]);
                 let (north, south) = (self.north[node], self.north[node - pitch]);
-                self.diagonal[node] = east + west + north + south + given[node];
+                *diagonal += east + west + north + south;
             }
         }
     }

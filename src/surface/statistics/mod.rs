@@ -1,0 +1,22 @@
+//! Statistics of a map: what its roughness is described by.
+//!
+//! Heights are in [`HeightMap`](super::HeightMap), whose statistics need no lengths; what needs them is here, as
+//! methods of [`Topography`](super::Topography):
+//!
+//! * from differences between nodes, for any map: slopes, gradient, Laplacian, curvature;
+//! * from the waves of a periodic map, or of one that a window was put on: the same, spectral moments, power spectral
+//!   densities, a fit of a self-affine spectrum, and the pressure of full contact.
+
+mod differences;
+mod fit;
+mod full_contact;
+mod moments;
+mod power;
+#[cfg(test)]
+mod references;
+#[cfg(test)]
+mod tests;
+
+pub use self::fit::{Estimate, SelfAffineFit};
+pub use self::moments::SpectralMoments;
+pub use self::power::{RadialBins, SpectralBin};
