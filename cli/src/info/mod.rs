@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use asperity::Doubt;
 use asperity::io::{MeasuredSurface, channels};
-use asperity::surface::Trend;
+use asperity::surface::{Estimate, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
@@ -43,10 +43,11 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let measured = options.reading.measured(&options.file)?;
     let summary = Summary::of(&measured);
+    let surface = whole(&measured);
     if options.json {
         println!("{}", object(&measured, &summary));
     } else {
-        print(options, &measured, &summary)?;
+        print(options, &measured, &summary, surface.as_ref())?;
     }
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
@@ -58,11 +59,20 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&measured, &summary, &directory));
-    outcome.written(picture::statistics(&measured, &directory));
+    let levelled = surface.as_ref().map(|(_, levelled)| levelled);
+    outcome.written(picture::statistics(&measured, levelled, &directory));
     if options.json {
         return outcome.finish_quietly();
     }
     outcome.finish()
+}
+
+/// The surface without holes, as it is and without its tilt; `None` where the file does not give its size.
+fn whole(measured: &MeasuredSurface) -> Option<(Topography, Topography)> {
+    let filled = measured.clone().fill_missing().ok()?;
+    let surface = filled.topography().ok()?;
+    let levelled = surface.level(Trend::Plane).ok()?;
+    Some((surface, levelled))
 }
 
 /// One object for programs.
@@ -87,7 +97,12 @@ fn object(measured: &MeasuredSurface, summary: &Summary) -> Value {
 }
 
 /// Lines for people.
-fn print(options: &Options, measured: &MeasuredSurface, summary: &Summary) -> Result<(), Failure> {
+fn print(
+    options: &Options,
+    measured: &MeasuredSurface,
+    summary: &Summary,
+    surface: Option<&(Topography, Topography)>,
+) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
     println!("file          {}", options.file.display());
     println!("found         {measured}");
@@ -112,26 +127,40 @@ fn print(options: &Options, measured: &MeasuredSurface, summary: &Summary) -> Re
     if let Some(gradient) = summary.rms_gradient {
         println!("rms gradient  {gradient:.4}");
     }
-    let whole = if measured.missing > 0 {
-        measured.clone().fill_missing()
-    } else {
-        Ok(measured.clone())
-    };
-    let Ok(surface) = whole.and_then(MeasuredSurface::topography) else {
+    let Some((surface, levelled)) = surface else {
         println!(
             "no statistics: the file does not give the size of the surface; give it with --side"
         );
         return Ok(());
     };
-    if let Ok(levelled) = surface.level(Trend::Plane) {
-        let tilt = surface.map().rms_height().powi(2) - levelled.map().rms_height().powi(2);
+    let tilt = surface.map().rms_height().powi(2) - levelled.map().rms_height().powi(2);
+    println!(
+        "tilt          {} rms; without it Sq {}",
+        length(tilt.max(0.0).sqrt()),
+        length(levelled.map().rms_height())
+    );
+    println!(
+        "shape         Ssk {:.3}, Sku {:.3} (normal: 0, 3)",
+        levelled.map().skewness(),
+        levelled.map().kurtosis()
+    );
+    // Measured maps do not repeat: without a window their borders make a power law of their own.
+    let windowed = levelled.window(Window::Hann);
+    if let Ok(fit) = windowed.and_then(|windowed| windowed.fit_self_affine()) {
+        let estimate = |name: &str, estimate: Option<Estimate>| {
+            estimate.map_or_else(String::new, |estimate| {
+                format!(", {name} {}", length(estimate.value))
+            })
+        };
         println!(
-            "tilt          {} rms; without it Sq {}",
-            length(tilt.max(0.0).sqrt()),
-            length(levelled.map().rms_height())
+            "spectrum      Hurst exponent {:.2} ± {:.2}{}{}",
+            fit.hurst.value,
+            fit.hurst.standard_error,
+            estimate("roll-off at", fit.rolloff_wavelength),
+            estimate("short cut-off at", fit.short_cutoff_wavelength)
         );
     }
-    for doubt in Doubt::of_surface(&surface) {
+    for doubt in Doubt::of_surface(surface) {
         println!("warning       {doubt}");
     }
     Ok(())

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::Grid;
 use asperity::io::MeasuredSurface;
+use asperity::surface::{RadialBins, Topography, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
 use asperity_cli::field_map::FieldMap;
@@ -46,13 +47,16 @@ pub(super) fn map(
     )
 }
 
-/// The distribution of heights.
-pub(super) fn statistics(measured: &MeasuredSurface, directory: &Path) -> Result<PathBuf, Failure> {
-    chart::draw(
-        &[distribution(measured)],
-        1,
-        &directory.join("surface_statistics.png"),
-    )
+/// The distribution of heights, and the power spectrum of the surface without its tilt.
+pub(super) fn statistics(
+    measured: &MeasuredSurface,
+    levelled: Option<&Topography>,
+    directory: &Path,
+) -> Result<PathBuf, Failure> {
+    let mut charts = vec![distribution(measured)];
+    charts.extend(levelled.and_then(spectrum));
+    let columns = charts.len();
+    chart::draw(&charts, columns, &directory.join("surface_statistics.png"))
 }
 
 fn distribution(measured: &MeasuredSurface) -> Chart {
@@ -98,4 +102,26 @@ fn distribution(measured: &MeasuredSurface) -> Chart {
 fn count_times(count: usize, width: f64) -> f64 {
     let product = count as f64 * width;
     if product > 0.0 { product } else { 1.0 }
+}
+
+/// The radial power spectrum, `None` without two waves to draw.
+fn spectrum(levelled: &Topography) -> Option<Chart> {
+    let windowed = levelled.window(Window::Hann).ok()?;
+    let bins = windowed.radial_psd(&RadialBins::PerDecade(20)).ok()?;
+    let points = bins.iter().map(|bin| (bin.wavevector, bin.density));
+    let points: Vec<(f64, f64)> = points.filter(|(q, c)| *q > 0.0 && *c > 0.0).collect();
+    let ends = |values: &dyn Fn(&(f64, f64)) -> f64| {
+        let least = points.iter().map(values).reduce(f64::min)?;
+        let greatest = points.iter().map(values).reduce(f64::max)?;
+        Some((least, greatest))
+    };
+    let (first, last) = ends(&|(q, _)| *q)?;
+    let (least, greatest) = ends(&|(_, c)| *c)?;
+    Some(Chart {
+        title: "radial power spectrum (tilt removed, Hann window)".to_string(),
+        x: Axis::logarithmic("wavevector q = 2π/λ", "rad/m", first, last),
+        y: Axis::logarithmic("C", "m⁴", least, greatest).with_room(0.04, 0.06),
+        series: vec![Series::new("", BLUE, Style::Line, points)],
+        legend: Corner::TopRight,
+    })
 }
