@@ -30,7 +30,10 @@
 //! | the path, all of it | [`LoadingSolver`], an iterator of [`LoadingState`]; read it with [`loading::History`] |
 //! | one load, or a sweep of loads | [`FixedLoadSolver`] |
 //! | patches, percolation, leakage, distributions | [`patches`] |
-//! | my surface | [`HeightMap`], [`io::read_npy`], the trait [`Surface`] |
+//! | a file of my instrument | [`io::read_surface`], [`surface::Topography`] |
+//! | my surface as numbers | [`HeightMap`], the trait [`Surface`] |
+//! | keep a path, and go on from it | [`record`] |
+//! | patches, percolation, leakage | [`patches`] |
 //! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
 //! | which half-space | [`Boussinesq`] for a measured or finite body, where the edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
 //! | my own body | the trait [`InfluenceKernel`], and [`kernel::check()`] |
@@ -108,3 +111,8 @@ pub use updater::{LinearUpdater, RecursiveCholesky};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The same of the page that leads from a file to its contact.
+#[cfg(all(doctest, feature = "io"))]
+#[doc = include_str!("../docs/from_file_to_contact.md")]
+struct FromFileToContact;
