@@ -8,6 +8,7 @@ use super::history::History;
 use super::limits::Limits;
 use super::paper::Paper;
 use super::releases::Releases;
+use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
@@ -15,24 +16,6 @@ use super::windowed::Windowed;
 use crate::contact::{ContactSequence, ContactTarget};
 use crate::updater::{Handover, LinearUpdater};
 use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface, memory};
-
-/// Which node is taken to touch next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum ContactRule {
-    /// The node whose gap closes first as the approach grows. Exact.
-    #[default]
-    FirstContact,
-    /// The same, nearly: where the updater has no factor, windows are twice as long and nothing is settled
-    /// inside them, which takes some 0.7 of the time. States at the ends of windows are exact, and so is the
-    /// set of nodes in contact there; between them some thousandths of the nodes change places with a
-    /// neighbour, whose approach is within some hundredths of the mean spacing of events.
-    ApproximateOrder,
-    /// The node with the smallest gap at present: the paper's rule (its step 4). It is not exact: it gives
-    /// negative pressures, overlaps, and an approach that goes backwards. It is here so that the paper can be
-    /// reproduced, and implies a window of one node.
-    SmallestGap,
-}
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Clone)]

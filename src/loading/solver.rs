@@ -2,9 +2,9 @@
 
 use std::iter::FusedIterator;
 
-use super::builder::ContactRule;
 use super::limits::{Limits, LoadingEnd};
 use super::paper::Paper;
+use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
 use super::stepwise::Stepwise;

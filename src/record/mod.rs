@@ -31,23 +31,22 @@
 //! # }
 //! ```
 
+mod kernel;
 #[cfg(feature = "io")]
 mod npz;
 #[cfg(feature = "serde")]
 mod parts;
 
+pub use kernel::KernelRecord;
+
 use nalgebra::DMatrix;
 
 use crate::contact::ContactSequence;
-use crate::kernel::{InfluenceKernel, KernelOrigin, KernelTable};
+use crate::kernel::{InfluenceKernel, KernelTable};
 use crate::loading::{ContactRule, History, LoadingEnd, LoadingState, replay};
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
-use crate::{Boundary, ContactTarget, Error, Grid, LoadingSolver};
-
-/// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
-/// formulas on another machine differ by the last bits of elementary functions.
-const SAME_KERNEL: f64 = 1e-12;
+use crate::{ContactTarget, Error, Grid, LoadingSolver};
 
 /// A path as a record. See the [module](self).
 #[derive(Debug, Clone)]
@@ -74,60 +73,6 @@ pub struct Settings {
     pub rule: ContactRule,
     /// Where it was to end, whichever came first.
     pub targets: Vec<ContactTarget>,
-}
-
-/// What a record remembers of a kernel.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct KernelRecord {
-    /// What it was made from.
-    pub origin: KernelOrigin,
-    /// What surrounds the grid.
-    pub boundary: Boundary,
-    /// Some of its coefficients \[m/Pa\], from which it is known again: see [`KernelRecord::OFFSETS`].
-    pub coefficients: Vec<f64>,
-}
-
-impl KernelRecord {
-    /// Number of coefficients that are remembered: at the offsets 0, 1, half a side and a whole one in either
-    /// direction.
-    pub const OFFSETS: usize = 16;
-
-    fn of(table: &KernelTable) -> Self {
-        let along = |n: usize| [0, 1.min(n - 1), n / 2, n - 1];
-        let (nx, ny) = table.grid().shape();
-        let offsets = along(nx).into_iter();
-        let offsets = offsets.flat_map(|di| along(ny).map(|dj| (di as isize, dj as isize)));
-        Self {
-            origin: table.origin(),
-            boundary: table.boundary(),
-            coefficients: offsets
-                .map(|(di, dj)| table.coefficient(di, dj).unwrap_or(f64::NAN))
-                .collect(),
-        }
-    }
-
-    /// `Ok` if the coefficients are those of a kernel.
-    fn check(&self, table: &KernelTable) -> Result<(), Error> {
-        let found = Self::of(table).coefficients;
-        let greatest = found.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        if found.len() != self.coefficients.len() {
-            return Err(Error::LengthMismatch {
-                expected: found.len(),
-                found: self.coefficients.len(),
-            });
-        }
-        let mut pairs = self.coefficients.iter().zip(&found);
-        // NaN is another kernel as well.
-        let is_same = |a: f64, b: f64| (a - b).abs() <= SAME_KERNEL * greatest;
-        match pairs.find(|(a, b)| !is_same(**a, **b)) {
-            None => Ok(()),
-            Some((expected, found)) => Err(Error::WrongKernel {
-                expected: *expected,
-                found: *found,
-            }),
-        }
-    }
 }
 
 impl LoadingRecord {
@@ -214,10 +159,7 @@ impl LoadingRecord {
     /// [`Error::ForeignKernel`] if it is not one of this crate, and [`Error::WrongKernel`] if this version makes another one
     /// of it.
     pub fn make_kernel(&self) -> Result<KernelTable, Error> {
-        let kernel = self.kernel.origin.kernel(self.grid)?;
-        let table = KernelTable::new(&kernel.ok_or(Error::ForeignKernel)?)?;
-        self.kernel.check(&table)?;
-        Ok(table)
+        self.kernel.make(self.grid)
     }
 
     /// What was asked of the path.

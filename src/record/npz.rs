@@ -27,10 +27,10 @@ struct Parameters {
     version: u32,
     /// Which program wrote it.
     program: String,
-    nx: usize,
-    ny: usize,
-    dx: f64,
-    dy: f64,
+    /// Nodes along x and y.
+    shape: (usize, usize),
+    /// Cell along x and y [m].
+    cell: (f64, f64),
     kernel: KernelRecord,
     settings: Settings,
     end: Option<LoadingEnd>,
@@ -196,10 +196,8 @@ impl LoadingRecord {
             format: NAME.to_string(),
             version: VERSION,
             program: concat!("asperity ", env!("CARGO_PKG_VERSION")).to_string(),
-            nx: self.grid.nx(),
-            ny: self.grid.ny(),
-            dx: self.grid.dx(),
-            dy: self.grid.dy(),
+            shape: self.grid.shape(),
+            cell: (self.grid.dx(), self.grid.dy()),
             kernel: self.kernel.clone(),
             settings: self.settings.clone(),
             end: self.end,
@@ -235,7 +233,7 @@ impl LoadingRecord {
                 parameters.version
             )));
         }
-        let Parameters { nx, ny, dx, dy, .. } = parameters;
+        let ((nx, ny), (dx, dy)) = (parameters.shape, parameters.cell);
         let grid = Grid::new(nx, ny, dx, dy)?;
         let heights = HeightMap::new(archive.matrix("heights")?)?;
         let steps = archive.vector("step", None)?;

@@ -1,0 +1,78 @@
+//! What a record remembers of a kernel.
+
+use crate::kernel::{Boussinesq, KernelOrigin, KernelTable, PeriodicBoussinesq, Spectral};
+use crate::{Boundary, Error, Grid, InfluenceKernel};
+
+/// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
+/// formulas on another machine differ by the last bits of elementary functions.
+const SAME_KERNEL: f64 = 1e-12;
+
+/// What a record remembers of a kernel.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct KernelRecord {
+    /// What it was made from.
+    pub origin: KernelOrigin,
+    /// What surrounds the grid.
+    pub boundary: Boundary,
+    /// Some of its coefficients \[m/Pa\], from which it is known again: see [`KernelRecord::OFFSETS`].
+    pub coefficients: Vec<f64>,
+}
+
+impl KernelRecord {
+    /// Number of coefficients that are remembered: at the offsets 0, 1, half a side and a whole one in either
+    /// direction.
+    pub const OFFSETS: usize = 16;
+
+    pub(super) fn of(table: &KernelTable) -> Self {
+        let along = |n: usize| [0, 1.min(n - 1), n / 2, n - 1];
+        let (nx, ny) = table.grid().shape();
+        let offsets = along(nx).into_iter();
+        let offsets = offsets.flat_map(|di| along(ny).map(|dj| (di as isize, dj as isize)));
+        Self {
+            origin: table.origin(),
+            boundary: table.boundary(),
+            coefficients: offsets
+                .map(|(di, dj)| table.coefficient(di, dj).unwrap_or(f64::NAN))
+                .collect(),
+        }
+    }
+
+    /// `Ok` if the coefficients are those of a kernel.
+    pub(super) fn check(&self, table: &KernelTable) -> Result<(), Error> {
+        let found = Self::of(table).coefficients;
+        let greatest = found.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        if found.len() != self.coefficients.len() {
+            return Err(Error::LengthMismatch {
+                expected: found.len(),
+                found: self.coefficients.len(),
+            });
+        }
+        let mut pairs = self.coefficients.iter().zip(&found);
+        // NaN is another kernel as well.
+        let is_same = |a: f64, b: f64| (a - b).abs() <= SAME_KERNEL * greatest;
+        match pairs.find(|(a, b)| !is_same(**a, **b)) {
+            None => Ok(()),
+            Some((expected, found)) => Err(Error::WrongKernel {
+                expected: *expected,
+                found: *found,
+            }),
+        }
+    }
+
+    /// The kernel, made again, if it is still the same.
+    pub(super) fn make(&self, grid: Grid) -> Result<KernelTable, Error> {
+        let table = match self.origin {
+            KernelOrigin::Boussinesq { e_star } => {
+                KernelTable::new(&Boussinesq::new(grid, e_star)?)
+            }
+            KernelOrigin::PeriodicBoussinesq { e_star } => {
+                KernelTable::new(&PeriodicBoussinesq::new(grid, e_star)?)
+            }
+            KernelOrigin::Spectral { e_star } => KernelTable::new(&Spectral::new(grid, e_star)?),
+            KernelOrigin::Other => Err(Error::ForeignKernel),
+        }?;
+        self.check(&table)?;
+        Ok(table)
+    }
+}
