@@ -3,9 +3,11 @@
 mod equilibrium;
 mod galerkin;
 mod local;
+mod row_sums;
 mod solver;
 mod state;
 mod tolerances;
+mod watched;
 
 use super::{
     LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile, WindowCost, check_count,

@@ -2,25 +2,17 @@
 
 use std::mem;
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
-
 use super::equilibrium::{Equilibrium, Field};
-use super::galerkin;
-use super::local::{self, Local, Neighbourhood};
+use super::local::Neighbourhood;
+use super::row_sums::RowSums;
 use super::solver::{Equation, Solver};
 use super::tolerances::{Criteria, Tolerances};
+use super::watched::Watched;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
-use crate::{Boundary, Error, Problem, parallel};
+use crate::{Boundary, Error, Problem};
 
-/// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
-/// exact at the ends of windows anyway.
-const SUMS_TOLERANCE: f64 = 1e-4;
-/// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
-const SUMS_WINDOWS: usize = 3;
-/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
-const SUMS_OPEN: f64 = 0.03;
 /// Before there is an approach to compare with, this part of the mean gap takes its place.
 const LEAST_LENGTH: f64 = 1e-6;
 
@@ -33,34 +25,9 @@ pub(super) struct State {
     /// Where the last window began: its prefixes start from there.
     before: Option<Equilibrium>,
     sums: RowSums,
-    watched: Vec<Local>,
-    /// Nodes in contact when they were watched.
-    watched_at: usize,
-    /// Their Schur complement.
-    schur: Vec<f64>,
+    watched: Watched,
     /// Search directions of the last solution on the whole contact.
     directions: Directions,
-}
-
-/// `C_II⁻¹ s_I` for the row sums s of C.
-#[derive(Debug, Clone)]
-struct RowSums {
-    /// On the first so many nodes.
-    count: usize,
-    field: Field,
-    /// Windows since they were solved for.
-    age: usize,
-}
-
-impl RowSums {
-    /// Of which nothing but a start is known.
-    fn start(count: usize, field: Field) -> Self {
-        Self {
-            count,
-            field,
-            age: SUMS_WINDOWS,
-        }
-    }
 }
 
 impl State {
@@ -72,9 +39,7 @@ impl State {
             now: Equilibrium::zero(nodes),
             before: None,
             sums: RowSums::start(0, Field::zero(nodes)),
-            watched: Vec::new(),
-            watched_at: 0,
-            schur: Vec::new(),
+            watched: Watched::default(),
             directions: Directions::default(),
         }
     }
@@ -130,7 +95,15 @@ impl State {
         self.solver.complete(&mut self.now.rate)?;
         let periodic = problem.boundary() == Boundary::Periodic;
         if !periodic {
-            self.solve_row_sums(criteria, problem, contact)?;
+            let mut directions = mem::take(&mut self.directions);
+            self.sums.renew(
+                (&mut self.solver, &mut directions),
+                &self.watched,
+                criteria.max_iterations,
+                problem,
+                contact,
+                self.now.rate.open(),
+            )?;
         }
         schur.resize(nodes.len());
         for (sum, &node) in schur.row_sums_mut().iter_mut().zip(nodes) {
@@ -142,163 +115,9 @@ impl State {
                 all - self.sums.field.displacement[node]
             };
         }
-        let of = |&node: &usize| Local {
-            node,
-            ..Local::default()
-        };
-        let mut locals: Vec<Local> = nodes.iter().map(of).collect();
-        let (neighbourhood, set) = (&self.neighbourhood, self.solver.set());
-        let products = locals.len() * local::PRODUCTS;
-        parallel::for_each(products, &mut locals, |local| {
-            *local = neighbourhood.solve(problem.table(), set, local.node);
-        });
-        galerkin::schur(problem, &locals, schur.as_mut_slice());
-        self.schur.clear();
-        self.schur.extend_from_slice(schur.as_mut_slice());
-        self.watched = locals;
-        self.watched_at = contact.len();
-        schur.set_displacements(self.improved(problem));
-        Ok(())
-    }
-
-    /// Displacements of the watched nodes with what the residuals of the solution say of them: pressures that
-    /// took a residual r out of the contact would change that of node j by `x_jᵀ r`.
-    fn improved(&self, problem: &Problem) -> Vec<[f64; 2]> {
-        let of = |local: &Local| {
-            let left = self.now.left_near(problem, local);
-            let node = local.node;
-            [
-                self.now.load.displacement[node] + left[0],
-                self.now.rate.displacement[node] + left[1],
-            ]
-        };
-        self.watched.iter().map(of).collect()
-    }
-
-    /// Improves what a solution says of the watched nodes, of which some have joined since they were watched:
-    /// the pressures of these, and the displacements of the others.
-    fn improve(
-        &self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        solved: &Equilibrium,
-        solution: &mut Solution,
-    ) {
-        let from = self.watched_at;
-        let Some(joined) = contact.order()[..solved.count].get(from..) else {
-            return;
-        };
-        let Some((factor, places)) = self.factor_of(joined) else {
-            return;
-        };
-        let near: Vec<[f64; 2]> = self
-            .watched
-            .iter()
-            .map(|local| solved.left_near(problem, local))
-            .collect();
-        let [u, u_rate] = &mut solution.displacement;
-        let of_load = (&mut solution.pressure, u);
-        let of_rate = (&mut solution.rate, u_rate);
-        let fields = if solved.rate.is_known() { 2 } else { 1 };
-        let fields = [of_load, of_rate].into_iter().take(fields);
-        for (k, (pressures, displacement)) in fields.enumerate() {
-            let of_near: Vec<f64> = near.iter().map(|near| near[k]).collect();
-            let left = places.iter().zip(joined);
-            let left = left.map(|(&place, &node)| solved.left(problem, node)[k] - of_near[place]);
-            let left = DVector::from_iterator(places.len(), left);
-            let change = if places.is_empty() {
-                left
-            } else {
-                factor.solve(&left)
-            };
-            for (pressure, change) in pressures[from..].iter_mut().zip(change.iter()) {
-                *pressure += change;
-            }
-            for (i, (local, near)) in self.watched.iter().zip(&of_near).enumerate() {
-                if !places.contains(&i) {
-                    let of_joined = places.iter().zip(change.iter());
-                    let of_joined =
-                        of_joined.map(|(&place, change)| self.complement(i, place) * change);
-                    displacement[local.node] += near + of_joined.sum::<f64>();
-                }
-            }
-        }
-    }
-
-    /// An entry of the Schur complement.
-    fn complement(&self, i: usize, j: usize) -> f64 {
-        self.schur[i.max(j) + self.watched.len() * i.min(j)]
-    }
-
-    /// The factor of the Schur complement of some watched nodes, and their places; `None` if one was not
-    /// watched.
-    fn factor_of(&self, joined: &[usize]) -> Option<(Cholesky<f64, Dyn>, Vec<usize>)> {
-        let place = |node: &usize| self.watched.iter().position(|local| local.node == *node);
-        let places: Vec<usize> = joined.iter().map(place).collect::<Option<_>>()?;
-        let size = places.len();
-        let matrix = DMatrix::from_fn(size, size, |i, j| self.complement(places[i], places[j]));
-        Some((matrix.cholesky()?, places))
-    }
-
-    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them.
-    fn carried(&self, field: &Field, joined: &[usize], rhs: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut pressure = field.pressure.clone();
-        if joined.is_empty() || !field.is_known() {
-            return pressure;
-        }
-        let Some((factor, places)) = self.factor_of(joined) else {
-            return pressure;
-        };
-        let left = joined
-            .iter()
-            .map(|&node| rhs(node) - field.displacement[node]);
-        let solved = factor.solve(&DVector::from_iterator(joined.len(), left));
-        for (&place, w) in places.iter().zip(solved.iter()) {
-            let local = &self.watched[place];
-            pressure[local.node] += w;
-            for (&node, x) in local.contact.iter().zip(&local.weights) {
-                pressure[node as usize] -= w * x;
-            }
-        }
-        pressure
-    }
-
-    /// `C_II⁻¹ s_I` on the whole contact, unless it is known.
-    fn solve_row_sums(
-        &mut self,
-        criteria: Criteria,
-        problem: &Problem,
-        contact: &ContactSequence,
-    ) -> Result<(), Error> {
-        let RowSums { count, field, age } = &self.sums;
-        if *count == contact.len() && field.is_known() {
-            return Ok(());
-        }
-        let sums = problem.row_sums();
-        let joined = contact.order().get(*count..).unwrap_or_default();
-        let start = self.carried(field, joined, |node| sums[node]);
-        let open = self.now.rate.open().clamp(1e-6, 1.0);
-        let (age, tolerance) = if *age < SUMS_WINDOWS && open > SUMS_OPEN {
-            (age + 1, f64::INFINITY)
-        } else {
-            let most = greatest(sums.len(), 0.0, |i| sums[i]);
-            // What is explained already leaves less to be explained.
-            (0, SUMS_TOLERANCE * most * open)
-        };
-        let equation = Equation {
-            rhs: |node: usize| sums[node],
-            tolerance,
-            max_iterations: criteria.max_iterations,
-        };
-        let mut directions = mem::take(&mut self.directions);
-        let field = self
-            .solver
-            .solve(&equation, start, field, &mut directions)?;
-        self.sums = RowSums {
-            count: contact.len(),
-            field,
-            age,
-        };
+        let beside = (&self.neighbourhood, self.solver.set());
+        self.watched = Watched::new(problem, beside, nodes, contact.len(), schur);
+        schur.set_displacements(self.watched.improved(problem, &self.now));
         Ok(())
     }
 
@@ -354,7 +173,7 @@ impl State {
         solution.displacement[0].clone_from(&solved.load.displacement);
         solution.displacement[1].clone_from(&solved.rate.displacement);
         if request.span < f64::INFINITY {
-            self.improve(problem, contact, solved, solution);
+            self.watched.improve(problem, contact, solved, solution);
             solved.scale(problem, contact, solution);
         }
         Ok(())
@@ -431,7 +250,7 @@ impl State {
                 tolerance: tolerances.rate,
                 max_iterations,
             };
-            let start = self.carried(&from.rate, joined, equation.rhs);
+            let start = self.watched.carried(&from.rate, joined, equation.rhs);
             rate = self
                 .solver
                 .solve(&equation, start, &from.rate, &mut directions)?;
@@ -442,7 +261,7 @@ impl State {
             max_iterations,
         };
         let base = from.load_at(approach);
-        let start = self.carried(&base, joined, overlap);
+        let start = self.watched.carried(&base, joined, overlap);
         let load = self
             .solver
             .solve(&equation, start, &base, &mut directions)?;
@@ -463,7 +282,7 @@ impl State {
                 self.now = before;
                 self.directions = Directions::default();
                 if self.sums.count > left.len() {
-                    self.keep_sums(left);
+                    self.sums.keep(left);
                 }
             }
             _ => self.keep(left),
@@ -474,16 +293,10 @@ impl State {
     pub(super) fn keep(&mut self, left: &ContactSequence) {
         self.before = None;
         self.directions = Directions::default();
-        self.watched.clear();
+        self.watched = Watched::default();
         self.now.load.keep(left);
         self.now.rate.keep(left);
         self.now.count = left.len();
-        self.keep_sums(left);
-    }
-
-    fn keep_sums(&mut self, left: &ContactSequence) {
-        let mut field = mem::take(&mut self.sums.field);
-        field.keep(left);
-        self.sums = RowSums::start(left.len(), field);
+        self.sums.keep(left);
     }
 }
