@@ -108,6 +108,11 @@ impl Problem {
         self.gap.iter().sum::<f64>() / self.gap.len() as f64
     }
 
+    /// What errors are compared with as long as there is no approach: a part of the mean gap.
+    pub(crate) fn least_length(&self) -> f64 {
+        1e-6 * self.mean_gap()
+    }
+
     /// Root mean square height Sq \[m\] about the mean height.
     #[must_use]
     pub fn rms_height(&self) -> f64 {

@@ -62,7 +62,7 @@ impl Table {
             .map(|(load, _)| *load)
             .filter(|load| *load > 0.0);
         let first = loads.next()?;
-        Some((first, loads.last()?))
+        Some((first, loads.next_back()?))
     }
 
     /// The columns at a load: of the last event up to it, or between that and the next.

@@ -7,8 +7,6 @@ use crate::updater::LinearUpdater;
 const TIE: f64 = 1e-9;
 /// The same relative to the greatest initial gap: rounding of heights.
 const ROUNDING: f64 = 1e-14;
-/// Before there is an approach to compare with, this part of the mean gap takes its place.
-const LEAST_LENGTH: f64 = 1e-6;
 /// Bounds of the tolerance of rates.
 const RATE_TOLERANCE: [f64; 2] = [5e-7, 1e-5];
 /// What the gap of a node that is not watched may be off by, over the tolerance.
@@ -31,7 +29,7 @@ impl Scales {
         let length = if approach > 0.0 {
             approach
         } else {
-            LEAST_LENGTH * run.problem.mean_gap()
+            run.problem.least_length()
         };
         Self {
             length,

@@ -13,9 +13,6 @@ use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
 use crate::{Boundary, Error, Problem};
 
-/// Before there is an approach to compare with, this part of the mean gap takes its place.
-const LEAST_LENGTH: f64 = 1e-6;
-
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
 pub(super) struct State {
@@ -234,7 +231,7 @@ impl State {
         let joined = nodes.get(from.count..).unwrap_or_default();
         let gap = problem.initial_gap();
         let overlap = |node: usize| approach - gap[node];
-        let least = LEAST_LENGTH * problem.mean_gap();
+        let least = problem.least_length();
         let length = greatest(count, least, |k| overlap(nodes[k]).abs());
         let tolerances = Tolerances::of(criteria, request, length, from.rate.open());
         let max_iterations = criteria.max_iterations;
