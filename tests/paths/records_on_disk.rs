@@ -92,7 +92,7 @@ fn damaged_records_are_refused() {
     let record = record(Some(20.0 * record(None).states()[20].load));
     record.write_npz(&file.0, &[]).unwrap();
     let bytes = fs::read(&file.0).unwrap();
-    let mut read = |bytes: &[u8]| {
+    let read = |bytes: &[u8]| {
         fs::write(&file.0, bytes).unwrap();
         LoadingRecord::read_npz(&file.0)
     };
