@@ -60,7 +60,7 @@ impl FittedTrend {
         self.curvatures
     }
 
-    /// Height of the polynomial \[m\] at a position \[m\], as by [`Grid::position`].
+    /// Height of the polynomial \[m\] at a position \[m\], as by [`Grid::position`](crate::Grid::position).
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let (x, y) = (x - self.center.0, y - self.center.1);

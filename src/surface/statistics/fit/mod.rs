@@ -65,8 +65,9 @@ pub struct SelfAffineFit {
     /// Prefactor C₀ \[m^(2 − 2H)\] in the normalisation of [`Spectrum`](crate::surface::Spectrum).
     pub prefactor: f64,
     /// Mean square of the relative residuals, weighted by the number of independent waves: 1 for a surface whose
-    /// amplitudes are random (Gaussian), 0 for one like `SelfAffine` whose phases alone are, and greater than 1 where
-    /// the spectrum is not of this form.
+    /// amplitudes are random (Gaussian), and greater than 1 where the spectrum is not of this form. Of a surface like
+    /// `SelfAffine`, whose phases alone are random, it is almost 0, and so are the standard errors: there the width of
+    /// the rings decides, 10⁻⁵ of a wavelength.
     pub dispersion: f64,
 }
 
@@ -82,8 +83,9 @@ impl Topography {
     ///
     /// * Cut-offs come first. The short one is where the mean density falls, from one side of a wavevector to the
     ///   other, by a factor of 20 or more within 15 %; the long one is where waves begin to have more than
-    ///   a thousandth of the greatest density. Their standard errors are those of a place anywhere between two rings.
-    ///   Where a window smears the short one, as many waves are left out below it as it reaches above.
+    ///   a thousandth of the greatest density. Their standard errors are those of a place anywhere between two rings
+    ///   of waves, which are some 2 % apart for the short one. Where a window smears it, as many waves are left out
+    ///   below it as it reaches above.
     /// * ln C = a − 2(1 + H) max(0, ln q − ln q_r) is then fitted to the densities of 230 rings a decade by
     ///   least squares, each weighted by its number of independent waves (half of all), iterated so that the
     ///   residuals are those of C and not of its logarithm. This is Whittle's likelihood: the
@@ -138,7 +140,13 @@ impl Topography {
             return Err(too_few(rings.len()));
         }
         let law = fit(&rings)?;
-        let before = |ring: usize| place_between(&bins[ring - 1], &bins[ring]);
+        // The ring that the fall starts with may be cut in two: the place is anywhere between its neighbours.
+        let short = fall.map(|fall| {
+            let above = bins_with_power.get(fall.start + 1);
+            let above = above.unwrap_or(&bins_with_power[fall.start]);
+            place_between(&bins_with_power[fall.start - 1], above)
+        });
+        let long = (first > 0).then(|| place_between(&bins[first - 1], &bins[first]));
         Ok(SelfAffineFit {
             hurst: Estimate {
                 value: 0.5 * law.exponent - 1.0,
@@ -151,8 +159,8 @@ impl Topography {
                     standard_error: error * value,
                 }
             }),
-            short_cutoff_wavelength: fall.map(|fall| before(first + fall.start)),
-            long_cutoff_wavelength: (first > 0).then(|| before(first)),
+            short_cutoff_wavelength: short,
+            long_cutoff_wavelength: long,
             prefactor: prefactor(&law, greatest),
             dispersion: law.dispersion,
         })

@@ -25,7 +25,7 @@ fn exact_spectra_are_found() -> Result<(), Error> {
             );
         };
         found(fitted.rolloff_wavelength, rolloff, 3e-3);
-        // Between the last wave that fits the band and the first that does not: about a ring.
+        // Within a ring, of 1 %.
         found(fitted.short_cutoff_wavelength, cutoff, 1e-2);
         assert_eq!(fitted.long_cutoff_wavelength, None);
         // The prefactor belongs to ln q = 0, far from the waves.
