@@ -95,7 +95,7 @@ pub use nalgebra;
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use doubt::Doubt;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{Error, KernelError};
+pub use error::{Error, FileError, KernelError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use grid::Grid;
 pub use kernel::{

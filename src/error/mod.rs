@@ -1,12 +1,14 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
-use std::path::PathBuf;
-
+mod file;
 mod kernel;
+mod updater;
 
 use thiserror::Error;
 
+pub use file::FileError;
 pub use kernel::KernelError;
+pub use updater::UpdaterError;
 
 /// What went wrong, with the numbers that say so.
 ///
@@ -284,22 +286,6 @@ pub enum Error {
         value: f64,
     },
 
-    /// A node is to leave the contact, and the updater cannot remove nodes.
-    #[error("node ({ix}, {iy}) leaves the contact, and this updater cannot remove nodes")]
-    ReleaseNotSupported {
-        /// Node index along x.
-        ix: usize,
-        /// Node index along y.
-        iy: usize,
-    },
-
-    /// The end of a window contradicts its last events, and the updater cannot take nodes back.
-    #[error("the last events after {nodes} nodes have to be taken back, and this updater cannot")]
-    TruncateNotSupported {
-        /// Number of nodes that remain in contact.
-        nodes: usize,
-    },
-
     /// A node was to join the contact while being in it.
     #[error("node ({ix}, {iy}) is in contact already")]
     AlreadyInContact {
@@ -369,33 +355,6 @@ pub enum Error {
         nodes_that_fit: usize,
     },
 
-    /// An updater written outside this crate, or inside, returned something malformed.
-    #[error("the updater returned {found} values for {quantity}, but {expected} were expected")]
-    UpdaterMismatch {
-        /// What was returned.
-        quantity: &'static str,
-        /// Expected number of values.
-        expected: usize,
-        /// Number of values found.
-        found: usize,
-    },
-
-    /// An updater answered something else than a dense solution: what `updater::check` reports.
-    #[error(
-        "the updater is wrong: with {contact_nodes} nodes in contact {quantity} differs from the dense \
-         answer by {error}, more than {tolerance}"
-    )]
-    UpdaterWrong {
-        /// What was compared.
-        quantity: &'static str,
-        /// Nodes in contact.
-        contact_nodes: usize,
-        /// Relative difference.
-        error: f64,
-        /// What would have been accepted.
-        tolerance: f64,
-    },
-
     /// An iteration did not reach its tolerance.
     #[error(
         "no convergence: relative residual {residual} after {iterations} iterations, tolerance {tolerance}"
@@ -409,91 +368,13 @@ pub enum Error {
         iterations: usize,
     },
 
-    /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system says.
-        source: std::io::Error,
-    },
+    /// An updater that cannot do what the path needs, or answers something else.
+    #[error(transparent)]
+    Updater(#[from] UpdaterError),
 
-    /// A file that has none of the formats this crate reads.
-    #[error("{}: the format of this file is unknown: it begins with {begins:02x?}", path.display())]
-    UnknownFormat {
-        /// The file.
-        path: PathBuf,
-        /// Its first bytes.
-        begins: Vec<u8>,
-    },
-
-    /// A file that does not hold what its format asks for.
-    #[error("{} is no readable {format} file: {reason}{}", path.display(), at_byte(*offset))]
-    BadFile {
-        /// The file.
-        path: PathBuf,
-        /// Its format.
-        format: &'static str,
-        /// Where, in bytes from its beginning; in an archive, from the beginning of the member that the reason names.
-        offset: Option<usize>,
-        /// What was found, and what would have been accepted.
-        reason: String,
-    },
-
-    /// A file with several maps, or without the one asked for.
-    #[error("{}: {}; its maps are {channels:?}", path.display(), which(wanted.as_deref()))]
-    WhichChannel {
-        /// The file.
-        path: PathBuf,
-        /// The name asked for.
-        wanted: Option<String>,
-        /// The names of the maps in the file.
-        channels: Vec<String>,
-    },
-
-    /// A file that does not say, or not in a known unit of length, what its numbers are.
-    #[error("{}: the {quantity} have {}; give it with {option}", path.display(), unit(found.as_deref()))]
-    NoUnit {
-        /// The file.
-        path: PathBuf,
-        /// Which numbers.
-        quantity: &'static str,
-        /// What stands in place of a unit of length.
-        found: Option<String>,
-        /// What supplies it.
-        option: &'static str,
-    },
-
-    /// A text that names no unit of length.
-    #[error("'{unit}' is no unit of length: m, cm, mm, µm, nm, pm, fm, Å and in are")]
-    NoLength {
-        /// The text.
-        unit: String,
-    },
-
-    /// A surface of unknown size.
-    #[error(
-        "the file does not give the size of the surface; give it with `ReadOptions::side` (`--side`)"
-    )]
-    NoSide,
-}
-
-fn at_byte(offset: Option<usize>) -> String {
-    offset.map_or(String::new(), |offset| format!(" (at byte {offset})"))
-}
-
-fn which(wanted: Option<&str>) -> String {
-    match wanted {
-        Some(name) => format!("there is not one map with the name '{name}'"),
-        None => "choose one map with `ReadOptions::channel` (`--channel`)".to_string(),
-    }
-}
-
-fn unit(found: Option<&str>) -> String {
-    match found {
-        Some(unit) => format!("the unit '{unit}', which is no length"),
-        None => "no unit".to_string(),
-    }
+    /// A file that could not be read or written, or does not say what it should.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 impl Error {

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::Error;
+use crate::{Error, FileError};
 
 /// Why bytes could not be read as a map of heights.
 #[derive(Debug)]
@@ -42,13 +42,13 @@ impl Fault {
     pub(super) fn in_file(self, path: &Path, format: &'static str) -> Error {
         let path = path.to_path_buf();
         match self {
-            Self::Io(source) => Error::Io { path, source },
-            Self::Malformed { offset, reason } => Error::BadFile {
+            Self::Io(source) => Error::File(FileError::Io { path, source }),
+            Self::Malformed { offset, reason } => Error::File(FileError::BadFile {
                 path,
                 format,
                 offset,
                 reason,
-            },
+            }),
             Self::Refused(error) => error,
         }
     }

@@ -108,7 +108,7 @@ impl<'a> Header<'a> {
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] if the grid has another shape, and [`Error::Io`] if the file cannot be written.
+/// [`Error::GridMismatch`] if the grid has another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_gsf(path: impl AsRef<Path>, grid: &Grid, heights: &DMatrix<f64>) -> Result<(), Error> {
     grid.check_shape(heights.shape())?;
     let path = path.as_ref();

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::format::Format;
 use crate::surface::{Topography, fill_missing};
-use crate::{Error, Grid};
+use crate::{Error, FileError, Grid};
 
 /// Heights as they were measured: some may be missing, and the file may not know the size of the surface.
 ///
@@ -52,9 +52,9 @@ impl MeasuredSurface {
     ///
     /// # Errors
     ///
-    /// [`Error::NoSide`] if the file does not give its size.
+    /// [`FileError::NoSide`](crate::FileError::NoSide) if the file does not give its size.
     pub fn grid(&self) -> Result<Grid, Error> {
-        let (dx, dy) = self.cell.ok_or(Error::NoSide)?;
+        let (dx, dy) = self.cell.ok_or(Error::File(FileError::NoSide))?;
         let (nx, ny) = self.heights.shape();
         Grid::new(nx, ny, dx, dy)
     }
@@ -63,7 +63,7 @@ impl MeasuredSurface {
     ///
     /// # Errors
     ///
-    /// [`Error::NoSide`], and [`Error::HeightNotFinite`] as long as nodes are missing.
+    /// [`FileError::NoSide`](crate::FileError::NoSide), and [`Error::HeightNotFinite`] as long as nodes are missing.
     pub fn topography(self) -> Result<Topography, Error> {
         Topography::new(self.grid()?, self.heights)
     }

@@ -10,7 +10,7 @@ use super::format::Format;
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::unit::LengthUnit;
-use crate::Error;
+use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
 ///
@@ -123,9 +123,9 @@ impl ReadOptions {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] if the file cannot be read; [`Error::UnknownFormat`]; [`Error::BadFile`] for a defect, with
-    /// its place; [`Error::EmptyGrid`] and [`Error::GridTooLarge`]; [`Error::NoUnit`] where the unit is
-    /// missing or no length; [`Error::WhichChannel`] where there are several maps or none of that name;
+    /// [`FileError::Io`](crate::FileError::Io) if the file cannot be read; [`FileError::UnknownFormat`](crate::FileError::UnknownFormat); [`FileError::BadFile`](crate::FileError::BadFile) for a defect, with
+    /// its place; [`Error::EmptyGrid`] and [`Error::GridTooLarge`]; [`FileError::NoUnit`](crate::FileError::NoUnit) where the unit is
+    /// missing or no length; [`FileError::WhichChannel`](crate::FileError::WhichChannel) where there are several maps or none of that name;
     /// [`Error::NotPositive`] for a side that is not.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();
@@ -167,21 +167,23 @@ impl ReadOptions {
         if let (Some(only), None) = (chosen.next(), chosen.next()) {
             return Ok(channels.swap_remove(only));
         }
-        Err(Error::WhichChannel {
+        Err(Error::File(FileError::WhichChannel {
             path: path.to_path_buf(),
             wanted: self.channel.clone(),
             channels: channels.into_iter().map(|channel| channel.name).collect(),
-        })
+        }))
     }
 
     /// Metres for the numbers of the file.
     fn height_factor(&self, channel: &Channel, path: &Path) -> Result<f64, Error> {
         let unit = channel.height_unit.as_deref();
-        factor(self.height_unit, unit).ok_or_else(|| Error::NoUnit {
-            path: path.to_path_buf(),
-            quantity: "heights",
-            found: unit.map(str::to_string),
-            option: "`ReadOptions::height_unit` (`--height-unit`)",
+        factor(self.height_unit, unit).ok_or_else(|| {
+            Error::File(FileError::NoUnit {
+                path: path.to_path_buf(),
+                quantity: "heights",
+                found: unit.map(str::to_string),
+                option: "`ReadOptions::height_unit` (`--height-unit`)",
+            })
         })
     }
 
@@ -201,11 +203,13 @@ impl ReadOptions {
             return Ok(None);
         };
         let unit = channel.lateral_unit.as_deref();
-        let metres = factor(self.lateral_unit, unit).ok_or_else(|| Error::NoUnit {
-            path: path.to_path_buf(),
-            quantity: "lengths along x and y",
-            found: unit.map(str::to_string),
-            option: "`ReadOptions::lateral_unit` or `side` (`--lateral-unit`, `--side`)",
+        let metres = factor(self.lateral_unit, unit).ok_or_else(|| {
+            Error::File(FileError::NoUnit {
+                path: path.to_path_buf(),
+                quantity: "lengths along x and y",
+                found: unit.map(str::to_string),
+                option: "`ReadOptions::lateral_unit` or `side` (`--lateral-unit`, `--side`)",
+            })
         })?;
         let dx = Error::require_positive("cell along x in the file", cell.0 * metres)?;
         let dy_of_file = Error::require_positive("cell along y in the file", cell.1 * metres)?;
@@ -250,9 +254,11 @@ fn is_length(unit: Option<&str>) -> bool {
 /// The format of a file, and all maps in it.
 fn parse(path: &Path) -> Result<(Format, Vec<Channel>), Error> {
     let bytes = read_file(path).map_err(|fault| fault.in_file(path, "surface"))?;
-    let format = Format::of(&bytes).ok_or_else(|| Error::UnknownFormat {
-        path: path.to_path_buf(),
-        begins: bytes.iter().take(8).copied().collect(),
+    let format = Format::of(&bytes).ok_or_else(|| {
+        Error::File(FileError::UnknownFormat {
+            path: path.to_path_buf(),
+            begins: bytes.iter().take(8).copied().collect(),
+        })
     })?;
     format
         .parse(&bytes, path)

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::Error;
+use crate::{Error, FileError};
 
 /// A unit of length.
 ///
@@ -67,8 +67,10 @@ impl FromStr for LengthUnit {
                 symbol: names[0],
                 metres: *metres,
             })
-            .ok_or_else(|| Error::NoLength {
-                unit: text.to_string(),
+            .ok_or_else(|| {
+                Error::File(FileError::NoLength {
+                    unit: text.to_string(),
+                })
             })
     }
 }

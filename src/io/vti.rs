@@ -21,7 +21,7 @@ const NAME: &str = "VTK image";
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] for a field of another shape, and [`Error::Io`] if the file cannot be written.
+/// [`Error::GridMismatch`] for a field of another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_vti(
     path: impl AsRef<Path>,
     grid: &Grid,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
 use crate::updater::{LinearUpdater, Solution, SolveRequest};
-use crate::{Error, Problem};
+use crate::{Error, Problem, UpdaterError};
 
 /// The solution on a contact at an approach δ and the displacements of all nodes, which together give
 /// every gap as a line: `gap = a − t b` at the approach δ + t, as long as no other node joins.
@@ -223,11 +223,11 @@ pub(super) fn solve<U: LinearUpdater>(
     let asked = if request.span > 0.0 { 4 } else { 2 };
     for (quantity, values, expected) in checked.into_iter().take(asked) {
         if values.len() != expected {
-            return Err(Error::UpdaterMismatch {
+            return Err(Error::Updater(UpdaterError::UpdaterMismatch {
                 quantity,
                 expected,
                 found: values.len(),
-            });
+            }));
         }
     }
     Ok(())

@@ -11,7 +11,7 @@ use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::ContactSequence;
 use crate::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
-use crate::{Error, Problem};
+use crate::{Error, Problem, UpdaterError};
 
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
 /// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
@@ -115,11 +115,11 @@ impl<U: LinearUpdater> LoadingRun<U> {
         self.updater
             .watch(&self.problem, &self.contact, nodes, schur)?;
         if schur.size() != nodes.len() {
-            return Err(Error::UpdaterMismatch {
+            return Err(Error::Updater(UpdaterError::UpdaterMismatch {
                 quantity: "the Schur complement",
                 expected: nodes.len(),
                 found: schur.size(),
-            });
+            }));
         }
         self.timings.windows += 1;
         Ok(())

@@ -13,7 +13,7 @@ use crate::io::archive::{Archive, ArchiveWriter};
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
 use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, contact_sequence};
 use crate::surface::HeightMap;
-use crate::{Error, Grid};
+use crate::{Error, FileError, Grid};
 
 /// What the format is called in errors, and in the file itself.
 const NAME: &str = "asperity record";
@@ -105,7 +105,7 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::GridMismatch`] for fields of another grid, and [`Error::Io`].
+    /// [`Error::GridMismatch`] for fields of another grid, and [`FileError::Io`](crate::FileError::Io).
     pub fn write_npz(
         &self,
         path: impl AsRef<Path>,
@@ -115,9 +115,11 @@ impl LoadingRecord {
         for (_, field) in fields {
             self.grid.check_shape(field.shape())?;
         }
-        let failed = |source| Error::Io {
-            path: path.to_path_buf(),
-            source,
+        let failed = |source| {
+            Error::File(FileError::Io {
+                path: path.to_path_buf(),
+                source,
+            })
         };
         let unfinished = unfinished(path);
         let written = File::create(&unfinished).and_then(|file| {
@@ -210,16 +212,18 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`]; [`Error::BadFile`] for a file that is damaged, not a record, or of a newer version; those of
+    /// [`FileError::Io`](crate::FileError::Io); [`FileError::BadFile`](crate::FileError::BadFile) for a file that is damaged, not a record, or of a newer version; those of
     /// [`Self::from_parts`].
     pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let archive = Archive::open(path, NAME)?;
-        let bad = |reason: String| Error::BadFile {
-            path: path.to_path_buf(),
-            format: NAME,
-            offset: None,
-            reason,
+        let bad = |reason: String| {
+            Error::File(FileError::BadFile {
+                path: path.to_path_buf(),
+                format: NAME,
+                offset: None,
+                reason,
+            })
         };
         let text = archive.text("parameters")?;
         let parameters: Parameters = serde_json::from_str(&text)

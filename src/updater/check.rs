@@ -2,7 +2,7 @@
 
 use super::{Dense, LinearUpdater, Schur, Solution, SolveRequest, Touched};
 use crate::contact::ContactSequence;
-use crate::{Error, Problem};
+use crate::{Error, Problem, UpdaterError};
 
 /// Nodes that are watched at a time, of which all but the last join.
 const WATCHED: usize = 6;
@@ -40,8 +40,8 @@ pub struct UpdaterReport {
 ///
 /// # Errors
 ///
-/// Those of the updater; [`Error::UpdaterMismatch`] for an answer of the wrong length;
-/// [`Error::UpdaterWrong`] for one that differs from the dense answer.
+/// Those of the updater; [`UpdaterError::UpdaterMismatch`](crate::UpdaterError::UpdaterMismatch) for an answer of the wrong length;
+/// [`UpdaterError::UpdaterWrong`](crate::UpdaterError::UpdaterWrong) for one that differs from the dense answer.
 pub fn check<U: LinearUpdater + ?Sized>(
     updater: &mut U,
     problem: &Problem,
@@ -166,7 +166,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
     fn truncate(&mut self, count: usize) -> Result<bool, Error> {
         self.contact.truncate(count);
         match self.updater.truncate(self.problem, &self.contact) {
-            Err(Error::TruncateNotSupported { .. }) => Ok(false),
+            Err(Error::Updater(UpdaterError::TruncateNotSupported { .. })) => Ok(false),
             done => done.and_then(|()| self.solution(count)).map(|()| true),
         }
     }
@@ -179,7 +179,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let position = self.contact.remove(node)?;
         let (problem, contact) = (self.problem, &self.contact);
         match self.updater.release(problem, contact, node, position) {
-            Err(Error::ReleaseNotSupported { .. }) => Ok(false),
+            Err(Error::Updater(UpdaterError::ReleaseNotSupported { .. })) => Ok(false),
             done => {
                 let count = self.contact.len();
                 done.and_then(|()| self.solution(count)).map(|()| true)
@@ -198,11 +198,11 @@ fn check_length(quantity: &'static str, expected: usize, found: usize) -> Result
     if expected == found {
         return Ok(());
     }
-    Err(Error::UpdaterMismatch {
+    Err(Error::Updater(UpdaterError::UpdaterMismatch {
         quantity,
         expected,
         found,
-    })
+    }))
 }
 
 /// NaN is wrong as well.
@@ -215,12 +215,12 @@ fn check_error(
     if error <= tolerance {
         return Ok(());
     }
-    Err(Error::UpdaterWrong {
+    Err(Error::Updater(UpdaterError::UpdaterWrong {
         quantity,
         contact_nodes,
         error,
         tolerance,
-    })
+    }))
 }
 
 #[cfg(test)]
@@ -314,14 +314,20 @@ mod tests {
         for lie in ["matrix", "row sums", "pressure", "rate"] {
             let found = checked(lie);
             assert!(
-                matches!(found, Err(Error::UpdaterWrong { .. })),
+                matches!(
+                    found,
+                    Err(Error::Updater(UpdaterError::UpdaterWrong { .. }))
+                ),
                 "{lie}: {found:?}"
             );
         }
         for lie in ["size", "length"] {
             let found = checked(lie);
             assert!(
-                matches!(found, Err(Error::UpdaterMismatch { .. })),
+                matches!(
+                    found,
+                    Err(Error::Updater(UpdaterError::UpdaterMismatch { .. }))
+                ),
                 "{lie}: {found:?}"
             );
         }

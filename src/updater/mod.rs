@@ -31,7 +31,7 @@ pub use schur::Schur;
 pub use touched::Touched;
 
 use crate::contact::ContactSequence;
-use crate::{Error, Problem};
+use crate::{Error, Problem, UpdaterError};
 
 /// What a solution is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -269,12 +269,12 @@ pub trait LinearUpdater {
     ///
     /// # Errors
     ///
-    /// Whatever keeps the updater from shrinking; by default [`Error::TruncateNotSupported`].
+    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::TruncateNotSupported`](crate::UpdaterError::TruncateNotSupported).
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let _ = problem;
-        Err(Error::TruncateNotSupported {
+        Err(Error::Updater(UpdaterError::TruncateNotSupported {
             nodes: contact.len(),
-        })
+        }))
     }
 
     /// Forgets a node that left the contact, in which it was number `position` from 0: `contact` is
@@ -283,7 +283,7 @@ pub trait LinearUpdater {
     ///
     /// # Errors
     ///
-    /// Whatever keeps the updater from shrinking; by default [`Error::ReleaseNotSupported`].
+    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::ReleaseNotSupported`](crate::UpdaterError::ReleaseNotSupported).
     fn release(
         &mut self,
         problem: &Problem,
@@ -294,7 +294,7 @@ pub trait LinearUpdater {
         let _ = (contact, position);
         problem.check_nodes(&[node])?;
         let (ix, iy) = problem.grid().coordinates(node);
-        Err(Error::ReleaseNotSupported { ix, iy })
+        Err(Error::Updater(UpdaterError::ReleaseNotSupported { ix, iy }))
     }
 
     /// How exact the updater is, and what its work costs; by default exact, at the cost of a factor in

@@ -9,7 +9,7 @@ use asperity::updater::{
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
-    LoadingState, Problem,
+    LoadingState, Problem, UpdaterError,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -139,7 +139,10 @@ fn the_checks_can_fail() {
     );
     let problem = Problem::new(&Facets::new(), &grains(grid)).unwrap();
     let error = updater::check(&mut Forgetful(Bordering::default()), &problem).unwrap_err();
-    assert!(matches!(error, Error::UpdaterWrong { .. }), "{error}");
+    assert!(
+        matches!(error, Error::Updater(UpdaterError::UpdaterWrong { .. })),
+        "{error}"
+    );
 }
 
 /// An updater that forgets about the row sums of the contact.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::problems::{grid, rough};
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
-use asperity::{Boussinesq, Error, LoadingSolver, PeriodicBoussinesq};
+use asperity::{Boussinesq, Error, FileError, LoadingSolver, PeriodicBoussinesq};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -120,7 +120,7 @@ fn foreign_and_newer_files_are_refused() {
     let bad = |file: &Scratch| LoadingRecord::read_npz(&file.0).unwrap_err().to_string();
     assert!(matches!(
         LoadingRecord::read_npz(&file.0),
-        Err(Error::Io { .. })
+        Err(Error::File(FileError::Io { .. }))
     ));
     fs::write(&file.0, b"step,ix,iy").unwrap();
     assert!(
@@ -147,7 +147,7 @@ fn foreign_and_newer_files_are_refused() {
     // The checksum is that of the old text.
     assert!(matches!(
         LoadingRecord::read_npz(&file.0),
-        Err(Error::BadFile { .. })
+        Err(Error::File(FileError::BadFile { .. }))
     ));
 }
 
@@ -168,6 +168,6 @@ fn a_record_is_data() {
 fn an_unwritable_place_is_an_error() {
     let folder = std::env::temp_dir().join(format!("asperity-no-folder-{}", std::process::id()));
     let written = record(None).write_npz(folder.join("a.npz"), &[]);
-    assert!(matches!(written, Err(Error::Io { .. })));
+    assert!(matches!(written, Err(Error::File(FileError::Io { .. }))));
     assert!(!folder.exists());
 }

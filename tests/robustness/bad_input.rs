@@ -4,7 +4,9 @@ use asperity::contact::ContactSequence;
 use asperity::loading::{LoadingEnd, LoadingSolver};
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
 use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
-use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface};
+use asperity::{
+    Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface, UpdaterError,
+};
 use nalgebra::DMatrix;
 
 const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -237,7 +239,7 @@ fn malformed_updaters() {
         let typed = match what {
             "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
             "nan rate" => matches!(error, Error::NotMonotone { .. }),
-            _ => matches!(error, Error::UpdaterMismatch { .. }),
+            _ => matches!(error, Error::Updater(UpdaterError::UpdaterMismatch { .. })),
         };
         assert!(typed, "{what}: {error}");
         assert!(path.next().is_none());

@@ -3,8 +3,8 @@
 use std::fs;
 use std::io::ErrorKind;
 
-use asperity::Error;
 use asperity::io::read_surface;
+use asperity::{Error, FileError};
 
 use super::{Scratch, own};
 
@@ -12,7 +12,7 @@ use super::{Scratch, own};
 fn a_file_that_is_not_there_is_named_with_the_cause() {
     let absent = Scratch::new("absent.sdf");
     let error = read_surface(&absent.0).unwrap_err();
-    let Error::Io { path, source } = &error else {
+    let Error::File(FileError::Io { path, source }) = &error else {
         panic!("{error}");
     };
     assert_eq!(*path, absent.0);
@@ -26,7 +26,7 @@ fn a_file_that_is_not_there_is_named_with_the_cause() {
 fn a_folder_is_refused() {
     let error = read_surface(own()).unwrap_err();
     assert!(
-        matches!(&error, Error::BadFile { path, reason, .. } if *path == own() && reason.contains("regular")),
+        matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == own() && reason.contains("regular")),
         "{error}"
     );
 }
@@ -41,7 +41,7 @@ fn a_pipe_is_refused() {
     if made.is_ok_and(|status| status.success()) {
         let error = read_surface(&pipe.0).unwrap_err();
         assert!(
-            matches!(&error, Error::BadFile { path, reason, .. } if *path == pipe.0 && reason.contains("regular")),
+            matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == pipe.0 && reason.contains("regular")),
             "{error}"
         );
     }
@@ -54,7 +54,10 @@ fn bytes_of_no_format_are_shown() {
     let error = read_surface(&unknown.0).unwrap_err();
     // Text is what is left: a reader of text may take it, and then says what is wrong.
     assert!(
-        matches!(&error, Error::UnknownFormat { .. } | Error::BadFile { .. }),
+        matches!(
+            &error,
+            Error::File(FileError::UnknownFormat { .. }) | Error::File(FileError::BadFile { .. })
+        ),
         "{error}"
     );
     assert!(error.to_string().contains("unknown.sdf"), "{error}");

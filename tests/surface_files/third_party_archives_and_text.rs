@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::Error;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions, channels};
+use asperity::{Error, FileError};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
@@ -156,7 +156,10 @@ fn a_map_without_a_unit_is_refused() -> TestResult {
     };
     assert_eq!(channels(&path)?, ["Test"]);
     let refused = ReadOptions::new().read(&path);
-    assert!(matches!(refused, Err(Error::NoUnit { found: None, .. })));
+    assert!(matches!(
+        refused,
+        Err(Error::File(FileError::NoUnit { found: None, .. }))
+    ));
     // With units it can be read: xreal and yreal are 128.
     let found = metres().read(path)?;
     assert_eq!(found.heights.shape(), (128, 128));

@@ -1,9 +1,9 @@
 use std::path::Path;
 
 use super::*;
-use crate::Error;
 use crate::io::truth::{assert_read, path};
 use crate::io::{ReadOptions, channels};
+use crate::{Error, FileError};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
@@ -89,8 +89,13 @@ fn every_map_can_be_chosen() -> TestResult {
     std::fs::remove_file(&temporary)?;
     assert_eq!(listed?, names);
     assert_eq!(first?.heights.as_slice(), [1.0, 2.0]);
-    assert!(matches!(volts, Err(Error::NoUnit { found: Some(unit), .. }) if unit == "V"));
-    assert!(matches!(any, Err(Error::WhichChannel { .. })));
+    assert!(
+        matches!(volts, Err(Error::File(FileError::NoUnit { found: Some(unit), .. })) if unit == "V")
+    );
+    assert!(matches!(
+        any,
+        Err(Error::File(FileError::WhichChannel { .. }))
+    ));
     Ok(())
 }
 

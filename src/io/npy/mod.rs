@@ -27,9 +27,9 @@ use crate::Error;
 ///
 /// # Errors
 ///
-/// [`Error::Io`] if the file cannot be read, or there is not enough memory for it;
+/// [`FileError::Io`](crate::FileError::Io) if the file cannot be read, or there is not enough memory for it;
 /// [`Error::EmptyGrid`] for an array without elements; [`Error::GridTooLarge`] beyond
-/// [`Grid::MAX_SIDE`](crate::Grid::MAX_SIDE) a side; [`Error::BadFile`] for another type of elements or number of dimensions,
+/// [`Grid::MAX_SIDE`](crate::Grid::MAX_SIDE) a side; [`FileError::BadFile`](crate::FileError::BadFile) for another type of elements or number of dimensions,
 /// a malformed header, a file that is shorter or longer than its header says, and anything that is
 /// not a regular file (a directory, a pipe), which is not opened.
 pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
@@ -47,7 +47,7 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
 ///
 /// # Errors
 ///
-/// [`Error::Io`] if the file cannot be written.
+/// [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_npy(path: impl AsRef<Path>, matrix: &DMatrix<f64>) -> Result<(), Error> {
     let path = path.as_ref();
     File::create(path)

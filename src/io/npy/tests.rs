@@ -5,6 +5,7 @@ use nalgebra::dmatrix;
 use proptest::prelude::*;
 
 use super::*;
+use crate::FileError;
 use crate::surface::HeightMap;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -118,15 +119,15 @@ fn errors_name_the_file() -> TestResult {
     let folder = std::env::temp_dir();
     let absent = folder.join(format!("asperity-absent-{}.npy", std::process::id()));
     let error = read_npy(&absent).err().ok_or("a file that is not there")?;
-    assert!(matches!(&error, Error::Io { path, .. } if *path == absent));
+    assert!(matches!(&error, Error::File(FileError::Io { path, .. }) if *path == absent));
     assert!(error.to_string().contains("asperity-absent"), "{error}");
     let error = read_npy(&folder).err().ok_or("a directory")?;
-    assert!(matches!(&error, Error::BadFile { path, .. } if *path == folder));
+    assert!(matches!(&error, Error::File(FileError::BadFile { path, .. }) if *path == folder));
     let unwritable = absent.join("below-a-file-that-is-not-there.npy");
     let error = write_npy(&unwritable, &dmatrix![1.0])
         .err()
         .ok_or("no folder")?;
-    assert!(matches!(&error, Error::Io { path, .. } if *path == unwritable));
+    assert!(matches!(&error, Error::File(FileError::Io { path, .. }) if *path == unwritable));
     Ok(())
 }
 
@@ -140,7 +141,10 @@ fn a_pipe_is_refused() -> TestResult {
     if made.is_ok_and(|status| status.success()) {
         let refused = read_npy(&path);
         fs::remove_file(&path)?;
-        assert!(matches!(refused, Err(Error::BadFile { .. })));
+        assert!(matches!(
+            refused,
+            Err(Error::File(FileError::BadFile { .. }))
+        ));
     }
     Ok(())
 }

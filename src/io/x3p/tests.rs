@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use super::*;
 use crate::io::ReadOptions;
 use crate::io::truth::{assert_read, path};
-use crate::{Error, Grid};
+use crate::{Error, FileError, Grid};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
@@ -100,7 +100,7 @@ fn what_is_written_is_read_back_to_the_last_bit() -> TestResult {
     let nowhere = folder.join("no such folder").join("file.x3p");
     assert!(matches!(
         write_x3p(&nowhere, &grid, &heights),
-        Err(Error::Io { .. })
+        Err(Error::File(FileError::Io { .. }))
     ));
     Ok(())
 }
@@ -161,7 +161,10 @@ fn increments_and_offsets_are_lengths() -> TestResult {
     assert_eq!(empty.values, [1.0, -2.0]);
     for wrong in ["0", "x", "inf", "NaN"] {
         let wrong = format!("<DataType>I</DataType><Increment>{wrong}</Increment>");
-        assert!(matches!(with(cz, &wrong)?, Err(Error::BadFile { .. })));
+        assert!(matches!(
+            with(cz, &wrong)?,
+            Err(Error::File(FileError::BadFile { .. }))
+        ));
     }
     Ok(())
 }
@@ -177,7 +180,7 @@ fn heights_may_stand_in_the_description() -> TestResult {
     for wrong in ["<Datum>1</Datum>", "<Datum>1</Datum><Datum>x</Datum>"] {
         assert!(matches!(
             with(link, &list(wrong))?,
-            Err(Error::BadFile { .. })
+            Err(Error::File(FileError::BadFile { .. }))
         ));
     }
     Ok(())

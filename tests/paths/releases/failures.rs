@@ -8,7 +8,7 @@ use asperity::loading::ContactEvent;
 use asperity::updater::{
     Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
 };
-use asperity::{Error, LoadingState, Problem};
+use asperity::{Error, LoadingState, Problem, UpdaterError};
 use nalgebra::DVector;
 
 fn has_releases((kernel, gaps): &(Table, Vec<f64>)) -> bool {
@@ -60,7 +60,7 @@ fn an_updater_that_cannot_let_nodes_leave_says_so() {
         let expected = complete.next().unwrap().unwrap();
         match path.next().unwrap() {
             Ok(state) => assert_eq!((state.step, state.node), (expected.step, expected.node)),
-            Err(Error::ReleaseNotSupported { ix, iy }) => {
+            Err(Error::Updater(UpdaterError::ReleaseNotSupported { ix, iy })) => {
                 assert_eq!(expected.event, ContactEvent::Release);
                 assert_eq!((ix, iy), expected.node);
                 break;

@@ -1,8 +1,8 @@
 //! Lists of points.
 
 use super::{MISSING, TestResult, assert_refused, parsed, parsed_as};
-use crate::Error;
 use crate::io::{MeasuredSurface, ReadOptions};
+use crate::{Error, FileError};
 
 #[test]
 fn a_list_of_points_is_read_in_any_order() -> TestResult {
@@ -150,5 +150,8 @@ fn what_is_no_grid_is_refused() {
     let two = parsed_as("two.xyz", "1 2\n3 4\n").map_err(|error| error.to_string());
     assert!(two.is_err_and(|text| text.contains("has three columns")));
     let extreme = parsed_as("test.xyz", "-1e308 0 1\n1e308 0 1\n0 1 1\n5e-324 1 1\n");
-    assert!(matches!(extreme, Err(Error::BadFile { .. })));
+    assert!(matches!(
+        extreme,
+        Err(Error::File(FileError::BadFile { .. }))
+    ));
 }

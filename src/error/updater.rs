@@ -1,0 +1,51 @@
+//! What can be wrong with an updater.
+
+use thiserror::Error;
+
+/// What is wrong with an updater, one of this crate or of the user's.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum UpdaterError {
+    /// An updater written outside this crate, or inside, returned something malformed.
+    #[error("the updater returned {found} values for {quantity}, but {expected} were expected")]
+    UpdaterMismatch {
+        /// What was returned.
+        quantity: &'static str,
+        /// Expected number of values.
+        expected: usize,
+        /// Number of values found.
+        found: usize,
+    },
+
+    /// An updater answered something else than a dense solution: what `updater::check` reports.
+    #[error(
+        "the updater is wrong: with {contact_nodes} nodes in contact {quantity} differs from the dense \
+         answer by {error}, more than {tolerance}"
+    )]
+    UpdaterWrong {
+        /// What was compared.
+        quantity: &'static str,
+        /// Nodes in contact.
+        contact_nodes: usize,
+        /// Relative difference.
+        error: f64,
+        /// What would have been accepted.
+        tolerance: f64,
+    },
+
+    /// A node is to leave the contact, and the updater cannot remove nodes.
+    #[error("node ({ix}, {iy}) leaves the contact, and this updater cannot remove nodes")]
+    ReleaseNotSupported {
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+    },
+
+    /// The end of a window contradicts its last events, and the updater cannot take nodes back.
+    #[error("the last events after {nodes} nodes have to be taken back, and this updater cannot")]
+    TruncateNotSupported {
+        /// Number of nodes that remain in contact.
+        nodes: usize,
+    },
+}
