@@ -105,7 +105,7 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`Error::GridMismatch`] for fields of another grid, and [`FileError::Io`](crate::FileError::Io).
+    /// [`Error::GridMismatch`] for fields of another grid, and [`FileError::Io`].
     pub fn write_npz(
         &self,
         path: impl AsRef<Path>,
@@ -212,7 +212,7 @@ impl LoadingRecord {
     ///
     /// # Errors
     ///
-    /// [`FileError::Io`](crate::FileError::Io); [`FileError::BadFile`](crate::FileError::BadFile) for a file that is damaged, not a record, or of a newer version; those of
+    /// [`FileError::Io`]; [`FileError::BadFile`] for a file that is damaged, not a record, or of a newer version; those of
     /// [`Self::from_parts`].
     pub fn read_npz(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();

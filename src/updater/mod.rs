@@ -269,7 +269,7 @@ pub trait LinearUpdater {
     ///
     /// # Errors
     ///
-    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::TruncateNotSupported`](crate::UpdaterError::TruncateNotSupported).
+    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::TruncateNotSupported`].
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let _ = problem;
         Err(Error::Updater(UpdaterError::TruncateNotSupported {
@@ -283,7 +283,7 @@ pub trait LinearUpdater {
     ///
     /// # Errors
     ///
-    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::ReleaseNotSupported`](crate::UpdaterError::ReleaseNotSupported).
+    /// Whatever keeps the updater from shrinking; by default [`UpdaterError::ReleaseNotSupported`].
     fn release(
         &mut self,
         problem: &Problem,
