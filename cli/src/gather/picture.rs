@@ -45,10 +45,10 @@ fn chart(rows: &[Row], column: usize, paths: usize) -> Option<Chart> {
         .reduce(f64::min)?;
     let greatest = above.iter().map(|(_, y)| *y).reduce(f64::max)?;
     let (title, unit) = NAMES[column];
-    let y = if unit.is_empty() {
-        Axis::plain_logarithmic(title, least, greatest)
-    } else {
-        Axis::logarithmic(title, unit, least, greatest)
+    let y = match (title, unit) {
+        (_, "") => Axis::plain_logarithmic(title, least, greatest),
+        ("mean gap", _) => Axis::linear(title, unit, 0.0, greatest),
+        _ => Axis::logarithmic(title, unit, least, greatest),
     };
     Some(Chart {
         title: title.to_string(),
