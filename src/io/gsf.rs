@@ -102,32 +102,97 @@ impl<'a> Header<'a> {
     }
 }
 
-/// Writes heights \[m\] on their grid as a Gwyddion Simple Field, which holds seven digits of each; NaN stays NaN.
+/// Writes a field on its grid as a Gwyddion Simple Field, which holds seven digits of each value; NaN stays NaN. The unit
+/// is that of the values: "m" for heights and gaps, "Pa" for pressures.
 ///
 /// An existing file is overwritten.
 ///
 /// # Errors
 ///
-/// [`Error::GridMismatch`] if the grid has another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
-pub fn write_gsf(path: impl AsRef<Path>, grid: &Grid, heights: &DMatrix<f64>) -> Result<(), Error> {
-    grid.check_shape(heights.shape())?;
+/// [`Error::GridMismatch`] if the grid has another shape, [`Error::OutOfRange`] for a unit that does not fit into a line, and
+/// [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
+pub fn write_gsf(
+    path: impl AsRef<Path>,
+    grid: &Grid,
+    values: &DMatrix<f64>,
+    unit: &str,
+) -> Result<(), Error> {
+    grid.check_shape(values.shape())?;
+    if unit.chars().any(char::is_control) {
+        return Err(Error::OutOfRange {
+            quantity: "number of control characters in a unit",
+            value: 1.0,
+            expected: "0",
+        });
+    }
     let path = path.as_ref();
     File::create(path)
-        .and_then(|file| write(BufWriter::new(file), grid, heights))
+        .and_then(|file| write(BufWriter::new(file), grid, values, unit))
         .map_err(|error| Fault::Io(error).in_file(path, "Gwyddion Simple Field"))
 }
 
-fn write(mut output: impl Write, grid: &Grid, heights: &DMatrix<f64>) -> std::io::Result<()> {
+fn write(
+    mut output: impl Write,
+    grid: &Grid,
+    values: &DMatrix<f64>,
+    unit: &str,
+) -> std::io::Result<()> {
     let (nx, ny) = grid.shape();
     let (lx, ly) = grid.sides();
     let header = format!(
-        "{MAGIC}XRes = {nx}\nYRes = {ny}\nXReal = {lx:e}\nYReal = {ly:e}\nXYUnits = m\nZUnits = m\n"
+        "{MAGIC}XRes = {nx}\nYRes = {ny}\nXReal = {lx:e}\nYReal = {ly:e}\nXYUnits = m\nZUnits = {unit}\n"
     );
     output.write_all(header.as_bytes())?;
     // One to four zeros, so that the numbers begin at a multiple of four.
     output.write_all(&[0; 4][..4 - header.len() % 4])?;
-    for height in heights.iter() {
-        output.write_all(&(*height as f32).to_le_bytes())?;
+    for value in values.iter() {
+        output.write_all(&(*value as f32).to_le_bytes())?;
     }
     output.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Headers of all lengths modulo four, since data begin at a multiple of four; f32 holds these values exactly.
+    #[test]
+    fn what_is_written_is_read_back() -> Result<(), Box<dyn std::error::Error>> {
+        for (nx, unit) in [
+            (7, "m"),
+            (7, "nm"),
+            (1000, "m"),
+            (7, "rad"),
+            (12, "Pa m"),
+            (7, ""),
+        ] {
+            let grid = Grid::new(nx, 5, 2e-6, 3e-6)?;
+            let mut field = DMatrix::from_fn(nx, 5, |ix, iy| 0.25 * ix as f64 - iy as f64);
+            field[(3, 2)] = f64::NAN;
+            let mut bytes = Vec::new();
+            write(&mut bytes, &grid, &field, unit)?;
+            let channels =
+                parse(&bytes).map_err(|fault| fault.in_file(Path::new("test"), "GSF"))?;
+            let [found] = &channels[..] else {
+                return Err("one map was expected".into());
+            };
+            assert_eq!(found.shape, (nx, 5));
+            assert_eq!(found.height_unit.as_deref().unwrap_or_default(), unit);
+            for (found, expected) in found.values.iter().zip(field.iter()) {
+                assert!(found == expected || (found.is_nan() && expected.is_nan()));
+            }
+            // Sides are written in the shortest digits that read back as the same number.
+            let (lx, ly) = grid.sides();
+            assert_eq!(found.cell, Some((lx / nx as f64, ly / 5.0)));
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_unit_is_one_line() -> Result<(), Error> {
+        let grid = Grid::square(2, 1.0)?;
+        let written = write_gsf("never.gsf", &grid, &DMatrix::zeros(2, 2), "m\nXRes = 9");
+        assert!(matches!(written, Err(Error::OutOfRange { .. })));
+        Ok(())
+    }
 }

@@ -55,7 +55,8 @@ pub(super) fn write(
         let (name, written) = match format {
             Format::Gsf => {
                 let name = directory.join(format!("{field}.gsf"));
-                let written = write_gsf(&name, grid, values);
+                let unit = if *field == "pressure" { "Pa" } else { "m" };
+                let written = write_gsf(&name, grid, values, unit);
                 (name, written)
             }
             _ => {
