@@ -8,6 +8,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::axis::Axis;
+use crate::contour::contour;
 use crate::outcome::Failure;
 use crate::panel::{Area, Drawn, Panel, anchor, shade};
 use crate::picture;
@@ -35,6 +36,15 @@ struct Margin {
     bottom: i32,
 }
 
+/// How colours go with values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion to the value; what lies below the range is red.
+    Linear,
+    /// In proportion to its logarithm, between positive ends; what lies below the range is as light as its end.
+    Logarithmic,
+}
+
 /// A field to be drawn.
 pub struct FieldMap<'a> {
     /// The grid; without one, nodes are the unit of length.
@@ -43,8 +53,12 @@ pub struct FieldMap<'a> {
     pub length_unit: &'a str,
     /// The values, NaN where nothing is to be drawn.
     pub values: &'a DMatrix<f64>,
-    /// Values of the lightest and the darkest colour; what lies below is red.
+    /// Values of the lightest and the darkest colour.
     pub range: (f64, f64),
+    /// How colours go with values in between.
+    pub scale: Scale,
+    /// Values at which a line is drawn, between the nodes.
+    pub contours: &'a [f64],
     /// What is drawn, and its SI unit.
     pub label: (&'a str, &'a str),
 }
@@ -81,13 +95,18 @@ impl FieldMap<'_> {
 
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, panel: &Panel) -> Drawn<DB> {
         let (least, greatest) = self.range;
+        let (label, unit) = self.label;
+        let colours = match self.scale {
+            Scale::Linear => Axis::linear(label, unit, least, greatest),
+            Scale::Logarithmic => Axis::logarithmic(label, unit, least, greatest),
+        };
         for (place, value) in (0_i32..).zip(self.pixels(panel)) {
             let Some(value) = value else { continue };
             let at = (
                 panel.left + place % panel.width,
                 panel.top + panel.height - 1 - place / panel.width,
             );
-            area.draw_pixel(at, &self.colour(value))?;
+            area.draw_pixel(at, &self.colour(&colours, value))?;
         }
         let (lx, ly) = self.grid.sides();
         // One unit for both axes, that of the longer side.
@@ -97,9 +116,36 @@ impl FieldMap<'_> {
             let axis = Axis::linear(name, self.length_unit, 0.0, longer);
             axis.with_room(0.0, -excess)
         });
+        self.lines(area, panel, (&x, &y), &colours)?;
         panel.frame(area, &x, &y)?;
         if greatest > least {
-            self.colour_bar(area, panel)?;
+            self.colour_bar(area, panel, &colours)?;
+        }
+        Ok(())
+    }
+
+    /// The contours, dark on light colours and light on dark ones.
+    fn lines<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        panel: &Panel,
+        axes: (&Axis, &Axis),
+        colours: &Axis,
+    ) -> Drawn<DB> {
+        // Lines run where the colours change evenly.
+        let even = |value: f64| match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic => value.log10(),
+        };
+        let field = self.values.map(even);
+        let (dx, dy) = (self.grid.dx(), self.grid.dy());
+        let position = |(x, y): (f64, f64)| ((x + 0.5) * dx, (y + 0.5) * dy);
+        for &level in self.contours {
+            let colour = ink_on(colours.place(level));
+            for piece in contour(&field, even(level)) {
+                let points = panel.trace(axes, piece.map(position).into_iter());
+                area.draw(&PathElement::new(points, colour.stroke_width(1)))?;
+            }
         }
         Ok(())
     }
@@ -131,15 +177,23 @@ impl FieldMap<'_> {
         pixels
     }
 
-    fn colour_bar<DB: DrawingBackend>(&self, area: &Area<DB>, panel: &Panel) -> Drawn<DB> {
-        let (least, greatest) = self.range;
-        let (label, unit) = self.label;
+    fn colour_bar<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        panel: &Panel,
+        colours: &Axis,
+    ) -> Drawn<DB> {
         let bar = Panel {
             left: panel.left + panel.width + 28,
             width: 26,
             ..*panel
         };
-        bar.colour_bar(area, &Axis::linear(label, unit, least, greatest))?;
+        bar.colour_bar(area, colours)?;
+        let across = Axis::plain("", 0.0, 1.0);
+        for &level in self.contours {
+            let ends = [(0.0, level), (1.0, level)].into_iter();
+            bar.curve(area, (&across, colours), ends, ink_on(colours.place(level)))?;
+        }
         if self.values.iter().any(|value| self.is_below(*value)) {
             let at = (bar.left + bar.width, bar.top - FONT);
             let pos = anchor(HPos::Right, VPos::Center);
@@ -154,20 +208,26 @@ impl FieldMap<'_> {
 
     fn is_below(&self, value: f64) -> bool {
         let (least, greatest) = self.range;
-        value < least - 1e-9 * (greatest - least).abs()
+        self.scale == Scale::Linear && value < least - 1e-9 * (greatest - least).abs()
     }
 
-    fn colour(&self, value: f64) -> RGBColor {
+    fn colour(&self, colours: &Axis, value: f64) -> RGBColor {
         let (least, greatest) = self.range;
         if self.is_below(value) {
             return BELOW;
         }
-        let share = if greatest > least {
-            (value - least) / (greatest - least)
-        } else {
-            0.0
-        };
-        shade(share)
+        match colours.place(value) {
+            Some(share) if greatest > least => shade(share),
+            _ => shade(0.0),
+        }
+    }
+}
+
+/// A line that stands out on the colour at this place of the scale.
+fn ink_on(place: Option<f64>) -> RGBColor {
+    match place {
+        Some(place) if place > 0.5 => WHITE,
+        _ => BLACK,
     }
 }
 

@@ -3,6 +3,7 @@
 
 pub mod axis;
 pub mod chart;
+pub mod contour;
 pub mod field_map;
 pub mod half_space;
 pub mod number;

@@ -5,6 +5,7 @@ mod ensemble;
 mod gather;
 mod info;
 mod load;
+mod patches;
 mod path;
 mod reading;
 mod values;
@@ -16,7 +17,7 @@ use clap::{Parser, Subcommand};
 /// Exact elastic contact of rough surfaces.
 ///
 /// Without a command, `path` of a generated surface: the whole loading to 10 % contact, in seconds.
-/// `asperity path --help`, `asperity load --help` and `asperity info --help` list the options of each.
+/// `asperity path --help`, and the same of every other command, lists its options.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true)]
 struct Arguments {
@@ -30,6 +31,7 @@ enum Command {
     Load(load::Options),
     Info(info::Options),
     Gather(gather::Options),
+    Patches(patches::Options),
 }
 
 fn main() -> ExitCode {
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
+        Some(Command::Patches(options)) => patches::run(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -93,18 +93,19 @@ impl Panel {
 
     /// Ruled lines across the panel at the ticks.
     pub fn rule<DB: DrawingBackend>(&self, area: &Area<DB>, x: &Axis, y: &Axis) -> Drawn<DB> {
-        let [along_x, along_y] = self.room();
-        let labelled = |axis: &Axis, most| {
-            let ticks = axis.ticks(most).into_iter();
-            ticks
-                .filter(|tick| tick.label.is_some())
-                .collect::<Vec<_>>()
-        };
-        for tick in labelled(x, along_x) {
-            self.line(area, [(tick.place, 0.0), (tick.place, 1.0)])?;
-        }
-        for tick in labelled(y, along_y) {
+        self.rule_upright(area, x)?;
+        let ticks = y.ticks(self.room()[1]).into_iter();
+        for tick in ticks.filter(|tick| tick.label.is_some()) {
             self.line(area, [(0.0, tick.place), (1.0, tick.place)])?;
+        }
+        Ok(())
+    }
+
+    /// Those at the ticks of the axis along the lower edge.
+    pub fn rule_upright<DB: DrawingBackend>(&self, area: &Area<DB>, x: &Axis) -> Drawn<DB> {
+        let ticks = x.ticks(self.room()[0]).into_iter();
+        for tick in ticks.filter(|tick| tick.label.is_some()) {
+            self.line(area, [(tick.place, 0.0), (tick.place, 1.0)])?;
         }
         Ok(())
     }

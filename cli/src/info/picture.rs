@@ -7,7 +7,7 @@ use asperity::io::MeasuredSurface;
 use asperity::surface::{RadialBins, Topography, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
-use asperity_cli::field_map::FieldMap;
+use asperity_cli::field_map::{FieldMap, Scale};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
@@ -39,6 +39,8 @@ pub(super) fn map(
         length_unit,
         values: &measured.heights.map(|height| height - summary.mean),
         range: (summary.min - summary.mean, summary.max - summary.mean),
+        scale: Scale::Linear,
+        contours: &[],
         label: ("height above the mean", "m"),
     }
     .write(

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Solver;
 use super::job::Job;
-use asperity_cli::field_map::FieldMap;
+use asperity_cli::field_map::{FieldMap, Scale};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
@@ -29,6 +29,8 @@ pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<P
         length_unit: "m",
         values: &pressure.zip_map(&solver.contact_map(), in_contact),
         range: (0.0, greatest),
+        scale: Scale::Linear,
+        contours: &[],
         label: ("pressure", "Pa"),
     }
     .write(&directory.join("contact_map.png"), &caption)

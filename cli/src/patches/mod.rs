@@ -1,0 +1,109 @@
+//! `asperity patches`: what the order of contact in a record tells.
+//!
+//! Prints percolation, leakage and the patches at one state, and writes `patches.csv`, `patches.png`, `activation.png`,
+//! `merge_tree.png` and `distributions.png`. Where nodes leave the contact, patches cannot be followed from
+//! state to state: the first two and the tree are missing then.
+
+mod activation;
+mod charts;
+mod distributions;
+mod followed;
+mod moment;
+mod table;
+mod tree;
+mod tree_layout;
+mod words;
+
+use std::path::PathBuf;
+
+use asperity::patches::Connectivity;
+use asperity::record::LoadingRecord;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::panel;
+use clap::Args;
+
+use crate::values::{fraction, positive};
+use followed::Followed;
+use moment::Moment;
+
+/// Contact patches along a path: percolation, leakage, mergers, activation and distributions, from its record
+///
+/// Writes patches.csv, patches.png, activation.png (the load at which each node touched: every contact map in one),
+/// merge_tree.png and distributions.png.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// What `asperity path --record` has written
+    #[arg(value_name = "FILE.npz")]
+    record: PathBuf,
+
+    /// Load of the state to look at [default: the last state]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, conflicts_with = "at_area_fraction")]
+    at_load: Option<f64>,
+
+    /// Contact area over nominal area of the state to look at
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
+    at_area_fraction: Option<f64>,
+
+    /// Nodes that have only a corner in common belong to one patch too, and no channel leads between them
+    #[arg(long)]
+    corners: bool,
+
+    /// Directory for the files, made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+impl Options {
+    fn connectivity(&self) -> Connectivity {
+        if self.corners {
+            Connectivity::Eight
+        } else {
+            Connectivity::Four
+        }
+    }
+}
+
+/// Reads the record, says what is in it, and writes the files.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let file = options.record.display();
+    let record = LoadingRecord::read_npz(&options.record)
+        .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
+    let connectivity = options.connectivity();
+    let state = moment::state(&record, options)?;
+    let followed = Followed::new(&record, connectivity);
+    words::print_record(&record, connectivity);
+    panel::register_font()?;
+    let out = &options.out;
+    std::fs::create_dir_all(out)
+        .map_err(|error| Failure::new(format!("cannot make {}", out.display()), error))?;
+
+    let mut outcome = Outcome::default();
+    // Else there is one node, or several at one height.
+    let mut events = record.history().events().iter();
+    let carries = events.any(|state| state.load > 0.0);
+    match &followed {
+        Ok(followed) => {
+            words::print_passages(followed);
+            outcome.written(table::write(&record, followed, &out.join("patches.csv")));
+            if carries {
+                outcome.written(charts::draw(&record, followed, &out.join("patches.png")));
+                outcome.written(tree::draw(&record, followed, &out.join("merge_tree.png")));
+            }
+        }
+        Err(error) => println!("patches cannot be followed along this path: {error}\n"),
+    }
+    if !carries {
+        println!("no node has touched under load: there is nothing to draw");
+        return outcome.finish();
+    }
+    outcome.written(activation::draw(&record, &out.join("activation.png")));
+    match Moment::new(&record, state, connectivity) {
+        Ok(moment) => {
+            words::print_moment(&moment);
+            let name = out.join("distributions.png");
+            outcome.written(distributions::draw(&record, &moment, &name));
+        }
+        Err(failure) => outcome.note(Err(failure)),
+    }
+    outcome.finish()
+}

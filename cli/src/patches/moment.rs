@@ -1,0 +1,72 @@
+//! One state of a path, with its fields.
+
+use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
+use asperity::record::LoadingRecord;
+use asperity::{ContactRule, LoadingState};
+use asperity_cli::outcome::Failure;
+use nalgebra::DMatrix;
+
+use super::Options;
+
+/// The state that a command line asks for.
+pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<LoadingState, Failure> {
+    let history = record.history();
+    let Some(last) = record.states().last() else {
+        return Err(Failure::request("the record holds no state"));
+    };
+    let missed = |what: String| {
+        Failure::request(format!(
+            "the path has no state at {what}: it ends at {:.6e} N, with {} of the nominal area in contact",
+            last.load, last.contact_area_fraction
+        ))
+    };
+    if let Some(load) = options.at_load {
+        let found = match record.settings().rule {
+            // Which is not a function of load.
+            ContactRule::SmallestGap => record.states().iter().find(|s| s.load >= load).copied(),
+            _ => history.at_load(load),
+        };
+        return found.ok_or_else(|| missed(format!("{load} N")));
+    }
+    if let Some(fraction) = options.at_area_fraction {
+        let found = history.at_area_fraction(fraction);
+        return found.ok_or_else(|| missed(format!("an area fraction of {fraction}")));
+    }
+    Ok(*last)
+}
+
+/// A state with its fields and its patches.
+pub(super) struct Moment {
+    pub(super) state: LoadingState,
+    pub(super) contact_map: DMatrix<bool>,
+    pub(super) pressure: DMatrix<f64>,
+    pub(super) gap: DMatrix<f64>,
+    /// Each patch with what it carries, the largest first.
+    pub(super) patches: Vec<(Patch, PatchLoad)>,
+}
+
+impl Moment {
+    pub(super) fn new(
+        record: &LoadingRecord,
+        state: LoadingState,
+        connectivity: Connectivity,
+    ) -> Result<Self, Failure> {
+        let failed = |error| Failure::new("no fields of the state", error);
+        let mut path = record.replay().map_err(failed)?;
+        let contact_map = path.contact_map_at(&state).map_err(failed)?;
+        let pressure = path.pressure_at(&state).map_err(failed)?;
+        let gap = path.gap_at(&state).map_err(failed)?;
+        let (grid, boundary) = (record.grid(), record.kernel().boundary);
+        let found = Patches::new(&contact_map, &grid, boundary, connectivity).map_err(failed)?;
+        let loads = found.loads(&pressure).map_err(failed)?;
+        let mut patches: Vec<_> = found.patches().iter().copied().zip(loads).collect();
+        patches.sort_by_key(|(patch, _)| std::cmp::Reverse(patch.nodes));
+        Ok(Self {
+            state,
+            contact_map,
+            pressure,
+            gap,
+            patches,
+        })
+    }
+}

@@ -1,0 +1,54 @@
+//! `patches.csv`: the patches of every state.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use asperity::ContactEvent;
+use asperity::patches::PatchEvent;
+use asperity::record::LoadingRecord;
+use asperity_cli::outcome::Failure;
+
+use super::followed::Followed;
+
+/// One line for each state. At the limit of a path the patches are those of the last event.
+pub(super) fn write(
+    record: &LoadingRecord,
+    followed: &Followed,
+    name: &Path,
+) -> Result<PathBuf, Failure> {
+    lines(record, followed, name)
+        .map(|()| name.to_path_buf())
+        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+}
+
+fn lines(record: &LoadingRecord, followed: &Followed, name: &Path) -> io::Result<()> {
+    let mut output = BufWriter::new(File::create(name)?);
+    writeln!(
+        output,
+        "step,load,contact_area_fraction,patches,largest_patch,perimeter,corrected_area_fraction,event"
+    )?;
+    let grid = record.grid();
+    let last = followed.patches.last();
+    let patches = followed.patches.iter().chain(last);
+    for (state, patches) in record.states().iter().zip(patches) {
+        let event = match (state.event, patches.event) {
+            (ContactEvent::Limit, _) => "limit",
+            (_, PatchEvent::Birth) => "birth",
+            (_, PatchEvent::Growth) => "growth",
+            (_, PatchEvent::Merge { .. }) => "merge",
+        };
+        writeln!(
+            output,
+            "{},{:e},{},{},{},{:e},{},{event}",
+            state.step,
+            state.load,
+            state.contact_area_fraction,
+            patches.patches,
+            patches.largest,
+            patches.perimeter.length(&grid),
+            patches.corrected_area(&grid) / grid.nominal_area(),
+        )?;
+    }
+    output.flush()
+}
