@@ -10,3 +10,12 @@ pub mod number;
 pub mod outcome;
 pub mod panel;
 pub mod picture;
+
+/// Prints a line. If nobody reads any more (`asperity … | head`), it is lost, and the work goes on.
+#[macro_export]
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($text)*);
+    }};
+}

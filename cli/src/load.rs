@@ -8,6 +8,7 @@ use asperity::io::write_npy;
 use asperity::{Doubt, FixedLoadSolver};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
+use asperity_cli::say;
 use clap::Args;
 
 use crate::elasticity::Elasticity;
@@ -113,7 +114,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// A line for programs on stdout, and one for people on stderr.
 fn print(solution: &FixedLoadSolution, seconds: f64, seconds_more: f64) {
     let state = solution.state;
-    println!(
+    say!(
         "load={:e} contact_nodes={} max_pressure={:e} mean_gap={:e} approach={:e} \
          contact_stiffness={} interfacial_stiffness={} iterations={} seconds={seconds:.6}",
         state.load,

@@ -1,5 +1,6 @@
 //! What went wrong, and what was written nevertheless.
 
+use crate::say;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -74,9 +75,9 @@ impl Outcome {
 
     /// Prints the files; reports all failures but the first, which it returns.
     pub fn finish(self) -> Result<(), Failure> {
-        println!();
+        say!();
         for file in &self.files {
-            println!("wrote {}", file.display());
+            say!("wrote {}", file.display());
         }
         self.finish_quietly()
     }

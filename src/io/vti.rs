@@ -103,11 +103,9 @@ mod tests {
         let second = first.map(|value| -value);
         let mut bytes = Vec::new();
         write(&mut bytes, &grid, &[("a<b", &first), ("c", &second)])?;
-        let start = bytes
-            .iter()
-            .position(|byte| *byte == b'_')
-            .ok_or("no data")?
-            + 1;
+        let mark = b"encoding=\"raw\">\n_";
+        let marked = bytes.windows(mark.len()).position(|window| window == mark);
+        let start = marked.ok_or("no data")? + mark.len();
         let header = std::str::from_utf8(&bytes[..start])?;
         assert!(header.contains("Name=\"a&lt;b\" format=\"appended\" offset=\"0\""));
         assert!(header.contains("Name=\"c\" format=\"appended\" offset=\"56\""));

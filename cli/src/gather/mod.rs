@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
+use asperity_cli::say;
 use clap::Args;
 
 use table::Table;
@@ -46,7 +47,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let ratio = (last / first).powf(1.0 / steps as f64);
     let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
-    println!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
+    say!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
     let out = options.out.as_ref().unwrap_or(&options.directory);
     fs::create_dir_all(out)
         .map_err(|error| Failure::new(format!("cannot make {}", out.display()), error))?;

@@ -13,6 +13,7 @@ use asperity::surface::{Estimate, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
+use asperity_cli::say;
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -45,7 +46,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let summary = Summary::of(&measured);
     let surface = whole(&measured);
     if options.json {
-        println!("{}", object(&measured, &summary));
+        say!("{}", object(&measured, &summary));
     } else {
         print(options, &measured, &summary, surface.as_ref())?;
     }
@@ -104,20 +105,20 @@ fn print(
     surface: Option<&(Topography, Topography)>,
 ) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
-    println!("file          {}", options.file.display());
-    println!("found         {measured}");
+    say!("file          {}", options.file.display());
+    say!("found         {measured}");
     let maps = channels(&options.file)
         .map_err(|error| Failure::new(format!("cannot read {}", options.file.display()), error))?;
     if maps.len() > 1 {
-        println!("maps          {}", maps.join(", "));
+        say!("maps          {}", maps.join(", "));
     }
     if !measured.title.is_empty() {
-        println!("title         {}", measured.title);
+        say!("title         {}", measured.title);
     }
     for note in &measured.notes {
-        println!("note          {note}");
+        say!("note          {note}");
     }
-    println!(
+    say!(
         "heights       {} to {}, mean {}, Sq {}",
         length(summary.min),
         length(summary.max),
@@ -125,21 +126,19 @@ fn print(
         length(summary.sq)
     );
     if let Some(gradient) = summary.rms_gradient {
-        println!("rms gradient  {gradient:.4}");
+        say!("rms gradient  {gradient:.4}");
     }
     let Some((surface, levelled)) = surface else {
-        println!(
-            "no statistics: the file does not give the size of the surface; give it with --side"
-        );
+        say!("no statistics: the file does not give the size of the surface; give it with --side");
         return Ok(());
     };
     let tilt = surface.map().rms_height().powi(2) - levelled.map().rms_height().powi(2);
-    println!(
+    say!(
         "tilt          {} rms; without it Sq {}",
         length(tilt.max(0.0).sqrt()),
         length(levelled.map().rms_height())
     );
-    println!(
+    say!(
         "shape         Ssk {:.3}, Sku {:.3} (normal: 0, 3)",
         levelled.map().skewness(),
         levelled.map().kurtosis()
@@ -152,7 +151,7 @@ fn print(
                 format!(", {name} {}", length(estimate.value))
             })
         };
-        println!(
+        say!(
             "spectrum      Hurst exponent {:.2} ± {:.2}{}{}",
             fit.hurst.value,
             fit.hurst.standard_error,
@@ -161,7 +160,7 @@ fn print(
         );
     }
     for doubt in Doubt::of_surface(surface) {
-        println!("warning       {doubt}");
+        say!("warning       {doubt}");
     }
     Ok(())
 }

@@ -20,6 +20,7 @@ use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
+use asperity_cli::say;
 use clap::Args;
 
 use crate::values::{fraction, positive};
@@ -90,10 +91,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                 outcome.written(tree::draw(&record, followed, &out.join("merge_tree.png")));
             }
         }
-        Err(error) => println!("patches cannot be followed along this path: {error}\n"),
+        Err(error) => say!("patches cannot be followed along this path: {error}\n"),
     }
     if !carries {
-        println!("no node has touched under load: there is nothing to draw");
+        say!("no node has touched under load: there is nothing to draw");
         return outcome.finish();
     }
     outcome.written(activation::draw(&record, &out.join("activation.png")));

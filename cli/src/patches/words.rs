@@ -4,6 +4,7 @@ use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity::{Boundary, LoadingState};
 use asperity_cli::number::quantity;
+use asperity_cli::say;
 
 use super::followed::Followed;
 use super::moment::Moment;
@@ -19,37 +20,37 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
         Connectivity::Four => ("a side", "sides and corners"),
         Connectivity::Eight => ("a side or a corner", "sides"),
     };
-    println!(
+    say!(
         "{} states on {nx} x {ny} nodes, {boundary} boundary",
         record.states().len()
     );
-    println!("patches: nodes in contact with {joined} in common; channels lead across {channels}");
-    println!("\"along x\" and \"along y\" are {all_the_way}");
-    println!();
+    say!("patches: nodes in contact with {joined} in common; channels lead across {channels}");
+    say!("\"along x\" and \"along y\" are {all_the_way}");
+    say!();
 }
 
 /// When contact percolates, and when leakage ends.
 pub(super) fn print_passages(followed: &Followed) {
     for passage in &followed.passages {
         match &passage.state {
-            Some(state) => println!(
+            Some(state) => say!(
                 "{:18} from state {} on: {}",
                 passage.name,
                 state.step,
                 described(state)
             ),
-            None => println!("{:18} not on this path", passage.name),
+            None => say!("{:18} not on this path", passage.name),
         }
     }
-    println!();
+    say!();
 }
 
 /// The patches of one state.
 pub(super) fn print_moment(moment: &Moment) {
     let state = &moment.state;
-    println!("at {}:", described(state));
+    say!("at {}:", described(state));
     let Some((patch, carried)) = moment.patches.first() else {
-        println!("nothing is in contact");
+        say!("nothing is in contact");
         return;
     };
     let percent = |part: f64, whole: f64| 100.0 * part / whole;
@@ -57,7 +58,7 @@ pub(super) fn print_moment(moment: &Moment) {
         1 => "1 patch".to_string(),
         count => format!("{count} patches"),
     };
-    println!(
+    say!(
         "{count}; the largest has {} nodes, {:.4e} m², {:.2} % of the contact, and carries {} ({:.2} %) at a mean of {}",
         patch.nodes,
         patch.area,

@@ -21,6 +21,7 @@ use asperity::updater::LinearUpdater;
 use asperity::{Doubt, LoadingSolver, LoadingState};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
+use asperity_cli::say;
 use nalgebra::DMatrix;
 
 use follow::{Followed, PathFile};
@@ -36,10 +37,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return follow_one(options);
     }
     let (members, there) = options.ensemble.members(&options.out);
-    println!("{} paths to follow, {there} are there", members.len());
+    say!("{} paths to follow, {there} are there", members.len());
     if options.ensemble.dry_run {
         if let Some(first) = members.first() {
-            println!("{}", Job::new(&options.of(first))?.expected());
+            say!("{}", Job::new(&options.of(first))?.expected());
         }
         return Ok(());
     }

@@ -7,6 +7,7 @@ use super::Solver;
 use super::job::Job;
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
+use asperity_cli::say;
 
 /// Loads of the rows, as fractions of the last.
 const LOADS: [f64; 10] = [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -21,20 +22,28 @@ pub(super) fn print(
     let Some(last) = states.last() else {
         return Ok(());
     };
-    println!("{} states in {seconds:.2} s", states.len());
+    say!("{} states in {seconds:.2} s", states.len());
     if let Some(end) = solver.end() {
-        println!("ended by: {}", reason(end));
+        say!("ended by: {}", reason(end));
     }
-    println!();
+    say!();
     let rms_height = job.heights().rms_height();
     let (length, approach, gap) = if rms_height > 0.0 {
         (rms_height, "approach/Sq", "mean gap/Sq")
     } else {
         (1.0, "approach [m]", "mean gap [m]")
     };
-    println!(
+    say!(
         "{:>8} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}",
-        "nodes", "load [N]", "p_mean/E*", "A/A0", approach, gap, "K [N/m]", "K_i [N/m]", "p_max/E*"
+        "nodes",
+        "load [N]",
+        "p_mean/E*",
+        "A/A0",
+        approach,
+        gap,
+        "K [N/m]",
+        "K_i [N/m]",
+        "p_max/E*"
     );
     let mut failed = Ok(());
     for state in rows(job.rule(), states, last) {
@@ -45,7 +54,7 @@ pub(super) fn print(
                 f64::NAN
             }
         };
-        println!(
+        say!(
             "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12} {:>12.4e}",
             state.contact_nodes,
             state.load,
@@ -60,28 +69,28 @@ pub(super) fn print(
     }
     failed?;
     for doubt in doubts(job, solver)? {
-        println!("\nwarning: {doubt}");
+        say!("\nwarning: {doubt}");
     }
 
     let certificate = solver
         .certificate()
         .map_err(|error| Failure::new("no certificate", error))?;
     let length = quantity(certificate.length, "m", 4);
-    println!();
-    println!("certificate of the last state, from its pressure alone (0 would be exact):");
-    println!(
+    say!();
+    say!("certificate of the last state, from its pressure alone (0 would be exact):");
+    say!(
         "  least pressure in contact   {:>10.1e} of the mean pressure there",
         certificate.least_pressure
     );
-    println!(
+    say!(
         "  least gap out of contact    {:>10.1e} of {length}",
         certificate.least_gap
     );
-    println!(
+    say!(
         "  greatest gap in contact     {:>10.1e} of {length}",
         certificate.greatest_contact_gap
     );
-    println!(
+    say!(
         "  sum of pressures less load  {:>10.1e} of the load",
         certificate.load_error
     );
