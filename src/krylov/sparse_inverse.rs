@@ -11,8 +11,8 @@ use crate::parallel::{for_each_block, for_each_chunk, vectorized};
 
 /// Neighbours on which a node conditions, chosen by time and not by count.
 ///
-/// One cold solve to 1e-8 on a 512 × 512 self-affine surface (λ_s = 4 cells), at 3.4, 12.6 and 47 %
-/// contact: iterations for the pressure + for the stiffness, all convolutions, and seconds of one
+/// Without the coarse level of the preconditioner, with which there are fewer iterations: one cold solve to 1e-8 on
+/// a 512 × 512 self-affine surface (λ_s = 4 cells), at 3.4, 12.6 and 47 % contact: iterations for the pressure + for the stiffness, all convolutions, and seconds of one
 /// thread with everything (some 0.1 s of it synthesis of the surface).
 ///
 /// |  k | 3.4 %               | 12.6 %              | 47 %                |

@@ -272,9 +272,8 @@ pub trait LinearUpdater {
     /// Whatever keeps the updater from shrinking; by default [`UpdaterError::TruncateNotSupported`].
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let _ = problem;
-        Err(Error::Updater(UpdaterError::TruncateNotSupported {
-            nodes: contact.len(),
-        }))
+        let nodes = contact.len();
+        Err(UpdaterError::TruncateNotSupported { nodes }.into())
     }
 
     /// Forgets a node that left the contact, in which it was number `position` from 0: `contact` is
@@ -294,7 +293,7 @@ pub trait LinearUpdater {
         let _ = (contact, position);
         problem.check_nodes(&[node])?;
         let (ix, iy) = problem.grid().coordinates(node);
-        Err(Error::Updater(UpdaterError::ReleaseNotSupported { ix, iy }))
+        Err(UpdaterError::ReleaseNotSupported { ix, iy }.into())
     }
 
     /// How exact the updater is, and what its work costs; by default exact, at the cost of a factor in
