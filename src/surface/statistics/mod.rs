@@ -9,11 +9,11 @@
 
 mod differences;
 mod fit;
+#[cfg(test)]
+mod foreign_tests;
 mod full_contact;
 mod moments;
 mod power;
-#[cfg(test)]
-mod references;
 #[cfg(test)]
 mod tests;
 
