@@ -16,8 +16,10 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
     };
     let missed = |what: String| {
         Failure::request(format!(
-            "the path has no state at {what}: it ends at {:.6e} N, with {} of the nominal area in contact",
-            last.load, last.contact_area_fraction
+            "the path has no state at {what}: it ends at {:.6e} N, with {} of {} nodes in contact",
+            last.load,
+            last.contact_nodes,
+            record.grid().nodes()
         ))
     };
     if let Some(load) = options.at_load {

@@ -1,0 +1,62 @@
+//! How hard must I press until nothing leaks through?
+//!
+//! The last channel between the surfaces closes when patches of contact have joined all the way across it. Where two nodes
+//! meet at a corner only, the grid does not say whether they are joined: both answers bracket it.
+//!
+//! Pictures of such a path: `asperity path --periodic love --max-area-fraction 0.6 --record path.npz`, then
+//! `asperity patches path.npz`.
+//!
+//! ```text
+//! cargo run --release --example when_does_it_seal
+//! ```
+
+use asperity::loading::History;
+use asperity::patches::{Connectivity, Percolation, contact_sequence};
+use asperity::surface::Amplitude;
+use asperity::{Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, SelfAffine};
+
+/// A polymer on something hard \[Pa\].
+const E_STAR: f64 = 3e9;
+
+fn main() -> Result<(), Error> {
+    let side = 1e-3;
+    let grid = Grid::square(96, side)?;
+    // Much shorter waves than the side: a piece stands for the whole seal.
+    let surface = SelfAffine::new(0.8, side / 6.0, side / 24.0, Amplitude::RmsHeight(1e-6), 1)?;
+    let half_space = PeriodicBoussinesq::new(grid, E_STAR)?;
+    let mut path = LoadingSolver::builder(&surface, &half_space)
+        .max_area_fraction(0.6)
+        .build()?;
+    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let events = history.events();
+    let contact = contact_sequence(grid, events.iter().map(|state| (state.event, state.node)))?;
+
+    println!(
+        "joined across      event                       load [MPa]   contact [%]   mean gap [µm]"
+    );
+    for (name, connectivity) in [
+        ("sides, corners", Connectivity::Eight),
+        ("sides", Connectivity::Four),
+    ] {
+        let found = Percolation::of(&contact, half_space.boundary(), connectivity);
+        for (what, nodes) in [
+            ("a patch along x", found.contact_x),
+            ("a patch along y", found.contact_y),
+            ("no channel along x", found.leak_x),
+            ("no channel along y", found.leak_y),
+        ] {
+            // The number of nodes in contact is the number of the state.
+            let state = nodes.and_then(|nodes| events.get(nodes.checked_sub(1)?));
+            match state {
+                Some(state) => println!(
+                    "{name:18} {what:20} {:17.2} {:13.2} {:15.3}",
+                    state.mean_pressure() / 1e6,
+                    100.0 * state.contact_area_fraction,
+                    1e6 * state.mean_gap
+                ),
+                None => println!("{name:18} {what:20} not on this path"),
+            }
+        }
+    }
+    Ok(())
+}
