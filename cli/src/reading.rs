@@ -124,6 +124,8 @@ impl Reading {
 
     /// Levels and inverts.
     fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
+        let (sx, sy) = surface.trend(Trend::Plane).slopes();
+        eprintln!("tilt       {sx:.2e} along x, {sy:.2e} along y");
         let mut surface = surface;
         if let Some(level) = self.level {
             let levelled = surface.level(level.into())?;

@@ -1,5 +1,7 @@
 //! The scalars of a state of contact.
 
+use crate::Grid;
+
 /// The scalars of one state of contact, in the units of the input; SI is given here.
 ///
 /// A node whose gap is closed is in contact, with pressure or without: at the instant at which it
@@ -34,6 +36,23 @@ pub struct ContactState {
 }
 
 impl ContactState {
+    /// A state made of data, with so many nodes of a grid in contact, no stiffness and no energy; these are fields to be
+    /// set.
+    #[must_use]
+    pub fn new(grid: &Grid, contact_nodes: usize, approach: f64, load: f64, mean_gap: f64) -> Self {
+        Self {
+            contact_nodes,
+            approach,
+            load,
+            contact_area: contact_nodes as f64 * grid.cell_area(),
+            contact_area_fraction: contact_nodes as f64 / grid.nodes() as f64,
+            mean_gap,
+            contact_stiffness: None,
+            interfacial_stiffness: None,
+            energy: 0.0,
+        }
+    }
+
     /// Load over nominal area \[Pa\].
     #[must_use]
     pub fn mean_pressure(&self) -> f64 {

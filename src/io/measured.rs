@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::format::Format;
 use crate::surface::{Topography, fill_missing};
-use crate::{Error, FileError, Grid};
+use crate::{Doubt, Error, FileError, Grid};
 
 /// Heights as they were measured: some may be missing, and the file may not know the size of the surface.
 ///
@@ -59,13 +59,18 @@ impl MeasuredSurface {
         Grid::new(nx, ny, dx, dy)
     }
 
-    /// The heights on their grid, for preparation, statistics and contact.
+    /// The heights on their grid, for preparation, statistics and contact. What looks wrong with them
+    /// ([`Doubt::of_surface`]) goes to the crate `log` as a warning.
     ///
     /// # Errors
     ///
     /// [`FileError::NoSide`](crate::FileError::NoSide), and [`Error::HeightNotFinite`] as long as nodes are missing.
     pub fn topography(self) -> Result<Topography, Error> {
-        Topography::new(self.grid()?, self.heights)
+        let surface = Topography::new(self.grid()?, self.heights)?;
+        for doubt in Doubt::of_surface(&surface) {
+            log::warn!("{doubt}");
+        }
+        Ok(surface)
     }
 }
 

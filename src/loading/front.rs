@@ -132,16 +132,18 @@ impl Front {
     /// The state with so many nodes in contact.
     pub(super) fn state(&self, contact_nodes: usize) -> ContactState {
         let stiffness = self.grid.cell_area() * self.unit_stiffness;
+        let approach = self.gauge.reported_approach(self.approach, self.load);
         ContactState {
-            contact_nodes,
-            approach: self.gauge.reported_approach(self.approach, self.load),
-            load: self.load,
-            contact_area: contact_nodes as f64 * self.grid.cell_area(),
-            contact_area_fraction: contact_nodes as f64 / self.grid.nodes() as f64,
-            mean_gap: self.mean_gap,
             contact_stiffness: self.has_distant_point.then_some(stiffness),
             interfacial_stiffness: Some(stiffness / self.closing),
             energy: self.gauge.reported_energy(self.energy, self.load),
+            ..ContactState::new(
+                &self.grid,
+                contact_nodes,
+                approach,
+                self.load,
+                self.mean_gap,
+            )
         }
     }
 

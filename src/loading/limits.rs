@@ -95,6 +95,11 @@ impl Limits {
         Ok(())
     }
 
+    /// Whether there is a limit of load, approach or mean gap.
+    pub(super) fn ends_before_full_contact(&self) -> bool {
+        self.load < f64::INFINITY || self.approach < f64::INFINITY || self.least_mean_gap > 0.0
+    }
+
     /// The same as targets, on a grid.
     pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
         let most = self.most_nodes();

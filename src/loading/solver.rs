@@ -111,6 +111,11 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let Some(next) = self.run.queue.front() else {
             let nodes = self.run.contact.len();
             self.end = Some(if nodes == self.run.problem.grid().nodes() {
+                if self.limits.ends_before_full_contact() {
+                    log::warn!(
+                        "full contact before the load, approach or mean gap at which the path was to end"
+                    );
+                }
                 LoadingEnd::FullContact
             } else {
                 self.limits

@@ -48,6 +48,23 @@ impl Deref for LoadingState {
 }
 
 impl LoadingState {
+    /// A state made of data: from a file of one's own, for example.
+    #[must_use]
+    pub fn new(
+        step: usize,
+        event: ContactEvent,
+        node: (usize, usize),
+        contact: ContactState,
+    ) -> Self {
+        Self {
+            step,
+            event,
+            node,
+            approach_error: 0.0,
+            contact,
+        }
+    }
+
     /// The same nodes in contact with other scalars.
     pub(super) fn with(self, contact: ContactState) -> Self {
         Self { contact, ..self }

@@ -250,23 +250,10 @@ impl LoadingRecord {
         for k in 0..steps.len() {
             let event =
                 event(events[k]).ok_or_else(|| bad(format!("no event is {}", events[k])))?;
-            states.push(LoadingState {
-                step: whole(steps[k]),
-                event,
-                node: (whole(ix[k]), whole(iy[k])),
-                approach_error: 0.0,
-                contact: ContactState {
-                    contact_nodes: whole(nodes[k]),
-                    approach: 0.0,
-                    load: 0.0,
-                    contact_area: 0.0,
-                    contact_area_fraction: 0.0,
-                    mean_gap: 0.0,
-                    contact_stiffness: None,
-                    interfacial_stiffness: None,
-                    energy: 0.0,
-                },
-            });
+            // The other scalars follow, a column at a time.
+            let contact = ContactState::new(&grid, whole(nodes[k]), 0.0, 0.0, 0.0);
+            let node = (whole(ix[k]), whole(iy[k]));
+            states.push(LoadingState::new(whole(steps[k]), event, node, contact));
         }
         for Column { name, set, .. } in COLUMNS {
             let values = archive.vector(name, length)?;
