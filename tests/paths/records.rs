@@ -5,9 +5,11 @@ use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boussinesq, ContactRule, ContactTarget, Error, InfluenceKernel, LoadingSolver, LoadingState,
-    PeriodicBoussinesq, Spectral,
+    Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, InfluenceKernel, LoadingSolver,
+    LoadingState, PeriodicBoussinesq, Spectral,
 };
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 /// Records of a path cut at a state.
 fn cut(path: &LoadingSolver<RecursiveCholesky>, all: &[LoadingState], at: usize) -> LoadingRecord {
@@ -187,4 +189,64 @@ fn a_limit_is_no_event() {
         .unwrap();
     let next = resumed.next().unwrap().unwrap();
     assert_close(&next, &all[100], 1e-10, all[0].mean_gap);
+}
+
+/// Read anywhere, a record gives the state of a path that was stopped there, and of a solver that knows one load
+/// only. Stopped paths round alike but for windows that end elsewhere; the solver stops at 1e-10 of the approach.
+#[test]
+fn a_record_reads_as_a_path_that_stops_there() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    for (name, kernel) in kernels(grid()) {
+        let (path, all) = whole(&*kernel, RecursiveCholesky::new());
+        let record = cut(&path, &all, all.len());
+        let history = record.history();
+        let unloaded = all[0].mean_gap;
+        for _ in 0..12 {
+            // Between two events, from the sixth on to the last but one.
+            let k = random.random_range(5..all.len() - 1);
+            let share: f64 = random.random_range(0.05..0.95);
+            let between = |a: f64, b: f64| a + share * (b - a);
+            let (a, b) = (&all[k], &all[k + 1]);
+            let load = between(a.load, b.load);
+            let approach = between(a.approach, b.approach);
+            let mean_gap = between(a.mean_gap, b.mean_gap);
+            let fraction = a.contact_area_fraction;
+            let read = [
+                (ContactTarget::Load(load), history.at_load(load)),
+                (
+                    ContactTarget::Approach(approach),
+                    history.at_approach(approach),
+                ),
+                (
+                    ContactTarget::MeanGap(mean_gap),
+                    history.at_mean_gap(mean_gap),
+                ),
+                (
+                    ContactTarget::AreaFraction(fraction),
+                    history.at_area_fraction(fraction),
+                ),
+            ];
+            for (target, read) in read {
+                let stopped = LoadingSolver::builder(record.heights(), &kernel)
+                    .updater(RecursiveCholesky::new())
+                    .until(target)
+                    .build()
+                    .unwrap();
+                let stopped = stopped.last().unwrap().unwrap();
+                let read = read.unwrap_or_else(|| panic!("{name} {target:?}"));
+                assert_close(&read, &stopped, 1e-10, unloaded);
+            }
+            let mut solver = FixedLoadSolver::builder(record.heights(), &kernel)
+                .tolerance(1e-10)
+                .build()
+                .unwrap();
+            let found = solver.solve(load).unwrap().state;
+            let read = history.at_load(load).unwrap();
+            assert_eq!(found.contact_nodes, read.contact_nodes, "{name}");
+            let error = (found.approach - read.approach).abs();
+            assert!(error <= 1e-7 * read.approach, "{name} {error}");
+            let error = (found.mean_gap - read.mean_gap).abs();
+            assert!(error <= 1e-7 * unloaded, "{name} {error}");
+        }
+    }
 }
