@@ -20,6 +20,9 @@ use serde_json::{Value, json};
 use crate::reading::Reading;
 use summary::Summary;
 
+/// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
+const HIGHEST_HURST: f64 = 1.2;
+
 /// What is in a file of an instrument: size, units, missing nodes, roughness, and pictures of it
 #[derive(Debug, Args)]
 pub(crate) struct Options {
@@ -151,13 +154,17 @@ fn print(
                 format!(", {name} {}", length(estimate.value))
             })
         };
-        say!(
-            "spectrum      Hurst exponent {:.2} ± {:.2}{}{}",
-            fit.hurst.value,
-            fit.hurst.standard_error,
-            estimate("roll-off at", fit.rolloff_wavelength),
-            estimate("short cut-off at", fit.short_cutoff_wavelength)
-        );
+        if (0.0..=HIGHEST_HURST).contains(&fit.hurst.value) {
+            say!(
+                "spectrum      Hurst exponent {:.2} ± {:.2}{}{}",
+                fit.hurst.value,
+                fit.hurst.standard_error,
+                estimate("roll-off at", fit.rolloff_wavelength),
+                estimate("short cut-off at", fit.short_cutoff_wavelength)
+            );
+        } else {
+            say!("spectrum      not that of a self-affine surface");
+        }
     }
     for doubt in Doubt::of_surface(surface) {
         say!("warning       {doubt}");
