@@ -24,7 +24,8 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
         let inside = EVENT_PRODUCT * k * events * events / 2.0;
         (refresh + schur + inside) / events
     };
-    let most = (cost.most_watched * n).max(NEGLIGIBLE);
+    // An updater of one's own may say anything, infinity too.
+    let most = (cost.most_watched * n).clamp(NEGLIGIBLE, NEGLIGIBLE.max(nodes as f64));
     let mut best = FEWEST;
     let mut k = best;
     while k <= most {
@@ -39,4 +40,24 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
 /// How many nodes to watch so that `events` of them touch: the columns of others would be of no use.
 pub(super) fn watched_for(events: usize) -> usize {
     (events as f64 / LEAST_YIELD).ceil() as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn absurd_costs_give_a_window_all_the_same() {
+        for most_watched in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 0.05] {
+            for schur in [0.0, f64::NAN, f64::INFINITY, 0.01] {
+                let cost = WindowCost {
+                    most_watched,
+                    schur,
+                    ..WindowCost::default()
+                };
+                let size = automatic_window(5000, 65_536, cost);
+                assert!((16..=65_536).contains(&size), "{cost:?} {size}");
+            }
+        }
+    }
 }
