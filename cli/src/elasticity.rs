@@ -38,6 +38,13 @@ impl Elasticity {
         .map(Some)
         .map_err(|error| Failure::new("no such material", error))
     }
+
+    /// E*, without which no measured surface can be pressed.
+    pub(crate) fn required(&self) -> Result<f64, Failure> {
+        self.e_star()?.ok_or_else(|| {
+            Failure::request("how stiff are the bodies? Give --e-star or --material")
+        })
+    }
 }
 
 /// Young's modulus \[Pa\] and Poisson's ratio.

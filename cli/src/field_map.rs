@@ -47,7 +47,7 @@ pub enum Scale {
 
 /// A field to be drawn.
 pub struct FieldMap<'a> {
-    /// The grid; without one, nodes are the unit of length.
+    /// The grid.
     pub grid: &'a Grid,
     /// Unit of the sides of the grid.
     pub length_unit: &'a str,

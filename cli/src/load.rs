@@ -61,11 +61,7 @@ pub(crate) struct Options {
 
 /// Solves for each load in turn.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let Some(e_star) = options.elasticity.e_star()? else {
-        return Err(Failure::request(
-            "how stiff are the bodies? Give --e-star or --material",
-        ));
-    };
+    let e_star = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
     for doubt in Doubt::of_surface(&surface) {
         eprintln!("warning: {doubt}");

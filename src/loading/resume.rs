@@ -78,21 +78,21 @@ pub(crate) fn replay(
         } else if !is_last || step == 0 {
             return Err(not_a_path(
                 state,
-                "number of the event",
+                ("number of the event", state.step),
                 "no limit but the last state",
             ));
         }
         if state.step != step {
             return Err(not_a_path(
                 state,
-                "number of the event",
+                ("number of the event", state.step),
                 "one more than before",
             ));
         }
         if state.contact_nodes != contact.len() {
             return Err(not_a_path(
                 state,
-                "number of nodes in contact",
+                ("number of nodes in contact", state.contact_nodes),
                 "that of the events",
             ));
         }
@@ -103,24 +103,24 @@ pub(crate) fn replay(
 /// The node of a state.
 fn node_of(grid: &Grid, state: &LoadingState) -> Result<usize, Error> {
     let (ix, iy) = state.node;
-    if ix < grid.nx() && iy < grid.ny() {
-        Ok(grid.index(ix, iy))
-    } else {
-        Err(Error::NodeOutOfGrid {
-            node: iy.saturating_mul(grid.nx()).saturating_add(ix),
-            nodes: grid.nodes(),
-        })
-    }
+    grid.node(ix, iy).ok_or_else(|| Error::NodeOutOfGrid {
+        node: iy.saturating_mul(grid.nx()).saturating_add(ix),
+        nodes: grid.nodes(),
+    })
 }
 
 /// States that no path has yielded in this order.
-fn not_a_path(state: &LoadingState, quantity: &'static str, expected: &'static str) -> Error {
+fn not_a_path(
+    state: &LoadingState,
+    (quantity, value): (&'static str, usize),
+    expected: &'static str,
+) -> Error {
     Error::NotOnPath {
         step: state.step,
         load: state.load,
         approach: state.approach,
         quantity,
-        value: state.contact_nodes as f64,
+        value: value as f64,
         expected,
     }
 }

@@ -64,7 +64,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&measured, &summary, &directory));
     let levelled = surface.as_ref().map(|(_, levelled)| levelled);
-    outcome.written(picture::statistics(&measured, levelled, &directory));
+    outcome.written(picture::statistics(
+        &measured, &summary, levelled, &directory,
+    ));
     if options.json {
         return outcome.finish_quietly();
     }

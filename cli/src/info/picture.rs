@@ -1,9 +1,11 @@
 //! Pictures of a measured surface.
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
 use asperity::io::MeasuredSurface;
+use asperity::patches::{Bins, Histogram};
 use asperity::surface::{RadialBins, Topography, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
@@ -52,58 +54,53 @@ pub(super) fn map(
 /// The distribution of heights, and the power spectrum of the surface without its tilt.
 pub(super) fn statistics(
     measured: &MeasuredSurface,
+    summary: &Summary,
     levelled: Option<&Topography>,
     directory: &Path,
 ) -> Result<PathBuf, Failure> {
-    let mut charts = vec![distribution(measured)];
-    charts.extend(levelled.and_then(spectrum));
+    let charts = [distribution(measured, summary), levelled.and_then(spectrum)];
+    let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     let columns = charts.len();
+    if charts.is_empty() {
+        return Err(Failure::request(
+            "no statistics of a surface without relief",
+        ));
+    }
     chart::draw(&charts, columns, &directory.join("surface_statistics.png"))
 }
 
-fn distribution(measured: &MeasuredSurface) -> Chart {
-    let heights = measured.heights.iter().copied();
-    let heights: Vec<f64> = heights.filter(|height| height.is_finite()).collect();
-    let count = heights.len().max(1) as f64;
-    let mean = heights.iter().sum::<f64>() / count;
-    let sq = (heights.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / count).sqrt();
-    let least = heights.iter().copied().fold(f64::INFINITY, f64::min) - mean;
-    let greatest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max) - mean;
-    let width = (greatest - least) / BINS as f64;
-    let mut counts = vec![0.0; BINS];
-    for height in &heights {
-        let bin = ((height - mean - least) / width) as usize;
-        counts[bin.min(BINS - 1)] += 1.0;
-    }
+/// The distribution of heights beside the normal one of the same Sq; `None` of heights that are all the same.
+fn distribution(measured: &MeasuredSurface, summary: &Summary) -> Option<Chart> {
+    let Summary { mean, sq, .. } = *summary;
+    let present = measured.heights.iter().filter(|height| height.is_finite());
+    let heights = present.map(|height| height - mean);
+    let histogram = Histogram::new(heights, Bins::Linear(BINS)).ok()?;
+    let middles = histogram.edges().windows(2);
+    let middles = middles.map(|edges| 0.5 * (edges[0] + edges[1]));
     // In units of 1/Sq, so that a normal distribution is always the same curve.
-    let density = |count: f64| count / count_times(heights.len(), width) * sq;
-    let middle = |bin: usize| least + (bin as f64 + 0.5) * width;
-    let bars = counts.iter().enumerate();
-    let bars: Vec<(f64, f64)> = bars.map(|(bin, n)| (middle(bin), density(*n))).collect();
+    let densities = histogram.density().into_iter().map(|density| density * sq);
+    let bars: Vec<(f64, f64)> = middles.zip(densities).collect();
     let normal = bars.iter().map(|(z, _)| {
         let x = z / sq;
-        (
-            *z,
-            (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt(),
-        )
+        (*z, (-0.5 * x * x).exp() / (2.0 * PI).sqrt())
     });
-    let highest = bars.iter().map(|(_, d)| *d).fold(0.4, f64::max);
-    Chart {
+    let normal: Vec<(f64, f64)> = normal.collect();
+    let highest = bars.iter().map(|(_, density)| *density).fold(0.4, f64::max);
+    Some(Chart {
         title: "distribution of heights".to_string(),
-        x: Axis::linear("height above the mean", "m", least, greatest),
+        x: Axis::linear(
+            "height above the mean",
+            "m",
+            summary.min - mean,
+            summary.max - mean,
+        ),
         y: Axis::plain("probability density × Sq", 0.0, 1.1 * highest),
         series: vec![
-            Series::new("normal", GREY, Style::Dashed, normal.collect::<Vec<_>>()),
-            Series::new("this surface", BLUE, Style::Line, bars.clone()),
+            Series::new("normal", GREY, Style::Dashed, normal),
+            Series::new("this surface", BLUE, Style::Line, bars),
         ],
         legend: Corner::TopLeft,
-    }
-}
-
-/// Never zero.
-fn count_times(count: usize, width: f64) -> f64 {
-    let product = count as f64 * width;
-    if product > 0.0 { product } else { 1.0 }
+    })
 }
 
 /// The radial power spectrum, `None` without two waves to draw.

@@ -12,7 +12,7 @@ use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver,
 
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater};
-use super::progress::Progress;
+use super::progress::{Progress, total};
 use crate::ensemble::Expected;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
@@ -26,8 +26,6 @@ const SEED: u64 = 1;
 /// E* of two bodies of steel, if there is no surface and no material \[Pa\].
 const STEEL_ON_STEEL: f64 = 0.5 * 210e9 / (1.0 - 0.3 * 0.3);
 
-/// Points of the sum over all events of a path.
-const SAMPLES: usize = 200;
 /// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
 const BYTES_A_NODE: f64 = 1000.0;
 
@@ -52,14 +50,9 @@ impl Job {
         if let Some(file) = &options.resume {
             return Self::resumed(file, options);
         }
-        let e_star = match (options.elasticity.e_star()?, &options.surface) {
-            (Some(e_star), _) => e_star,
-            (None, None) => STEEL_ON_STEEL,
-            (None, Some(_)) => {
-                return Err(Failure::request(
-                    "how stiff are the bodies? Give --e-star or --material",
-                ));
-            }
+        let e_star = match &options.surface {
+            Some(_) => options.elasticity.required()?,
+            None => options.elasticity.e_star()?.unwrap_or(STEEL_ON_STEEL),
         };
         let (surface, name, rms_gradient) = match &options.surface {
             Some(file) => read(file, options)?,
@@ -198,13 +191,10 @@ impl Job {
         };
         let share = self.targets.iter().map(share).fold(1.0, f64::min);
         let contact = share * nodes;
-        let step = contact / SAMPLES as f64;
-        let events = (0..SAMPLES).map(|k| ((k as f64 + 0.5) * step) as usize);
-        let costs = events.map(|event| Handover::event_cost(grid.nodes(), event));
         let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
         Expected {
             nodes: contact,
-            seconds: costs.sum::<f64>() * step,
+            seconds: total(contact, |event| Handover::event_cost(grid.nodes(), event)),
             bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
         }
     }

@@ -9,6 +9,13 @@ const SAMPLES: usize = 200;
 /// Before this there is nothing to go by.
 const FIRST: Duration = Duration::from_secs(2);
 
+/// What all events of a path to so many nodes cost, if one with n nodes in contact costs `cost(n)`.
+pub(super) fn total(nodes: f64, cost: impl Fn(usize) -> f64) -> f64 {
+    let step = nodes / SAMPLES as f64;
+    let at = (0..SAMPLES).map(|k| cost(((k as f64 + 0.5) * step) as usize));
+    at.sum::<f64>() * step
+}
+
 /// How far a path is.
 pub(super) struct Progress {
     /// The part of its time that is over.
@@ -20,12 +27,7 @@ impl Progress {
     /// `cost(nodes)` in some unit of time.
     pub(super) fn new(nodes: usize, share: f64, cost: impl Fn(usize) -> f64) -> Self {
         let end = nodes as f64 / share.max(1e-6);
-        let time = |until: f64| -> f64 {
-            let step = until / SAMPLES as f64;
-            let at = (0..SAMPLES).map(|k| cost(((k as f64 + 0.5) * step) as usize));
-            at.sum::<f64>() * step
-        };
-        let done = time(nodes as f64) / time(end);
+        let done = total(nodes as f64, &cost) / total(end, &cost);
         Self {
             done: if done.is_finite() { done } else { 0.0 },
         }
