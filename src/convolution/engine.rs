@@ -14,12 +14,12 @@ use crate::{Boundary, Error, Grid};
 /// Parts into which the blocks of a large grid are divided, each with its own working memory.
 ///
 /// It does not depend on the number of threads: they take parts as they become free.
-const PARTS: usize = 32;
+pub(super) const PARTS: usize = 32;
 
 /// Nodes from which threads are worth waking.
 pub(super) const PARALLEL_NODES: usize = 96 * 96;
 
-/// A convolution whose transforms are done in the precision of T; fields are always double.
+/// A convolution whose transforms are done in the precision of T; fields may be of another one, F.
 ///
 /// Copies share the filter, and have spectra of their own.
 #[derive(Clone)]
@@ -172,11 +172,11 @@ impl<T: Real> Engine<T> {
     /// # Errors
     ///
     /// [`Error::LengthMismatch`] unless both slices have one value for each node.
-    pub(crate) fn apply(
+    pub(crate) fn apply<F: Real>(
         &mut self,
-        pressure: &[f64],
+        pressure: &[F],
         factors: [f64; 2],
-        displacement: &mut [f64],
+        displacement: &mut [F],
     ) -> Result<(), Error> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
@@ -189,7 +189,7 @@ impl<T: Real> Engine<T> {
         Ok(())
     }
 
-    pub(super) fn check_length(&self, field: &[f64]) -> Result<(), Error> {
+    pub(super) fn check_length<F>(&self, field: &[F]) -> Result<(), Error> {
         let expected = self.filter.grid.nodes();
         if field.len() == expected {
             Ok(())
@@ -203,12 +203,12 @@ impl<T: Real> Engine<T> {
 }
 
 impl<T: Real> Filter<T> {
-    fn apply(
+    fn apply<F: Real>(
         &self,
         spectra: &mut Spectra<T>,
-        pressure: &[f64],
+        pressure: &[F],
         factors: [f64; 2],
-        displacement: &mut [f64],
+        displacement: &mut [F],
     ) {
         let (transforms, (nx, ny)) = (&self.transforms, self.grid.shape());
         spectra.fill_rows(transforms, ny, |iy, spectrum, work| {
@@ -228,7 +228,7 @@ impl<T: Real> Spectra<T> {
             1
         };
         let scratch = Scratch {
-            lines: vec![T::ZERO; BLOCK * pitch(columns.max(rows))],
+            lines: vec![T::ZERO; BLOCK * pitch(columns.max(transforms.padded().1))],
             work: transforms.workspace(),
         };
         Self {
@@ -285,7 +285,7 @@ impl<T: Real> Spectra<T> {
     /// From `rows` to `columns`, multiplied by the symbol.
     fn filter_columns(&mut self, transforms: &Transforms<T>, ny: usize, symbol: &[T]) {
         let (columns, py) = (transforms.columns(), transforms.padded().1);
-        let pitch = pitch(ny);
+        let pitch = pitch(py);
         let rows = &self.rows;
         for_each_block(
             &mut self.columns,
@@ -295,8 +295,8 @@ impl<T: Real> Spectra<T> {
                 let lines = &mut scratch.lines[..BLOCK * pitch];
                 gather(rows, columns, block, lines, pitch);
                 let symbol = symbol[block * BLOCK * py..].chunks_exact(py);
-                for (entries, symbol) in lines.chunks_mut(pitch).zip(symbol) {
-                    transforms.filter_column(&mut entries[..ny], symbol, &mut scratch.work);
+                for (column, symbol) in lines.chunks_mut(pitch).zip(symbol) {
+                    transforms.filter_column(&mut column[..py], symbol, &mut scratch.work);
                 }
                 interleave(lines, pitch, target);
             },
@@ -304,12 +304,12 @@ impl<T: Real> Spectra<T> {
     }
 
     /// From `columns` to displacement.
-    fn restore_rows(
+    fn restore_rows<F: Real>(
         &mut self,
         transforms: &Transforms<T>,
         (nx, ny): (usize, usize),
         factor: f64,
-        displacement: &mut [f64],
+        displacement: &mut [F],
     ) {
         let pitch = pitch(transforms.columns());
         let columns = &self.columns;

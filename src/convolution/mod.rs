@@ -198,11 +198,11 @@ impl Convolution {
     }
 }
 
-/// A convolution in single precision for fields in double precision of any magnitude.
+/// A convolution of fields in single precision.
 #[derive(Clone)]
 pub(crate) struct SingleConvolution {
     engine: Engine<f32>,
-    /// The greatest value of the symbol, which is stored relative to it.
+    /// Displacements are in units of this under pressures of 1: the greatest value of the symbol.
     unit: f64,
 }
 
@@ -212,21 +212,22 @@ impl SingleConvolution {
         self.engine.bytes()
     }
 
-    /// Writes the displacement under `pressure`, no value of which exceeds `greatest`, into
-    /// `displacement`.
+    /// What displacements are in units of.
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Writes the displacement under `pressure`, whose values should be of the order of 1, into `displacement`.
     ///
     /// # Errors
     ///
     /// [`Error::LengthMismatch`] unless both slices have one value for each node.
     pub(crate) fn apply(
         &mut self,
-        pressure: &[f64],
-        greatest: f64,
-        displacement: &mut [f64],
+        pressure: &[f32],
+        displacement: &mut [f32],
     ) -> Result<(), Error> {
-        let scale = if greatest > 0.0 { greatest } else { 1.0 };
-        self.engine
-            .apply(pressure, [scale.recip(), scale * self.unit], displacement)
+        self.engine.apply(pressure, [1.0, 1.0], displacement)
     }
 }
 

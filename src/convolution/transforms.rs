@@ -8,6 +8,7 @@ use rustfft::{Fft, FftPlanner};
 
 use super::real::Real;
 use super::size::fast_size;
+use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
 
 /// Plans of all transforms of a grid, zero-padded unless it is periodic.
@@ -82,21 +83,26 @@ impl<T: Real> Transforms<T> {
     }
 
     /// Spectrum of a row of nx values, padded with zeros where there is padding.
-    pub(super) fn forward_row(
+    pub(super) fn forward_row<F: Real>(
         &self,
-        values: &[f64],
+        values: &[F],
         factor: f64,
         spectrum: &mut [Complex<T>],
         work: &mut Workspace<T>,
     ) {
-        if values.iter().all(|&value| value == 0.0) {
+        if values.iter().all(|value| *value == F::zero()) {
             spectrum.fill(T::ZERO);
             return;
         }
         let (inside, padding) = work.row.split_at_mut(self.nx);
-        for (place, &value) in inside.iter_mut().zip(values) {
-            *place = T::rounded(value * factor);
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for (place, &value) in inside.iter_mut().zip(values) {
+                    *place = T::rounded(value.widened() * factor);
+                }
+            },
+        );
         padding.fill(T::zero());
         self.forward_padded_row(spectrum, work);
     }
@@ -128,11 +134,11 @@ impl<T: Real> Transforms<T> {
     }
 
     /// The nx values of a row, given its spectrum, which is destroyed.
-    pub(super) fn inverse_row(
+    pub(super) fn inverse_row<F: Real>(
         &self,
         spectrum: &mut [Complex<T>],
         factor: f64,
-        values: &mut [f64],
+        values: &mut [F],
         work: &mut Workspace<T>,
     ) {
         // Real up to rounding since the row is real; the transform insists on exactly. An odd
@@ -146,36 +152,42 @@ impl<T: Real> Transforms<T> {
             .process_with_scratch(spectrum, &mut work.row, &mut work.fft);
         // Those imaginary parts and lengths are all it could complain of.
         debug_assert!(done.is_ok(), "{done:?}");
-        for (value, place) in values.iter_mut().zip(&work.row) {
-            *value = place.widened() * factor;
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for (value, place) in values.iter_mut().zip(&work.row) {
+                    *value = F::rounded(place.widened() * factor);
+                }
+            },
+        );
     }
 
-    /// Multiplies the spectrum of a column of ny entries, padded with zeros where there is padding,
-    /// by `symbol`.
+    /// Multiplies the spectrum of a column, whose first ny entries are given and the rest is padding, by `symbol`.
     pub(super) fn filter_column(
         &self,
-        entries: &mut [Complex<T>],
+        column: &mut [Complex<T>],
         symbol: &[T],
         work: &mut Workspace<T>,
     ) {
-        let (inside, padding) = work.column.split_at_mut(self.ny);
-        inside.copy_from_slice(entries);
-        padding.fill(T::ZERO);
+        column[self.ny..].fill(T::ZERO);
         self.column_forward.process_outofplace_with_scratch(
-            &mut work.column,
+            column,
             &mut work.spectrum,
             &mut work.fft,
         );
-        for (value, &factor) in work.spectrum.iter_mut().zip(symbol) {
-            *value = *value * factor;
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for (value, &factor) in work.spectrum.iter_mut().zip(symbol) {
+                    *value = *value * factor;
+                }
+            },
+        );
         self.column_inverse.process_outofplace_with_scratch(
             &mut work.spectrum,
-            &mut work.column,
+            column,
             &mut work.fft,
         );
-        entries.copy_from_slice(&work.column[..self.ny]);
     }
 
     /// One column of the symbol, given the spectra of kernel rows dj = 0, 1, …, ny − 1 there.

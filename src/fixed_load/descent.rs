@@ -119,8 +119,8 @@ impl<'a> Descent<'a> {
             preconditioner.apply(&residual, &mut z);
             let step = directions.advance(operator, &iterate.contact, &residual, &z)?;
             add_scaled(&mut self.pressure, step.length, step.values);
-            add_scaled(&mut self.closure, step.length, step.image);
-            add_scaled(&mut iterate.closure, step.length, operator.displacement());
+            add_scaled(&mut self.closure, step.reach, step.image);
+            add_scaled(&mut iterate.closure, step.reach, step.everywhere);
             self.level.iterate.approach = self.approach();
             progress.iterations += 1;
             errors = self.errors();

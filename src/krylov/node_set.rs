@@ -75,13 +75,13 @@ impl NodeSet {
     }
 
     /// The values of a field of the grid at the nodes in contact.
-    pub(crate) fn gather(&self, field: &[f64], values: &mut Vec<f64>) {
+    pub(crate) fn gather<T: Copy>(&self, field: &[T], values: &mut Vec<T>) {
         values.clear();
         values.extend(self.nodes.iter().map(|&node| field[node as usize]));
     }
 
     /// Writes values at the nodes in contact into a field of the grid.
-    pub(crate) fn scatter(&self, values: &[f64], field: &mut [f64]) {
+    pub(crate) fn scatter<T: Copy>(&self, values: &[T], field: &mut [T]) {
         for (&node, &value) in self.nodes.iter().zip(values) {
             field[node as usize] = value;
         }

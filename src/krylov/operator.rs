@@ -1,13 +1,13 @@
 //! The influence matrix as an operator: pressures on a contact set to displacements everywhere.
 
-use super::{NodeSet, greatest, sum};
+use super::{NodeSet, add_scaled, greatest, sum};
 use crate::Error;
 use crate::convolution::{Convolution, SingleConvolution};
 
 /// A convolution with its buffers, which counts how often it is used.
 ///
-/// Steps of an iteration go through single precision, in half the time: what they add to a residual
-/// is wrong by some 10⁻⁷ of what they add, so that a residual may fall by five digits before it has
+/// Steps of an iteration go through single precision, fields and all, in half the time: what they add to a
+/// residual is wrong by some 10⁻⁷ of what they add, so that a residual may fall by five digits before it has
 /// to be computed afresh in double precision.
 #[derive(Debug, Clone)]
 pub(crate) struct Operator {
@@ -15,6 +15,7 @@ pub(crate) struct Operator {
     single: SingleConvolution,
     pressure: Vec<f64>,
     displacement: Vec<f64>,
+    single_pressure: Vec<f32>,
     /// Uniform displacement per unit of the sum of pressures.
     uniform: f64,
     convolutions: usize,
@@ -28,6 +29,7 @@ impl Operator {
             convolution,
             pressure: vec![0.0; nodes],
             displacement: vec![0.0; nodes],
+            single_pressure: vec![0.0; nodes],
             uniform: 0.0,
             convolutions: 0,
         }
@@ -35,7 +37,8 @@ impl Operator {
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.convolution.bytes() + self.single.bytes() + 2 * size_of_val(&self.pressure[..])
+        let fields = 2 * size_of_val(&self.pressure[..]) + size_of_val(&self.single_pressure[..]);
+        self.convolution.bytes() + self.single.bytes() + fields
     }
 
     /// Convolutions, of either precision, since this was last asked.
@@ -49,16 +52,49 @@ impl Operator {
         self.uniform = uniform;
     }
 
-    /// Displacement of every node under the pressures of a contact set, in single precision.
-    pub(crate) fn step(&mut self, contact: &NodeSet, values: &[f64]) -> Result<&[f64], Error> {
-        self.pressure.fill(0.0);
-        contact.scatter(values, &mut self.pressure);
+    /// What [`Self::step`] gives displacements in units of.
+    pub(crate) fn unit(&self) -> f64 {
+        self.single.unit()
+    }
+
+    /// Displacement of every node under the pressures of a contact set, which should be of the order of 1, in single
+    /// precision and in units of [`Self::unit`].
+    pub(crate) fn step(
+        &mut self,
+        contact: &NodeSet,
+        values: &[f32],
+        displacement: &mut Vec<f32>,
+    ) -> Result<(), Error> {
+        self.single_pressure.fill(0.0);
+        contact.scatter(values, &mut self.single_pressure);
         self.convolutions += 1;
+        displacement.resize(self.single_pressure.len(), 0.0);
+        self.single.apply(&self.single_pressure, displacement)?;
+        if self.uniform != 0.0 {
+            let everywhere = (self.uniform * sum(values) / self.unit()) as f32;
+            displacement.iter_mut().for_each(|u| *u += everywhere);
+        }
+        Ok(())
+    }
+
+    /// Adds to `u` the displacements under any pressures of a contact set, in single precision, and returns the greatest that it
+    /// has added.
+    pub(crate) fn add(
+        &mut self,
+        contact: &NodeSet,
+        values: &[f64],
+        u: &mut [f64],
+    ) -> Result<f64, Error> {
         let most = greatest(values.len(), 0.0, |i| values[i].abs());
-        self.single
-            .apply(&self.pressure, most, &mut self.displacement)?;
-        self.shift(sum(values));
-        Ok(&self.displacement)
+        if most == 0.0 {
+            return Ok(0.0);
+        }
+        let scaled: Vec<f32> = values.iter().map(|value| (value / most) as f32).collect();
+        let mut change = Vec::new();
+        self.step(contact, &scaled, &mut change)?;
+        let unit = most * self.unit();
+        add_scaled(u, unit, &change);
+        Ok(unit * greatest(change.len(), 0.0, |i| f64::from(change[i].abs())))
     }
 
     /// Displacement of every node under the pressures of a contact set.

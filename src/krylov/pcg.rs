@@ -75,7 +75,7 @@ impl LinearSystem<'_> {
                 // Directions from before a fresh residual are as good as ever.
                 let step = directions.advance(self.operator, self.contact, residual, &z)?;
                 add_scaled(x, step.length, step.values);
-                add_scaled(residual, -step.length, step.image);
+                add_scaled(residual, -step.reach, step.image);
                 outcome.iterations += 1;
                 now = worst(residual);
             }

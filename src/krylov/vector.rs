@@ -70,23 +70,34 @@ pub(crate) fn greatest(
     reduce(length, start, part, larger)
 }
 
+/// A number of either precision; sums are always in double.
+pub(crate) trait Value: Copy + Into<f64> + Send + Sync {}
+
+impl Value for f32 {}
+impl Value for f64 {}
+
 /// Σ aᵢ.
-pub(crate) fn sum(a: &[f64]) -> f64 {
-    sum_over(a.len(), |i| a[i])
+pub(crate) fn sum<A: Value>(a: &[A]) -> f64 {
+    sum_over(a.len(), |i| a[i].into())
 }
 
 /// Σ aᵢ bᵢ.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot<A: Value, B: Value>(a: &[A], b: &[B]) -> f64 {
     let b = &b[..a.len()];
-    sum_over(a.len(), |i| a[i] * b[i])
+    sum_over(a.len(), |i| a[i].into() * b[i].into())
 }
 
 /// y ← y + factor x.
-pub(crate) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
-    let add = |y: &mut [f64], x: &[f64]| {
-        for (y, x) in y.iter_mut().zip(x) {
-            *y += factor * x;
-        }
+pub(crate) fn add_scaled<X: Value>(y: &mut [f64], factor: f64, x: &[X]) {
+    let add = |y: &mut [f64], x: &[X]| {
+        vectorized(
+            #[inline(always)]
+            || {
+                for (y, x) in y.iter_mut().zip(x) {
+                    *y += factor * (*x).into();
+                }
+            },
+        );
     };
     if y.len() <= ALONE {
         return add(y, x);

@@ -2,6 +2,7 @@
 
 mod equilibrium;
 mod galerkin;
+mod instants;
 mod local;
 mod row_sums;
 mod solver;

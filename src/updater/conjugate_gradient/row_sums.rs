@@ -3,42 +3,45 @@
 use std::mem;
 
 use super::equilibrium::Field;
+use super::local::Local;
 use super::solver::{Equation, Solver};
 use super::watched::Watched;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::{Error, Problem};
 
-/// Residual of the row sums relative to the greatest one: what depends on them, the mean gap's rate, is
-/// exact at the ends of windows anyway.
-const SUMS_TOLERANCE: f64 = 1e-4;
-/// Windows after which the row sums are solved for; in between they follow the contact by local solutions.
-const SUMS_WINDOWS: usize = 3;
+/// Residual of the row sums relative to the greatest one: the rate of the mean gap, which depends on them, is
+/// exact at the ends of windows anyway, and local solutions know nearly all of what a residual leaves.
+const SUMS_TOLERANCE: f64 = 3e-3;
+/// The row sums are solved for when one node in so many is new in contact. Until then local solutions tell what
+/// those near a watched node make of it.
+const STALE: usize = 200;
 /// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
 const SUMS_OPEN: f64 = 0.03;
+
 /// `C_II⁻¹ s_I` for the row sums s of C.
 #[derive(Debug, Clone)]
 pub(super) struct RowSums {
     /// On the first so many nodes.
-    pub(super) count: usize,
-    pub(super) field: Field,
-    /// Windows since they were solved for.
-    age: usize,
+    count: usize,
+    field: Field,
+    /// The same on the whole contact, as far as local solutions tell: a start.
+    start: Vec<f64>,
 }
 
 impl RowSums {
     /// Of which nothing but a start is known.
-    pub(super) fn start(count: usize, field: Field) -> Self {
+    pub(super) fn start(count: usize, pressure: Vec<f64>) -> Self {
         Self {
             count,
-            field,
-            age: SUMS_WINDOWS,
+            start: pressure,
+            field: Field::default(),
         }
     }
 
-    /// `C_II⁻¹ s_I` on the whole contact, unless it is known.
-    /// `open` says what part of the grid still closes.
-    pub(super) fn renew(
+    /// Follows nodes that were watched and have joined since, and solves on the whole contact if what is known is
+    /// no longer good enough. `open` says what part of the grid still closes.
+    pub(super) fn follow(
         &mut self,
         (solver, directions): (&mut Solver, &mut Directions),
         watched: &Watched,
@@ -47,39 +50,49 @@ impl RowSums {
         contact: &ContactSequence,
         open: f64,
     ) -> Result<(), Error> {
-        let Self { count, field, age } = &self;
-        if *count == contact.len() && field.is_known() {
-            return Ok(());
+        let new = contact.len().saturating_sub(self.count);
+        if self.field.is_known() {
+            if new == 0 {
+                return Ok(());
+            }
+            watched.carry_row_sums(contact, &mut self.start);
+            if STALE * new < contact.len() && open > SUMS_OPEN {
+                return Ok(());
+            }
         }
         let sums = problem.row_sums();
-        let joined = contact.order().get(*count..).unwrap_or_default();
-        let start = watched.carried(field, joined, |node| sums[node]);
-        let open = open.clamp(1e-6, 1.0);
-        let (age, tolerance) = if *age < SUMS_WINDOWS && open > SUMS_OPEN {
-            (age + 1, f64::INFINITY)
-        } else {
-            let most = greatest(sums.len(), 0.0, |i| sums[i]);
-            // What is explained already leaves less to be explained.
-            (0, SUMS_TOLERANCE * most * open)
-        };
+        let most = greatest(sums.len(), 0.0, |i| sums[i]);
         let equation = Equation {
             rhs: |node: usize| sums[node],
-            tolerance,
+            // What is explained already leaves less to be explained.
+            tolerance: SUMS_TOLERANCE * most * open.clamp(1e-6, 1.0),
+            most_drift: f64::INFINITY,
             max_iterations,
         };
-        let field = solver.solve(&equation, start, field, directions)?;
-        *self = Self {
-            count: contact.len(),
-            field,
-            age,
-        };
+        let field = solver.solve(&equation, self.start.clone(), &self.field, directions)?;
+        self.start.clone_from(&field.pressure);
+        self.count = contact.len();
+        self.field = field;
         Ok(())
+    }
+
+    /// What is left of the row sum of a watched node: `s_j − C_jI C_II⁻¹ s_I`.
+    pub(super) fn left_at(&self, problem: &Problem, local: &Local) -> f64 {
+        let left = |node: usize| problem.row_sums()[node] - self.field.displacement[node];
+        let near = local.contact.iter().zip(&local.weights);
+        let near = near.map(|(&node, x)| x * left(node as usize));
+        left(local.node) - near.sum::<f64>()
     }
 
     /// Keeps, as a start, what belongs to nodes that are left in contact.
     pub(super) fn keep(&mut self, left: &ContactSequence) {
-        let mut field = mem::take(&mut self.field);
-        field.keep(left);
-        *self = Self::start(left.len(), field);
+        let mut start = Field::of(mem::take(&mut self.start));
+        start.keep(left);
+        *self = Self::start(left.len(), start.pressure);
+    }
+
+    /// Number of nodes in contact that they have been solved for.
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 }

@@ -5,7 +5,8 @@ use crate::contact::ContactSequence;
 use crate::krylov::{Directions, NodeSet, Operator, Preconditioner, add_scaled, greatest};
 use crate::{Error, Problem};
 
-/// Error of a displacement in single precision, relative to the greatest.
+/// Error of a displacement in single precision, relative to the greatest. Those of several steps are independent of
+/// each other, and add up in the square.
 const SINGLE: f64 = 2e-7;
 /// Iterations go on to this part of the tolerance, and displacements are computed afresh once single precision
 /// may have spoilt as much of them: together they stay within it.
@@ -17,6 +18,9 @@ pub(super) struct Equation<F> {
     pub(super) rhs: F,
     /// Greatest residual.
     pub(super) tolerance: f64,
+    /// What steps in single precision may have spoilt of the displacements in the end, if that must be less than
+    /// the tolerance asks for.
+    pub(super) most_drift: f64,
     pub(super) max_iterations: usize,
 }
 
@@ -81,9 +85,9 @@ impl Solver {
                 .zip(&x)
                 .map(|(node, x)| x - base.pressure[node])
                 .collect();
-            u = self.operator.step(&self.set, &change)?.to_vec();
-            drift = base.drift + SINGLE * greatest(u.len(), 0.0, |i| u[i].abs());
-            add_scaled(&mut u, 1.0, &base.displacement);
+            u = base.displacement.clone();
+            let added = self.operator.add(&self.set, &change, &mut u)?;
+            drift = base.drift.hypot(SINGLE * added);
         } else {
             u = self.operator.apply(&self.set, &x)?.to_vec();
             drift = 0.0;
@@ -91,9 +95,10 @@ impl Solver {
         let mut residual = self.residual(&b, &u);
         let before = worst(&residual);
         directions.project(&mut x, &mut residual, &mut u);
-        drift += SINGLE * before;
+        drift = drift.hypot(SINGLE * before);
         let (mut iterations, mut last) = (0, f64::INFINITY);
         let (mut z, enough) = (Vec::new(), MARGIN * equation.tolerance);
+        let most_drift = enough.min(equation.most_drift);
         let failed = |residual: f64, iterations: usize| Error::NoConvergence {
             residual,
             tolerance: equation.tolerance,
@@ -109,13 +114,13 @@ impl Solver {
                 self.preconditioner.apply(&residual, &mut z);
                 let step = directions.advance(&mut self.operator, &self.set, &residual, &z)?;
                 add_scaled(&mut x, step.length, step.values);
-                add_scaled(&mut residual, -step.length, step.image);
-                add_scaled(&mut u, step.length, self.operator.displacement());
+                add_scaled(&mut residual, -step.reach, step.image);
+                add_scaled(&mut u, step.reach, step.everywhere);
                 let next = worst(&residual);
-                drift += SINGLE * (now + next);
+                drift = drift.hypot(SINGLE * (now + next));
                 (now, iterations) = (next, iterations + 1);
             }
-            if drift <= enough {
+            if drift <= most_drift {
                 break;
             }
             u.copy_from_slice(self.operator.apply(&self.set, &x)?);

@@ -3,6 +3,7 @@
 use std::mem;
 
 use super::equilibrium::{Equilibrium, Field};
+use super::instants::Instants;
 use super::local::Neighbourhood;
 use super::row_sums::RowSums;
 use super::solver::{Equation, Solver};
@@ -21,6 +22,7 @@ pub(super) struct State {
     now: Equilibrium,
     /// Where the last window began: its prefixes start from there.
     before: Option<Equilibrium>,
+    instants: Instants,
     sums: RowSums,
     watched: Watched,
     /// Search directions of the last solution on the whole contact.
@@ -35,7 +37,8 @@ impl State {
             neighbourhood: Neighbourhood::new(problem),
             now: Equilibrium::zero(nodes),
             before: None,
-            sums: RowSums::start(0, Field::zero(nodes)),
+            instants: Instants::default(),
+            sums: RowSums::start(0, vec![0.0; nodes]),
             watched: Watched::default(),
             directions: Directions::default(),
         }
@@ -62,8 +65,7 @@ impl State {
             load,
             rate,
         };
-        let nothing = Field::of(vec![0.0; self.now.rate.pressure.len()]);
-        self.sums = RowSums::start(contact.len(), nothing);
+        self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
     }
 
     /// Number of nodes in contact that there is a solution or a start for.
@@ -75,8 +77,9 @@ impl State {
     pub(super) fn bytes(&self) -> usize {
         // What there is before the first window will be there twice.
         let before = self.before.as_ref().unwrap_or(&self.now).bytes();
-        let sums = self.now.bytes() / 2;
-        self.solver.bytes() + self.now.bytes() + before + sums
+        let sums = 3 * self.now.bytes() / 4;
+        let instants = Instants::bytes(self.now.load.pressure.len());
+        self.solver.bytes() + self.now.bytes() + before + sums + instants
     }
 
     pub(super) fn watch(
@@ -93,7 +96,7 @@ impl State {
         let periodic = problem.boundary() == Boundary::Periodic;
         if !periodic {
             let mut directions = mem::take(&mut self.directions);
-            self.sums.renew(
+            self.sums.follow(
                 (&mut self.solver, &mut directions),
                 &self.watched,
                 criteria.max_iterations,
@@ -103,17 +106,20 @@ impl State {
             )?;
         }
         schur.resize(nodes.len());
-        for (sum, &node) in schur.row_sums_mut().iter_mut().zip(nodes) {
-            let all = problem.row_sums()[node];
-            *sum = if periodic {
-                // All row sums are the same, so that y₂ explains them.
-                all * (1.0 - self.now.rate.displacement[node])
-            } else {
-                all - self.sums.field.displacement[node]
-            };
-        }
+        self.instants.clear();
         let beside = (&self.neighbourhood, self.solver.set());
         self.watched = Watched::new(problem, beside, nodes, contact.len(), schur);
+        self.watched.find_row_sums(|local| {
+            if periodic {
+                // All row sums are the same, so that y₂ explains them.
+                problem.row_sums()[local.node] * (1.0 - self.now.rate.displacement[local.node])
+            } else {
+                self.sums.left_at(problem, local)
+            }
+        });
+        schur
+            .row_sums_mut()
+            .copy_from_slice(self.watched.row_sums());
         schur.set_displacements(self.watched.improved(problem, &self.now));
         Ok(())
     }
@@ -245,9 +251,10 @@ impl State {
             let equation = Equation {
                 rhs: |_| 1.0,
                 tolerance: tolerances.rate,
+                most_drift: tolerances.drift[1],
                 max_iterations,
             };
-            let start = self.watched.carried(&from.rate, joined, equation.rhs);
+            let (start, _) = self.watched.carried(&from.rate, joined, equation.rhs);
             rate = self
                 .solver
                 .solve(&equation, start, &from.rate, &mut directions)?;
@@ -255,13 +262,25 @@ impl State {
         let equation = Equation {
             rhs: overlap,
             tolerance: tolerances.load,
+            most_drift: tolerances.drift[0],
             max_iterations,
         };
         let base = from.load_at(approach);
-        let start = self.watched.carried(&base, joined, overlap);
+        let (mut start, sum) = self.watched.carried(&base, joined, overlap);
+        let is_in_window = !joined.is_empty() && span < f64::INFINITY;
+        let carried = is_in_window.then(|| start.clone());
+        if span == 0.0 {
+            self.instants.complete(sum, &mut start);
+        }
         let load = self
             .solver
             .solve(&equation, start, &base, &mut directions)?;
+        if let Some(carried) = carried {
+            if span > 0.0 {
+                self.instants.clear();
+            }
+            self.instants.add(sum, &load.pressure, &carried);
+        }
         let solved = Equilibrium {
             count,
             approach,
@@ -277,8 +296,9 @@ impl State {
         match self.before.take() {
             Some(before) if before.count == left.len() => {
                 self.now = before;
+                self.instants.clear();
                 self.directions = Directions::default();
-                if self.sums.count > left.len() {
+                if self.sums.count() > left.len() {
                     self.sums.keep(left);
                 }
             }
@@ -289,6 +309,7 @@ impl State {
     /// Keeps of all solutions, as starts, what belongs to nodes that are left in contact.
     pub(super) fn keep(&mut self, left: &ContactSequence) {
         self.before = None;
+        self.instants.clear();
         self.directions = Directions::default();
         self.watched = Watched::default();
         self.now.load.keep(left);

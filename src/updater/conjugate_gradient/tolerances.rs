@@ -17,6 +17,10 @@ const OF_OPEN: f64 = 1e-3;
 /// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
 /// few per cent.
 const ADJOINT: f64 = 30.0;
+/// Part of the least residual.
+const DRIFT: f64 = 0.25;
+/// Part of it that comes from the rate in a window: it comes again in each.
+const RATE_DRIFT: f64 = 0.1;
 /// When iterations end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
@@ -30,6 +34,9 @@ pub(super) struct Criteria {
 pub(super) struct Tolerances {
     pub(super) load: f64,
     pub(super) rate: f64,
+    /// What single precision may have spoilt of the displacements of both: solutions inside the next window begin with
+    /// them, and would all have to compute them afresh.
+    pub(super) drift: [f64; 2],
 }
 
 impl Tolerances {
@@ -43,14 +50,21 @@ impl Tolerances {
             return Self {
                 load: least,
                 rate: LEAST_RATE_TOLERANCE,
+                drift: [f64::INFINITY; 2],
             };
         }
         let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
         let of_length = ADJOINT * OF_LENGTH * length / span;
         let rate = RATE_TOLERANCE.min(OF_OPEN * open).min(of_length);
+        let drift = if span > 0.0 {
+            DRIFT * ADJOINT * least
+        } else {
+            f64::INFINITY
+        };
         Self {
             load: ADJOINT * gap_error.max(of_span).max(least),
             rate: rate.max(LEAST_RATE_TOLERANCE),
+            drift: [drift, RATE_DRIFT * drift / span],
         }
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Watched {
     count: usize,
     /// Their Schur complement.
     complement: Vec<f64>,
+    /// What the contact leaves of their row sums.
+    row_sums: Vec<f64>,
 }
 
 impl Watched {
@@ -43,6 +45,38 @@ impl Watched {
             locals,
             count,
             complement: schur.as_mut_slice().to_vec(),
+            row_sums: Vec::new(),
+        }
+    }
+
+    /// Notes what the contact leaves of each row sum.
+    pub(super) fn find_row_sums(&mut self, left: impl Fn(&Local) -> f64) {
+        self.row_sums = self.locals.iter().map(left).collect();
+    }
+
+    /// What the contact leaves of the row sums.
+    pub(super) fn row_sums(&self) -> &[f64] {
+        &self.row_sums
+    }
+
+    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it.
+    pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) {
+        let joined = contact.order().get(self.count..).unwrap_or_default();
+        if let Some((factor, places)) = self.factor_of(joined).filter(|_| !joined.is_empty()) {
+            let left = places.iter().map(|&place| self.row_sums[place]);
+            let solved = factor.solve(&DVector::from_iterator(places.len(), left));
+            self.spread(&places, &solved, pressure);
+        }
+    }
+
+    /// Adds pressures on some watched nodes, and the answer of the contact near them.
+    fn spread(&self, places: &[usize], values: &DVector<f64>, pressure: &mut [f64]) {
+        for (&place, value) in places.iter().zip(values.iter()) {
+            let local = &self.locals[place];
+            pressure[local.node] += value;
+            for (&node, x) in local.contact.iter().zip(&local.weights) {
+                pressure[node as usize] -= value * x;
+            }
         }
     }
 
@@ -125,31 +159,26 @@ impl Watched {
         Some((matrix.cholesky()?, places))
     }
 
-    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them.
+    /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them; and the sum of
+    /// the pressures on these nodes.
     pub(super) fn carried(
         &self,
         field: &Field,
         joined: &[usize],
         rhs: impl Fn(usize) -> f64,
-    ) -> Vec<f64> {
+    ) -> (Vec<f64>, f64) {
         let mut pressure = field.pressure.clone();
         if joined.is_empty() || !field.is_known() {
-            return pressure;
+            return (pressure, 0.0);
         }
         let Some((factor, places)) = self.factor_of(joined) else {
-            return pressure;
+            return (pressure, 0.0);
         };
         let left = joined
             .iter()
             .map(|&node| rhs(node) - field.displacement[node]);
         let solved = factor.solve(&DVector::from_iterator(joined.len(), left));
-        for (&place, w) in places.iter().zip(solved.iter()) {
-            let local = &self.locals[place];
-            pressure[local.node] += w;
-            for (&node, x) in local.contact.iter().zip(&local.weights) {
-                pressure[node as usize] -= w * x;
-            }
-        }
-        pressure
+        self.spread(&places, &solved, &mut pressure);
+        (pressure, solved.sum())
     }
 }

@@ -3,6 +3,7 @@
 mod compare;
 mod fixed_loads;
 mod recorded;
+mod stretches;
 mod surfaces;
 
 use std::error::Error;
@@ -11,6 +12,7 @@ use std::time::Instant;
 
 use asperity::kernel::KernelTable;
 use asperity::loading::{LoadingState, LoadingTimings};
+use asperity::record::LoadingRecord;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
 use asperity::{Boussinesq, ContactRule, LoadingSolver, PeriodicBoussinesq, Spectral};
@@ -61,6 +63,12 @@ struct Options {
     /// Takes the path from a file of `asperity path` instead of following it.
     #[arg(long, value_name = "path.csv")]
     path: Option<PathBuf>,
+    /// Takes a path from a record, and follows stretches of it again with an exact solution at every event.
+    #[arg(long, value_name = "path.npz")]
+    record: Option<PathBuf>,
+    /// How many stretches, spread evenly over the path.
+    #[arg(long, default_value_t = 20)]
+    stretches: usize,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -127,6 +135,9 @@ fn events(states: &[LoadingState]) -> Vec<Event> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    if let Some(file) = &options.record {
+        return stretches::compare(&LoadingRecord::read_npz(file)?, options.stretches);
+    }
     let ny = options.ny.unwrap_or(options.nodes);
     let (grid, surface) = surfaces::make(
         options.surface,

@@ -1,0 +1,101 @@
+//! What local solutions leave out of the pressure inside a window.
+
+/// Instants of a window at which the pressure is known, and what the local solutions left out of it there.
+///
+/// That grows from nothing as nodes join, and the more pressure they take the more it is: in between it is
+/// interpolated by the sum of their pressures. It makes a start for solutions inside the window, from both sides.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Instants {
+    /// (sum of the pressures on nodes that joined, pressure left out at each node of the grid), by the first.
+    known: Vec<(f64, Vec<f32>)>,
+}
+
+/// As many as pay for their memory: the end of the window, and the last ones before.
+const MOST: usize = 3;
+
+impl Instants {
+    /// No window.
+    pub(super) fn clear(&mut self) {
+        self.known.clear();
+    }
+
+    /// Adds an instant with its solution and what the local solutions made of it.
+    pub(super) fn add(&mut self, sum: f64, solved: &[f64], carried: &[f64]) {
+        let left_out = solved.iter().zip(carried);
+        let left_out = left_out.map(|(a, b)| (a - b) as f32).collect();
+        let place = self.known.partition_point(|(other, _)| *other < sum);
+        self.known.insert(place, (sum, left_out));
+        if self.known.len() > MOST {
+            // Ties are settled in the order of time.
+            self.known.remove(0);
+        }
+    }
+
+    /// Adds to a pressure what the local solutions leave out of it.
+    pub(super) fn complete(&self, sum: f64, pressure: &mut [f64]) {
+        let after = self.known.partition_point(|(other, _)| *other < sum);
+        let Some((next, of_next)) = self.known.get(after) else {
+            return;
+        };
+        let last = after.checked_sub(1).and_then(|last| self.known.get(last));
+        let before = last.map_or(0.0, |(last, _)| *last);
+        let part = (sum - before) / (next - before);
+        if !(0.0..=1.0).contains(&part) {
+            return;
+        }
+        for (value, left_out) in pressure.iter_mut().zip(of_next) {
+            *value += part * f64::from(*left_out);
+        }
+        if let Some((_, of_last)) = last {
+            for (value, left_out) in pressure.iter_mut().zip(of_last) {
+                *value += (1.0 - part) * f64::from(*left_out);
+            }
+        }
+    }
+
+    /// Bytes held at most on a grid of so many nodes.
+    pub(super) fn bytes(nodes: usize) -> usize {
+        MOST * nodes * size_of::<f32>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_is_interpolated() {
+        let mut instants = Instants::default();
+        let completed = |instants: &Instants, sum: f64| {
+            let mut pressure = vec![10.0, 20.0];
+            instants.complete(sum, &mut pressure);
+            pressure
+        };
+        // Nothing is known.
+        assert_eq!(completed(&instants, 1.0), [10.0, 20.0]);
+        // The end of the window, then an instant inside.
+        instants.add(4.0, &[5.0, 9.0], &[1.0, 1.0]);
+        assert_eq!(completed(&instants, 1.0), [11.0, 22.0]);
+        instants.add(2.0, &[3.0, 3.0], &[2.0, 3.0]);
+        assert_eq!(completed(&instants, 1.0), [10.5, 20.0]);
+        assert_eq!(completed(&instants, 2.0), [11.0, 20.0]);
+        assert_eq!(completed(&instants, 3.0), [12.5, 24.0]);
+        assert_eq!(completed(&instants, 4.0), [14.0, 28.0]);
+        // Beyond the end, and where the sum says nothing.
+        assert_eq!(completed(&instants, 5.0), [10.0, 20.0]);
+        assert_eq!(completed(&instants, f64::NAN), [10.0, 20.0]);
+        assert_eq!(completed(&instants, -1.0), [10.0, 20.0]);
+        instants.clear();
+        assert_eq!(completed(&instants, 3.0), [10.0, 20.0]);
+    }
+
+    #[test]
+    fn the_last_instants_and_the_end_are_kept() {
+        let mut instants = Instants::default();
+        for sum in [8.0, 1.0, 2.0, 3.0, 4.0] {
+            instants.add(sum, &[sum], &[0.0]);
+        }
+        let sums: Vec<f64> = instants.known.iter().map(|(sum, _)| *sum).collect();
+        assert_eq!(sums, [3.0, 4.0, 8.0]);
+    }
+}
