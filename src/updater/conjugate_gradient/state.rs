@@ -11,7 +11,7 @@ use super::watched::Watched;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
-use crate::{Boundary, Error, Problem};
+use crate::{Boundary, Error, Grid, Problem};
 
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
@@ -66,17 +66,14 @@ impl State {
         self.sums = RowSums::start(contact.len(), nothing);
     }
 
+    /// The grid of the problem.
+    pub(super) fn grid(&self) -> Grid {
+        self.neighbourhood.grid()
+    }
+
     /// Number of nodes in contact that there is a solution or a start for.
     pub(super) fn count(&self) -> usize {
         self.now.count
-    }
-
-    /// Bytes held.
-    pub(super) fn bytes(&self) -> usize {
-        // What there is before the first window will be there twice.
-        let before = self.before.as_ref().unwrap_or(&self.now).bytes();
-        let sums = self.now.bytes() / 2;
-        self.solver.bytes() + self.now.bytes() + before + sums
     }
 
     pub(super) fn watch(
@@ -102,7 +99,7 @@ impl State {
                 self.now.rate.open(),
             )?;
         }
-        schur.resize(nodes.len());
+        schur.resize(nodes.len())?;
         for (sum, &node) in schur.row_sums_mut().iter_mut().zip(nodes) {
             let all = problem.row_sums()[node];
             *sum = if periodic {
