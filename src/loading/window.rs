@@ -223,6 +223,16 @@ mod tests {
         let mut early = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 0.1)?;
         assert_eq!(early.play(3), None);
         assert_eq!(early.events().len(), 1);
+        // Until the horizon, and at it.
+        let lines = [(0.0, 1.0), (1.0, 1.0), (9.0, 1.0)];
+        let mut free = window(C, lines, 100.0)?;
+        free.play(2);
+        let second = free.events()[1].time;
+        for (horizon, events) in [(second, 2), (second * (1.0 - 1e-12), 1)] {
+            let mut until = window(C, lines, horizon)?;
+            assert_eq!(until.play(3), None);
+            assert_eq!(until.events().len(), events, "horizon {horizon}");
+        }
         let mut late = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0)?;
         assert_eq!(late.play(3), None);
         assert_eq!(late.events().len(), 3);

@@ -100,15 +100,26 @@ fn paths_stay_within_their_budget() {
                 let builder = || LoadingSolver::builder(&map, kernel).max_nodes(900);
                 let mut counts = [None; 3];
                 let peaks = [
-                    peak(|| counts[0] = follow(builder().updater(RecursiveCholesky::new()), budget)),
-                    peak(|| counts[1] = follow(builder().updater(ConjugateGradient::new()), budget)),
+                    peak(|| {
+                        counts[0] = follow(builder().updater(RecursiveCholesky::new()), budget)
+                    }),
+                    peak(|| {
+                        counts[1] = follow(builder().updater(ConjugateGradient::new()), budget)
+                    }),
                     peak(|| counts[2] = follow(builder().updater(Handover::new()), budget)),
                 ];
-                println!("{:?} {:?} budget {budget}: {peaks:?} {counts:?}", grid.shape(), kernel.boundary());
+                println!(
+                    "{:?} {:?} budget {budget}: {peaks:?} {counts:?}",
+                    grid.shape(),
+                    kernel.boundary()
+                );
                 for bytes in peaks {
                     assert!(bytes <= budget, "{bytes} bytes within a budget of {budget}");
                 }
-                partial += counts.iter().filter(|c| c.is_some_and(|c| c > 0 && c < 900)).count();
+                partial += counts
+                    .iter()
+                    .filter(|c| c.is_some_and(|c| c > 0 && c < 900))
+                    .count();
             }
         }
     }
@@ -130,7 +141,9 @@ fn single_loads_stay_within_their_budget() {
                 let mut solved = 0;
                 let bytes = peak(|| {
                     let builder = FixedLoadSolver::builder(&map, kernel).memory_budget(budget);
-                    let Ok(mut solver) = builder.build() else { return };
+                    let Ok(mut solver) = builder.build() else {
+                        return;
+                    };
                     for load in [1.0, 100.0, 1e5] {
                         match solver.solve(load) {
                             Ok(_) => solved += 1,
@@ -139,7 +152,11 @@ fn single_loads_stay_within_their_budget() {
                         }
                     }
                 });
-                println!("{:?} {:?} budget {budget}: {bytes} {solved}", grid.shape(), kernel.boundary());
+                println!(
+                    "{:?} {:?} budget {budget}: {bytes} {solved}",
+                    grid.shape(),
+                    kernel.boundary()
+                );
                 assert!(bytes <= budget, "{bytes} bytes within a budget of {budget}");
                 partial += usize::from(solved > 0 && solved < 3);
             }

@@ -55,7 +55,9 @@ impl RowSums {
         let joined = contact.order().get(*count..).unwrap_or_default();
         let start = watched.carried(field, joined, |node| sums[node]);
         let open = open.clamp(1e-6, 1.0);
-        let (age, tolerance) = if *age < SUMS_WINDOWS && open > SUMS_OPEN {
+        // Nodes that joined without being watched are not in the start.
+        let follows = field.is_known() && watched.knows(joined);
+        let (age, tolerance) = if follows && *age < SUMS_WINDOWS && open > SUMS_OPEN {
             (age + 1, f64::INFINITY)
         } else {
             let most = greatest(sums.len(), 0.0, |i| sums[i]);

@@ -136,7 +136,7 @@ impl State {
             let solved = self.solve_from(criteria, problem, contact, request, &now);
             self.now = now;
             Some(solved?.0)
-        } else if count == contact.len() && self.now.count <= count {
+        } else if count == contact.len() && self.now.count <= count && request.span > 0.0 {
             let now = mem::take(&mut self.now);
             match self.solve_from(criteria, problem, contact, request, &now) {
                 Ok((solved, directions)) => {

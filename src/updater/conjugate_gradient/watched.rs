@@ -125,6 +125,11 @@ impl Watched {
         Some((matrix.cholesky()?, places))
     }
 
+    /// Whether all nodes that joined were watched.
+    pub(super) fn knows(&self, joined: &[usize]) -> bool {
+        self.factor_of(joined).is_some()
+    }
+
     /// The pressures of a field and what nodes that joined, with the right-hand sides `rhs`, add to them.
     pub(super) fn carried(
         &self,
