@@ -1,5 +1,7 @@
 //! The rectangular grid of nodes, and the numbering of its nodes.
 
+use nalgebra::DMatrix;
+
 use crate::Error;
 
 /// An nx × ny grid of nodes, each at the centre of a cell of dx × dy.
@@ -167,6 +169,21 @@ impl Grid {
         (node % self.nx, node / self.nx)
     }
 
+    /// Wavevector \[rad/m\] of the wave (kx, ky) of a Fourier transform on this grid, of the two directions in
+    /// which it can be said to run the one of the longer wave.
+    pub(crate) fn wave_vector(&self, kx: usize, ky: usize) -> (f64, f64) {
+        let along = |k: usize, n: usize, side: f64| {
+            let signed = if 2 * k > n {
+                k as f64 - n as f64
+            } else {
+                k as f64
+            };
+            std::f64::consts::TAU * signed / side
+        };
+        let (lx, ly) = self.sides();
+        (along(kx, self.nx, lx), along(ky, self.ny, ly))
+    }
+
     /// The number of nodes whose cells make up at most `fraction` (above 0, up to 1) of the nominal
     /// area: ⌊fraction M⌋, where 0.1 of 10 nodes is one node whatever the last bit of the product.
     ///
@@ -207,6 +224,31 @@ impl Grid {
                 expected: self.shape(),
                 found,
             })
+        }
+    }
+
+    /// `Ok` if a field, which the error calls `field`, lives on this grid and is finite.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] and [`Error::FieldNotFinite`].
+    pub(crate) fn check_finite(
+        &self,
+        field: &'static str,
+        values: &DMatrix<f64>,
+    ) -> Result<(), Error> {
+        self.check_shape(values.shape())?;
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(node) => {
+                let (ix, iy) = self.coordinates(node);
+                Err(Error::FieldNotFinite {
+                    field,
+                    ix,
+                    iy,
+                    value: values[node],
+                })
+            }
+            None => Ok(()),
         }
     }
 }

@@ -87,6 +87,7 @@ pub mod patches;
 mod problem;
 pub mod record;
 pub mod reference;
+mod scale;
 pub mod surface;
 pub mod updater;
 

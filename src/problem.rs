@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
+use crate::scale::Scale;
 use crate::surface::HeightMap;
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
@@ -38,29 +39,39 @@ impl Problem {
 
     /// Samples `surface` on the grid of `kernel`, and tabulates the kernel.
     ///
+    /// In the units of the input, the greatest gap g, the displacement C(0, 0) of a cell under its own unit
+    /// pressure and the pressure g / C(0, 0) have to lie between 10⁻¹⁴⁰ and 10¹⁴⁰, so that their squares are
+    /// numbers too; the stiffness ΔA / C(0, 0) of a cell, the load g ΔA / C(0, 0) and the energy g² ΔA / C(0, 0)
+    /// between 10⁻²⁸⁰ and 10²⁸⁰. Surfaces without any gap are as good as others. A gap that is not 0 and so small
+    /// that it, or its pressure, lies below 10⁻¹⁴⁰ counts as closed.
+    ///
     /// # Errors
     ///
     /// Those of the surface and of [`KernelTable::new`]; [`Error::GridMismatch`] for heights of another
-    /// grid; [`Error::HeightNotFinite`]; [`Error::OutOfRange`] if differences of heights or sums of
-    /// coefficients overflow.
+    /// grid; [`Error::HeightNotFinite`]; [`Error::OutOfRange`] for heights, cells and a modulus that are too
+    /// far apart, and if sums of coefficients overflow; [`KernelError::SymbolNotPositive`] for a periodic kernel that is
+    /// not positive definite.
+    ///
+    /// [`KernelError::SymbolNotPositive`]: crate::KernelError::SymbolNotPositive
     pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
-        let table = KernelTable::new(kernel)?;
+        let table = KernelTable::new(kernel)?.regular();
+        let convolution = Convolution::from_table(&table)?;
+        convolution.check_definite(&table)?;
         let heights = HeightMap::sample(surface, &table.grid())?;
         let highest = heights.max_height();
         let greatest_gap = highest - heights.min_height();
-        if !greatest_gap.is_finite() {
-            return Err(Error::OutOfRange {
-                quantity: "difference of heights",
-                value: greatest_gap,
-                expected: "finite",
-            });
+        let scale = Scale::of(&table)?;
+        if greatest_gap != 0.0 {
+            scale.check(greatest_gap)?;
         }
+        let negligible = scale.negligible_gap();
         let gap = heights.matrix().iter().map(|height| highest - height);
+        let gap = gap.map(|gap| if gap < negligible { 0.0 } else { gap });
         Ok(Self {
             gap: gap.collect(),
             greatest_gap,
             rms_height: heights.rms_height(),
-            convolution: Convolution::from_table(&table)?,
+            convolution,
             table,
             row_sums: OnceLock::new(),
         })
@@ -162,8 +173,9 @@ impl Problem {
         }
     }
 
-    /// Bytes held.
-    pub(crate) fn bytes(&self) -> usize {
-        2 * size_of_val(&self.gap[..]) + self.table.bytes() + self.convolution.bytes()
+    /// Bytes that a problem on a grid holds.
+    pub(crate) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        let fields = 2 * grid.nodes() * size_of::<f64>();
+        fields + KernelTable::bytes_on(grid) + Convolution::bytes_on(grid, boundary)
     }
 }

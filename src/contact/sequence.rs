@@ -167,9 +167,9 @@ impl ContactSequence {
         Ok(position)
     }
 
-    /// Bytes held at most.
-    pub(crate) fn bytes(&self) -> usize {
-        self.is_in.len() * (size_of::<usize>() + size_of::<bool>())
+    /// Bytes held at most on a grid.
+    pub(crate) fn bytes_on(grid: &Grid) -> usize {
+        grid.nodes() * (size_of::<usize>() + size_of::<bool>())
     }
 }
 

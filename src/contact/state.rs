@@ -75,6 +75,15 @@ impl ContactState {
             && (interfacial.is_finite() || (full && !interfacial.is_nan()))
     }
 
+    /// Takes what has fallen since an earlier state from there: where contact only grows it is rounding, or what
+    /// states of an iteration may be off by.
+    pub(crate) fn keep_growing(&mut self, earlier: &Self) {
+        self.approach = self.approach.max(earlier.approach);
+        self.load = self.load.max(earlier.load);
+        self.energy = self.energy.max(earlier.energy);
+        self.mean_gap = self.mean_gap.min(earlier.mean_gap);
+    }
+
     /// dW/dδ for the approach of this state: of the mean planes if there is no other.
     fn load_rate(&self) -> Option<f64> {
         self.contact_stiffness.or(self.interfacial_stiffness)

@@ -2,7 +2,6 @@
 
 use nalgebra::DMatrix;
 
-use super::check_field;
 use crate::kernel::KernelTable;
 use crate::{Error, InfluenceKernel};
 
@@ -29,9 +28,9 @@ pub fn direct_sum<K: InfluenceKernel + ?Sized>(
     kernel: &K,
     pressure: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, Error> {
-    let grid = kernel.grid();
-    check_field(&grid, "pressure", pressure)?;
     let table = KernelTable::new(kernel)?;
+    let grid = table.grid();
+    grid.check_finite("pressure", pressure)?;
     let places: Vec<usize> = (0..grid.nodes()).map(|node| table.place(node)).collect();
     Ok(DMatrix::from_iterator(
         grid.nx(),

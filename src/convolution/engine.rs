@@ -9,7 +9,7 @@ use super::transforms::{Transforms, Workspace};
 use super::transpose::{BLOCK, blocks, gather, interleave, pitch};
 use crate::kernel::KernelTable;
 use crate::parallel::{for_each_block, inside};
-use crate::{Boundary, Error, Grid};
+use crate::{Boundary, Error, Grid, KernelError};
 
 /// Parts into which the blocks of a large grid are divided, each with its own working memory.
 ///
@@ -18,6 +18,9 @@ pub(super) const PARTS: usize = 32;
 
 /// Nodes from which threads are worth waking.
 pub(super) const PARALLEL_NODES: usize = 96 * 96;
+
+/// What a Fourier transform of a kernel errs by, relative to the greatest value: a few roundings.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A convolution whose transforms are done in the precision of T; fields may be of another one, F.
 ///
@@ -53,6 +56,15 @@ pub(super) struct Scratch<T> {
     /// A block of rows or of columns, not interleaved.
     lines: Vec<Complex<T>>,
     work: Workspace<T>,
+}
+
+/// Parts into which the work on a grid is divided.
+fn parts(grid: &Grid) -> usize {
+    if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
+        PARTS
+    } else {
+        1
+    }
 }
 
 impl Engine<f64> {
@@ -124,6 +136,25 @@ impl Engine<f64> {
         Self::of(filter, self.spectra.clone())
     }
 
+    /// `Ok` if the symbol of a periodic kernel is positive, the first `skipped` waves left out.
+    ///
+    /// # Errors
+    ///
+    /// [`KernelError::SymbolNotPositive`].
+    pub(super) fn check_symbol(&self, skipped: usize) -> Result<(), Error> {
+        let Filter { grid, symbol, .. } = &*self.filter;
+        let nodes = grid.nodes() as f64;
+        let rounding = ROUNDING * self.greatest_symbol() / nodes;
+        let mut waves = symbol.iter().enumerate().skip(skipped);
+        match waves.find(|(_, value)| **value <= rounding) {
+            None => Ok(()),
+            Some((place, value)) => Err(Error::Kernel(KernelError::SymbolNotPositive {
+                q: grid.wave_vector(place / grid.ny(), place % grid.ny()),
+                value: value * nodes,
+            })),
+        }
+    }
+
     /// Greatest absolute value of the symbol, without its normalisation.
     pub(super) fn greatest_symbol(&self) -> f64 {
         let values = self.filter.symbol.iter().map(|value| value.abs());
@@ -152,18 +183,22 @@ impl<T: Real> Engine<T> {
 
     /// Bytes held: symbol, spectra and working memory, but not the plans.
     pub(crate) fn bytes(&self) -> usize {
-        let Spectra {
-            rows,
-            columns,
-            scratch,
-        } = &self.spectra;
-        let scratch = scratch
-            .iter()
-            .map(|scratch| size_of_val(&scratch.lines[..]) + scratch.work.bytes());
-        size_of_val(&self.filter.symbol[..])
-            + size_of_val(&rows[..])
-            + size_of_val(&columns[..])
-            + scratch.sum::<usize>()
+        Self::bytes_with(&self.filter.grid, &self.filter.transforms)
+    }
+
+    /// The same before there is an engine.
+    pub(super) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        Self::bytes_with(grid, &Transforms::new(grid, boundary))
+    }
+
+    fn bytes_with(grid: &Grid, transforms: &Transforms<T>) -> usize {
+        let (columns, rows, padded) = (transforms.columns(), grid.ny(), transforms.padded().1);
+        let line = BLOCK * pitch(columns.max(rows)) * size_of::<Complex<T>>();
+        let scratch = line + transforms.workspace().bytes();
+        let spectra = BLOCK * (blocks(rows) * columns + blocks(columns) * rows);
+        columns * padded * size_of::<T>()
+            + spectra * size_of::<Complex<T>>()
+            + parts(grid) * scratch
     }
 
     /// Writes the displacement under `pressure`, multiplied by the second factor, into
@@ -222,11 +257,6 @@ impl<T: Real> Filter<T> {
 impl<T: Real> Spectra<T> {
     fn new(grid: &Grid, transforms: &Transforms<T>) -> Self {
         let (columns, rows) = (transforms.columns(), grid.ny());
-        let parts = if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
-            PARTS
-        } else {
-            1
-        };
         let scratch = Scratch {
             lines: vec![T::ZERO; BLOCK * pitch(columns.max(transforms.padded().1))],
             work: transforms.workspace(),
@@ -234,7 +264,7 @@ impl<T: Real> Spectra<T> {
         Self {
             rows: vec![T::ZERO; blocks(rows) * BLOCK * columns],
             columns: vec![T::ZERO; blocks(columns) * BLOCK * rows],
-            scratch: vec![scratch; parts],
+            scratch: vec![scratch; parts(grid)],
         }
     }
 

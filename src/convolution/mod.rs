@@ -52,7 +52,7 @@ use nalgebra::DMatrix;
 pub use direct::direct_sum;
 
 use crate::kernel::KernelTable;
-use crate::{Error, Grid, InfluenceKernel};
+use crate::{Boundary, Error, Grid, InfluenceKernel};
 use engine::Engine;
 
 /// Displacement from pressure on a whole grid, by fast Fourier transform.
@@ -127,6 +127,28 @@ impl Convolution {
         self.engine.bytes()
     }
 
+    /// The same before there is a convolution.
+    pub(crate) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        Engine::<f64>::bytes_on(grid, boundary)
+    }
+
+    /// `Ok` unless the kernel of `table`, whose convolution this is, is known not to be positive definite. That
+    /// can be told of a periodic one, by its symbol on the waves of the grid; the uniform wave does not
+    /// count if the mean displacement is arbitrary.
+    ///
+    /// # Errors
+    ///
+    /// [`KernelError::SymbolNotPositive`](crate::KernelError::SymbolNotPositive).
+    pub(crate) fn check_definite(&self, table: &KernelTable) -> Result<(), Error> {
+        match table.boundary() {
+            Boundary::Free => Ok(()),
+            Boundary::Periodic => {
+                let skipped = usize::from(table.gauge().is_some());
+                self.engine.check_symbol(skipped)
+            }
+        }
+    }
+
     /// The same in single precision: half the memory, about half the time, and displacements with
     /// an error of some 10⁻⁷ of the greatest.
     pub(crate) fn to_single(&self) -> SingleConvolution {
@@ -152,7 +174,7 @@ impl Convolution {
     /// [`Error::GridMismatch`] if `pressure` does not have nx rows and ny columns, and
     /// [`Error::FieldNotFinite`].
     pub fn convolve(&mut self, pressure: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-        check_field(&self.grid(), "pressure", pressure)?;
+        self.grid().check_finite("pressure", pressure)?;
         let mut displacement = DMatrix::zeros(self.grid().nx(), self.grid().ny());
         self.apply(pressure.as_slice(), displacement.as_mut_slice())?;
         Ok(displacement)
@@ -237,23 +259,6 @@ impl fmt::Debug for Convolution {
             .field("grid", &self.grid())
             .field("padded", &self.engine.padded())
             .finish_non_exhaustive()
-    }
-}
-
-/// `Ok` if the field has the shape of the grid and is finite.
-fn check_field(grid: &Grid, field: &'static str, values: &DMatrix<f64>) -> Result<(), Error> {
-    grid.check_shape(values.shape())?;
-    match values.iter().position(|value| !value.is_finite()) {
-        Some(node) => {
-            let (ix, iy) = grid.coordinates(node);
-            Err(Error::FieldNotFinite {
-                field,
-                ix,
-                iy,
-                value: values[node],
-            })
-        }
-        None => Ok(()),
     }
 }
 

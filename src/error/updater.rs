@@ -33,6 +33,13 @@ pub enum UpdaterError {
         tolerance: f64,
     },
 
+    /// More nodes are to be watched than there is memory for.
+    #[error("no memory is to be had for the Schur complement of {nodes} watched nodes")]
+    TooManyWatched {
+        /// Number of nodes.
+        nodes: usize,
+    },
+
     /// A node is to leave the contact, and the updater cannot remove nodes.
     #[error("node ({ix}, {iy}) leaves the contact, and this updater cannot remove nodes")]
     ReleaseNotSupported {

@@ -63,8 +63,11 @@ impl FixedLoadBuilder<'_> {
         let budget = settings
             .memory_budget
             .unwrap_or_else(memory::default_budget);
-        let memory = MemoryBudget::new(budget, &self.kernel.grid(), settings.nested)?;
+        let grid = self.kernel.grid();
+        let memory = MemoryBudget::new(budget, &grid, settings.nested)?;
         let problem = Problem::new(self.surface, self.kernel)?;
+        // A kernel of one's own may say something else when it is asked again.
+        grid.check_shape(problem.grid().shape())?;
         let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
         Ok(FixedLoadSolver::with(settings, hierarchy))
     }

@@ -8,6 +8,7 @@ use crate::contact::LengthScale;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::{Operator, Preconditioner, sum};
+use crate::scale::Scale;
 use crate::{Error, Grid};
 
 /// What is prescribed on one grid.
@@ -78,6 +79,11 @@ impl Level {
             gap,
             memory,
         }
+    }
+
+    /// What turns lengths into pressures and loads of a single cell.
+    pub(super) fn unit(&self) -> Scale {
+        Scale::new(self.self_influence, self.grid.cell_area())
     }
 
     /// Mean initial gap.

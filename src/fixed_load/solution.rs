@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::level::Level;
 use crate::contact::{Certificate, Conditions, ContactState};
 use crate::krylov::{dot, sum, sum_over};
+use crate::{Error, Grid};
 
 /// Contact under one load: fields and scalars.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +58,33 @@ impl FixedLoadSolution {
     /// at this very load, to within rounding, which then decides how many of them are counted.
     pub(super) fn carrying_nodes(&self) -> usize {
         self.pressure.iter().filter(|p| **p > 0.0).count()
+    }
+
+    /// `Ok` if everything is finite; the interfacial stiffness of full contact need not be.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] and [`Error::FieldNotFinite`] otherwise.
+    pub(super) fn check_finite(&self, grid: &Grid) -> Result<(), Error> {
+        let fields = [
+            ("pressure", &self.pressure),
+            ("displacement", &self.displacement),
+            ("pressure rate", &self.pressure_rate),
+        ];
+        for (field, values) in fields {
+            // Without stiffnesses there is no rate.
+            if !values.is_empty() {
+                grid.check_finite(field, values)?;
+            }
+        }
+        if self.state.is_finite() {
+            return Ok(());
+        }
+        Err(Error::OutOfRange {
+            quantity: "approach of a solution",
+            value: self.state.approach,
+            expected: "finite, as all of its state",
+        })
     }
 
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was

@@ -82,7 +82,9 @@ impl<'a> Stepper<'a> {
     /// Contact under the load `load` \[N\].
     pub(super) fn step_to_load(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
         let load = Error::require_positive("load", load)?;
+        let scale = self.finest().unit();
         let sum = load / self.finest().grid.cell_area();
+        scale.check(scale.displacement(sum))?;
         self.to(Prescribed::Sum(sum), sum, Some(load))
     }
 
@@ -90,6 +92,7 @@ impl<'a> Stepper<'a> {
     pub(super) fn step_to_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
         let approach = Error::require_positive("approach", approach)?;
         let finest = self.finest();
+        finest.unit().check(approach)?;
         if finest.gauge.is_some() {
             let mean_gap = finest.mean_initial_gap();
             if approach >= mean_gap {
@@ -137,6 +140,7 @@ impl<'a> Stepper<'a> {
             let tangent = &mut self.continuation.tangent;
             tangent.complete(finest, self.settings, &mut solution)?;
         }
+        solution.check_finite(&finest.grid)?;
         self.last = Some(solution.state);
         Ok(solution)
     }
@@ -144,33 +148,11 @@ impl<'a> Stepper<'a> {
 
 /// `Ok` if this can be a solution on `grid`: its fields are public.
 fn check(solution: &FixedLoadSolution, grid: &Grid) -> Result<(), Error> {
-    let mut fields = vec![
-        ("pressure", &solution.pressure),
-        ("displacement", &solution.displacement),
-    ];
-    if !solution.pressure_rate.is_empty() {
-        fields.push(("pressure rate", &solution.pressure_rate));
+    for field in [&solution.pressure, &solution.displacement] {
+        grid.check_shape(field.shape())?;
     }
-    for (field, values) in fields {
-        grid.check_shape(values.shape())?;
-        if let Some(node) = values.iter().position(|value| !value.is_finite()) {
-            let (ix, iy) = grid.coordinates(node);
-            return Err(Error::FieldNotFinite {
-                field,
-                ix,
-                iy,
-                value: values[node],
-            });
-        }
-    }
+    solution.check_finite(grid)?;
     let state = &solution.state;
-    if !state.is_finite() {
-        return Err(Error::OutOfRange {
-            quantity: "approach of a solution to start from",
-            value: state.approach,
-            expected: "finite, as all of its state",
-        });
-    }
     // The shape may be the same on a grid of other cells.
     if state.contact_area != state.contact_nodes as f64 * grid.cell_area() {
         return Err(Error::OutOfRange {

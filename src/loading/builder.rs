@@ -13,9 +13,9 @@ use super::run::{LoadingRun, LoadingTimings};
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
-use crate::contact::{ContactSequence, ContactTarget};
+use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::updater::{Handover, LinearUpdater};
-use crate::{ContactGrowth, Error, InfluenceKernel, Problem, Surface, memory};
+use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Clone)]
@@ -160,7 +160,12 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
                 expected: "at least 1",
             });
         }
+        let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
+        let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
+        let fixed_bytes = check_room(&grid, boundary, budget)?;
         let problem = Problem::new(self.surface, self.kernel)?;
+        // A kernel of one's own may say something else when it is asked again.
+        grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;
         let growth = problem.growth();
         let procedure = match (self.rule, growth) {
@@ -171,7 +176,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
                 Procedure::Windowed(Windowed::new(growth, self.window_size, settles))
             }
         };
-        let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
+        // Before first touch.
+        let unloaded = ContactState::new(&grid, 0, 0.0, 0.0, f64::INFINITY);
+        let last = matches!(procedure, Procedure::Windowed(_)).then_some(unloaded);
         let mut run = LoadingRun {
             contact: ContactSequence::new(problem.grid()),
             releases: Releases::default(),
@@ -181,17 +188,11 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             updater: self.updater,
             queue: VecDeque::new(),
             memory_budget: budget,
+            last,
+            fixed_bytes,
             timings: LoadingTimings::default(),
         };
-        let needed = run.fixed_bytes();
-        if needed > budget {
-            return Err(Error::MemoryBudget {
-                needed,
-                budget,
-                nodes_that_fit: 0,
-            });
-        }
-        run.updater.make_room(budget - needed);
+        run.updater.make_room(&run.problem, budget - fixed_bytes)?;
         Ok(LoadingSolver {
             run,
             procedure,
@@ -238,4 +239,21 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         }
         Ok(limits)
     }
+}
+
+/// The bytes that a path on a grid holds before its first node is in contact.
+///
+/// # Errors
+///
+/// [`Error::MemoryBudget`] if they exceed the budget.
+fn check_room(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, Error> {
+    let needed = LoadingRun::<Handover>::bytes_on(grid, boundary);
+    if needed <= budget {
+        return Ok(needed);
+    }
+    Err(Error::MemoryBudget {
+        needed,
+        budget,
+        nodes_that_fit: 0,
+    })
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
 use crate::updater::{LinearUpdater, Solution, SolveRequest};
-use crate::{Error, Problem, UpdaterError};
+use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// The solution on a contact at an approach δ and the displacements of all nodes, which together give
 /// every gap as a line: `gap = a − t b` at the approach δ + t, as long as no other node joins.
@@ -57,9 +57,9 @@ impl GapField {
         }
     }
 
-    /// Bytes held.
-    pub(super) fn bytes(&self) -> usize {
-        4 * size_of_val(&self.pressure[0][..]) + self.convolution.bytes()
+    /// Bytes that all gaps of a grid take.
+    pub(super) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        4 * grid.nodes() * size_of::<f64>() + Convolution::bytes_on(grid, boundary)
     }
 
     /// Time spent on convolutions so far.

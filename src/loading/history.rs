@@ -59,7 +59,7 @@ impl History {
     }
 
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
-    /// in full contact can be read.
+    /// in full contact can be read, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
         self.read(load, |state| state.load, ContactState::at_load)
@@ -116,6 +116,6 @@ impl History {
             || last.contact_area_fraction == 1.0
             || quantity(last) == target;
         let contact = is_there.then(|| at(&last.contact, target))??;
-        Some(last.with(contact))
+        contact.is_finite().then(|| last.with(contact))
     }
 }

@@ -22,6 +22,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.state = events.last().copied();
         if let Some(state) = &self.state {
             run.front.place_at(run.front.own_approach(state));
+            run.last = run.last.map(|_| state.contact);
         }
         run.contact = contact;
         Ok(())
@@ -37,7 +38,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let order = run.contact.order().to_vec();
         let grid = run.problem.grid();
         run.contact = ContactSequence::new(grid);
-        let budget = run.memory_budget.saturating_sub(run.fixed_bytes());
+        let budget = run.memory_budget.saturating_sub(run.fixed_bytes);
         join_all(
             &mut run.updater,
             &run.problem,

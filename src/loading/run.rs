@@ -9,9 +9,9 @@ use super::releases::Releases;
 use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
-use crate::contact::ContactSequence;
+use crate::contact::{ContactSequence, ContactState};
 use crate::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
-use crate::{Error, Problem, UpdaterError};
+use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
 /// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
@@ -51,6 +51,10 @@ pub(super) struct LoadingRun<U> {
     /// States that are computed and not yielded yet.
     pub(super) queue: VecDeque<LoadingState>,
     pub(super) memory_budget: usize,
+    /// The last state computed, behind which no other falls; `None` where contact need not grow.
+    pub(super) last: Option<ContactState>,
+    /// Bytes held whatever the number of nodes in contact, in proportion to the grid.
+    pub(super) fixed_bytes: usize,
     pub(super) timings: LoadingTimings,
 }
 
@@ -185,9 +189,13 @@ impl<U: LinearUpdater> LoadingRun<U> {
         contact_nodes: usize,
         error: f64,
     ) -> Result<(), Error> {
-        let contact = front.state(contact_nodes);
+        let mut contact = front.state(contact_nodes);
         if !front.is_sound(&contact) {
             return Err(Error::NotFinite { step });
+        }
+        if let Some(last) = &mut self.last {
+            contact.keep_growing(last);
+            *last = contact;
         }
         self.queue.push_back(LoadingState {
             step,
@@ -216,7 +224,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         // Nodes of that contact have left the updater since.
         let own = self.updater.bytes(self.contact.len(), 0);
         let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
-        let needed = self.fixed_bytes().saturating_add(own);
+        let needed = self.fixed_bytes.saturating_add(own);
         let needed = needed.saturating_add(rebuilt);
         if needed > self.memory_budget {
             return Err(Error::MemoryBudget {
@@ -230,10 +238,13 @@ impl<U: LinearUpdater> LoadingRun<U> {
         Ok(nodes)
     }
 
-    /// Bytes held whatever the number of nodes in contact, in proportion to the grid.
-    pub(super) fn fixed_bytes(&self) -> usize {
-        let ranking = self.problem.grid().nodes() * size_of::<(f64, usize)>();
-        ranking + self.contact.bytes() + self.problem.bytes() + self.field.bytes()
+    /// Bytes that a path on a grid holds whatever the number of nodes in contact.
+    pub(super) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        let ranking = grid.nodes() * size_of::<(f64, usize)>();
+        ranking
+            + ContactSequence::bytes_on(grid)
+            + Problem::bytes_on(grid, boundary)
+            + GapField::bytes_on(grid, boundary)
     }
 
     /// The greatest window up to `size` that stays within the memory budget.
@@ -244,7 +255,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
                 .updater
                 .bytes(count + size, size)
                 .saturating_add(Touched::bytes(size))
-                .saturating_add(self.fixed_bytes());
+                .saturating_add(self.fixed_bytes);
             if needed <= budget {
                 return Ok(size);
             }

@@ -58,7 +58,7 @@ impl Window {
         self.lines.clear();
         self.open.clear();
         self.open.resize(self.nodes.len(), true);
-        self.touched.reset(self.nodes.len());
+        self.touched.reset(self.nodes.len(), self.nodes.len());
         self.events.clear();
         // So that no event ever allocates.
         self.events.reserve(self.nodes.len());
@@ -174,28 +174,32 @@ mod tests {
     use super::*;
 
     /// Nodes 7, 8 and 9 with S = C and σ = row sums of C, before any contact.
-    fn window(c: [[f64; 3]; 3], lines: [(f64, f64); 3], horizon: f64) -> Window {
+    fn window(
+        c: [[f64; 3]; 3],
+        lines: [(f64, f64); 3],
+        horizon: f64,
+    ) -> Result<Window, crate::Error> {
         let mut window = Window::default();
         let lines = lines.into_iter().zip(7..);
         let lines = lines.map(|((gap, closing), node)| Line { node, gap, closing });
         let (nodes, schur) = window.open(lines, horizon);
         assert_eq!(nodes, [7, 8, 9]);
-        schur.resize(3);
+        schur.resize(3)?;
         for (i, row) in c.iter().enumerate() {
             schur.row_sums_mut()[i] = row.iter().sum();
             for (j, value) in row.iter().enumerate() {
                 schur.matrix_mut()[(i, j)] = *value;
             }
         }
-        window
+        Ok(window)
     }
 
     const C: [[f64; 3]; 3] = [[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]];
 
     #[test]
-    fn a_node_that_touches_delays_its_neighbour() {
+    fn a_node_that_touches_delays_its_neighbour() -> Result<(), crate::Error> {
         // Node 7 touches at 0; then node 8 rises by half of the approach, and touches at 2 instead of 1.
-        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 10.0);
+        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 10.0)?;
         assert_eq!(window.play(2), None);
         let found: Vec<_> = window.events().iter().map(|e| (e.node, e.time)).collect();
         // A few roundings of numbers near 1.
@@ -211,31 +215,44 @@ mod tests {
         assert!((first.unit_stiffness - 0.5).abs() < 1e-15);
         assert!((first.unit_stiffness + second.unit_stiffness - 2.0 / 3.0).abs() < 1e-15);
         assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
+        Ok(())
     }
 
     #[test]
-    fn the_horizon_ends_a_window_but_not_before_its_first_event() {
-        let mut early = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 0.1);
+    fn the_horizon_ends_a_window_but_not_before_its_first_event() -> Result<(), crate::Error> {
+        let mut early = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 0.1)?;
         assert_eq!(early.play(3), None);
         assert_eq!(early.events().len(), 1);
-        let mut late = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0);
+        // Until the horizon, and at it.
+        let lines = [(0.0, 1.0), (1.0, 1.0), (9.0, 1.0)];
+        let mut free = window(C, lines, 100.0)?;
+        free.play(2);
+        let second = free.events()[1].time;
+        for (horizon, events) in [(second, 2), (second * (1.0 - 1e-12), 1)] {
+            let mut until = window(C, lines, horizon)?;
+            assert_eq!(until.play(3), None);
+            assert_eq!(until.events().len(), events, "horizon {horizon}");
+        }
+        let mut late = window(C, [(0.5, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0)?;
         assert_eq!(late.play(3), None);
         assert_eq!(late.events().len(), 3);
+        Ok(())
     }
 
     #[test]
-    fn ties_go_to_the_lowest_index_and_times_never_fall() {
-        let mut window = window(C, [(1.0, 1.0), (0.0, 1.0), (0.0, 1.0)], 100.0);
+    fn ties_go_to_the_lowest_index_and_times_never_fall() -> Result<(), crate::Error> {
+        let mut window = window(C, [(1.0, 1.0), (0.0, 1.0), (0.0, 1.0)], 100.0)?;
         assert_eq!(window.play(3), None);
         let nodes: Vec<_> = window.events().iter().map(|e| e.node).collect();
         assert_eq!(nodes, [8, 9, 7]);
         assert!(window.events().is_sorted_by(|a, b| a.time <= b.time));
+        Ok(())
     }
 
     #[test]
-    fn a_pivot_that_is_not_positive_ends_the_window() {
+    fn a_pivot_that_is_not_positive_ends_the_window() -> Result<(), crate::Error> {
         let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let mut window = window(singular, [(0.0, 1.0), (0.0, 2.0), (9.0, 1.0)], 100.0);
+        let mut window = window(singular, [(0.0, 1.0), (0.0, 2.0), (9.0, 1.0)], 100.0)?;
         let bad = window.play(3);
         assert!(
             matches!(
@@ -249,14 +266,16 @@ mod tests {
             "{bad:?}"
         );
         assert_eq!(window.events().len(), 1);
+        Ok(())
     }
 
     #[test]
-    fn nodes_of_forgotten_events_are_not_watched_any_more() {
-        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0);
+    fn nodes_of_forgotten_events_are_not_watched_any_more() -> Result<(), crate::Error> {
+        let mut window = window(C, [(0.0, 1.0), (1.0, 1.0), (5.0, 1.0)], 100.0)?;
         window.play(2);
         window.truncate(1);
         assert_eq!((window.events().len(), window.touched().len()), (1, 1));
         assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
+        Ok(())
     }
 }

@@ -77,13 +77,7 @@ impl Windowed {
         }
         run.join(&self.window)?;
         if self.growth == ContactGrowth::Monotone {
-            // An estimate that keeps failing must not make the search long.
-            let mut fewest = 1;
-            self.verify(run, |later| {
-                let dropped = later.max(fewest);
-                fewest *= 2;
-                dropped
-            })?;
+            self.verify(run)?;
         }
         if self.window.events().len() < played {
             failure = None;
@@ -146,17 +140,16 @@ impl Windowed {
     }
 
     /// Checks the contact after the window from a solution there, and takes back its last events as long as
-    /// that contradicts them: `how_many(later)` of them, of which `later` come after the first
-    /// contradiction. Gaps only close, so that none has overlapped where none does at the end; and the
-    /// first event follows from a solution, and needs no check.
+    /// that contradicts them: those after the first contradiction. Gaps only close, so that none has
+    /// overlapped where none does at the end; and the first event follows from a solution, and needs no
+    /// check.
     ///
     /// The next window needs the same solution and the same displacements, and finds them.
-    fn verify<U: LinearUpdater>(
-        &mut self,
-        run: &mut LoadingRun<U>,
-        mut how_many: impl FnMut(usize) -> usize,
-    ) -> Result<(), Error> {
+    fn verify<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         let start = run.front.approach();
+        // When the first contradiction was is an estimate, which must not make the search long if it keeps
+        // failing.
+        let mut fewest = 1;
         while let [_, .., last] = self.window.events() {
             let end = start + last.time;
             run.renew_field(end)?;
@@ -166,7 +159,8 @@ impl Windowed {
             let events = self.window.events();
             let later = events.iter().rev();
             let later = later.take_while(|event| start + event.time > until).count();
-            let dropped = how_many(later).clamp(1, events.len() - 1);
+            let dropped = later.max(fewest).min(events.len() - 1);
+            fewest *= 2;
             self.window.truncate(events.len() - dropped);
             run.truncate(run.contact.len() - dropped)?;
             run.timings.taken_back += dropped;

@@ -30,15 +30,21 @@ impl Perimeter {
     /// Number of sides, those on the border included.
     #[must_use]
     pub fn sides(&self) -> usize {
-        self.along_x + self.along_y + self.border_along_x + self.border_along_y
+        let sides = [
+            self.along_x,
+            self.along_y,
+            self.border_along_x,
+            self.border_along_y,
+        ];
+        sides.into_iter().fold(0, usize::saturating_add)
     }
 
     /// Length \[m\], the border included. It is the length along the sides of cells: 4/π times that of a
     /// smooth line, on average over its directions.
     #[must_use]
     pub fn length(&self, grid: &Grid) -> f64 {
-        let along_x = self.along_x + self.border_along_x;
-        let along_y = self.along_y + self.border_along_y;
+        let along_x = self.along_x.saturating_add(self.border_along_x);
+        let along_y = self.along_y.saturating_add(self.border_along_y);
         along_x as f64 * grid.dx() + along_y as f64 * grid.dy()
     }
 
@@ -60,7 +66,7 @@ impl Perimeter {
     /// Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
     #[must_use]
     pub fn corrected_area(&self, contact_nodes: usize, grid: &Grid) -> f64 {
-        let sides = (self.along_x + self.along_y) as f64;
+        let sides = self.along_x.saturating_add(self.along_y) as f64;
         grid.cell_area() * (contact_nodes as f64 - Self::AREA_CORRECTION * sides)
     }
 

@@ -95,7 +95,8 @@ impl HeightMap {
     /// Mean height `h̄` \[m\].
     #[must_use]
     pub fn mean_height(&self) -> f64 {
-        self.mean(|z| z)
+        let unit = self.unit();
+        unit * self.mean(|z| z / unit)
     }
 
     /// Height of the highest node above the lowest \[m\]: S_z of ISO 25178-2.
@@ -111,8 +112,8 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn mean_absolute_height(&self) -> f64 {
-        let mean = self.mean_height();
-        self.mean(|z| (z - mean).abs())
+        let (unit, mean) = (self.unit(), self.mean_height());
+        unit * self.mean(|z| (z / unit - mean / unit).abs())
     }
 
     /// Root mean square height about the mean height \[m\]; no tilt is removed.
@@ -122,8 +123,8 @@ impl HeightMap {
     /// ```
     #[must_use]
     pub fn rms_height(&self) -> f64 {
-        let mean = self.mean_height();
-        self.mean(|z| (z - mean) * (z - mean)).sqrt()
+        let (unit, mean) = (self.unit(), self.mean_height());
+        unit * self.mean(|z| (z / unit - mean / unit).powi(2)).sqrt()
     }
 
     /// Skewness of the heights, 0 for a symmetric distribution; NaN if all are equal.
@@ -185,6 +186,17 @@ impl HeightMap {
             grid.dy(),
         );
         (along_x, along_y)
+    }
+
+    /// A power of two of the size of the heights, by which they are divided so that neither sums nor squares over-
+    /// or underflow: it changes no digit of anything else.
+    fn unit(&self) -> f64 {
+        let greatest = self.heights.amax();
+        if greatest > 0.0 {
+            libm::scalbn(1.0, libm::ilogb(greatest))
+        } else {
+            1.0
+        }
     }
 
     /// Mean of a function of the height, summed column by column to keep rounding small.

@@ -271,7 +271,7 @@ mod tests {
             match self.lie {
                 "matrix" => schur.matrix_mut()[(0, 0)] *= 1.0 + 1e-6,
                 "row sums" => schur.row_sums_mut()[0] *= 2.0,
-                "size" => schur.resize(nodes.len() + 1),
+                "size" => schur.resize(nodes.len() + 1)?,
                 _ => {}
             }
             Ok(())

@@ -57,7 +57,7 @@ impl LinearUpdater for Dense {
         let contact = contact.order();
         let coupling = Self::influence(problem, contact, nodes)?;
         let solved = Self::factor(problem, contact)?.solve(&coupling);
-        schur.resize(nodes.len());
+        schur.resize(nodes.len())?;
         let complement = Self::influence(problem, nodes, nodes)? - coupling.transpose() * &solved;
         schur.matrix_mut().copy_from(&complement);
         let sums = Self::rhs(problem, nodes) - solved.transpose() * Self::rhs(problem, contact);
@@ -84,6 +84,7 @@ impl LinearUpdater for Dense {
                 found: request.count,
             });
         };
+        problem.check_nodes(contact)?;
         let rhs = DMatrix::from_fn(contact.len(), 2, |i, c| match c {
             0 => request.approach - problem.initial_gap()[contact[i]],
             _ => 1.0,

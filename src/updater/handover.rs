@@ -152,6 +152,8 @@ impl Handover {
 
     /// Gives up the factor, with its last solution.
     fn hand_over(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        let mut iterations = Box::<ConjugateGradient>::default();
+        iterations.check_room(problem, self.budget, contact.len())?;
         let mut solution = Solution::default();
         // At any approach: with the rate it is known at all others.
         let request = SolveRequest::exact(contact.len(), 0.0);
@@ -164,9 +166,8 @@ impl Handover {
         self.handed_over_at = Some(contact.len());
         // The factor goes before anything takes its place.
         self.stage = Stage::Iterations(Box::default());
-        if let Stage::Iterations(iterations) = &mut self.stage {
-            iterations.take_over(problem, contact, request.approach, &solution)?;
-        }
+        iterations.take_over(problem, contact, request.approach, &solution)?;
+        self.stage = Stage::Iterations(iterations);
         Ok(())
     }
 }
@@ -190,13 +191,17 @@ impl LinearUpdater for Handover {
         touched: &Touched,
     ) -> Result<(), Error> {
         self.updater_mut().join(problem, contact, touched)?;
-        match &self.stage {
-            Stage::Factor(factor)
-                if !self.factor_serves(factor, problem.grid().nodes(), contact.len()) =>
-            {
-                self.hand_over(problem, contact)
-            }
-            _ => Ok(()),
+        let Stage::Factor(factor) = &self.stage else {
+            return Ok(());
+        };
+        if self.factor_serves(factor, problem.grid().nodes(), contact.len()) {
+            return Ok(());
+        }
+        let fits = self.factor_fits(factor, contact.len());
+        match self.hand_over(problem, contact) {
+            // Slower than iterations would be, but there is room for it.
+            Err(Error::MemoryBudget { .. }) if fits => Ok(()),
+            done => done,
         }
     }
 
@@ -233,7 +238,7 @@ impl LinearUpdater for Handover {
         self.updater().bytes(contact, watched)
     }
 
-    fn make_room(&mut self, bytes: usize) {
+    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
         self.budget = bytes;
         if let Stage::Factor(factor) = &self.stage
             && !self.factor_fits(factor, 0)
@@ -241,5 +246,6 @@ impl LinearUpdater for Handover {
             self.handed_over_at = Some(0);
             self.stage = Stage::Iterations(Box::default());
         }
+        self.updater_mut().make_room(problem, bytes)
     }
 }

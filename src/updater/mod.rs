@@ -162,7 +162,7 @@ impl Default for WindowCost {
 ///     ) -> Result<(), Error> {
 ///         let coupling = influence(problem, contact.order(), nodes);
 ///         let solved = solve(problem, contact.order(), coupling.clone())?;
-///         schur.resize(nodes.len());
+///         schur.resize(nodes.len())?;
 ///         let complement = influence(problem, nodes, nodes) - coupling.transpose() * &solved;
 ///         schur.matrix_mut().copy_from(&complement);
 ///         for (j, &node) in nodes.iter().enumerate() {
@@ -312,10 +312,16 @@ pub trait LinearUpdater {
         0
     }
 
-    /// Tells the updater how many bytes are left for it, before the first node is in contact. The path
-    /// holds what [`bytes`](Self::bytes) says to that; an updater need not do anything.
-    fn make_room(&mut self, bytes: usize) {
-        let _ = bytes;
+    /// Tells the updater how many bytes are left for it on a problem, before the first node is in contact and
+    /// before it allocates anything. The path holds what [`bytes`](Self::bytes) says to that; an updater
+    /// need not do anything.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] if the updater needs more for the grid alone.
+    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
+        let _ = (problem, bytes);
+        Ok(())
     }
 }
 
@@ -371,8 +377,8 @@ impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
         (**self).bytes(contact, watched)
     }
 
-    fn make_room(&mut self, bytes: usize) {
-        (**self).make_room(bytes);
+    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
+        (**self).make_room(problem, bytes)
     }
 }
 

@@ -4,7 +4,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrixView, DMatrixViewMut};
 
-use crate::parallel;
+use crate::{Error, UpdaterError, parallel};
 
 /// Columns that a thread changes at a time.
 const TILE: usize = 144;
@@ -29,11 +29,22 @@ impl Schur {
     }
 
     /// Prepares for k watched nodes. What was there before is lost; what is there is unspecified.
-    pub fn resize(&mut self, size: usize) {
+    ///
+    /// # Errors
+    ///
+    /// [`UpdaterError::TooManyWatched`] if no memory is to be had for k² numbers; then nothing has changed.
+    pub fn resize(&mut self, size: usize) -> Result<(), Error> {
+        let too_many = || Error::Updater(UpdaterError::TooManyWatched { nodes: size });
+        let numbers = size.checked_mul(size).ok_or_else(too_many)?;
+        for (values, count) in [(&mut self.matrix, numbers), (&mut self.row_sums, size)] {
+            let more = count.saturating_sub(values.len());
+            values.try_reserve(more).map_err(|_| too_many())?;
+        }
         self.size = size;
-        self.matrix.resize(size * size, 0.0);
+        self.matrix.resize(numbers, 0.0);
         self.row_sums.resize(size, 0.0);
         self.displacements = None;
+        Ok(())
     }
 
     /// Displacements of the watched nodes under the pressure of the last solution and under its rate, if the
@@ -108,5 +119,29 @@ impl Schur {
             *value = self.matrix[j + k * i];
         }
         column[j..k].copy_from_slice(&self.matrix[j + k * j..k * (j + 1)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_that_no_memory_holds_is_refused() -> Result<(), Error> {
+        let mut schur = Schur::default();
+        schur.resize(3)?;
+        // Squares that overflow, and one of 2⁶² numbers.
+        for size in [1 << 31, 1 << 32, (1 << 32) + 1, usize::MAX] {
+            let refused = schur.resize(size);
+            assert!(
+                matches!(
+                    refused,
+                    Err(Error::Updater(UpdaterError::TooManyWatched { nodes })) if nodes == size
+                ),
+                "{refused:?}"
+            );
+            assert_eq!((schur.size(), schur.matrix().shape()), (3, (3, 3)));
+        }
+        Ok(())
     }
 }

@@ -36,7 +36,7 @@ impl Touched {
     /// position that is not there or comes twice.
     pub fn of(mut schur: Schur, positions: &[usize]) -> Result<Self, Error> {
         let mut touched = Self::default();
-        touched.reset(schur.size());
+        touched.reset(schur.size(), positions.len().min(schur.size()));
         for &position in positions {
             if position >= schur.size() || touched.has_touched(position) {
                 return Err(Error::LengthMismatch {
@@ -103,15 +103,15 @@ impl Touched {
             .unwrap_or(0.0)
     }
 
-    /// Forgets all events and prepares for a window of `watched` nodes.
-    pub(crate) fn reset(&mut self, watched: usize) {
+    /// Forgets all events and prepares for up to `events` in a window of `watched` nodes.
+    pub(crate) fn reset(&mut self, watched: usize, events: usize) {
         self.watched = watched;
         self.positions.clear();
         self.factor.clear();
         self.subtracted = 0;
         // So that no event ever allocates.
-        self.positions.reserve(watched);
-        self.factor.reserve(watched * watched);
+        self.positions.reserve(events);
+        self.factor.reserve(events * watched);
     }
 
     /// Eliminates the node at `position`, and returns its column of R.
@@ -208,7 +208,7 @@ mod tests {
 
     fn schur() -> Schur {
         let mut schur = Schur::default();
-        schur.resize(WATCHED);
+        schur.resize(WATCHED).unwrap();
         let mut matrix = schur.matrix_mut();
         for j in 0..WATCHED {
             for i in 0..WATCHED {

@@ -137,6 +137,41 @@ fn starts_that_are_no_solutions() {
     assert!(matches!(error, Error::NotPositive { .. }), "{error}");
 }
 
+/// Rates that overflow as soon as they are used: the limit of iterations holds, whatever becomes of the start.
+#[test]
+fn starts_that_overflow_come_to_an_end() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let map = rough(&grid, 3);
+    for kernel in Kernel::all(grid, 1.0) {
+        let good = solver(&map, &kernel, 1e-8).solve(0.01).unwrap();
+        // Without any limit it must be noticed that nothing is a number any more.
+        for iterations in [7, 5000, usize::MAX] {
+            for value in [f64::MAX, f64::MAX / 1e3, -f64::MAX, 1e200, -1e160, 1e-310] {
+                let mut bad = good.clone();
+                bad.pressure_rate.fill(value);
+                let mut other = good.clone();
+                other.displacement.fill(value);
+                let mut third = good.clone();
+                third.pressure[(3, 3)] = value.abs();
+                for start in [bad, other, third] {
+                    let mut solver = FixedLoadSolver::builder(&map, &kernel)
+                        .max_iterations(iterations)
+                        .build()
+                        .unwrap();
+                    match solver.solve_from(&start, 0.0101) {
+                        Ok(solution) => check(&solver, &solution, 1e-8),
+                        Err(Error::NoConvergence {
+                            iterations: spent, ..
+                        }) => assert!(spent <= iterations, "{spent} of {iterations}"),
+                        Err(Error::FactorizationFailed { .. }) => {}
+                        Err(error) => panic!("{value:e}: {error}"),
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// A kernel by which a node displaces itself by 1 and all others by the same other number.
 struct Uniform(Grid, f64);
 

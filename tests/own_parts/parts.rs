@@ -120,7 +120,7 @@ impl LinearUpdater for Bordering {
         let coupling = Self::influence(problem, order, nodes);
         let eliminated = coupling.transpose() * &self.inverse;
         let complement = Self::influence(problem, nodes, nodes) - &eliminated * &coupling;
-        schur.resize(nodes.len());
+        schur.resize(nodes.len())?;
         let sums = problem.row_sums();
         for (i, &node) in nodes.iter().enumerate() {
             let inside = eliminated.row(i);

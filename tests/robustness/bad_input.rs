@@ -183,7 +183,7 @@ impl LinearUpdater for Malformed {
     ) -> Result<(), Error> {
         self.inner.watch(problem, contact, nodes, schur)?;
         match self.what {
-            "size" => schur.resize(nodes.len() + 1),
+            "size" => schur.resize(nodes.len() + 1)?,
             "nan" => schur.matrix_mut().fill(f64::NAN),
             _ => (),
         }

@@ -3,7 +3,11 @@
 use crate::common::with_window;
 use asperity::loading::{History, LoadingSolver};
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactRule, Error, Grid, LoadingState};
+use asperity::updater::ConjugateGradient;
+use asperity::{
+    Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
+    LoadingState, PeriodicBoussinesq,
+};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -207,17 +211,16 @@ fn powers_of_two_scale_exactly() {
     }
 }
 
-/// Named extremes: tiny heights on large cells and the reverse, soft and hard.
+/// Heights, cells and moduli far from 1 are fine as long as pressures, loads and energies are.
 #[test]
 fn sensible_paths_far_from_one() {
     let heights = DMatrix::from_fn(4, 5, |ix, iy| ((3 * ix + 7 * iy) as f64).cos());
     for (height, cell, e_star) in [
-        (1e-300, 1e150, 1.0),
-        (1e-300, 1e100, 1e100),
-        (1e-150, 1e-150, 1e150),
+        (1e-130, 1e100, 1e100),
+        (1e-60, 1e-60, 1e60),
         (1e100, 1e-50, 1e-50),
         (1e-9, 1e-9, 1e11),
-        (1e150, 1e120, 1e-150),
+        (1e100, 1e120, 1e-15),
     ] {
         let grid = Grid::new(4, 5, cell, cell).unwrap();
         let states = run(
@@ -231,5 +234,131 @@ fn sensible_paths_far_from_one() {
             Ok(states) => assert!(states.len() == 20 && states.iter().all(finite)),
             Err(error) => panic!("height {height:e}, cell {cell:e}, E* {e_star:e}: {error}"),
         }
+    }
+}
+
+/// Beyond that they are refused before anything is computed, whatever it is that would not be a number: the
+/// square of a length, a pressure, a load, an energy.
+#[test]
+fn scales_too_far_apart_are_refused_at_the_door() {
+    let heights = DMatrix::from_fn(4, 5, |ix, iy| ((3 * ix + 7 * iy) as f64).cos());
+    for (height, cell, e_star) in [
+        (1e-150, 1.0, 1.0),
+        (1e150, 1.0, 1.0),
+        (5e-324, 1.0, 1.0),
+        (1e-100, 1.0, 1e-50),
+        (1e100, 1.0, 1e50),
+        (1.0, 1e150, 1.0),
+        (1.0, 1.0, 1e150),
+        (1e-300, 1e150, 1.0),
+        (1e-130, 1e-100, 1.0),
+        (1e120, 1e60, 1.0),
+    ] {
+        let grid = Grid::new(4, 5, cell, cell).unwrap();
+        let kernel = Boussinesq::new(grid, e_star).unwrap();
+        let surface = HeightMap::new(&heights * height).unwrap();
+        let refused = [
+            LoadingSolver::new(&surface, &kernel).map(drop),
+            FixedLoadSolver::new(&surface, &kernel).map(drop),
+        ];
+        for refused in refused {
+            assert!(
+                matches!(refused, Err(Error::OutOfRange { .. })),
+                "height {height:e}, cell {cell:e}, E* {e_star:e}: {refused:?}"
+            );
+        }
+    }
+}
+
+/// A gap so small that it, or its pressure, underflows is closed: the node is one of those that touch first,
+/// and its neighbours do not come into it.
+#[test]
+fn gaps_that_underflow_are_closed() {
+    let grid = Grid::new(4, 3, 1.0, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let order = |tiny: f64| {
+        let mut heights = DMatrix::from_fn(4, 3, |ix, iy| -((1 + ix + 4 * iy) as f64));
+        heights[(1, 1)] = 0.0;
+        heights[(3, 1)] = -tiny;
+        heights[(2, 2)] = -2.0 * tiny;
+        let surface = HeightMap::new(heights).unwrap();
+        for iterations in [false, true] {
+            let builder = LoadingSolver::builder(&surface, &kernel);
+            let states: Vec<_> = if iterations {
+                let path = builder.updater(ConjugateGradient::new()).build().unwrap();
+                path.map(Result::unwrap).collect()
+            } else {
+                builder.build().unwrap().map(Result::unwrap).collect()
+            };
+            assert_eq!(states.len(), 12);
+            assert!(states.iter().all(finite));
+            let first: Vec<_> = states[..3].iter().map(|state| state.node).collect();
+            assert_eq!(first, [(1, 1), (3, 1), (2, 2)]);
+            // Iterations take what is so close for ties.
+            assert_eq!(states[2].approach == 0.0, iterations || tiny < 1e-140);
+        }
+    };
+    for tiny in [5e-324, 1e-310, 1e-200, 1e-141, 1e-100, 1e-30] {
+        order(tiny);
+    }
+}
+
+/// What is asked of a single load is as far from zero and infinity as what it is computed from.
+#[test]
+fn extreme_loads_and_approaches_are_refused() {
+    let grid = Grid::new(6, 5, 1.0, 1.0).unwrap();
+    let heights = DMatrix::from_fn(6, 5, |ix, iy| ((3 * ix + 7 * iy) as f64).cos());
+    let surface = HeightMap::new(heights).unwrap();
+    let kernels: [Box<dyn InfluenceKernel>; 2] = [
+        Box::new(Boussinesq::new(grid, 1.0).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
+    ];
+    for kernel in &kernels {
+        for tolerance in [1e-8, 0.999] {
+            let builder = FixedLoadSolver::builder(&surface, kernel).tolerance(tolerance);
+            let mut solver = builder.build().unwrap();
+            // From the least number that is not 0 to the greatest.
+            for exponent in -322..=308 {
+                let value = format!("1e{exponent}").parse().unwrap();
+                for target in [ContactTarget::Load(value), ContactTarget::Approach(value)] {
+                    match solver.solve_target(target) {
+                        Ok(solution) => {
+                            let state = solution.state;
+                            for value in [state.approach, state.load, state.energy] {
+                                assert!(value.is_normal() && value > 0.0, "{target:?}: {state:?}");
+                            }
+                            let fields = [
+                                &solution.pressure,
+                                &solution.gap,
+                                &solution.displacement,
+                                &solution.pressure_rate,
+                            ];
+                            let mut values = fields.into_iter().flatten();
+                            assert!(values.all(|value| value.is_finite()), "{target:?}");
+                            assert!(state.mean_gap.is_finite(), "{target:?}: {state:?}");
+                        }
+                        Err(Error::OutOfRange { .. }) => {
+                            assert!(!(1e-130..1e130).contains(&value), "{target:?}");
+                        }
+                        Err(Error::ApproachNotReached { .. }) => (),
+                        Err(error) => panic!("{target:?}, tolerance {tolerance}: {error}"),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Statistics of maps whose squares would not be numbers.
+#[test]
+fn statistics_of_heights_of_any_size() {
+    let heights = DMatrix::from_row_slice(2, 2, &[1.0, 3.0, -1.0, 1.0]);
+    for height in [1e-300, 1e-200, 1e-154, 1.0, 1e154, 1e200, 5e307] {
+        let map = HeightMap::new(&heights * height).unwrap();
+        // A few roundings.
+        let near = |value: f64, expected: f64| (value / height - expected).abs() < 1e-14;
+        assert!(near(map.mean_height(), 1.0), "{height:e}");
+        assert!(near(map.mean_absolute_height(), 1.0), "{height:e}");
+        assert!(near(map.rms_height(), 2_f64.sqrt()), "{height:e}");
     }
 }

@@ -2,7 +2,11 @@
 
 use crate::common::Sphere;
 use asperity::loading::{ContactEvent, LoadingBuilder, LoadingEnd};
-use asperity::{Error, LoadingState};
+use asperity::surface::HeightMap;
+use asperity::{
+    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
+};
+use nalgebra::DMatrix;
 
 /// A limit of a builder.
 type Limit = fn(LoadingBuilder<'_>, f64) -> LoadingBuilder<'_>;
@@ -173,6 +177,39 @@ fn a_limit_at_an_event_is_that_event() {
                 .all(|state| state.event == ContactEvent::Touch)
         );
         assert_eq!(states.last().unwrap().load, state.load);
+    }
+}
+
+/// The same of approach and mean gap, on a half-space of arbitrary mean displacement too: its approach is that of
+/// the mean planes, whatever the gauge. Windows of one node, so that a limit changes none.
+#[test]
+fn limits_of_approach_and_mean_gap_at_an_event() {
+    let grid = Grid::new(5, 4, 1.0, 1.0).unwrap();
+    let heights = DMatrix::from_fn(5, 4, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
+    let surface = HeightMap::new(heights).unwrap();
+    let kernels: [&dyn InfluenceKernel; 2] = [
+        &Boussinesq::new(grid, 1.0).unwrap(),
+        &PeriodicBoussinesq::new(grid, 1.0).unwrap(),
+    ];
+    for kernel in kernels {
+        let builder = || LoadingSolver::builder(&surface, kernel).window_size(1);
+        let all: Vec<_> = builder().build().unwrap().map(Result::unwrap).collect();
+        for state in &all[1..19] {
+            for limited in [
+                builder().max_approach(state.approach),
+                builder().min_mean_gap(state.mean_gap),
+            ] {
+                let states: Vec<_> = limited.build().unwrap().map(Result::unwrap).collect();
+                assert_eq!(states, all[..state.step]);
+            }
+            // A little less is a state of its own.
+            let less = state.approach * (1.0 - 1e-9);
+            let limited = builder().max_approach(less).build().unwrap();
+            let states: Vec<_> = limited.map(Result::unwrap).collect();
+            let last = states.last().unwrap();
+            assert_eq!((last.event, last.approach), (ContactEvent::Limit, less));
+            assert_eq!(states.len(), state.step);
+        }
     }
 }
 

@@ -7,5 +7,9 @@ mod common;
 mod bad_input;
 mod bad_kernels;
 mod extreme_numbers;
+mod hostile_calls;
 mod limits;
 mod memory_budget;
+#[cfg(feature = "rayon")]
+mod memory_peaks;
+mod small_and_tied;

@@ -67,7 +67,7 @@ pub struct KernelReport {
 /// # Ok::<(), asperity::Error>(())
 /// ```
 pub fn check<K: InfluenceKernel + ?Sized>(kernel: &K) -> Result<KernelReport, Error> {
-    let table = regular(KernelTable::new(kernel)?);
+    let table = KernelTable::new(kernel)?.regular();
     let least_symbol = match table.boundary() {
         Boundary::Free => None,
         Boundary::Periodic => Some(least_symbol(&table)?),
@@ -94,16 +94,6 @@ pub fn check<K: InfluenceKernel + ?Sized>(kernel: &K) -> Result<KernelReport, Er
     Ok(report)
 }
 
-/// The same kernel in a gauge in which its matrix is not singular.
-fn regular(table: KernelTable) -> KernelTable {
-    // Far above the rounding of a mean, and far below any gauge that is chosen on purpose.
-    let least = 1e-12 * table.self_influence();
-    match (table.gauge(), table.computing_gauge()) {
-        (Some(gauge), Some(other)) if gauge < least => table.in_gauge(other),
-        _ => table,
-    }
-}
-
 /// The least value of the symbol, by a Fourier transform of one period.
 fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
     let grid = table.grid();
@@ -125,20 +115,8 @@ fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
     for (place, value) in columns.iter().enumerate().skip(skipped) {
         let value = value.re;
         if value <= rounding {
-            let wave_vector = |k: usize, n: usize, side: f64| {
-                let signed = if 2 * k > n {
-                    k as f64 - n as f64
-                } else {
-                    k as f64
-                };
-                std::f64::consts::TAU * signed / side
-            };
-            let (lx, ly) = grid.sides();
             return Err(Error::Kernel(KernelError::SymbolNotPositive {
-                q: (
-                    wave_vector(place / ny, nx, lx),
-                    wave_vector(place % ny, ny, ly),
-                ),
+                q: grid.wave_vector(place / ny, place % ny),
                 value,
             }));
         }

@@ -9,6 +9,10 @@ use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
+/// A gauge below this part of a good one makes the matrix of full contact, which is singular in the zero gauge,
+/// worse conditioned than any other.
+const LEAST_GAUGE: f64 = 1e-3;
+
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
 ///
 /// A table is a kernel itself: besides [`new`](Self::new), which evaluates another kernel,
@@ -104,7 +108,7 @@ impl KernelTable {
         mut coefficient: impl FnMut(isize, isize) -> f64,
     ) -> Result<Self, Error> {
         let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
-        let mut values = Vec::with_capacity((2 * grid.nx() - 1) * (2 * grid.ny() - 1));
+        let mut values = Vec::with_capacity(Self::count(&grid));
         for dj in 1 - ny..ny {
             for di in 1 - nx..nx {
                 let value = coefficient(di, dj);
@@ -311,6 +315,15 @@ impl KernelTable {
         self.gauge().map(|mean| of_coefficients(mean, least))
     }
 
+    /// The same kernel in a gauge in which its matrix is well conditioned, also on the whole grid: where its own
+    /// gauge is far less than [`Self::computing_gauge`].
+    pub(crate) fn regular(self) -> Self {
+        match (self.gauge(), self.computing_gauge()) {
+            (Some(gauge), Some(other)) if gauge < LEAST_GAUGE * other => self.in_gauge(other),
+            _ => self,
+        }
+    }
+
     /// The coefficient at offset (di, dj), or `None` if it lies outside the grid.
     #[must_use]
     pub fn coefficient(&self, di: isize, dj: isize) -> Option<f64> {
@@ -329,9 +342,14 @@ impl KernelTable {
         self.values[self.center()]
     }
 
-    /// Bytes held.
-    pub(crate) fn bytes(&self) -> usize {
-        self.values.len() * size_of::<f64>()
+    /// Bytes of the table of a grid.
+    pub(crate) fn bytes_on(grid: &Grid) -> usize {
+        Self::count(grid) * size_of::<f64>()
+    }
+
+    /// Number of offsets on a grid.
+    fn count(grid: &Grid) -> usize {
+        (2 * grid.nx() - 1) * (2 * grid.ny() - 1)
     }
 
     /// Place of offset (0, 0).

@@ -53,20 +53,6 @@ fn on_the_waves(
     mut symbol: impl FnMut(f64, f64) -> f64,
 ) -> Result<Vec<f64>, Error> {
     let (nx, ny) = grid.shape();
-    let (lx, ly) = grid.sides();
-    let wave_vectors = |n: usize, side: f64| -> Vec<f64> {
-        (0..n)
-            .map(|k| {
-                let signed = if 2 * k > n {
-                    k as f64 - n as f64
-                } else {
-                    k as f64
-                };
-                std::f64::consts::TAU * signed / side
-            })
-            .collect()
-    };
-    let (along_x, along_y) = (wave_vectors(nx, lx), wave_vectors(ny, ly));
     let mut value_at = |qx: f64, qy: f64| {
         let value = symbol(qx, qy);
         if value > 0.0 && value.is_finite() {
@@ -79,8 +65,9 @@ fn on_the_waves(
         }
     };
     let mut values = Vec::with_capacity(nx * ny);
-    for (ky, &qy) in along_y.iter().enumerate() {
-        for (kx, &qx) in along_x.iter().enumerate() {
+    for ky in 0..ny {
+        for kx in 0..nx {
+            let (qx, qy) = grid.wave_vector(kx, ky);
             if (kx, ky) == (0, 0) {
                 values.push(match mean {
                     MeanDisplacement::Arbitrary => 0.0,

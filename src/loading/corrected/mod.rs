@@ -270,7 +270,7 @@ impl Corrected {
         for &position in joined {
             run.contact.push(watched.nodes[position])?;
         }
-        let touched = Touched::of(watched.complement(), joined)?;
+        let touched = Touched::of(watched.complement()?, joined)?;
         run.updater.join(&run.problem, &run.contact, &touched)?;
         let approach = run.front.approach() + time;
         self.rate_span = time.max(self.last_span);

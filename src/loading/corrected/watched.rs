@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::correction::AtEnd;
 use super::play::{Course, Played};
 use super::scales::Scales;
+use crate::Error;
 use crate::loading::run::LoadingRun;
 use crate::updater::Schur;
 
@@ -31,11 +32,11 @@ impl Watched {
     }
 
     /// The Schur complement as an updater gives it.
-    pub(super) fn complement(&self) -> Schur {
+    pub(super) fn complement(&self) -> Result<Schur, Error> {
         let mut schur = Schur::default();
-        schur.resize(self.nodes.len());
+        schur.resize(self.nodes.len())?;
         schur.matrix_mut().copy_from(&self.schur);
-        schur
+        Ok(schur)
     }
 
     /// What the solution at the front, the window's end, says of the watched nodes.

@@ -60,6 +60,7 @@ impl Factor {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
+        problem.check_nodes(contact.order())?;
         check_count(self.len(), contact.len())?;
         let start = Instant::now();
         let kept = self.watch(nodes);
@@ -75,7 +76,7 @@ impl Factor {
         let forward_done = Instant::now();
         self.timings.forward += forward_done - start;
 
-        schur.resize(nodes.len());
+        schur.resize(nodes.len())?;
         let matrix = schur.as_mut_slice();
         for (j, column) in matrix.chunks_mut(nodes.len().max(1)).enumerate() {
             table.fill_column(places[j], &places[j..], &mut column[j..]);
@@ -140,6 +141,12 @@ impl Factor {
         position: usize,
     ) -> Result<Rotations, Error> {
         check_count(self.len(), contact.len() + 1)?;
+        if position >= self.len() {
+            return Err(Error::NodeOutOfGrid {
+                node: position,
+                nodes: self.len(),
+            });
+        }
         let start = Instant::now();
         self.watched.clear();
         let rotations = remove(&mut self.panels, position);

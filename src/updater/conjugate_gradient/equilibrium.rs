@@ -62,10 +62,6 @@ impl Field {
             }
         }
     }
-
-    fn bytes(&self) -> usize {
-        size_of_val(&self.pressure[..]) + size_of_val(&self.displacement[..])
-    }
 }
 
 impl Equilibrium {
@@ -143,9 +139,5 @@ impl Equilibrium {
                 }
             }
         }
-    }
-
-    pub(super) fn bytes(&self) -> usize {
-        self.load.bytes() + self.rate.bytes()
     }
 }

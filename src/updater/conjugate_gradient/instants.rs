@@ -52,11 +52,6 @@ impl Instants {
             }
         }
     }
-
-    /// Bytes held at most on a grid of so many nodes.
-    pub(super) fn bytes(nodes: usize) -> usize {
-        MOST * nodes * size_of::<f32>()
-    }
 }
 
 #[cfg(test)]

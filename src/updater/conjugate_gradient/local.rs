@@ -68,6 +68,11 @@ impl Neighbourhood {
         }
     }
 
+    /// The grid of the nodes.
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
     /// The contact nodes nearest to a node, in whole shells of one distance, so that symmetry is kept.
     fn nearest(&self, set: &NodeSet, node: usize) -> Vec<u32> {
         if set.len() <= NEAREST {

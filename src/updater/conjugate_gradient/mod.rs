@@ -19,6 +19,11 @@ use crate::{Error, Problem};
 use state::State;
 use tolerances::Criteria;
 
+/// Bytes held at most for each node of the grid, and in addition for each one in contact: measured, see
+/// `tests/robustness/memory_budget.rs`.
+const BYTES_A_NODE: usize = 450;
+const BYTES_A_CONTACT_NODE: usize = 3000;
+
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
 ///
@@ -29,7 +34,7 @@ use tolerances::Criteria;
 ///   approach. It starts from the last one, and from what the watched nodes did to the contact near them.
 /// * A Schur complement is not exact. Inside a window it acts on what has changed since the window began
 ///   only, and there the contact near a node answers for nearly all of it. With the local solutions
-///   `x_j = C_KK⁻¹ C_Kj` on the 96 nearest contact nodes K of each watched node j,
+///   `x_j = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
 ///
 ///   ```math
 ///   \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
@@ -43,6 +48,8 @@ use tolerances::Criteria;
 pub struct ConjugateGradient {
     criteria: Criteria,
     state: Option<State>,
+    /// Nodes of the grid, once they are known.
+    nodes: usize,
 }
 
 impl Default for ConjugateGradient {
@@ -53,6 +60,7 @@ impl Default for ConjugateGradient {
                 max_iterations: 5000,
             },
             state: None,
+            nodes: 0,
         }
     }
 }
@@ -81,6 +89,43 @@ impl ConjugateGradient {
         let mut updater = Self::default();
         updater.criteria.tolerance = tolerance;
         Ok(updater)
+    }
+
+    /// What there is for a problem, made at first use.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] for a problem on another grid than the one before, and
+    /// [`Error::NodeOutOfGrid`] for a contact that is not one of it.
+    fn state(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<&mut State, Error> {
+        problem.check_nodes(contact.order())?;
+        let state = self.state.get_or_insert_with(|| State::new(problem));
+        state.grid().check_shape(problem.grid().shape())?;
+        Ok(state)
+    }
+
+    /// `Ok` if a budget in bytes is enough for a grid with so many nodes in contact.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] otherwise.
+    pub(super) fn check_room(
+        &mut self,
+        problem: &Problem,
+        budget: usize,
+        contact: usize,
+    ) -> Result<(), Error> {
+        self.nodes = problem.grid().nodes();
+        let needed = self.bytes(contact, 0);
+        if needed <= budget {
+            return Ok(());
+        }
+        let fixed = self.bytes(0, 0);
+        Err(Error::MemoryBudget {
+            needed,
+            budget,
+            nodes_that_fit: budget.saturating_sub(fixed) / BYTES_A_CONTACT_NODE,
+        })
     }
 
     /// Begins with a contact and the solution on it.
@@ -112,9 +157,10 @@ impl LinearUpdater for ConjugateGradient {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
-        let state = self.state.get_or_insert_with(|| State::new(problem));
+        let criteria = self.criteria;
+        let state = self.state(problem, contact)?;
         check_count(state.count(), contact.len())?;
-        inside(|| state.watch(self.criteria, problem, contact, nodes, schur))
+        inside(|| state.watch(criteria, problem, contact, nodes, schur))
     }
 
     /// Nothing happens before the next solution, which finds the nodes in the contact.
@@ -124,8 +170,7 @@ impl LinearUpdater for ConjugateGradient {
         contact: &ContactSequence,
         touched: &Touched,
     ) -> Result<(), Error> {
-        problem.check_nodes(contact.order())?;
-        let state = self.state.get_or_insert_with(|| State::new(problem));
+        let state = self.state(problem, contact)?;
         let joined = contact.len().checked_sub(state.count());
         match joined {
             Some(joined) if joined >= touched.len() => Ok(()),
@@ -140,17 +185,16 @@ impl LinearUpdater for ConjugateGradient {
         request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        problem.check_nodes(contact.order())?;
         if request.count > contact.len() {
             return check_count(contact.len(), request.count);
         }
-        let state = self.state.get_or_insert_with(|| State::new(problem));
-        inside(|| state.solve(self.criteria, problem, contact, request, solution))
+        let criteria = self.criteria;
+        let state = self.state(problem, contact)?;
+        inside(|| state.solve(criteria, problem, contact, request, solution))
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        let state = self.state.get_or_insert_with(|| State::new(problem));
-        state.truncate(contact);
+        self.state(problem, contact)?.truncate(contact);
         Ok(())
     }
 
@@ -161,8 +205,7 @@ impl LinearUpdater for ConjugateGradient {
         _node: usize,
         _position: usize,
     ) -> Result<(), Error> {
-        let state = self.state.get_or_insert_with(|| State::new(problem));
-        state.keep(contact);
+        self.state(problem, contact)?.keep(contact);
         Ok(())
     }
 
@@ -174,7 +217,13 @@ impl LinearUpdater for ConjugateGradient {
         }
     }
 
-    fn bytes(&self, _contact: usize, _watched: usize) -> usize {
-        self.state.as_ref().map_or(0, State::bytes)
+    /// Not before the grid is known, by [`make_room`](Self::make_room).
+    fn bytes(&self, contact: usize, _watched: usize) -> usize {
+        let fixed = self.nodes.saturating_mul(BYTES_A_NODE);
+        fixed.saturating_add(contact.saturating_mul(BYTES_A_CONTACT_NODE))
+    }
+
+    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
+        self.check_room(problem, bytes, 0)
     }
 }

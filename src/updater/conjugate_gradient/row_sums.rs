@@ -55,8 +55,9 @@ impl RowSums {
             if new == 0 {
                 return Ok(());
             }
-            watched.carry_row_sums(contact, &mut self.start);
-            if STALE * new < contact.len() && open > SUMS_OPEN {
+            // Nodes that joined without being watched are not in the start.
+            let follows = watched.carry_row_sums(contact, &mut self.start);
+            if follows && STALE * new < contact.len() && open > SUMS_OPEN {
                 return Ok(());
             }
         }

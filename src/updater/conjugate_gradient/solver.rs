@@ -149,10 +149,6 @@ impl Solver {
         let nodes = self.set.nodes().iter().zip(b);
         nodes.map(|(&node, b)| b - u[node as usize]).collect()
     }
-
-    pub(super) fn bytes(&self) -> usize {
-        self.operator.bytes() + 2 * self.preconditioner.bytes()
-    }
 }
 
 /// The greatest absolute value.

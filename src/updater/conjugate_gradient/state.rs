@@ -12,7 +12,7 @@ use super::watched::Watched;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::updater::{Schur, Solution, SolveRequest};
-use crate::{Boundary, Error, Problem};
+use crate::{Boundary, Error, Grid, Problem};
 
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
@@ -68,18 +68,14 @@ impl State {
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
     }
 
+    /// The grid of the problem.
+    pub(super) fn grid(&self) -> Grid {
+        self.neighbourhood.grid()
+    }
+
     /// Number of nodes in contact that there is a solution or a start for.
     pub(super) fn count(&self) -> usize {
         self.now.count
-    }
-
-    /// Bytes held.
-    pub(super) fn bytes(&self) -> usize {
-        // What there is before the first window will be there twice.
-        let before = self.before.as_ref().unwrap_or(&self.now).bytes();
-        let sums = 3 * self.now.bytes() / 4;
-        let instants = Instants::bytes(self.now.load.pressure.len());
-        self.solver.bytes() + self.now.bytes() + before + sums + instants
     }
 
     pub(super) fn watch(
@@ -105,7 +101,7 @@ impl State {
                 self.now.rate.open(),
             )?;
         }
-        schur.resize(nodes.len());
+        schur.resize(nodes.len())?;
         self.instants.clear();
         let beside = (&self.neighbourhood, self.solver.set());
         self.watched = Watched::new(problem, beside, nodes, contact.len(), schur);
@@ -145,7 +141,7 @@ impl State {
             let solved = self.solve_from(criteria, problem, contact, request, &now);
             self.now = now;
             Some(solved?.0)
-        } else if count == contact.len() && self.now.count <= count {
+        } else if count == contact.len() && self.now.count <= count && request.span > 0.0 {
             let now = mem::take(&mut self.now);
             match self.solve_from(criteria, problem, contact, request, &now) {
                 Ok((solved, directions)) => {

@@ -59,14 +59,20 @@ impl Watched {
         &self.row_sums
     }
 
-    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it.
-    pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) {
+    /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it, and returns whether all nodes that
+    /// joined were watched.
+    pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) -> bool {
         let joined = contact.order().get(self.count..).unwrap_or_default();
-        if let Some((factor, places)) = self.factor_of(joined).filter(|_| !joined.is_empty()) {
-            let left = places.iter().map(|&place| self.row_sums[place]);
-            let solved = factor.solve(&DVector::from_iterator(places.len(), left));
-            self.spread(&places, &solved, pressure);
+        if joined.is_empty() {
+            return true;
         }
+        let Some((factor, places)) = self.factor_of(joined) else {
+            return false;
+        };
+        let left = places.iter().map(|&place| self.row_sums[place]);
+        let solved = factor.solve(&DVector::from_iterator(places.len(), left));
+        self.spread(&places, &solved, pressure);
+        true
     }
 
     /// Adds pressures on some watched nodes, and the answer of the contact near them.

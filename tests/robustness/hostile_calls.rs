@@ -1,0 +1,457 @@
+//! Parts of one's own that contradict themselves, and calls in an order that no path makes: errors or
+//! nonsense, and never a panic.
+
+use std::cell::Cell;
+
+use asperity::contact::ContactSequence;
+use asperity::convolution::{Convolution, direct_sum};
+use asperity::kernel::{self, KernelTable};
+use asperity::surface::{HeightMap, Paraboloid};
+use asperity::updater::{
+    ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
+    SolveRequest, Touched, UpdaterProfile,
+};
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
+    PeriodicBoussinesq, Problem, Spectral,
+};
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+/// A kernel that lives on another grid whenever it is asked.
+struct Restless {
+    asked: Cell<usize>,
+    grids: [Grid; 2],
+    boundaries: [Boundary; 2],
+}
+
+impl Restless {
+    fn new(first: usize) -> Self {
+        Self {
+            asked: Cell::new(first),
+            grids: [(3, 7), (8, 2)].map(|(nx, ny)| Grid::new(nx, ny, 1.0, 1.0).unwrap()),
+            boundaries: [Boundary::Free, Boundary::Periodic],
+        }
+    }
+
+    fn turn(&self) -> usize {
+        self.asked.set(self.asked.get() + 1);
+        self.asked.get() % 2
+    }
+}
+
+impl InfluenceKernel for Restless {
+    fn grid(&self) -> Grid {
+        self.grids[self.turn()]
+    }
+
+    fn boundary(&self) -> Boundary {
+        self.boundaries[self.turn()]
+    }
+
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        if (di, dj) == (0, 0) { 1.0 } else { 0.0 }
+    }
+
+    fn contact_growth(&self) -> ContactGrowth {
+        [ContactGrowth::Convex, ContactGrowth::Unknown][self.turn()]
+    }
+}
+
+#[test]
+fn kernels_that_change_their_grid() {
+    for first in 0..2 {
+        let restless = || Restless::new(first);
+        let sphere = Paraboloid::new(10.0).unwrap();
+        for shape in [(3, 7), (8, 2)] {
+            // Whichever grid counts, it does so throughout.
+            let pressure = DMatrix::from_element(shape.0, shape.1, 2.0);
+            if let Ok(u) = direct_sum(&restless(), &pressure) {
+                assert_eq!(u, pressure);
+            }
+        }
+        assert!(KernelTable::new(&restless()).is_ok());
+        assert!(Convolution::new(&restless()).is_ok());
+        let _ = kernel::check(&restless());
+        assert!(Problem::new(&sphere, &restless()).is_ok());
+        if let Ok(path) = LoadingSolver::new(&sphere, &restless()) {
+            for state in path {
+                let _ = state;
+            }
+        }
+        if let Ok(mut solver) = FixedLoadSolver::new(&sphere, &restless()) {
+            let _ = solver.solve(1.0);
+        }
+    }
+}
+
+#[test]
+fn offsets_and_nodes_that_are_none() {
+    let grid = Grid::new(5, 4, 1.0, 2.0).unwrap();
+    let kernels: [&dyn InfluenceKernel; 3] = [
+        &Boussinesq::new(grid, 1.0).unwrap(),
+        &PeriodicBoussinesq::new(grid, 1.0).unwrap(),
+        &Spectral::new(grid, 1.0).unwrap(),
+    ];
+    let extreme = [isize::MIN, isize::MIN + 1, -1, 0, 1, isize::MAX];
+    for kernel in kernels {
+        let table = KernelTable::new(kernel).unwrap();
+        for (di, dj) in extreme.into_iter().flat_map(|i| extreme.map(|j| (i, j))) {
+            assert!(kernel.coefficient(di, dj).is_finite(), "{di} {dj}");
+            let is_between = di.unsigned_abs() < 5 && dj.unsigned_abs() < 4;
+            assert_eq!(table.coefficient(di, dj).is_some(), is_between);
+        }
+    }
+    for far in [5, usize::MAX - 1, usize::MAX] {
+        assert_eq!(grid.node(far, 0), None);
+        assert_eq!(grid.node(0, far), None);
+        assert_eq!(grid.node(far, far), None);
+    }
+    let problem = Problem::new(&Paraboloid::new(1.0).unwrap(), kernels[0]).unwrap();
+    assert_eq!(problem.coefficient(0, usize::MAX), None);
+    assert!(problem.coefficient(19, 0).is_some());
+}
+
+/// What is asked of an updater.
+#[derive(Debug, Clone)]
+enum Call {
+    Watch(usize, Vec<usize>),
+    Join(usize, Vec<usize>, usize),
+    Solve(usize, usize, f64, f64),
+    Truncate(usize, usize),
+    Release(usize, usize, usize),
+    /// The contact changes, and the updater is not told.
+    Push(usize),
+    Remove(usize),
+    MakeRoom(usize, usize),
+}
+
+fn node() -> impl Strategy<Value = usize> {
+    prop_oneof![9 => 0_usize..14, 1 => Just(usize::MAX)]
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        3 => 0.0..3.0,
+        1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, -1.0, 1e300, 0.0]),
+    ]
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    // Of the two problems the first, mostly.
+    let which = || prop_oneof![6 => Just(0_usize), 1 => Just(1_usize)];
+    let nodes = || prop::collection::vec(node(), 0..5);
+    prop_oneof![
+        4 => (which(), nodes()).prop_map(|(p, nodes)| Call::Watch(p, nodes)),
+        4 => (which(), prop::collection::vec(0_usize..5, 0..4), 0_usize..6)
+            .prop_map(|(p, positions, size)| Call::Join(p, positions, size)),
+        3 => (which(), 0_usize..8, number(), number()).prop_map(|(p, n, a, s)| Call::Solve(p, n, a, s)),
+        1 => (which(), 0_usize..6).prop_map(|(p, n)| Call::Truncate(p, n)),
+        1 => (which(), node(), 0_usize..6).prop_map(|(p, n, at)| Call::Release(p, n, at)),
+        1 => node().prop_map(Call::Push),
+        1 => node().prop_map(Call::Remove),
+        1 => (which(), 0_usize..3_000_000).prop_map(|(p, bytes)| Call::MakeRoom(p, bytes)),
+    ]
+}
+
+/// Makes the calls, with a contact on the larger grid; the answers do not matter.
+fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &[Call]) {
+    let mut contact = ContactSequence::new(problems[0].grid());
+    let mut watched: Vec<usize> = Vec::new();
+    let mut schur = Schur::default();
+    for call in calls {
+        match call {
+            Call::Watch(p, nodes) => {
+                watched.clone_from(nodes);
+                let _ = updater.watch(&problems[*p], &contact, nodes, &mut schur);
+            }
+            Call::Join(p, positions, size) => {
+                // Of the last window, or of one that has never been.
+                let own = *size == watched.len();
+                let mut other = Schur::default();
+                other.resize(*size).unwrap();
+                other.matrix_mut().fill_with_identity();
+                let given = if own { schur.clone() } else { other };
+                let Ok(touched) = Touched::of(given, positions) else {
+                    continue;
+                };
+                for &position in positions {
+                    let _ = contact.push(watched.get(position).copied().unwrap_or(position));
+                }
+                let _ = updater.join(&problems[*p], &contact, &touched);
+            }
+            Call::Solve(p, count, approach, span) => {
+                let request = SolveRequest {
+                    count: *count,
+                    approach: *approach,
+                    span: *span,
+                    gap_error: 0.0,
+                };
+                let mut solution = Solution::default();
+                let _ = updater.solve(&problems[*p], &contact, request, &mut solution);
+            }
+            Call::Truncate(p, count) => {
+                contact.truncate(*count);
+                let _ = updater.truncate(&problems[*p], &contact);
+            }
+            Call::Release(p, node, position) => {
+                let _ = updater.release(&problems[*p], &contact, *node, *position);
+            }
+            Call::Push(node) => {
+                let _ = contact.push(*node);
+            }
+            Call::Remove(node) => {
+                let _ = contact.remove(*node);
+            }
+            Call::MakeRoom(p, bytes) => {
+                let _ = updater.make_room(&problems[*p], *bytes);
+            }
+        }
+        let _ = updater.bytes(usize::MAX, usize::MAX);
+    }
+}
+
+fn problems() -> [Problem; 2] {
+    [(4, 3), (3, 2)].map(|(nx, ny)| {
+        let kernel = Boussinesq::new(Grid::new(nx, ny, 1.0, 1.0).unwrap(), 1.0).unwrap();
+        let heights = DMatrix::from_fn(nx, ny, |ix, iy| ((3 * ix + 5 * iy) as f64).sin());
+        Problem::new(&HeightMap::new(heights).unwrap(), &kernel).unwrap()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn no_order_of_calls_makes_an_updater_panic(calls in prop::collection::vec(call(), 1..25)) {
+        let problems = problems();
+        make_calls(&mut RecursiveCholesky::new(), &problems, &calls);
+        make_calls(&mut ConjugateGradient::new(), &problems, &calls);
+        make_calls(&mut Handover::new(), &problems, &calls);
+        make_calls(&mut Dense, &problems, &calls);
+    }
+}
+
+/// An updater that skips every n-th call of a kind, or answers it for another contact.
+struct Lying {
+    inner: Box<dyn LinearUpdater>,
+    what: &'static str,
+    calls: usize,
+    turn: usize,
+}
+
+impl Lying {
+    fn lies(&mut self, what: &str) -> bool {
+        if self.what != what {
+            return false;
+        }
+        self.calls += 1;
+        self.calls.is_multiple_of(self.turn)
+    }
+}
+
+impl LinearUpdater for Lying {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), asperity::Error> {
+        if self.lies("watch others") {
+            let all = 0..problem.grid().nodes();
+            let others: Vec<usize> = all.rev().take(nodes.len()).collect();
+            return self.inner.watch(problem, contact, &others, schur);
+        }
+        if self.lies("watch nothing") {
+            return schur.resize(nodes.len());
+        }
+        self.inner.watch(problem, contact, nodes, schur)?;
+        if self.lies("huge complement") {
+            schur.matrix_mut().fill(f64::MAX);
+        }
+        if self.lies("negative complement") {
+            schur.matrix_mut().fill(-1.0);
+        }
+        if self.lies("infinite sums") {
+            schur.row_sums_mut().fill(f64::INFINITY);
+        }
+        if self.lies("wild displacements") {
+            schur.set_displacements(vec![[f64::NAN, 1e300]; nodes.len()]);
+        }
+        if self.lies("few displacements") {
+            schur.set_displacements(Vec::new());
+        }
+        Ok(())
+    }
+
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        touched: &Touched,
+    ) -> Result<(), asperity::Error> {
+        if self.lies("join nothing") {
+            return Ok(());
+        }
+        self.inner.join(problem, contact, touched)
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        request: SolveRequest,
+        solution: &mut Solution,
+    ) -> Result<(), asperity::Error> {
+        self.inner.solve(problem, contact, request, solution)?;
+        for (what, value) in [
+            ("NaN pressure", f64::NAN),
+            ("infinite pressure", f64::INFINITY),
+            ("no pressure", 0.0),
+            ("negative pressure", -1.0),
+        ] {
+            if self.lies(what) {
+                solution.pressure.fill(value);
+            }
+        }
+        for (what, value) in [
+            ("NaN rate", f64::NAN),
+            ("infinite rate", f64::INFINITY),
+            ("no rate", 0.0),
+            ("negative rate", -1.0),
+        ] {
+            if self.lies(what) {
+                solution.rate.fill(value);
+            }
+        }
+        if self.lies("wild fields") {
+            let nodes = problem.grid().nodes();
+            solution.displacement = [vec![f64::NAN; nodes], vec![f64::MAX; nodes]];
+        }
+        if self.lies("one field") {
+            solution.displacement = [vec![0.0; problem.grid().nodes()], Vec::new()];
+        }
+        Ok(())
+    }
+
+    fn truncate(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+    ) -> Result<(), asperity::Error> {
+        if self.lies("truncate nothing") {
+            return Ok(());
+        }
+        self.inner.truncate(problem, contact)
+    }
+
+    fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        node: usize,
+        position: usize,
+    ) -> Result<(), asperity::Error> {
+        if self.lies("release nothing") {
+            return Ok(());
+        }
+        self.inner.release(problem, contact, node, position)
+    }
+
+    fn profile(&self) -> UpdaterProfile {
+        let mut profile = self.inner.profile();
+        match self.what {
+            "other exactness" => profile.exact = !profile.exact,
+            "NaN tolerance" => profile.tolerance = f64::NAN,
+            "no tolerance" => profile.tolerance = 0.0,
+            "infinite tolerance" => profile.tolerance = f64::INFINITY,
+            "multiple" => profile.cost.multiple = usize::MAX,
+            "NaN cost" => profile.cost.solve = f64::NAN,
+            _ => (),
+        }
+        profile
+    }
+
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
+        match self.what {
+            "all memory" => usize::MAX,
+            _ => self.inner.bytes(contact, watched),
+        }
+    }
+}
+
+const LIES: [&str; 27] = [
+    "watch others",
+    "watch nothing",
+    "huge complement",
+    "negative complement",
+    "infinite sums",
+    "wild displacements",
+    "few displacements",
+    "join nothing",
+    "NaN pressure",
+    "infinite pressure",
+    "no pressure",
+    "negative pressure",
+    "NaN rate",
+    "infinite rate",
+    "no rate",
+    "negative rate",
+    "wild fields",
+    "one field",
+    "truncate nothing",
+    "release nothing",
+    "other exactness",
+    "NaN tolerance",
+    "no tolerance",
+    "infinite tolerance",
+    "multiple",
+    "NaN cost",
+    "all memory",
+];
+
+/// A path with such an updater comes to an end, and delivers no state that is not finite.
+#[test]
+fn lying_updaters() {
+    let grid = Grid::new(6, 5, 1.0, 1.0).unwrap();
+    let heights = DMatrix::from_fn(6, 5, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
+    let rough = HeightMap::new(heights).unwrap();
+    let kernels: [&dyn InfluenceKernel; 2] = [
+        &Boussinesq::new(grid, 1.0).unwrap(),
+        &Spectral::new(grid, 1.0).unwrap(),
+    ];
+    for kernel in kernels {
+        for what in LIES {
+            for turn in 1..4 {
+                for exact in [true, false] {
+                    let inner: Box<dyn LinearUpdater> = if exact {
+                        Box::new(RecursiveCholesky::new())
+                    } else {
+                        Box::new(ConjugateGradient::new())
+                    };
+                    let updater = Lying {
+                        inner,
+                        what,
+                        calls: 0,
+                        turn,
+                    };
+                    let builder = LoadingSolver::builder(&rough, kernel).updater(updater);
+                    let Ok(mut path) = builder.window_size(4).build() else {
+                        continue;
+                    };
+                    let mut count = 0;
+                    while let Some(item) = path.next() {
+                        count += 1;
+                        assert!(count < 1000, "{what} has no end");
+                        let Ok(state) = item else { continue };
+                        for value in [state.approach, state.load, state.mean_gap, state.energy] {
+                            assert!(value.is_finite(), "{what}: {state:?}");
+                        }
+                        let _ = (path.pressure(), path.gap(), path.certificate());
+                    }
+                }
+            }
+        }
+    }
+}
