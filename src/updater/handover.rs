@@ -15,7 +15,7 @@ const LEAST_WINDOW: usize = 64;
 const FACTOR: f64 = 1.0e-11;
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
 /// goes with them on the contact.
-const ITERATIONS: [f64; 2] = [5.0e-9, 8.0e-9];
+const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];
 /// The same for any grid: local solutions and events.
 const WINDOW: f64 = 3.0e-4;
 
@@ -23,9 +23,9 @@ const WINDOW: f64 = 3.0e-4;
 /// and its factor fits the memory budget of the path, and [`ConjugateGradient`] from then on. No path ends
 /// for want of memory for n² numbers, and full contact on 512 × 512 nodes takes minutes.
 ///
-/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 5 ns for each node of
-/// the grid and 8 ns for each one in contact: the factor is given up at some 6600 contact nodes on a grid of
-/// 128², 8400 on 256², and 13 000 on 512². These are constants and not measurements, so that a path is the
+/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 4 ns for each node of
+/// the grid and 6 ns for each one in contact: the factor is given up at some 6400 contact nodes on a grid of
+/// 128², 7800 on 256², and 11 900 on 512². These are constants and not measurements, so that a path is the
 /// same on every run. The budget is that of
 /// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
