@@ -12,8 +12,10 @@ const FAR: f64 = 1.3;
 
 /// Unit pressure on a watched node and the answer of the contact near it, `e_j − x_j`.
 struct Source {
-    /// (place in the table, pressure) of all nodes, the watched one first.
+    /// (place in the table, pressure) of all nodes, by the first.
     near: Vec<(usize, f64)>,
+    /// The place of the watched node itself.
+    own: usize,
     /// The same interpolated to few nodes.
     far: Vec<(usize, f64)>,
     centre: [f64; 2],
@@ -76,6 +78,8 @@ impl Source {
         let near = nodes
             .zip(&answers)
             .map(|(node, (_, p))| (table.place(node), *p));
+        let mut near: Vec<(usize, f64)> = near.collect();
+        near.sort_unstable_by_key(|(place, _)| *place);
         let axes = [0, 1].map(|axis| Axis::of(answers.iter().map(|(offset, _)| offset[axis])));
         let mut weights = [[0.0; POINTS]; POINTS];
         for (offset, pressure) in &answers {
@@ -101,7 +105,8 @@ impl Source {
         let middle = |axis: usize| 0.5 * f64::from(axes[axis].first() + axes[axis].last());
         let half = |axis: usize| 0.5 * f64::from(axes[axis].last() - axes[axis].first());
         Self {
-            near: near.collect(),
+            near,
+            own: table.place(local.node),
             far,
             centre: [0, 1].map(|axis| (f64::from(own[axis]) + middle(axis)) * sides[axis]),
             radius: (half(0) * sides[0]).hypot(half(1) * sides[1]),
@@ -111,19 +116,34 @@ impl Source {
     /// Work of one source on the displacement that another one causes.
     fn energy(&self, other: &Self, table: &KernelTable) -> f64 {
         let distance = distance(table.grid(), table.boundary(), self.centre, other.centre);
-        let (here, there) = if distance > FAR * (self.radius + other.radius) {
-            (&self.far, &other.far)
-        } else {
-            (&self.near, &other.near)
-        };
-        let work = here.iter().map(|&(place, pressure)| {
-            let displacement = there
+        if distance > FAR * (self.radius + other.radius) {
+            return self
+                .far
                 .iter()
-                .map(|&(other, p)| table.between(place, other) * p);
-            pressure * displacement.sum::<f64>()
-        });
-        work.sum()
+                .map(|here| here.1 * displacement(table, here.0, &other.far))
+                .sum();
+        }
+        // The answer of the contact near a watched node takes its displacement away there.
+        let mut answering = other.near.iter().peekable();
+        let mut work = 0.0;
+        for &(place, pressure) in &self.near {
+            while answering.next_if(|(other, _)| *other < place).is_some() {}
+            let is_taken_away =
+                place != other.own && answering.peek().is_some_and(|(other, _)| *other == place);
+            if !is_taken_away {
+                work += pressure * displacement(table, place, &other.near);
+            }
+        }
+        work
     }
+}
+
+/// Displacement of a place under some pressures.
+fn displacement(table: &KernelTable, place: usize, pressures: &[(usize, f64)]) -> f64 {
+    let terms = pressures
+        .iter()
+        .map(|&(other, p)| table.between(place, other) * p);
+    terms.sum()
 }
 
 /// How far two points are from each other, the shorter way round where the half-space is periodic.
