@@ -1,6 +1,7 @@
 //! What several studies need: fits, spreads, sections of pages, and where time and memory went.
 
 pub mod contact_area;
+pub mod findings;
 pub mod line;
 pub mod order;
 pub mod page;

@@ -13,12 +13,10 @@ mod plane;
 mod report;
 mod round;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use asperity_cli::outcome::{Failure, Outcome};
-use asperity_cli::{chart, panel};
-use asperity_studies::page::Section;
+use asperity_cli::outcome::Failure;
+use asperity_studies::findings::{Findings, Picture, Places};
 use clap::Parser;
 
 use double_wave::Comparison;
@@ -29,13 +27,8 @@ use round::SquarePunch;
 #[derive(Debug, Parser)]
 #[command(name = "closed_forms")]
 struct Options {
-    /// Directory for the files, made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
-
-    /// Also write the section of this page, and the picture into images/ next to it
-    #[arg(long, value_name = "FILE.md")]
-    report: Option<PathBuf>,
+    #[command(flatten)]
+    places: Places,
 }
 
 fn main() -> ExitCode {
@@ -49,9 +42,6 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    panel::register_font()?;
-    std::fs::create_dir_all(&options.out)
-        .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let failed = |error: asperity::Error| Failure::new("a contact that has a closed form", error);
     let punch = SquarePunch::new().map_err(failed)?;
     let mut curves = round::curves().map_err(failed)?;
@@ -62,27 +52,15 @@ fn run(options: &Options) -> Result<(), Failure> {
         punch,
         wave: Comparison::new().map_err(failed)?,
     };
-    let text = report.text();
-    println!("{text}");
-
-    let mut outcome = Outcome::default();
-    let csv = options.out.join("closed_forms.csv");
-    outcome.written(match std::fs::write(&csv, report.csv()) {
-        Ok(()) => Ok(csv),
-        Err(error) => Err(Failure::new(
-            format!("cannot write {}", csv.display()),
-            error,
-        )),
-    });
-    let picture = options.out.join("closed_forms.png");
-    outcome.written(chart::draw(&report.charts(), 3, &picture));
-    if let Some(page) = &options.report {
-        let section = Section {
-            study: "closed_forms",
-            text: &text,
-            pictures: &[picture],
-        };
-        outcome.written(section.publish(page));
+    Findings {
+        study: "closed_forms",
+        text: report.text(),
+        tables: vec![("closed_forms", report.csv())],
+        pictures: vec![Picture {
+            name: "closed_forms",
+            charts: report.charts(),
+            columns: 3,
+        }],
     }
-    outcome.finish()
+    .write(&options.places)
 }
