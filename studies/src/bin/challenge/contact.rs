@@ -92,10 +92,18 @@ fn read(
     let gaps = gap_distribution(&solution.gap, map, Bins::PerDecade(GAP_BINS))?;
     let open = 1.0 - gaps.contact_share;
     let middle = |edges: &[f64]| (edges[0] * edges[1]).sqrt();
-    let gaps = gaps.histogram.edges().windows(2).zip(gaps.histogram.density());
+    let gaps = gaps
+        .histogram
+        .edges()
+        .windows(2)
+        .zip(gaps.histogram.density());
     let found = pressure_distribution(&solution.pressure, map, Bins::Linear(PRESSURE_BINS))?;
     let share = found.contact_share;
-    let pressures = found.histogram.edges().windows(2).zip(found.histogram.density());
+    let pressures = found
+        .histogram
+        .edges()
+        .windows(2)
+        .zip(found.histogram.density());
     Ok(Contact {
         nodes: grid.nx(),
         band,

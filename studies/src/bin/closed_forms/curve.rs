@@ -70,8 +70,7 @@ pub(crate) struct Errors {
 
 impl Errors {
     pub(crate) fn add(&mut self, quantity: Quantity, found: f64, exact: f64) {
-        self.squares
-            .push((quantity, (found / exact - 1.0).powi(2)));
+        self.squares.push((quantity, (found / exact - 1.0).powi(2)));
     }
 
     /// Root mean square over the states, `None` if the contact does not have the quantity.
@@ -101,9 +100,8 @@ impl Curve {
         expected: &[(Quantity, f64)],
     ) -> Vec<Self> {
         let curve = |quantity: Quantity| {
-            let point = |(cells, errors): &(usize, Errors)| {
-                Some((*cells as f64, errors.rms(quantity)?))
-            };
+            let point =
+                |(cells, errors): &(usize, Errors)| Some((*cells as f64, errors.rms(quantity)?));
             let points: Option<Vec<_>> = meshes.iter().map(point).collect();
             let own = expected.iter().find(|(q, _)| *q == quantity);
             Some(Self {

@@ -104,7 +104,10 @@ pub(crate) struct Limit {
 impl Limit {
     /// The ratio at the limit itself, by a line in the power of the distance.
     pub(crate) fn extrapolated(&self) -> f64 {
-        let points = self.ratios.iter().map(|(d, r)| (d.powf(self.power), r.mean));
+        let points = self
+            .ratios
+            .iter()
+            .map(|(d, r)| (d.powf(self.power), r.mean));
         Line::fit(&points.collect::<Vec<_>>()).intercept
     }
 
@@ -187,9 +190,7 @@ impl Comparison {
                 &HEAVY,
                 1.0,
                 |p| 1.0 - p,
-                |exact, mean, area| {
-                    (1.0 - area) / (1.0 - exact.contact_area_fraction_heavy(mean))
-                },
+                |exact, mean, area| (1.0 - area) / (1.0 - exact.contact_area_fraction_heavy(mean)),
             )?,
         })
     }

@@ -4,9 +4,7 @@ use std::fmt::Write;
 
 use asperity::reference::SQUARE_PUNCH_STIFFNESS;
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{
-    BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style,
-};
+use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
 use asperity_cli::number::scientific;
 
 use crate::curve::{CELLS, COEFFICIENT, Curve, LOADS, Quantity, SLACK, TOLERANCE};
@@ -68,7 +66,12 @@ impl Report {
                 let _ = write!(text, " {} |", scientific(*error, 2));
             }
             let verdict = verdict(curve.agrees());
-            let _ = writeln!(text, " {:.2} | {} | {verdict} |", curve.order(), curve.expected);
+            let _ = writeln!(
+                text,
+                " {:.2} | {} | {verdict} |",
+                curve.order(),
+                curve.expected
+            );
         }
         let agreeing = self.curves.iter().filter(|curve| curve.agrees()).count();
         let _ = write!(
@@ -132,7 +135,11 @@ impl Report {
                  1 − {b} {}: {}",
                 full.kernel.name(),
                 full.peak,
-                if full.bracketed { "on every grid" } else { "on some grids only" },
+                if full.bracketed {
+                    "on every grid"
+                } else {
+                    "on some grids only"
+                },
                 verdict(full.agrees()),
                 b = scientific(BRACKET, 1),
             )
@@ -246,9 +253,19 @@ impl Report {
             y: Axis::plain("area over that of the limit", low, high).with_room(0.5, 0.2),
             series: vec![
                 Series::new("", GREY, Style::Dashed, [(5e-5, 1.0), (0.2, 1.0)]),
-                Series::new("contact over Hertz, P → 0", BLUE, Style::Line, light.clone()),
+                Series::new(
+                    "contact over Hertz, P → 0",
+                    BLUE,
+                    Style::Line,
+                    light.clone(),
+                ),
                 Series::new("", BLUE, Style::Dots, light),
-                Series::new("no contact over cracks, P → 1", ORANGE, Style::Line, heavy.clone()),
+                Series::new(
+                    "no contact over cracks, P → 1",
+                    ORANGE,
+                    Style::Line,
+                    heavy.clone(),
+                ),
                 Series::new("", ORANGE, Style::Dots, heavy),
             ],
             legend: Corner::BottomLeft,

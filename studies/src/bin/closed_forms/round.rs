@@ -112,7 +112,9 @@ fn moved(grid: &Grid, offset: (f64, f64)) -> (f64, f64) {
 pub(crate) fn curves() -> Result<Vec<Curve>, Error> {
     let mut curves = Vec::new();
     let on_all = |errors: &dyn Fn(f64) -> Result<Errors, Error>| {
-        let each = CELLS.iter().map(|&cells| Ok((cells, errors(cells as f64)?)));
+        let each = CELLS
+            .iter()
+            .map(|&cells| Ok((cells, errors(cells as f64)?)));
         each.collect::<Result<Vec<_>, Error>>()
     };
     curves.extend(Curve::of("sphere", &on_all(&sphere)?, &[]));
@@ -120,7 +122,11 @@ pub(crate) fn curves() -> Result<Vec<Curve>, Error> {
     curves.extend(Curve::of("cone", &on_all(&cone)?, &[]));
     // Its ring is under the pressure of a punch whose radius is wrong by a part of a cell.
     let edge = [(Quantity::Pressure, 1.0)];
-    curves.extend(Curve::of("circular punch", &on_all(&circular_punch)?, &edge));
+    curves.extend(Curve::of(
+        "circular punch",
+        &on_all(&circular_punch)?,
+        &edge,
+    ));
     Ok(curves)
 }
 
@@ -267,7 +273,10 @@ impl SquarePunch {
             Ok((n, solution.state.contact_stiffness.unwrap_or(f64::NAN)))
         };
         Ok(Self {
-            stiffness: PUNCH_CELLS.iter().map(stiffness).collect::<Result<_, Error>>()?,
+            stiffness: PUNCH_CELLS
+                .iter()
+                .map(stiffness)
+                .collect::<Result<_, Error>>()?,
         })
     }
 
@@ -287,9 +296,8 @@ impl SquarePunch {
     }
 
     pub(crate) fn curve(&self) -> Curve {
-        let error = |(n, k): &(usize, f64)| {
-            (0.5 * *n as f64, (k / SQUARE_PUNCH_STIFFNESS - 1.0).abs())
-        };
+        let error =
+            |(n, k): &(usize, f64)| (0.5 * *n as f64, (k / SQUARE_PUNCH_STIFFNESS - 1.0).abs());
         Curve {
             contact: "square punch",
             quantity: Quantity::Stiffness,

@@ -11,7 +11,10 @@ use crate::study::{BANDS, Family, MESHES, Study};
 const SHOWN: [usize; 3] = [0, 2, 4];
 
 fn line(families: &[Family], x: fn(&Family) -> f64, y: impl Fn(&Family) -> f64) -> Vec<(f64, f64)> {
-    families.iter().map(|family| (x(family), y(family))).collect()
+    families
+        .iter()
+        .map(|family| (x(family), y(family)))
+        .collect()
 }
 
 fn cells(family: &Family) -> f64 {
@@ -48,10 +51,19 @@ impl Study {
     pub(crate) fn charts(&self) -> Vec<Chart> {
         let ends = |values: &[usize]| {
             let first = values.first().copied().unwrap_or(1) as f64;
-            (0.8 * first, 1.25 * values.last().copied().unwrap_or(1) as f64)
+            (
+                0.8 * first,
+                1.25 * values.last().copied().unwrap_or(1) as f64,
+            )
         };
         let (mesh, width) = (ends(&MESHES), ends(&BANDS));
-        let cells_axis = || Axis::plain_logarithmic("cells to the shortest wave", mesh.0.min(3.0), mesh.1.max(40.0));
+        let cells_axis = || {
+            Axis::plain_logarithmic(
+                "cells to the shortest wave",
+                mesh.0.min(3.0),
+                mesh.1.max(40.0),
+            )
+        };
         let band_axis = || Axis::plain_logarithmic("λᵣ/λₛ", width.0.min(1.0), width.1.max(40.0));
         let theories = |from: f64, to: f64| {
             let flat = |name: &str, colour, value: f64| {
@@ -63,8 +75,20 @@ impl Study {
             ]
         };
         let mut kappa = Vec::from(theories(1.0, 50.0));
-        kappa.extend(curves(&self.meshes, cells, State::kappa, Style::Dashed, ", counted"));
-        kappa.extend(curves(&self.meshes, cells, State::corrected_kappa, Style::Line, ", corrected"));
+        kappa.extend(curves(
+            &self.meshes,
+            cells,
+            State::kappa,
+            Style::Dashed,
+            ", counted",
+        ));
+        kappa.extend(curves(
+            &self.meshes,
+            cells,
+            State::corrected_kappa,
+            Style::Line,
+            ", corrected",
+        ));
         let mut left = Vec::new();
         for (place, load) in SHOWN.into_iter().enumerate() {
             for (k, (name, style)) in [(", gap", Style::Line), (", stiffness", Style::Dashed)]
@@ -82,7 +106,13 @@ impl Study {
         let values = left.iter().flat_map(|s| s.points.iter().map(|p| p.1));
         let (low, high) = values.fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
         let mut widths = Vec::from(theories(1.0, 50.0));
-        widths.extend(curves(&self.bands, band, State::corrected_kappa, Style::Line, ""));
+        widths.extend(curves(
+            &self.bands,
+            band,
+            State::corrected_kappa,
+            Style::Line,
+            "",
+        ));
         vec![
             Chart {
                 title: "Area over load, λᵣ/λₛ = 8".to_string(),

@@ -16,7 +16,13 @@ const MIDDLE: usize = 2;
 
 impl Study {
     pub(crate) fn text(&self) -> String {
-        [self.introduction(), self.mesh(), self.choice(), self.spectrum()].join("\n\n")
+        [
+            self.introduction(),
+            self.mesh(),
+            self.choice(),
+            self.spectrum(),
+        ]
+        .join("\n\n")
     }
 
     fn introduction(&self) -> String {
@@ -41,9 +47,8 @@ impl Study {
     }
 
     fn mesh(&self) -> String {
-        let mut text = format!(
-            "### Cells to the shortest wave\n\nλᵣ/λₛ = {BAND}. κ:\n\n| p̄/(E\\* h′) | |"
-        );
+        let mut text =
+            format!("### Cells to the shortest wave\n\nλᵣ/λₛ = {BAND}. κ:\n\n| p̄/(E\\* h′) | |");
         // Writing to a string cannot fail.
         for family in &self.meshes {
             let _ = write!(text, " {} cells |", family.mesh.cells);
@@ -101,8 +106,16 @@ impl Study {
             self.kappa_of(self.meshes.first()),
             self.meshes.first().map_or(0, |f| f.mesh.cells),
             self.limit(LIGHTEST).decimals(2),
-            if between { "The limit is" } else { "The limit is not" },
-            if between { "at every load" } else { "at each load" },
+            if between {
+                "The limit is"
+            } else {
+                "The limit is not"
+            },
+            if between {
+                "at every load"
+            } else {
+                "at each load"
+            },
         );
         text
     }
@@ -116,7 +129,9 @@ impl Study {
     fn choice(&self) -> String {
         let share = 100.0 * ENOUGH;
         let cells = |found: Option<usize>| {
-            found.map_or("no mesh of these".to_string(), |cells| format!("{cells} cells"))
+            found.map_or("no mesh of these".to_string(), |cells| {
+                format!("{cells} cells")
+            })
         };
         let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
         let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
@@ -136,7 +151,10 @@ impl Study {
         );
         let worst = |value: &dyn Fn(usize) -> f64| {
             let each = (0..LOADS.len()).map(value);
-            let worst = each.fold(0.0_f64, |worst, x| if x.abs() > worst.abs() { x } else { worst });
+            let worst = each.fold(
+                0.0_f64,
+                |worst, x| if x.abs() > worst.abs() { x } else { worst },
+            );
             format!("{:+.1}", 100.0 * worst).replace('-', "−")
         };
         for family in &self.meshes {
@@ -184,7 +202,10 @@ impl Study {
         ] {
             let columns = LOADS.map(|load| format!(" {load} |")).concat();
             let rules = "---|".repeat(LOADS.len());
-            let _ = write!(text, "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n");
+            let _ = write!(
+                text,
+                "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n"
+            );
             table(&mut text, value);
         }
         let trend = self.trend(MIDDLE);
@@ -199,16 +220,21 @@ impl Study {
              its standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
             LOADS[MIDDLE],
             slope.decimals(3),
-            if trend.falls() { "agrees" } else { "not resolved" },
+            if trend.falls() {
+                "agrees"
+            } else {
+                "not resolved"
+            },
         );
         text
     }
 
     pub(crate) fn csv(&self) -> String {
-        let mut text = "band,cells,seed,mean_pressure_over_e_star_rms_gradient,contact_area_fraction,\
+        let mut text =
+            "band,cells,seed,mean_pressure_over_e_star_rms_gradient,contact_area_fraction,\
                         corrected_area_fraction,mean_gap_over_rms_height,\
                         interfacial_stiffness_rms_height_over_load\n"
-            .to_string();
+                .to_string();
         for family in self.meshes.iter().chain(&self.bands) {
             for (seed, states) in family.seeds.iter().enumerate() {
                 for s in states {

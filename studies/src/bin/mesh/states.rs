@@ -54,7 +54,13 @@ impl Mesh {
 
     fn surface(self, seed: u64) -> Result<SelfAffine, Error> {
         let cutoff = ROLLOFF / self.band as f64;
-        SelfAffine::new(HURST, ROLLOFF, cutoff, Amplitude::RmsHeight(RMS_HEIGHT), seed)
+        SelfAffine::new(
+            HURST,
+            ROLLOFF,
+            cutoff,
+            Amplitude::RmsHeight(RMS_HEIGHT),
+            seed,
+        )
     }
 
     /// Nayak's parameter of the spectrum.

@@ -78,7 +78,9 @@ impl Study {
         let bands: Vec<_> = bands.map(|band| Mesh { band, cells: CELLS }).collect();
         let bar = ProgressBar::new(surfaces * (meshes.len() + bands.len()) as u64);
         let all = |meshes: Vec<Mesh>| {
-            let each = meshes.into_iter().map(|mesh| Family::new(mesh, surfaces, &bar));
+            let each = meshes
+                .into_iter()
+                .map(|mesh| Family::new(mesh, surfaces, &bar));
             each.collect::<Result<Vec<_>, _>>()
         };
         let study = Self {
@@ -130,9 +132,8 @@ impl Study {
     /// The part of what counting cells gives too much that the correction removes on a mesh, on the mean over the loads.
     pub(crate) fn removed(&self, family: &Family) -> f64 {
         let each = (0..LOADS.len()).map(|load| self.left(family, load));
-        let [counted, corrected] = each.fold([0.0; 2], |sum, left| {
-            [sum[0] + left[0], sum[1] + left[1]]
-        });
+        let [counted, corrected] =
+            each.fold([0.0; 2], |sum, left| [sum[0] + left[0], sum[1] + left[1]]);
         1.0 - (corrected / counted).abs()
     }
 

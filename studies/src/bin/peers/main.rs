@@ -70,7 +70,16 @@ fn write(directory: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
     let mut table = csv::Writer::from_path(directory.join("ours.csv")).map_err(lost)?;
     let header = [
-        "surface", "half_space", "lx", "ly", "load", "nodes", "mean_gap", "stiffness", "heights", "pressure",
+        "surface",
+        "half_space",
+        "lx",
+        "ly",
+        "load",
+        "nodes",
+        "mean_gap",
+        "stiffness",
+        "heights",
+        "pressure",
     ];
     table.write_record(header).map_err(lost)?;
     for (place, rough) in surfaces::all().map_err(failed)?.iter().enumerate() {

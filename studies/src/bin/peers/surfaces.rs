@@ -52,10 +52,16 @@ pub(crate) fn all() -> Result<Vec<Rough>, Error> {
         on_square("anisotropic", anisotropic()?)?,
         on_square("Weibull heights", weibull(&gaussian))?,
         on_square("log-normal heights", gaussian.map(log_normal))?,
-        on_square("rms gradient 1", self_affine(0.8, Amplitude::RmsGradient(1.0))?)?,
+        on_square(
+            "rms gradient 1",
+            self_affine(0.8, Amplitude::RmsGradient(1.0))?,
+        )?,
         on_square("ground, with bow", ground(&square)?)?,
         on_square("steps", gaussian.map(|z| step * (z / step).floor()))?,
-        on_grid("96 × 64, cells 3 : 1", Grid::with_sides(96, 64, 1.0, 2.0 / 9.0)?)?,
+        on_grid(
+            "96 × 64, cells 3 : 1",
+            Grid::with_sides(96, 64, 1.0, 2.0 / 9.0)?,
+        )?,
         on_grid("32 × 24, cells 3 : 1", Grid::with_sides(32, 24, 1.0, 0.25)?)?,
         on_grid("32 × 32", Grid::square(32, 1.0)?)?,
         on_grid("32 × 27", Grid::with_sides(32, 27, 1.0, 27.0 / 32.0)?)?,
