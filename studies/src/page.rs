@@ -48,3 +48,30 @@ impl Section<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section<'a>(study: &'a str, text: &'a str) -> Section<'a> {
+        Section {
+            study,
+            text,
+            pictures: &[],
+        }
+    }
+
+    #[test]
+    fn only_the_own_section_changes() {
+        let page = "# Page\n\nBy hand.\n";
+        let first = section("one", "First.").merged(page);
+        let both = section("two", "Second.").merged(&first);
+        assert!(
+            first.starts_with("# Page\n\nBy hand.\n\n<!-- written by the study `one`: begin -->")
+        );
+        assert!(both.starts_with(first.trim_end()));
+        let again = section("one", "Changed.").merged(&both);
+        assert_eq!(again, both.replace("First.", "Changed."));
+        assert_eq!(section("two", "Second.").merged(&both), both);
+    }
+}

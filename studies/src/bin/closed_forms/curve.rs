@@ -1,5 +1,6 @@
 //! What is compared, and how its error falls with the mesh.
 
+use asperity::Error;
 use asperity_studies::order::order;
 
 /// Cells over the radius, or the half-width, of a contact.
@@ -79,6 +80,19 @@ impl Errors {
         let count = of().count();
         (count > 0).then(|| (of().map(|(_, square)| square).sum::<f64>() / count as f64).sqrt())
     }
+}
+
+/// Loads around a target.
+pub(crate) fn loads(target: f64) -> impl Iterator<Item = f64> {
+    (0..LOADS).map(move |k| target * (0.75 + 0.5 * (k as f64 + 0.5) / LOADS as f64))
+}
+
+/// The errors on every mesh.
+pub(crate) fn on_all(
+    errors: impl Fn(usize) -> Result<Errors, Error>,
+) -> Result<Vec<(usize, Errors)>, Error> {
+    let each = CELLS.iter().map(|&cells| Ok((cells, errors(cells)?)));
+    each.collect()
 }
 
 /// How the rms error of one quantity of one contact falls.

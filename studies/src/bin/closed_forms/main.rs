@@ -10,6 +10,7 @@
 mod curve;
 mod double_wave;
 mod plane;
+mod punch;
 mod report;
 mod round;
 
@@ -20,8 +21,8 @@ use asperity_studies::findings::{Findings, Picture, Places};
 use clap::Parser;
 
 use double_wave::Comparison;
+use punch::SquarePunch;
 use report::Report;
-use round::SquarePunch;
 
 /// Contacts that have a closed form, on finer and finer meshes.
 #[derive(Debug, Parser)]
@@ -43,13 +44,14 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: asperity::Error| Failure::new("a contact that has a closed form", error);
-    let punch = SquarePunch::new().map_err(failed)?;
+    let square = SquarePunch::new().map_err(failed)?;
     let mut curves = round::curves().map_err(failed)?;
-    curves.push(punch.curve());
+    curves.extend(punch::circular().map_err(failed)?);
+    curves.push(square.curve());
     curves.extend(plane::curves().map_err(failed)?);
     let report = Report {
         curves,
-        punch,
+        punch: square,
         wave: Comparison::new().map_err(failed)?,
     };
     Findings {

@@ -6,7 +6,7 @@ use asperity::surface::{Axis, Cylinder, Wave};
 use asperity::{Boussinesq, Error, FixedLoadSolution, FixedLoadSolver, Grid};
 use asperity_cli::half_space::{Periodic, half_space};
 
-use crate::curve::{APEXES, CELLS, Curve, Errors, LOADS, Quantity, TOLERANCE};
+use crate::curve::{APEXES, Curve, Errors, Quantity, TOLERANCE, loads, on_all};
 
 /// Length of the strip under the cylinder over the width of the grid: what is left of its ends is of second order in
 /// the inverse, 10⁻⁸.
@@ -20,22 +20,14 @@ const AMPLITUDE: f64 = 0.01;
 
 pub(crate) fn curves() -> Result<Vec<Curve>, Error> {
     let mut curves = Vec::new();
-    let on_all = |errors: &dyn Fn(usize) -> Result<Errors, Error>| {
-        let each = CELLS.iter().map(|&cells| Ok((cells, errors(cells)?)));
-        each.collect::<Result<Vec<_>, Error>>()
-    };
-    curves.extend(Curve::of("cylinder", &on_all(&cylinder)?, &[]));
+    curves.extend(Curve::of("cylinder", &on_all(cylinder)?, &[]));
     for (name, kernel) in [
         ("wave, Love", Periodic::Love),
         ("wave, spectral", Periodic::Spectral),
     ] {
-        curves.extend(Curve::of(name, &on_all(&|cells| wave(cells, kernel))?, &[]));
+        curves.extend(Curve::of(name, &on_all(|cells| wave(cells, kernel))?, &[]));
     }
     Ok(curves)
-}
-
-fn loads(target: f64) -> impl Iterator<Item = f64> {
-    (0..LOADS).map(move |k| target * (0.75 + 0.5 * (k as f64 + 0.5) / LOADS as f64))
 }
 
 /// The greatest pressure, and how far from `x` it is.

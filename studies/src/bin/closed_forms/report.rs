@@ -9,7 +9,7 @@ use asperity_cli::number::scientific;
 
 use crate::curve::{CELLS, COEFFICIENT, Curve, LOADS, Quantity, SLACK, TOLERANCE};
 use crate::double_wave::{BEYOND, BRACKET, CLOSE, Comparison, EXACT, Full, Limit};
-use crate::round::SquarePunch;
+use crate::punch::SquarePunch;
 
 /// By how much the extrapolated stiffness of the square punch may differ from the known one, which is known to a unit of
 /// its fifth decimal.

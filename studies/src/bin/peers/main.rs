@@ -5,7 +5,7 @@
 //! cargo run --release -p asperity-studies --bin peers -- --report docs/validation.md
 //! ```
 //!
-//! The first line solves everything with the other programs and writes `peers.csv`; the second solves it again here and
+//! The first line solves everything with the other programs and writes `peers.csv` and `waves.csv`; the second solves it again here and
 //! makes the table. `--write DIR` writes the surfaces and our solutions, which the first line wants.
 
 mod ours;
@@ -48,7 +48,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     if let Some(directory) = &options.write {
         return write(directory);
     }
-    let text = report::text(&table::read()?);
+    let text = report::text(&table::read()?, &table::waves()?);
     println!("{text}");
     let mut outcome = Outcome::default();
     if let Some(page) = &options.report {

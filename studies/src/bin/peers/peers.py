@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The problems of the study `peers` by other programs: makes `peers.csv`. See `peers.sh`, which runs it.
 
-    peers.py DIR FILE.csv
+    peers.py DIR FILE.csv WAVES.csv
 
 DIR: what `--bin peers -- --write DIR` has written. For every surface, half-space and load each program solves at the mean
 pressure p and at p (1 + STEP); the stiffness is the difference quotient. Differences are to asperity's own solution:
@@ -11,7 +11,8 @@ pressure p and at p (1 + STEP); the stiffness is the difference quotient. Differ
     pressure_difference  greatest difference at any node over the greatest pressure
     nodes_beyond         nodes with pressure at p (1 + STEP)
 
-The program `dense` is `dense.py`, on grids of up to DENSE nodes.
+The program `dense` is `dense.py`, on grids of up to DENSE nodes. WAVES.csv: the displacement under a pressure that is one
+wave, over 2/(E* |q|), for the shortest wave along x and along y that is no wave of two cells.
 """
 import csv
 import sys
@@ -27,9 +28,9 @@ from SurfaceTopography import Topography
 import dense
 
 STEP = 1e-5
-DENSE = 1000
+DENSE = 1024
 # Tighter ones are not reached at every load.
-TAMAAS, ASPHER, CONTACT_MECHANICS = 1e-12, 1e-11, 1e-11
+TAMAAS, ASPHER, CONTACT_MECHANICS = 1e-11, 1e-11, 1e-11
 ITERATIONS = 20_000
 
 
@@ -75,6 +76,25 @@ def by_contact_mechanics(heights, sides, half_space, load):
     return np.array(result.jac)[:shape[0], :shape[1]] / cell, gap
 
 
+def waves_of(shape):
+    """(axis, wave number, program, displacement over 2/(E* |q|)) on a square of side 1."""
+    for axis, n in enumerate(shape):
+        number = (n - 1) // 2
+        along = np.cos(2 * np.pi * number * np.arange(n) / n)
+        wave = np.ones(shape) * (along[:, None] if axis == 0 else along[None, :])
+        model = tamaas.Model(tamaas.model_type.basic_2d, [1.0, 1.0], list(shape))
+        model.E, model.nu = 1.0, 0.0
+        model.traction[:] = wave
+        model.solveNeumann()
+        substrate = ContactMechanics.PeriodicFFTElasticHalfSpace(shape, 1.0, (1.0, 1.0), stiffness_q0=0.0)
+        for name, displacement in (
+            ("tamaas", np.array(model.displacement)),
+            ("ContactMechanics", substrate.evaluate_disp(-wave / wave.size)),
+        ):
+            response = (displacement * wave).sum() / (wave * wave).sum()
+            yield "xy"[axis], number, name, response * np.pi * number
+
+
 def by_dense(heights, sides, half_space, load):
     return dense.solve(heights, sides, half_space, load)
 
@@ -96,8 +116,13 @@ COLUMNS = [
 
 
 def main():
-    directory, table = Path(sys.argv[1]), Path(sys.argv[2])
+    directory, table, waves = map(Path, sys.argv[1:4])
     tamaas.set_log_level(tamaas.LogLevel.error)
+    with open(waves, "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["nx", "ny", "axis", "wave_number", "program", "response"])
+        for shape in ((32, 32), (32, 27), (27, 32)):
+            writer.writerows([*shape, *row[:3], f"{row[3]:.12f}"] for row in waves_of(shape))
     with open(directory / "ours.csv", newline="") as file:
         problems = list(csv.DictReader(file))
     with open(table, "w", newline="") as file:

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Solves the problems of the study `peers` with other programs and writes `peers.csv`:
+# Solves the problems of the study `peers` with other programs and writes `peers.csv` and `waves.csv`:
 #
 #     studies/src/bin/peers/peers.sh [DIR]
 #
@@ -15,4 +15,4 @@ if [ ! -x "$dir/venv/bin/python" ]; then
 fi
 "$dir/venv/bin/pip" install --quiet --requirement "$here/requirements.txt" \
     --config-settings=cmake.define.FETCHCONTENT_SOURCE_DIR_EIGEN3_SRC=/usr/include/eigen3
-"$dir/venv/bin/python" "$here/peers.py" "$dir" "$here/peers.csv"
+"$dir/venv/bin/python" "$here/peers.py" "$dir" "$here/peers.csv" "$here/waves.csv"

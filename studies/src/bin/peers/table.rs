@@ -4,6 +4,7 @@ use crate::{ours, surfaces};
 use asperity_cli::outcome::Failure;
 
 const TABLE: &str = include_str!("peers.csv");
+const WAVES: &str = include_str!("waves.csv");
 /// Our numbers in the table and now may differ by rounding, on another machine, and by the tolerance of the solutions.
 const SAME: f64 = 1e-8;
 
@@ -95,4 +96,34 @@ pub(crate) fn read() -> Result<Vec<Row>, Failure> {
         }
     }
     Ok(rows)
+}
+
+/// How a program answers one wave.
+pub(crate) struct Wave {
+    pub(crate) nx: usize,
+    pub(crate) ny: usize,
+    /// `x` or `y`.
+    pub(crate) axis: String,
+    pub(crate) wave_number: usize,
+    pub(crate) program: String,
+    /// Displacement over 2/(E* |q|).
+    pub(crate) response: f64,
+}
+
+/// The answers of the other programs to the shortest waves.
+pub(crate) fn waves() -> Result<Vec<Wave>, Failure> {
+    let mut reader = csv::Reader::from_reader(WAVES.as_bytes());
+    let rows = reader.deserialize::<(usize, usize, String, usize, String, f64)>();
+    let wave = rows.map(|row| {
+        row.map(|(nx, ny, axis, wave_number, program, response)| Wave {
+            nx,
+            ny,
+            axis,
+            wave_number,
+            program,
+            response,
+        })
+    });
+    wave.collect::<Result<_, _>>()
+        .map_err(|error| Failure::new("cannot read waves.csv", error))
 }
