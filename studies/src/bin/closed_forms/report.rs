@@ -252,7 +252,7 @@ impl Report {
                 .with_room(0.05, 0.05),
             y: Axis::plain("area over that of the limit", low, high).with_room(0.5, 0.2),
             series: vec![
-                Series::new("", GREY, Style::Dashed, [(5e-5, 1.0), (0.2, 1.0)]),
+                Series::new("", GREY, Style::Dashed, [(1e-4, 1.0), (0.1, 1.0)]),
                 Series::new(
                     "contact over Hertz, P → 0",
                     BLUE,

@@ -5,7 +5,7 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, Series, Style};
 
 use crate::states::{LOADS, State};
-use crate::study::{BANDS, Family, MESHES, Study};
+use crate::study::{Family, Study};
 
 /// The loads that are drawn.
 const SHOWN: [usize; 3] = [0, 2, 4];
@@ -49,22 +49,10 @@ fn curves(
 
 impl Study {
     pub(crate) fn charts(&self) -> Vec<Chart> {
-        let ends = |values: &[usize]| {
-            let first = values.first().copied().unwrap_or(1) as f64;
-            (
-                0.8 * first,
-                1.25 * values.last().copied().unwrap_or(1) as f64,
-            )
-        };
-        let (mesh, width) = (ends(&MESHES), ends(&BANDS));
-        let cells_axis = || {
-            Axis::plain_logarithmic(
-                "cells to the shortest wave",
-                mesh.0.min(3.0),
-                mesh.1.max(40.0),
-            )
-        };
-        let band_axis = || Axis::plain_logarithmic("λᵣ/λₛ", width.0.min(1.0), width.1.max(40.0));
+        let (from, to) = (3.0, 40.0);
+        let cells_axis = || Axis::plain_logarithmic("cells to the shortest wave", from, to);
+        let (narrow, wide) = (1.5, 40.0);
+        let band_axis = || Axis::plain_logarithmic("λᵣ/λₛ", narrow, wide);
         let theories = |from: f64, to: f64| {
             let flat = |name: &str, colour, value: f64| {
                 Series::new(name, colour, Style::Dashed, [(from, value), (to, value)])
@@ -74,7 +62,7 @@ impl Study {
                 flat("√(8/π)", BLACK, AreaLoadLaw::PERSSON),
             ]
         };
-        let mut kappa = Vec::from(theories(1.0, 50.0));
+        let mut kappa = Vec::from(theories(from, to));
         kappa.extend(curves(
             &self.meshes,
             cells,
@@ -105,7 +93,7 @@ impl Study {
         }
         let values = left.iter().flat_map(|s| s.points.iter().map(|p| p.1));
         let (low, high) = values.fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
-        let mut widths = Vec::from(theories(1.0, 50.0));
+        let mut widths = Vec::from(theories(narrow, wide));
         widths.extend(curves(
             &self.bands,
             band,

@@ -7,6 +7,7 @@
 //! Writes `mesh.csv` and `mesh.png`.
 
 mod charts;
+mod kept;
 mod report;
 mod states;
 mod study;
@@ -17,6 +18,7 @@ use asperity_cli::outcome::Failure;
 use asperity_studies::findings::{Findings, Picture, Places};
 use clap::Parser;
 
+use kept::Kept;
 use study::Study;
 
 /// Area, mean gap and interfacial stiffness against the mesh and against the width of the spectrum.
@@ -30,6 +32,10 @@ struct Options {
     /// Most cells to the shortest wave, and widest spectrum
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u16).range(8..=32))]
     finest: u16,
+
+    /// Take the states that --out holds already instead of computing them
+    #[arg(long)]
+    reuse: bool,
 
     #[command(flatten)]
     places: Places,
@@ -46,7 +52,11 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    let study = Study::new(options.surfaces, options.finest.into())
+    let kept = match options.reuse {
+        true => Kept::read(&options.places.out.join("mesh.csv")),
+        false => Kept::default(),
+    };
+    let study = Study::new(options.surfaces, options.finest.into(), &kept)
         .map_err(|error| Failure::new("a rough surface", error))?;
     Findings {
         study: "mesh",

@@ -5,6 +5,7 @@ use asperity_studies::line::Line;
 use asperity_studies::spread::Spread;
 use indicatif::ProgressBar;
 
+use crate::kept::Kept;
 use crate::states::{LOADS, Mesh, State};
 
 /// λ_r/λ_s of the surfaces that are refined, and cells to the shortest wave of those whose spectrum is widened.
@@ -25,9 +26,12 @@ pub(crate) struct Family {
 }
 
 impl Family {
-    fn new(mesh: Mesh, seeds: u64, bar: &ProgressBar) -> Result<Self, Error> {
+    fn new(mesh: Mesh, seeds: u64, kept: &Kept, bar: &ProgressBar) -> Result<Self, Error> {
         let states = (1..=seeds).map(|seed| {
-            let states = mesh.states(seed);
+            let states = match kept.states(mesh, seed) {
+                Some(states) => Ok(states),
+                None => mesh.states(seed),
+            };
             bar.inc(1);
             states
         });
@@ -71,7 +75,7 @@ pub(crate) struct Study {
 }
 
 impl Study {
-    pub(crate) fn new(surfaces: u64, finest: usize) -> Result<Self, Error> {
+    pub(crate) fn new(surfaces: u64, finest: usize, kept: &Kept) -> Result<Self, Error> {
         let meshes = MESHES.into_iter().filter(|cells| *cells <= finest);
         let meshes: Vec<_> = meshes.map(|cells| Mesh { band: BAND, cells }).collect();
         let bands = BANDS.into_iter().filter(|band| *band <= finest);
@@ -80,7 +84,7 @@ impl Study {
         let all = |meshes: Vec<Mesh>| {
             let each = meshes
                 .into_iter()
-                .map(|mesh| Family::new(mesh, surfaces, &bar));
+                .map(|mesh| Family::new(mesh, surfaces, kept, &bar));
             each.collect::<Result<Vec<_>, _>>()
         };
         let study = Self {

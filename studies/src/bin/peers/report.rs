@@ -122,11 +122,13 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     }
     let mut programs: Vec<String> = Vec::new();
     for row in rows {
-        let tolerance = match row.tolerance {
-            0.0 => "no iteration".to_string(),
-            tolerance => format!("to {}", scientific(tolerance, 1)),
+        let program = match row.tolerance {
+            0.0 => format!("\"{}\" with {}", row.program, row.version),
+            tolerance => {
+                let tolerance = scientific(tolerance, 1);
+                format!("{} {} (to {tolerance})", row.program, row.version)
+            }
         };
-        let program = format!("{} {} ({tolerance})", row.program, row.version);
         if !programs.contains(&program) {
             programs.push(program);
         }
@@ -171,7 +173,7 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
          joins in between. What fails it is in bold.\n\n\
          Nodes that differ, of all three loads together, and the greatest difference of pressure:\n\n{pressures}\n\
          Differences of mean gap, over Sq, and of stiffness, relative:\n\n{stiffnesses}\n\
-         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.**",
+         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** What does not:\n",
         programs.join(", "),
         scientific(TOLERANCE, 1),
         LOADS.map(|load| load.to_string()).join(", "),
@@ -196,12 +198,13 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
         });
         let _ = write!(
             text,
-            "\n* {program}, {half_space}, {surface}: {} of {} loads solved; {} nodes differ, of at most {} of the mean pressure; \
-             {judged}.",
+            "\n* **{program}, {half_space}, {surface}**: {} of {} loads solved, {} nodes differ, under at most {} of the mean \
+             pressure, and pressures by {}; {judged}.",
             cell.rows.len(),
             LOADS.len(),
             cell.nodes(),
             scientific(cell.greatest(|row| row.least_certain), 1),
+            scientific(cell.pressure(), 1),
         );
     }
     text.push_str(&shortest_waves(waves));
@@ -228,15 +231,19 @@ fn shortest_waves(waves: &[Wave]) -> String {
         )
     });
     let wrong: Vec<String> = each.collect();
+    let why = match wrong.len() {
+        0 => "All are answered so.".to_string(),
+        count => format!(
+            "All but {count} are answered so, within {}: {}. With an odd number of nodes along its first axis tamaas gives one \
+             of the two conjugates of the shortest wave the wave number of the next shorter one. What that does is of the \
+             size of what the wave carries; with an even number along the first axis there is none of it.",
+            scientific(WAVE, 1),
+            wrong.join("; "),
+        ),
+    };
     format!(
-        "\n\n**Why.** The displacement under a pressure that is one wave must be 2/(E\\*|q|) times it. Of the {} shortest waves \
-         asked of tamaas and ContactMechanics (`waves.csv`), {} are answered otherwise, by more than {}: {}. With an odd \
-         number of nodes along its first axis tamaas gives one of the two conjugates of the shortest wave the wave number of \
-         the next shorter one. The effect is of the size of what that wave carries, 10⁻³ of the greatest pressure on \
-         27 × 32 nodes; with an even number along the first axis there is none.",
+        "\n\n**Why.** The displacement under a pressure that is one wave must be 2/(E\\*|q|) times it: {} shortest waves asked of \
+         tamaas and ContactMechanics (`waves.csv`). {why}",
         waves.len(),
-        wrong.len(),
-        scientific(WAVE, 1),
-        wrong.join("; "),
     )
 }
