@@ -119,14 +119,14 @@ impl Study {
             Chart {
                 title: "Area over load, corrected, 8 cells".to_string(),
                 x: band_axis(),
-                y: Axis::plain("κ = A E* h′ / load", 1.0, 3.2),
+                y: Axis::plain("κ = A E* h′ / load", 0.4, 3.0),
                 series: widths,
                 legend: Corner::BottomLeft,
             },
             Chart {
                 title: "Interfacial stiffness over load, 8 cells".to_string(),
                 x: band_axis(),
-                y: Axis::plain("K_i h_rms / load", 0.0, 5.0),
+                y: Axis::plain("K_i h_rms / load", 0.0, 5.6),
                 series: curves(&self.bands, band, |s| s.stiffness, Style::Line, ""),
                 legend: Corner::BottomLeft,
             },

@@ -133,12 +133,12 @@ impl Study {
         enough.last().map(|family| family.mesh.cells)
     }
 
-    /// The part of what counting cells gives too much that the correction removes on a mesh, on the mean over the loads.
-    pub(crate) fn removed(&self, family: &Family) -> f64 {
+    /// What the correction takes away over what counting cells gives too much, on the mean over the loads; 1 would be exact.
+    pub(crate) fn taken(&self, family: &Family) -> f64 {
         let each = (0..LOADS.len()).map(|load| self.left(family, load));
         let [counted, corrected] =
             each.fold([0.0; 2], |sum, left| [sum[0] + left[0], sum[1] + left[1]]);
-        1.0 - (corrected / counted).abs()
+        (counted - corrected) / counted
     }
 
     /// How the corrected κ changes with the logarithm of Nayak's parameter under one load.
