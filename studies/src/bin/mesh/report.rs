@@ -38,7 +38,7 @@ impl Study {
              area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
              (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
              Richardson's extrapolation of κ as cells are counted from the finest two meshes, surface by surface: 2 κ(Δ/2) − κ(Δ). \
-             Mean ± standard deviation of one surface.\n\n\
+             Mean ± standard deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
              ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
              spectrum](images/mesh.png)",
             self.surfaces,
