@@ -28,7 +28,7 @@ const CELLS: usize = 4;
 #[derive(Debug, Parser)]
 #[command(name = "challenge")]
 struct Options {
-    /// Nodes a side of the finest grid, a power of two: it has the spectrum of the challenge from 2048 on
+    /// Nodes a side of the finest grid; it has room for the whole spectrum of the challenge from 4000 on
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u16).range(256..=8192))]
     nodes: u16,
 
@@ -49,8 +49,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Failure> {
     let failed = |error: asperity::Error| Failure::new("a contact of the challenge", error);
     let finest = usize::from(options.nodes);
-    // Half the nodes of the finest grid under all loads, for the meshes too: of one surface on grids of 1, 2 and 4 × 4
-    // cells to each wave.
+    // The meshes have one surface, with 4, 8 and 16 cells to its shortest wave, on up to half the nodes of the finest grid.
     let common = finest / 8;
     let mut meshes = Vec::new();
     for nodes in [common, 2 * common, 4 * common] {

@@ -156,7 +156,7 @@ impl Report {
                 text,
                 "\nFrom L/λₛ = {} to {} the corrected κ goes from {:.3} to {:.3}, between √(2π) = {:.3} and Persson's √(8/π) = \
                  {persson:.3}: the wider the spectrum, the less. With four cells to λₛ the corrected area of the table before \
-                 is {:.1} % below its limit at this load; with as much here, the geometry of the challenge has, without adhesion, \
+                 is {:.1} % below its limit at this load; with as much here, this geometry has, without adhesion, \
                  A/A₀ = {:.2} % at p̄ = {} E\\* and a mean gap of {:.3} µm.",
                 first.band,
                 last.band,
@@ -173,9 +173,9 @@ impl Report {
     }
 
     fn challenge(&self) -> String {
-        let nodes = self.loads.first().map_or(0, |c| c.nodes);
+        let (nodes, band) = self.loads.first().map_or((0, 0), |c| (c.nodes, c.band));
         let mut text = format!(
-            "### Its loads\n\nThe spectrum of the challenge, L/λₛ = {BAND}, on {nodes} × {nodes} nodes, {:.1} cells to λₛ: too coarse for \
+            "### Its loads\n\nThe widest spectrum, L/λₛ = {band}, that of the challenge being {BAND}, on {nodes} × {nodes} nodes, {:.1} cells to λₛ: too coarse for \
              the area as counted.\n\n\
              | p̄/E\\* | nodes | cells to λₛ | A/A₀ | corrected | ḡ/h_rms | K_i h_rms/(A₀ p̄) | p_max/p̄ |\n\
              |---|---|---|---|---|---|---|---|\n",
