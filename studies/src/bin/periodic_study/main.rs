@@ -2,7 +2,7 @@
 //! closed form.
 //!
 //! ```text
-//! cargo run --release -p asperity-studies --bin periodic_study
+//! cargo run --release -p asperity-studies --bin periodic_study -- --report docs/validation.md
 //! ```
 //!
 //! * Contact area, mean gap and interfacial stiffness of several self-affine surfaces that differ in
@@ -11,18 +11,19 @@
 //! * The contact of a wave on finer and finer grids with both kernels against Westergaard: in what order
 //!   mean gap, area and stiffness converge.
 //!
-//! Writes `periodic_study.csv` and `periodic_study.png`, `westergaard.csv` and `westergaard.png`, and the
-//! tables of both as `periodic_study.md`.
+//! Writes `periodic_study.csv` and `periodic_study.png`, `westergaard.csv` and `westergaard.png`.
 
 mod rough;
+mod rough_charts;
+mod rough_report;
 mod wave;
+mod wave_report;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use asperity_cli::half_space::Periodic;
-use asperity_cli::outcome::{Failure, Outcome};
-use asperity_cli::{chart, panel};
+use asperity_cli::outcome::Failure;
+use asperity_studies::findings::{Findings, Picture, Places};
 use clap::Parser;
 
 /// Rough contact on a periodic half-space against theory, and a wave against its closed form.
@@ -49,9 +50,8 @@ pub(crate) struct Options {
     #[arg(long, default_value_t = 1024)]
     wave_nodes: usize,
 
-    /// Directory for the files, made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    #[command(flatten)]
+    places: Places,
 }
 
 fn main() -> ExitCode {
@@ -65,34 +65,36 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    panel::register_font()?;
-    std::fs::create_dir_all(&options.out)
-        .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let study = rough::Study::run(options)?;
     let convergence = wave::Convergence::run(options)?;
-    let tables = format!("{}\n{}", study.table(), convergence.table());
-    print!("{tables}");
-
-    let mut outcome = Outcome::default();
-    let file = |name: &str| options.out.join(name);
-    outcome.written(write(file("periodic_study.csv"), study.csv()));
-    outcome.written(chart::draw(&study.charts(), 2, &file("periodic_study.png")));
-    outcome.written(write(file("westergaard.csv"), convergence.csv()));
-    outcome.written(chart::draw(
-        &convergence.charts(),
-        3,
-        &file("westergaard.png"),
-    ));
-    outcome.written(write(file("periodic_study.md"), tables));
-    outcome.finish()
-}
-
-fn write(name: PathBuf, text: String) -> Result<PathBuf, Failure> {
-    match std::fs::write(&name, text) {
-        Ok(()) => Ok(name),
-        Err(error) => Err(Failure::new(
-            format!("cannot write {}", name.display()),
-            error,
-        )),
+    let text = format!(
+        "## The periodic half-space\n\n\
+         Everything in this section is written by\n\n\
+         ```text\n\
+         cargo run --release -p asperity-studies --bin periodic_study -- --report docs/validation.md\n\
+         ```\n\n{}\n\n{}",
+        convergence.text(),
+        study.text(),
+    );
+    Findings {
+        study: "periodic_study",
+        text,
+        tables: vec![
+            ("periodic_study", study.csv()),
+            ("westergaard", convergence.csv()),
+        ],
+        pictures: vec![
+            Picture {
+                name: "periodic_study",
+                charts: study.charts(),
+                columns: 2,
+            },
+            Picture {
+                name: "westergaard",
+                charts: convergence.charts(),
+                columns: 3,
+            },
+        ],
     }
+    .write(&options.places)
 }

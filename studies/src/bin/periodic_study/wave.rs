@@ -7,14 +7,12 @@ use asperity::surface::{Axis as Along, Wave};
 use asperity::{Grid, LoadingSolver, LoadingState};
 
 use crate::Options;
-use asperity_cli::axis::Axis;
-use asperity_cli::chart::{BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
-use asperity_studies::line::Line;
+use asperity_studies::order::order;
 
 /// Nodes along the coarsest wave, and of every grid across it: the wave does not vary there.
-const COARSEST: usize = 32;
+pub(crate) const COARSEST: usize = 32;
 const ACROSS: usize = 4;
 /// Amplitude of the wave of unit length.
 const AMPLITUDE: f64 = 0.01;
@@ -24,23 +22,23 @@ const INSIDE: (f64, f64) = (0.1, 0.9);
 
 /// Errors on one grid.
 #[derive(Debug, Clone, Copy)]
-struct Errors {
-    kernel: Periodic,
-    nodes: usize,
+pub(crate) struct Errors {
+    pub(crate) kernel: Periodic,
+    pub(crate) nodes: usize,
     /// Of the mean gap over the amplitude, greatest at any event.
-    gap: f64,
+    pub(crate) gap: f64,
     /// Of the area over the nominal area, just before nodes touch.
-    area: f64,
+    pub(crate) area: f64,
     /// Of the stiffness, relative, just before nodes touch.
-    stiffness: f64,
+    pub(crate) stiffness: f64,
     /// Of the load of full contact, relative.
-    full: f64,
+    pub(crate) full: f64,
 }
 
 /// What can be drawn and fitted of [`Errors`].
-type Column = (&'static str, fn(&Errors) -> f64, i32);
+pub(crate) type Column = (&'static str, fn(&Errors) -> f64, i32);
 
-const COLUMNS: [Column; 3] = [
+pub(crate) const COLUMNS: [Column; 3] = [
     ("mean gap, error / amplitude", |e| e.gap, 2),
     ("contact area, error / A₀", |e| e.area, 1),
     ("interfacial stiffness, relative error", |e| e.stiffness, 1),
@@ -48,7 +46,7 @@ const COLUMNS: [Column; 3] = [
 
 /// All grids, kernel by kernel.
 pub(crate) struct Convergence {
-    errors: Vec<Errors>,
+    pub(crate) errors: Vec<Errors>,
 }
 
 impl Convergence {
@@ -67,17 +65,14 @@ impl Convergence {
         Ok(Self { errors })
     }
 
-    fn of(&self, kernel: Periodic) -> impl Iterator<Item = &Errors> {
+    pub(crate) fn of(&self, kernel: Periodic) -> impl Iterator<Item = &Errors> {
         self.errors.iter().filter(move |e| e.kernel == kernel)
     }
 
     /// The order in which an error falls, from the finest three grids.
-    fn order(&self, kernel: Periodic, value: fn(&Errors) -> f64) -> f64 {
-        let points: Vec<_> = self
-            .of(kernel)
-            .map(|e| ((e.nodes as f64).ln(), value(e).ln()))
-            .collect();
-        -Line::fit(&points[points.len().saturating_sub(3)..]).slope
+    pub(crate) fn order(&self, kernel: Periodic, value: fn(&Errors) -> f64) -> f64 {
+        let points = self.of(kernel).map(|e| (e.nodes as f64, value(e)));
+        order(&points.collect::<Vec<_>>(), 3)
     }
 
     pub(crate) fn csv(&self) -> String {
@@ -97,79 +92,6 @@ impl Convergence {
             );
         }
         text
-    }
-
-    pub(crate) fn table(&self) -> String {
-        let mut text = "| kernel | nodes a wave | mean gap / amplitude | area / A₀ | stiffness | load of full \
-                        contact |\n|---|---|---|---|---|---|\n"
-            .to_string();
-        for kernel in [Periodic::Love, Periodic::Spectral] {
-            for e in self.of(kernel) {
-                let _ = writeln!(
-                    text,
-                    "| {} | {} | {:.2e} | {:.2e} | {:.2e} | {:.1e} |",
-                    kernel.name(),
-                    e.nodes,
-                    e.gap,
-                    e.area,
-                    e.stiffness,
-                    e.full
-                );
-            }
-            let [gap, area, stiffness] = COLUMNS.map(|(_, value, _)| self.order(kernel, value));
-            let _ = writeln!(
-                text,
-                "| {} | **order** | **{gap:.2}** | **{area:.2}** | **{stiffness:.2}** | |",
-                kernel.name()
-            );
-        }
-        text
-    }
-
-    pub(crate) fn charts(&self) -> Vec<Chart> {
-        let extent = |value: fn(&Errors) -> f64| {
-            let values = || self.errors.iter().map(value);
-            let (least, most) = (
-                values().fold(f64::INFINITY, f64::min),
-                values().fold(0.0, f64::max),
-            );
-            (least, most)
-        };
-        let finest = extent(|e| e.nodes as f64).1;
-        COLUMNS
-            .iter()
-            .map(|&(name, value, order)| {
-                let points = |kernel| {
-                    let each = self.of(kernel).map(move |e| (e.nodes as f64, value(e)));
-                    each.collect::<Vec<_>>()
-                };
-                let (love, spectral) = (points(Periodic::Love), points(Periodic::Spectral));
-                let (least, most) = extent(value);
-                // A line of the order that theory has, a little above the coarsest error.
-                let start = 1.5 * love[0].1;
-                let slope = |nodes: f64| start * (COARSEST as f64 / nodes).powi(order);
-                Chart {
-                    title: name.to_string(),
-                    x: Axis::plain_logarithmic("nodes a wave", COARSEST as f64, finest)
-                        .with_room(0.05, 0.05),
-                    y: Axis::plain_logarithmic("error", least, start.max(most))
-                        .with_room(0.06, 0.06),
-                    series: vec![
-                        Series::new(
-                            format!("order {order}"),
-                            GREY,
-                            Style::Dashed,
-                            [COARSEST as f64, finest].map(|nodes| (nodes, slope(nodes))),
-                        ),
-                        Series::new("Love kernel", BLUE, Style::Line, love.clone()),
-                        Series::new("", BLUE, Style::Dots, love),
-                        Series::new("spectral kernel", ORANGE, Style::Line, spectral.clone()),
-                        Series::new("", ORANGE, Style::Dots, spectral),
-                    ],
-                    legend: Corner::BottomLeft,
-                }
-            })
-            .collect()
     }
 }
 

@@ -1,0 +1,289 @@
+//! Table, text and picture.
+
+use std::fmt::Write;
+
+use asperity::reference::SQUARE_PUNCH_STIFFNESS;
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{BLACK, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
+use asperity_cli::number::scientific;
+
+use crate::curve::{CELLS, COEFFICIENT, Curve, LOADS, Quantity, SLACK, TOLERANCE};
+use crate::double_wave::{BEYOND, BRACKET, CLOSE, Comparison, EXACT, Full, Limit};
+use crate::punch::SquarePunch;
+
+/// By how much the extrapolated stiffness of the square punch may differ from the known one, which is known to a unit of
+/// its fifth decimal.
+const PUNCH_CLOSE: f64 = 2e-5;
+
+/// All that was found.
+pub(crate) struct Report {
+    pub(crate) curves: Vec<Curve>,
+    pub(crate) punch: SquarePunch,
+    pub(crate) wave: Comparison,
+}
+
+fn verdict(agrees: bool) -> &'static str {
+    if agrees { "agrees" } else { "**differs**" }
+}
+
+fn plural(agree: bool) -> &'static str {
+    if agree { "agree" } else { "differ" }
+}
+
+impl Report {
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!(
+            "## Closed forms\n\n\
+             Numbers and picture are written by\n\n\
+             ```text\n\
+             cargo run --release -p asperity-studies --bin closed_forms -- --report docs/validation.md\n\
+             ```\n\n\
+             `FixedLoadSolver` to {} against the closed forms of `asperity::reference`, which share no code with it, at \
+             equal load. An error is the root mean square of the relative error over {LOADS} loads from 3/4 to 5/4 of a \
+             target (of radii, for the circular punch) and four places of the apex between the nodes, since that of one \
+             state depends on how the edge of contact runs through the cells. Cells are counted over the radius of the \
+             contact, the shorter semi-axis or the half-width. Pressures are the greatest against the closed form \
+             at the same node; where that is infinite, of the cone and the punch, those from 0.35 to 0.65 of the radius. A cylinder has no approach, which goes like a \
+             logarithm without end, and so neither stiffness nor energy.\n\n\
+             **Criterion**, for every row: the order fitted to the finest four meshes is at least the expected one less \
+             {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). *Expected* is 2, \
+             but 1 for what depends on which cells count as contact: area, stiffness, and the pressure under a circular edge \
+             that cells do not follow.\n\n\
+             ![Errors of area, approach, pressure, stiffness and energy against the cells over a contact, and the wave in \
+             two directions beside its limits](images/closed_forms.png)\n\n\
+             | contact | quantity |",
+            scientific(TOLERANCE, 1),
+        );
+        // Writing to a string cannot fail.
+        for cells in CELLS {
+            let _ = write!(text, " {cells} |");
+        }
+        text.push_str(" order | expected | |\n|---|---|");
+        text.push_str(&"---|".repeat(CELLS.len() + 3));
+        text.push('\n');
+        for curve in &self.curves {
+            let _ = write!(text, "| {} | {} |", curve.contact, curve.quantity.name());
+            for (_, error) in &curve.points[..CELLS.len()] {
+                let _ = write!(text, " {} |", scientific(*error, 2));
+            }
+            let verdict = verdict(curve.agrees());
+            let _ = writeln!(
+                text,
+                " {:.2} | {} | {verdict} |",
+                curve.order(),
+                curve.expected
+            );
+        }
+        let agreeing = self.curves.iter().filter(|curve| curve.agrees()).count();
+        let _ = write!(
+            text,
+            "\n**Verdict: {agreeing} of {} rows agree.** The corrected area is the counted one less {:.4} cells for each side \
+             of a cell along the border of the contact.\n\n",
+            self.curves.len(),
+            asperity::patches::Perimeter::AREA_CORRECTION,
+        );
+        self.square_punch(&mut text);
+        self.double_wave(&mut text);
+        text
+    }
+
+    fn square_punch(&self, text: &mut String) {
+        text.push_str(
+            "### The square punch\n\n\
+             No closed form is known, only numbers: K = 1.15230 E\\*L, to a unit of the last digit. The error of the mesh is \
+             of first order, so that each two grids give a better value, 2 K(N) − K(N/2), and each three of these a still \
+             better one (Aitken).\n\n| cells a side | K/E\\*L | 2 K(N) − K(N/2) |\n|---|---|---|\n",
+        );
+        let richardson = self.punch.richardson();
+        for (k, (n, stiffness)) in self.punch.stiffness.iter().enumerate() {
+            let better = k.checked_sub(1).and_then(|k| richardson.get(k));
+            let better = better.map_or(String::new(), |value| format!("{value:.6}"));
+            let _ = writeln!(text, "| {n} | {stiffness:.6} | {better} |");
+        }
+        let limit = self.punch.limit();
+        let close = (limit - SQUARE_PUNCH_STIFFNESS).abs() <= PUNCH_CLOSE;
+        let _ = write!(
+            text,
+            "\nLimit: {limit:.6}. **Verdict: {}** (criterion: within {} of 1.15230).\n\n",
+            verdict(close),
+            scientific(PUNCH_CLOSE, 1),
+        );
+    }
+
+    fn double_wave(&self, text: &mut String) {
+        let wave = &self.wave;
+        let _ = write!(
+            text,
+            "### A wave in two directions\n\n\
+             K. L. Johnson, J. A. Greenwood and J. G. Higginson (1985): z = D cos(2πx/λ) cos(2πy/λ) is flat from \
+             p\\* = √2 πE\\*D/λ on; under a light load each crest is a Hertz contact by itself, and just below p\\* each \
+             valley a penny crack. In between there is no closed form.\n\n\
+             **Full contact.** At p̄ = {BEYOND} p\\* the pressure is p̄ + p\\* cos cos, at most {:.2} p\\*, and the energy \
+             p\\*DA₀/8. p̄ less the least pressure is the load of full contact on the mesh.\n\n\
+             | kernel | nodes a wave | load of full contact | greatest pressure | energy |\n|---|---|---|---|---|\n",
+            1.0 + BEYOND,
+        );
+        for full in &wave.full {
+            for (nodes, errors) in &full.errors {
+                let [load, peak, energy] = errors.map(|error| scientific(error, 2));
+                let name = full.kernel.name();
+                let _ = writeln!(text, "| {name} | {nodes} | {load} | {peak} | {energy} |");
+            }
+        }
+        let sentence = |full: &Full| {
+            format!(
+                "{}: greatest pressure {:.6} p\\* on the finest grid, contact full at 1 + {b} of the load found and not at \
+                 1 − {b} {}: {}",
+                full.kernel.name(),
+                full.peak,
+                if full.bracketed {
+                    "on every grid"
+                } else {
+                    "on some grids only"
+                },
+                verdict(full.agrees()),
+                b = scientific(BRACKET, 1),
+            )
+        };
+        let _ = write!(
+            text,
+            "\nRelative errors. {}; {}, order {:.2}. (Criteria: the spectral kernel has the wave as one of its own, within {}; \
+             Love's second order within 0.2.)\n\n",
+            sentence(&wave.full[1]),
+            sentence(&wave.full[0]),
+            wave.full[0].order(),
+            scientific(EXACT, 1),
+        );
+        let _ = write!(
+            text,
+            "**The two limits.** Corrected area in contact over that of Hertz contacts, π(3P/8π)^⅔, with {} nodes a wave, and \
+             corrected area out of contact over that of the cracks, 3(1 − P)/2π, with {}; P = p̄/p\\*, kernel Love, mean and \
+             deviation over four places of the crest between the nodes.\n\n\
+             | P | contact, of Hertz | 1 − P | no contact, of cracks |\n|---|---|---|---|\n",
+            wave.light.nodes, wave.heavy.nodes,
+        );
+        let cells = |limit: &Limit, k: usize| {
+            let row = limit.ratios.get(k);
+            row.map_or([String::new(), String::new()], |(distance, ratio)| {
+                [scientific(*distance, 1), ratio.decimals(4)]
+            })
+        };
+        for k in 0..wave.light.ratios.len().max(wave.heavy.ratios.len()) {
+            let ([p, light], [q, heavy]) = (cells(&wave.light, k), cells(&wave.heavy, k));
+            let _ = writeln!(text, "| {p} | {light} | {q} | {heavy} |");
+        }
+        let _ = write!(
+            text,
+            "\nA line in P^⅔ goes to {:.4} at P = 0, one in 1 − P to {:.4} at P = 1. **Verdict: contacts {}, holes {}** \
+             (criterion: 1 within {CLOSE}).\n",
+            wave.light.extrapolated(),
+            wave.heavy.extrapolated(),
+            plural(wave.light.agrees()),
+            plural(wave.heavy.agrees()),
+        );
+    }
+
+    pub(crate) fn csv(&self) -> String {
+        let mut text = "contact,quantity,cells,rms_relative_error\n".to_string();
+        for curve in &self.curves {
+            for (cells, error) in &curve.points {
+                let quantity = curve.quantity.name().replace(',', "");
+                let contact = curve.contact.replace(',', "");
+                let _ = writeln!(text, "{contact},{quantity},{cells},{error:e}");
+            }
+        }
+        text
+    }
+
+    pub(crate) fn charts(&self) -> Vec<Chart> {
+        let shown = [
+            Quantity::Area,
+            Quantity::Distance,
+            Quantity::Pressure,
+            Quantity::Stiffness,
+            Quantity::Energy,
+        ];
+        let mut charts: Vec<_> = shown.map(|quantity| self.chart(quantity)).into();
+        charts.push(self.limits());
+        charts
+    }
+
+    fn chart(&self, quantity: Quantity) -> Chart {
+        let curves = || self.curves.iter().filter(|c| c.quantity == quantity);
+        let points = || curves().flat_map(|c| c.points.iter().copied());
+        let least = points().fold(f64::INFINITY, |least, (_, e)| least.min(e));
+        let most = points().fold(0.0_f64, |most, (_, e)| most.max(e));
+        let (from, to) = (CELLS[0] as f64, CELLS[CELLS.len() - 1] as f64);
+        let order = quantity.order();
+        let guide = |cells: f64| (cells, 2.5 * most * (from / cells).powf(order));
+        let mut series = vec![Series::new(
+            format!("order {order}"),
+            GREY,
+            Style::Dashed,
+            [from, to].map(guide),
+        )];
+        for curve in curves() {
+            let (colour, style) = look(curve.contact);
+            let points = curve.points.clone();
+            series.push(Series::new(curve.contact, colour, style, points.clone()));
+            series.push(Series::new("", colour, Style::Dots, points));
+        }
+        // Room for the legend under the curves.
+        let floor = least * 1e-3;
+        Chart {
+            title: quantity.name().to_string(),
+            x: Axis::plain_logarithmic("cells over the radius", 3.0, 170.0),
+            y: Axis::plain_logarithmic("rms relative error", floor, 3.0 * most),
+            series,
+            legend: Corner::BottomLeft,
+        }
+    }
+
+    fn limits(&self) -> Chart {
+        let points = |limit: &Limit| -> Vec<(f64, f64)> {
+            limit.ratios.iter().map(|(d, r)| (*d, r.mean)).collect()
+        };
+        let (light, heavy) = (points(&self.wave.light), points(&self.wave.heavy));
+        let all = || light.iter().chain(&heavy).map(|(_, ratio)| *ratio);
+        let low = all().fold(1.0_f64, f64::min);
+        let high = all().fold(1.0_f64, f64::max);
+        Chart {
+            title: "wave in two directions".to_string(),
+            x: Axis::plain_logarithmic("distance from the limit, P or 1 − P", 1e-4, 0.1)
+                .with_room(0.05, 0.05),
+            y: Axis::plain("area over that of the limit", low, high).with_room(0.5, 0.2),
+            series: vec![
+                Series::new("", GREY, Style::Dashed, [(1e-4, 1.0), (0.1, 1.0)]),
+                Series::new(
+                    "contact over Hertz, P → 0",
+                    BLUE,
+                    Style::Line,
+                    light.clone(),
+                ),
+                Series::new("", BLUE, Style::Dots, light),
+                Series::new(
+                    "no contact over cracks, P → 1",
+                    ORANGE,
+                    Style::Line,
+                    heavy.clone(),
+                ),
+                Series::new("", ORANGE, Style::Dots, heavy),
+            ],
+            legend: Corner::BottomLeft,
+        }
+    }
+}
+
+/// Colour and line of a contact, the same in every panel; periodic ones are dashed.
+fn look(contact: &str) -> (plotters::style::RGBColor, Style) {
+    match contact {
+        "sphere" => (BLUE, Style::Line),
+        "ellipse" => (ORANGE, Style::Line),
+        "cone" => (GREEN, Style::Line),
+        "circular punch" => (PURPLE, Style::Line),
+        "square punch" => (GREY, Style::Line),
+        "wave, Love" => (BLUE, Style::Dashed),
+        "wave, spectral" => (ORANGE, Style::Dashed),
+        _ => (BLACK, Style::Line),
+    }
+}

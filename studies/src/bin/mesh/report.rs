@@ -1,0 +1,274 @@
+//! Tables and text.
+
+use std::fmt::Write;
+
+use asperity::patches::Perimeter;
+use asperity::reference::AreaLoadLaw;
+use asperity_studies::spread::Spread;
+
+use crate::states::{HURST, LOADS, ROLLOFF, State};
+use crate::study::{BAND, CELLS, ENOUGH, Family, REMOVED, Study};
+
+/// The load at which contacts are smallest, and the one at which κ of different spectra is told apart best, with many
+/// contacts that are still apart.
+const LIGHTEST: usize = 0;
+const MIDDLE: usize = 2;
+
+impl Study {
+    pub(crate) fn text(&self) -> String {
+        [
+            self.introduction(),
+            self.mesh(),
+            self.choice(),
+            self.spectrum(),
+        ]
+        .join("\n\n")
+    }
+
+    fn introduction(&self) -> String {
+        format!(
+            "## Mesh and spectrum\n\n\
+             What of κ = A E\\* h′/(A₀ p̄), of the mean gap and of the interfacial stiffness is the surface's, and what the \
+             mesh's? Numbers and picture are written by\n\n\
+             ```text\n\
+             cargo run --release -p asperity-studies --bin mesh -- --report docs/validation.md\n\
+             ```\n\n\
+             Self-affine surfaces as those of the section on rough contact (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel \
+             Love), {} seeds; *cells* are those to the shortest wave, λₛ. A surface is the same on every mesh. *Corrected* is the \
+             area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
+             (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
+             Richardson's extrapolation of κ as cells are counted from the finest two meshes, surface by surface: 2 κ(Δ/2) − κ(Δ). \
+             Mean ± standard deviation of one surface. In the picture the numbers are p̄/(E\\* h′).\n\n\
+             ![Ratio of area to load, mean gap and stiffness against the cells to the shortest wave and against the width of the \
+             spectrum](images/mesh.png)",
+            self.surfaces,
+            Perimeter::AREA_CORRECTION,
+        )
+    }
+
+    fn mesh(&self) -> String {
+        let mut text =
+            format!("### Cells to the shortest wave\n\nλᵣ/λₛ = {BAND}. κ:\n\n| p̄/(E\\* h′) | |");
+        // Writing to a string cannot fail.
+        for family in &self.meshes {
+            let _ = write!(text, " {} cells |", family.mesh.cells);
+        }
+        text.push_str(" limit |\n|---|---|---|");
+        text.push_str(&"---|".repeat(self.meshes.len()));
+        text.push('\n');
+        for (place, load) in LOADS.iter().enumerate() {
+            let row = |value: fn(&State) -> f64| {
+                let cells = self.meshes.iter();
+                let cells = cells.map(|f| format!(" {} |", f.spread(place, value).decimals(2)));
+                cells.collect::<String>()
+            };
+            let limit = self.limit(place).decimals(2);
+            let _ = writeln!(text, "| {load} | counted |{} {limit} |", row(State::kappa));
+            let _ = writeln!(text, "| | corrected |{} |", row(State::corrected_kappa));
+        }
+        let _ = write!(
+            text,
+            "\nḡ/h_rms and K_i h_rms/(A₀ p̄):\n\n| p̄/(E\\* h′) | |{}\n|---|---|{}\n",
+            self.meshes
+                .iter()
+                .map(|f| format!(" {} cells |", f.mesh.cells))
+                .collect::<String>(),
+            "---|".repeat(self.meshes.len()),
+        );
+        for (place, load) in LOADS.iter().enumerate() {
+            let row = |value: fn(&State) -> f64| {
+                let cells = self.meshes.iter();
+                let cells = cells.map(|f| format!(" {} |", f.spread(place, value).decimals(3)));
+                cells.collect::<String>()
+            };
+            let _ = writeln!(text, "| {load} | gap |{}", row(|s| s.gap));
+            let _ = writeln!(text, "| | stiffness |{}", row(|s| s.stiffness));
+        }
+        let taken: Vec<f64> = self.meshes.iter().map(|f| self.taken(f)).collect();
+        let agrees = taken.iter().all(|part| (part - 1.0).abs() <= 1.0 - REMOVED);
+        let parts: Vec<String> = taken
+            .iter()
+            .zip(&self.meshes)
+            .map(|(part, f)| format!("{:.0} % with {}", 100.0 * part, f.mesh.cells))
+            .collect();
+        let sense = match taken.iter().all(|part| *part > 1.0 && *part < 2.0) {
+            true => {
+                ": always too much, as on a Hertz contact, but always closer than cells counted"
+            }
+            false => "",
+        };
+        let factor = Spread::of(taken.iter().map(|part| Perimeter::AREA_CORRECTION / part));
+        let limits = || (0..LOADS.len()).map(|load| self.limit(load).mean);
+        let (bgt, persson) = (AreaLoadLaw::BUSH_GIBSON_THOMAS, AreaLoadLaw::PERSSON);
+        let between = limits().all(|kappa| kappa > persson && kappa < bgt);
+        let _ = write!(
+            text,
+            "\n**Verdict on the correction: {}.** Criterion: on every mesh, on the mean over the loads, it leaves at most {:.0} % of \
+             what counting cells gives too much, with either sign. It takes away {} cells{sense}. The factor that these surfaces want is {} in the place of {:.4}, \
+             mean and deviation over the meshes.\n\n\
+             Under the lightest load κ is {} with {} cells, counted, and {} without mesh: a κ near or above √(2π) = {bgt:.3} on \
+             a coarse mesh is the mesh. {} between √(2π) and Persson's √(8/π) = {persson:.3} {}.",
+            if agrees { "agrees" } else { "differs" },
+            100.0 * (1.0 - REMOVED),
+            parts.join(", "),
+            factor.decimals(3),
+            Perimeter::AREA_CORRECTION,
+            self.kappa_of(self.meshes.first()),
+            self.meshes.first().map_or(0, |f| f.mesh.cells),
+            self.limit(LIGHTEST).decimals(2),
+            if between {
+                "The limit is"
+            } else {
+                "The limit is not"
+            },
+            if between {
+                "at every load"
+            } else {
+                "at each load"
+            },
+        );
+        text
+    }
+
+    fn kappa_of(&self, family: Option<&Family>) -> String {
+        family.map_or(String::new(), |family| {
+            family.spread(LIGHTEST, State::kappa).decimals(2)
+        })
+    }
+
+    fn choice(&self) -> String {
+        let share = 100.0 * ENOUGH;
+        let cells = |found: Option<usize>| {
+            found.map_or("no mesh of these".to_string(), |cells| {
+                format!("{cells} cells")
+            })
+        };
+        let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
+        let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
+        let gap = self.coarsest(|f, load| self.beside_finest(f, load)[0].abs() <= ENOUGH);
+        let stiffness = self.coarsest(|f, load| self.beside_finest(f, load)[1].abs() <= ENOUGH);
+        let mut text = format!(
+            "### What to choose\n\n\
+             Cells to the shortest wave from which on the mean over the surfaces is within {share:.0} % at all these loads: of the \
+             limit for κ, of the finest mesh for the others.\n\n\
+             | quantity | enough |\n|---|---|\n| area, cells counted | {} |\n| area, corrected | {} |\n| mean gap | {} |\n\
+             | interfacial stiffness | {} |\n\nWhat each mesh leaves at worst over the loads, in per cent:\n\n\
+             | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n",
+            cells(counted),
+            cells(corrected),
+            cells(gap),
+            cells(stiffness),
+        );
+        let worst = |value: &dyn Fn(usize) -> f64| {
+            let each = (0..LOADS.len()).map(value);
+            let worst = each.fold(
+                0.0_f64,
+                |worst, x| if x.abs() > worst.abs() { x } else { worst },
+            );
+            format!("{:+.1}", 100.0 * worst).replace('-', "−")
+        };
+        for (place, family) in self.meshes.iter().enumerate() {
+            let beside = |k: usize| match place + 1 == self.meshes.len() {
+                true => "–".to_string(),
+                false => worst(&|load| self.beside_finest(family, load)[k]),
+            };
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} | {} |",
+                family.mesh.cells,
+                worst(&|load| self.left(family, load)[0]),
+                worst(&|load| self.left(family, load)[1]),
+                beside(0),
+                beside(1),
+            );
+        }
+        text.push_str(
+            "\nSo: mean gap and stiffness come with any mesh that has the shortest wave. For the area take the corrected one, or \
+             better two meshes, and extrapolate what is counted, 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
+             (`Topography::resample`), and only if the spectrum really ends at λₛ: a measured surface that is rough down to its \
+             pixels has no area that does not depend on the pixel. Where the deviation between surfaces is the larger \
+             number, as under light loads, more surfaces are worth more than a finer mesh.",
+        );
+        text
+    }
+
+    fn spectrum(&self) -> String {
+        let mut text = format!(
+            "### Width of the spectrum\n\n{CELLS} cells to the shortest wave. α is Nayak's parameter.\n\n| λᵣ/λₛ | α |"
+        );
+        for load in LOADS {
+            let _ = write!(text, " κ, corrected, {load} |");
+        }
+        text.push_str("\n|---|---|");
+        text.push_str(&"---|".repeat(LOADS.len()));
+        text.push('\n');
+        let table = |text: &mut String, value: fn(&State) -> f64| {
+            for family in &self.bands {
+                let _ = write!(text, "| {} | {:.1} |", family.mesh.band, family.nayak);
+                for load in 0..LOADS.len() {
+                    let _ = write!(text, " {} |", family.spread(load, value).decimals(2));
+                }
+                text.push('\n');
+            }
+        };
+        table(&mut text, State::corrected_kappa);
+        for (name, value) in [
+            ("ḡ/h_rms", (|s| s.gap) as fn(&State) -> f64),
+            ("K_i h_rms/(A₀ p̄)", |s| s.stiffness),
+        ] {
+            let columns = LOADS.map(|load| format!(" {load} |")).concat();
+            let rules = "---|".repeat(LOADS.len());
+            let _ = write!(
+                text,
+                "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n"
+            );
+            table(&mut text, value);
+        }
+        let trend = self.trend(MIDDLE);
+        let slope = Spread {
+            mean: trend.slope,
+            deviation: trend.error,
+        };
+        let _ = write!(
+            text,
+            "\nV. A. Yastrebov, G. Anciaux and J.-F. Molinari (J. Mech. Phys. Solids 107 (2017) 469) find that at a given \
+             p̄/(E\\* h′) the area falls with the logarithm of Nayak's parameter. Here, at p̄/(E\\* h′) = {}, dκ/d(ln α) = {} (with \
+             its standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
+            LOADS[MIDDLE],
+            slope.decimals(3),
+            if trend.falls() {
+                "agrees"
+            } else {
+                "not resolved"
+            },
+        );
+        text
+    }
+
+    pub(crate) fn csv(&self) -> String {
+        let mut text =
+            "band,cells,seed,mean_pressure_over_e_star_rms_gradient,contact_area_fraction,\
+                        corrected_area_fraction,mean_gap_over_rms_height,\
+                        interfacial_stiffness_rms_height_over_load\n"
+                .to_string();
+        for family in self.meshes.iter().chain(&self.bands) {
+            for (seed, states) in family.seeds.iter().enumerate() {
+                for s in states {
+                    let _ = writeln!(
+                        text,
+                        "{},{},{},{:e},{:e},{:e},{:e},{:e}",
+                        family.mesh.band,
+                        family.mesh.cells,
+                        seed + 1,
+                        s.load,
+                        s.area,
+                        s.corrected,
+                        s.gap,
+                        s.stiffness
+                    );
+                }
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,249 @@
+//! The tables, and the verdicts.
+
+use std::fmt::Write;
+
+use asperity_cli::number::scientific;
+
+use crate::ours::{LOADS, TOLERANCE};
+use crate::table::{Row, Wave};
+
+/// What may differ, of the greatest pressure, of the mean gap over the rms height, and of the stiffness.
+const PRESSURE: f64 = 1e-6;
+const GAP: f64 = 1e-6;
+const STIFFNESS: f64 = 1e-3;
+
+/// Tests of the library that hold it against other programs and methods.
+const TESTS: &str = "\n\n### In the tests\n\n\
+    | what | against | agreement | test |\n|---|---|---|---|\n\
+    | every event to full contact, both kernels | dense principal pivoting | same node, all columns within 1e-9 | \
+    `tests/paths/periodic_paths.rs` |\n\
+    | four mean pressures on 128², spectral kernel | tamaas 2.9.0 (tolerance 1e-13) | same number of nodes, greatest pressure \
+    and mean gap within 1e-9 | `tests/fixed_load` |\n\
+    | random loads and approaches, both kernels | the path of the same surface | same contact, everything within 1e-8 | \
+    `tests/fixed_load` |\n\
+    | full contact and beyond | p = p̄ − C⁺ g, by a sum over all waves | within 1e-10; p̄ = max C⁺ g within 1e-12 | \
+    `tests/fixed_load` |";
+
+/// The same of the answer to one wave: rounding.
+const WAVE: f64 = 1e-9;
+
+/// Programs and half-spaces in the order of columns.
+const COLUMNS: [(&str, &str); 7] = [
+    ("aspher", "free"),
+    ("ContactMechanics", "free"),
+    ("dense", "free"),
+    ("aspher", "periodic"),
+    ("ContactMechanics", "periodic"),
+    ("tamaas", "periodic"),
+    ("dense", "periodic"),
+];
+
+/// The worst of one program on one surface over all loads.
+struct Cell<'a> {
+    rows: Vec<&'a Row>,
+}
+
+impl<'a> Cell<'a> {
+    fn new(rows: &'a [Row], surface: &str, (program, half_space): (&str, &str)) -> Option<Self> {
+        let of = rows.iter().filter(|row| {
+            row.surface == surface && row.program == program && row.half_space == half_space
+        });
+        let rows: Vec<_> = of.collect();
+        (!rows.is_empty()).then_some(Self { rows })
+    }
+
+    fn greatest(&self, value: impl Fn(&Row) -> f64) -> f64 {
+        self.rows.iter().map(|row| value(row)).fold(0.0, f64::max)
+    }
+
+    fn nodes(&self) -> usize {
+        self.rows.iter().map(|row| row.nodes_different).sum()
+    }
+
+    fn pressure(&self) -> f64 {
+        self.greatest(|row| row.pressure_difference)
+    }
+
+    fn gap(&self) -> f64 {
+        self.greatest(|row| row.gap_difference)
+    }
+
+    /// `None` if a node joined between the two loads at every load.
+    fn stiffness(&self) -> Option<f64> {
+        let known = self.rows.iter().filter_map(|row| row.stiffness_difference);
+        known.reduce(f64::max)
+    }
+
+    fn agrees(&self) -> bool {
+        self.rows.len() == LOADS.len()
+            && self.nodes() == 0
+            && self.pressure() <= PRESSURE
+            && self.gap() <= GAP
+            && self
+                .stiffness()
+                .is_none_or(|difference| difference <= STIFFNESS)
+    }
+
+    fn marked(&self, text: String) -> String {
+        if self.agrees() {
+            text
+        } else {
+            format!("**{text}**")
+        }
+    }
+}
+
+fn table(rows: &[Row], surfaces: &[&str], show: impl Fn(&Cell) -> String) -> String {
+    let names = COLUMNS.map(|(program, half_space)| format!(" {program}, {half_space} |"));
+    let mut text = format!(
+        "| surface |{}\n|---|{}\n",
+        names.concat(),
+        "---|".repeat(COLUMNS.len())
+    );
+    for surface in surfaces {
+        let cells = COLUMNS.map(|column| {
+            let cell = Cell::new(rows, surface, column);
+            cell.map_or(" – |".to_string(), |cell| {
+                format!(" {} |", cell.marked(show(&cell)))
+            })
+        });
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| {surface} |{}", cells.concat());
+    }
+    text
+}
+
+pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
+    let mut surfaces: Vec<&str> = Vec::new();
+    for row in rows {
+        if !surfaces.contains(&row.surface.as_str()) {
+            surfaces.push(&row.surface);
+        }
+    }
+    let mut programs: Vec<String> = Vec::new();
+    for row in rows {
+        let program = match row.tolerance {
+            0.0 => format!("\"{}\" with {}", row.program, row.version),
+            tolerance => {
+                let tolerance = scientific(tolerance, 1);
+                format!("{} {} (to {tolerance})", row.program, row.version)
+            }
+        };
+        if !programs.contains(&program) {
+            programs.push(program);
+        }
+    }
+    let cells = || {
+        let of =
+            |surface| COLUMNS.map(|column| (surface, column, Cell::new(rows, surface, column)));
+        surfaces.iter().flat_map(move |surface| of(surface))
+    };
+    let compared = cells().filter(|(_, _, cell)| cell.is_some()).count();
+    let agreeing = cells()
+        .filter(|(_, _, cell)| cell.as_ref().is_some_and(Cell::agrees))
+        .count();
+    let solved = rows.len();
+    let pressures = table(rows, &surfaces, |cell| {
+        format!("{}, {}", cell.nodes(), scientific(cell.pressure(), 1))
+    });
+    let stiffnesses = table(rows, &surfaces, |cell| {
+        let stiffness = cell
+            .stiffness()
+            .map_or("–".to_string(), |x| scientific(x, 1));
+        format!("{}, {stiffness}", scientific(cell.gap(), 1))
+    });
+    let mut text = format!(
+        "## Other programs\n\n\
+         The same surfaces, loads and half-spaces by other programs. Their side is computed, with everything they need, by \
+         the first of these lines, and kept in `studies/src/bin/peers/peers.csv`; the second solves ours again, stops if it is \
+         no longer what theirs was compared with, and writes this section:\n\n\
+         ```text\n\
+         studies/src/bin/peers/peers.sh\n\
+         cargo run --release -p asperity-studies --bin peers -- --report docs/validation.md\n\
+         ```\n\n\
+         * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py` next to the table, which shares nothing \
+         with any of them: the influence matrix entry by entry, LU on the contact set, and the set changed until the \
+         conditions of contact hold to rounding. It is the judge, on grids of up to 1024 nodes.\n\
+         * **Half-spaces**: free with Love's kernel (`Boussinesq`); periodic with 2/(E\\*|q|) (`Spectral`).\n\
+         * **Surfaces**: the first eight on 128 × 128 nodes; then grids that are not square, with cells of 3 : 1, and with an \
+         odd number of nodes along y or x. `surfaces.rs` there makes them.\n\
+         * **Loads**: p̄ = {} E\\* times the rms gradient between nodes. Each entry is the worst of the three.\n\
+         * **Criterion**, for every entry: at each load the same nodes under pressure, pressures within {} of the greatest, mean \
+         gaps within {} Sq, and stiffness within {} of theirs by differences, from a second load larger by 10⁻⁵, unless a node \
+         joins in between. What fails it is in bold.\n\n\
+         Nodes that differ, of all three loads together, and the greatest difference of pressure:\n\n{pressures}\n\
+         Differences of mean gap, over Sq, and of stiffness, relative:\n\n{stiffnesses}\n\
+         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** What does not:\n",
+        programs.join(", "),
+        scientific(TOLERANCE, 1),
+        LOADS.map(|load| load.to_string()).join(", "),
+        scientific(PRESSURE, 1),
+        scientific(GAP, 1),
+        scientific(STIFFNESS, 1),
+    );
+    let failing = cells().filter_map(|(surface, column, cell)| Some((surface, column, cell?)));
+    for (surface, (program, half_space), cell) in failing.filter(|(_, _, cell)| !cell.agrees()) {
+        let judge = Cell::new(rows, surface, ("dense", half_space));
+        let judged = judge.map_or("no judge on a grid of this size".to_string(), |judge| {
+            let verdict = if judge.agrees() {
+                "sides with us"
+            } else {
+                "does not side with us"
+            };
+            format!(
+                "the dense check {verdict}: {} nodes, {}",
+                judge.nodes(),
+                scientific(judge.pressure(), 1)
+            )
+        });
+        let _ = write!(
+            text,
+            "\n* **{program}, {half_space}, {surface}**: {} of {} loads solved, {} nodes differ, under at most {} of the mean \
+             pressure, and pressures by {}; {judged}.",
+            cell.rows.len(),
+            LOADS.len(),
+            cell.nodes(),
+            scientific(cell.greatest(|row| row.least_certain), 1),
+            scientific(cell.pressure(), 1),
+        );
+    }
+    text.push_str(&shortest_waves(waves));
+    text.push_str(TESTS);
+    text
+}
+
+/// How the other programs answer the shortest waves, where they should all answer 2/(E* |q|).
+fn shortest_waves(waves: &[Wave]) -> String {
+    let wrong = |wave: &&Wave| (wave.response - 1.0).abs() > WAVE;
+    let each = waves.iter().filter(wrong).map(|wave| {
+        let k = wave.wave_number as f64;
+        format!(
+            "{} on {} × {} nodes answers the wave with {} periods along {} with {:.6} of 2/(E\\*|q|); the mean of 1/{k} and \
+             1/{} would be {:.6}",
+            wave.program,
+            wave.nx,
+            wave.ny,
+            wave.wave_number,
+            wave.axis,
+            wave.response,
+            wave.wave_number + 1,
+            0.5 * (1.0 + k / (k + 1.0)),
+        )
+    });
+    let wrong: Vec<String> = each.collect();
+    let why = match wrong.len() {
+        0 => "All are answered so.".to_string(),
+        count => format!(
+            "All but {count} are answered so, within {}: {}. With an odd number of nodes along its first axis tamaas gives one \
+             of the two conjugates of the shortest wave the wave number of the next shorter one. What that does is of the \
+             size of what the wave carries; with an even number along the first axis there is none of it.",
+            scientific(WAVE, 1),
+            wrong.join("; "),
+        ),
+    };
+    format!(
+        "\n\n**Why.** The displacement under a pressure that is one wave must be 2/(E\\*|q|) times it: {} shortest waves asked of \
+         tamaas and ContactMechanics (`waves.csv`). {why}",
+        waves.len(),
+    )
+}

@@ -1,0 +1,117 @@
+//! Table and text of rough contact.
+
+use std::fmt::Write;
+
+use asperity::reference::AreaLoadLaw;
+use asperity_studies::spread::Spread;
+
+use crate::rough::{CUTOFF, FIT, HURST, LIGHT, State, Study};
+
+/// By how much A/A₀ under the greatest load may differ from Persson's theory, which is exact in full contact.
+const FULL: f64 = 0.02;
+/// γ in Persson's theory and in the simulations known.
+const GAMMA: (f64, f64) = (0.4, 0.5);
+/// How far K_i h_rms/(A₀ p̄) may be from 1/γ, relative, on the mean over the upper decade of the fit.
+const TANGENT: f64 = 0.1;
+
+fn verdict(agrees: bool) -> &'static str {
+    if agrees { "agrees" } else { "differs" }
+}
+
+impl Study {
+    pub(crate) fn text(&self) -> String {
+        let (gamma, _) = self.exponential();
+        let (persson, bgt) = (AreaLoadLaw::PERSSON, AreaLoadLaw::BUSH_GIBSON_THOMAS);
+        let counted = self.kappa(|s| s.area);
+        let corrected = self.kappa(|s| s.corrected);
+        let between = self.light().all(|load| {
+            let kappa = self.spread(load, |s| s.corrected / s.load).mean;
+            kappa > persson && kappa < bgt
+        });
+        let last = self.loads - 1;
+        let at_last = self.at(last).next().map_or(f64::NAN, |s| s.load);
+        let left = self.spread(last, |s| s.area).mean - self.persson(at_last);
+        let lightest = |area: fn(&State) -> f64| {
+            let first = self.at(0).next().map_or(f64::NAN, |s| s.load);
+            Spread::of(self.at(0).map(|s| area(s) / first)).decimals(2)
+        };
+        let upper = (0..self.loads).filter(|load| {
+            let load = self.at(*load).next().map_or(f64::NAN, |s| s.load);
+            load >= 0.1 * FIT.1 && load <= FIT.1
+        });
+        let stiffness = Spread::of(upper.map(|load| self.spread(load, |s| s.stiffness).mean));
+        let tangent = stiffness.mean * gamma.mean - 1.0;
+        format!(
+            "### Rough contact against theory\n\n\
+             ![Area, mean gap and interfacial stiffness of self-affine surfaces against load](images/periodic_study.png)\n\n\
+             {} self-affine surfaces of {n} × {n} nodes (H = {HURST}, roll-off at a quarter and short cut-off at 1/32 of the side, \
+             {:.0} cells), kernel {}; {} loads each; {:.0} convolutions in all. *Corrected* is the area without what \
+             whole cells count too much along the border of the contact, (π − 1 + ln 2)/24 of a cell for each side.\n\n{}\n\
+             Mean ± standard deviation of one surface. With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}, 1/γ = \
+             {:.2}.\n\n\
+             * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected; under the lightest load {} \
+             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. That counted \
+             cells come close to the former where contacts are smallest is largely the mesh: a contact of a few cells is counted \
+             too large. Corrected, κ is between the two at every light load: {} (criterion: the mean of the surfaces, each \
+             load). What it is without any mesh is in the section on mesh and spectrum. At the lightest loads contacts \
+             are few, and the spread is that of the highest peaks.\n\
+             * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load the \
+             surfaces differ from it by {:.4}: {} (criterion: {FULL}).\n\
+             * **Mean gap.** Between the first few contacts and a fifth of the area in contact, p̄ ∝ exp(−ḡ/(γ h_rms)): {} (criterion: \
+             γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness. It is \
+             steeper at the lightest loads, where the finite surface has no higher peaks, and at full contact the gap closes.\n\
+             * **Stiffness.** The exact tangent, not a difference of gaps: K_i h_rms/(A₀ p̄) is {} over the upper decade of the \
+             same loads, mean and deviation over them, and 1/γ = {:.2}: {} (criterion: within {:.0} %).",
+            self.surfaces,
+            CUTOFF * self.nodes as f64,
+            self.kernel.name(),
+            self.loads,
+            self.convolutions,
+            self.table(),
+            FIT.0,
+            FIT.1,
+            gamma.decimals(3),
+            1.0 / gamma.mean,
+            counted.decimals(2),
+            corrected.decimals(2),
+            lightest(|s| s.area),
+            lightest(|s| s.corrected),
+            verdict(between),
+            left.abs(),
+            verdict(left.abs() <= FULL),
+            verdict(gamma.mean >= GAMMA.0 && gamma.mean <= GAMMA.1),
+            GAMMA.0,
+            GAMMA.1,
+            stiffness.decimals(2),
+            1.0 / gamma.mean,
+            verdict(tangent.abs() <= TANGENT),
+            100.0 * TANGENT,
+            n = self.nodes,
+        )
+    }
+
+    fn table(&self) -> String {
+        let mut text =
+            "| p̄/(E\\* h′) | A/A₀ | Persson | κ = A E\\* h′/(A₀ p̄) | κ, corrected | ḡ/h_rms | \
+                        K_i h_rms/(A₀ p̄) |\n|---|---|---|---|---|---|---|\n"
+                .to_string();
+        for load in (0..self.loads).step_by(self.loads.div_ceil(12)) {
+            let Some(first) = self.at(load).next() else {
+                break;
+            };
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "| {:.2e} | {} | {:.4} | {} | {} | {} | {} |",
+                first.load,
+                self.spread(load, |s| s.area).decimals(4),
+                self.persson(first.load),
+                self.spread(load, |s| s.area / s.load).decimals(2),
+                self.spread(load, |s| s.corrected / s.load).decimals(2),
+                self.spread(load, |s| s.gap).decimals(3),
+                self.spread(load, |s| s.stiffness).decimals(2),
+            );
+        }
+        text
+    }
+}

@@ -1,0 +1,77 @@
+//! Pages of the documentation whose sections are written by studies.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use asperity_cli::outcome::Failure;
+
+/// A section of a page, between markers that name the study that writes it.
+pub struct Section<'a> {
+    /// Name of the study.
+    pub study: &'a str,
+    /// The text, with pictures as `images/NAME.png`.
+    pub text: &'a str,
+    /// Files of the pictures, copied into images/ next to the page.
+    pub pictures: &'a [PathBuf],
+}
+
+impl Section<'_> {
+    /// Puts the section into a page that others write as well: in the place of what is between its markers, or at the
+    /// end.
+    pub fn publish(&self, page: &Path) -> Result<PathBuf, Failure> {
+        let publish = || -> Result<(), Box<dyn Error>> {
+            let images = page.parent().unwrap_or(Path::new("")).join("images");
+            std::fs::create_dir_all(&images)?;
+            for picture in self.pictures {
+                let name = picture.file_name().ok_or("a picture without a name")?;
+                std::fs::copy(picture, images.join(name))?;
+            }
+            let present = std::fs::read_to_string(page)?;
+            Ok(std::fs::write(page, self.merged(&present))?)
+        };
+        publish()
+            .map_err(|error| Failure::new(format!("cannot write {}", page.display()), error))?;
+        Ok(page.to_path_buf())
+    }
+
+    fn merged(&self, present: &str) -> String {
+        let begin = format!("<!-- written by the study `{}`: begin -->", self.study);
+        let end = format!("<!-- written by the study `{}`: end -->", self.study);
+        let section = format!("{begin}\n\n{}\n\n{end}", self.text.trim());
+        let parts = present.split_once(&begin).and_then(|(before, rest)| {
+            let (_, after) = rest.split_once(&end)?;
+            Some((before, after))
+        });
+        match parts {
+            Some((before, after)) => format!("{before}{section}{after}"),
+            None => format!("{}\n\n{section}\n", present.trim_end()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section<'a>(study: &'a str, text: &'a str) -> Section<'a> {
+        Section {
+            study,
+            text,
+            pictures: &[],
+        }
+    }
+
+    #[test]
+    fn only_the_own_section_changes() {
+        let page = "# Page\n\nBy hand.\n";
+        let first = section("one", "First.").merged(page);
+        let both = section("two", "Second.").merged(&first);
+        assert!(
+            first.starts_with("# Page\n\nBy hand.\n\n<!-- written by the study `one`: begin -->")
+        );
+        assert!(both.starts_with(first.trim_end()));
+        let again = section("one", "Changed.").merged(&both);
+        assert_eq!(again, both.replace("First.", "Changed."));
+        assert_eq!(section("two", "Second.").merged(&both), both);
+    }
+}
