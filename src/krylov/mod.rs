@@ -17,4 +17,4 @@ pub(crate) use operator::Operator;
 pub(crate) use pcg::LinearSystem;
 pub(crate) use preconditioner::Preconditioner;
 pub(crate) use sparse_inverse::SparseInverse;
-pub(crate) use vector::{add_scaled, dot, greatest, sum, sum_over};
+pub(crate) use vector::{Value, add_scaled, dot, greatest, sum, sum_over};

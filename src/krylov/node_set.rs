@@ -1,5 +1,13 @@
 //! A set of nodes, such as a contact, in the order of their indices.
 
+use std::ops::Range;
+
+use super::Value;
+use crate::parallel::for_each_chunk;
+
+/// Values that a thread takes at a time.
+const CHUNK: usize = 8192;
+
 /// A set of nodes in the order of their indices, and where each is among them.
 #[derive(Debug, Clone)]
 pub(crate) struct NodeSet {
@@ -75,13 +83,46 @@ impl NodeSet {
     }
 
     /// The values of a field of the grid at the nodes in contact.
-    pub(crate) fn gather<T: Copy>(&self, field: &[T], values: &mut Vec<T>) {
-        values.clear();
-        values.extend(self.nodes.iter().map(|&node| field[node as usize]));
+    pub(crate) fn gather<T: Value>(&self, field: &[T], values: &mut Vec<T>) {
+        self.fill(values, |_, node| field[node]);
+    }
+
+    /// value(place, node) at the nodes in contact.
+    pub(crate) fn fill<T: Value>(
+        &self,
+        values: &mut Vec<T>,
+        value: impl Fn(usize, usize) -> T + Sync + Send,
+    ) {
+        values.resize(self.nodes.len(), T::default());
+        for_each_chunk(values, CHUNK, |chunk, values| {
+            let places = chunk * CHUNK..;
+            let nodes = &self.nodes[chunk * CHUNK..];
+            for ((target, place), &node) in values.iter_mut().zip(places).zip(nodes) {
+                *target = value(place, node as usize);
+            }
+        });
+    }
+
+    /// Makes a field of the grid that of values at the nodes in contact, and zero elsewhere.
+    pub(crate) fn spread<T: Value>(&self, values: &[T], field: &mut [T]) {
+        for_each_chunk(field, CHUNK, |chunk, field| {
+            let first = chunk * CHUNK;
+            let own = self.within(first, field.len());
+            field.fill(T::default());
+            for (&node, value) in self.nodes[own.clone()].iter().zip(&values[own]) {
+                field[node as usize - first] = *value;
+            }
+        });
+    }
+
+    /// Where among [`Self::nodes`] those from `first` on are, as far as `length`.
+    pub(crate) fn within(&self, first: usize, length: usize) -> Range<usize> {
+        let below = |end: usize| self.nodes.partition_point(|&node| (node as usize) < end);
+        below(first)..below(first + length)
     }
 
     /// Writes values at the nodes in contact into a field of the grid.
-    pub(crate) fn scatter<T: Copy>(&self, values: &[T], field: &mut [T]) {
+    pub(crate) fn scatter(&self, values: &[f64], field: &mut [f64]) {
         for (&node, &value) in self.nodes.iter().zip(values) {
             field[node as usize] = value;
         }

@@ -65,8 +65,7 @@ impl Operator {
         values: &[f32],
         displacement: &mut Vec<f32>,
     ) -> Result<(), Error> {
-        self.single_pressure.fill(0.0);
-        contact.scatter(values, &mut self.single_pressure);
+        contact.spread(values, &mut self.single_pressure);
         self.convolutions += 1;
         displacement.resize(self.single_pressure.len(), 0.0);
         self.single.apply(&self.single_pressure, displacement)?;
@@ -99,8 +98,7 @@ impl Operator {
 
     /// Displacement of every node under the pressures of a contact set.
     pub(crate) fn apply(&mut self, contact: &NodeSet, values: &[f64]) -> Result<&[f64], Error> {
-        self.pressure.fill(0.0);
-        contact.scatter(values, &mut self.pressure);
+        contact.spread(values, &mut self.pressure);
         self.convolve(None, sum(values))
     }
 

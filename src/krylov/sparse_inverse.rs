@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::ops::Range;
 
 use super::lattice::{Lattice, Lattices, Neighbour};
 use super::{Change, NodeSet, greatest};
@@ -213,7 +212,7 @@ impl<const K: usize> SparseInverse<K> {
         let per_scale = 1.0 / scale;
         for_each_chunk(&mut self.source, CHUNK, |chunk, source| {
             let first = chunk * CHUNK;
-            let own = range(nodes, first, source.len());
+            let own = self.contact.within(first, source.len());
             for (&node, x) in nodes[own.clone()].iter().zip(&x[own]) {
                 source[node as usize - first] = (x * per_scale) as f32;
             }
@@ -228,7 +227,7 @@ impl<const K: usize> SparseInverse<K> {
                 values.fill(0.0);
                 outside.clear();
                 let first = part * part_length;
-                let own = &nodes[range(nodes, first, values.len())];
+                let own = &nodes[self.contact.within(first, values.len())];
                 let part = Part {
                     first,
                     values,
@@ -292,12 +291,6 @@ impl Part<'_> {
             }
         }
     }
-}
-
-/// Where in `nodes`, which are in order, those from `first` on are, as far as `length`.
-fn range(nodes: &[u32], first: usize, length: usize) -> Range<usize> {
-    let below = |end: usize| nodes.partition_point(|&node| (node as usize) < end);
-    below(first)..below(first + length)
 }
 
 impl<const K: usize> Found<K> {

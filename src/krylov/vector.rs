@@ -71,7 +71,7 @@ pub(crate) fn greatest(
 }
 
 /// A number of either precision; sums are always in double.
-pub(crate) trait Value: Copy + Into<f64> + Send + Sync {}
+pub(crate) trait Value: Copy + Default + Into<f64> + Send + Sync {}
 
 impl Value for f32 {}
 impl Value for f64 {}

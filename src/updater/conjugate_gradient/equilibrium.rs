@@ -3,6 +3,7 @@
 use super::local::Local;
 use crate::Problem;
 use crate::contact::ContactSequence;
+use crate::krylov::add_scaled;
 use crate::updater::Solution;
 
 /// Pressures of the grid and the displacements that they cause.
@@ -77,7 +78,15 @@ impl Equilibrium {
     /// The pressure at another approach, as long as no node joins.
     pub(super) fn load_at(&self, approach: f64) -> Field {
         let (time, load, rate) = (approach - self.approach, &self.load, &self.rate);
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + time * b).collect();
+        let sum = |a: &[f64], b: &[f64]| {
+            // Of what is not known nothing follows.
+            if a.is_empty() || b.is_empty() {
+                return Vec::new();
+            }
+            let mut sum = a.to_vec();
+            add_scaled(&mut sum, time, b);
+            sum
+        };
         Field {
             pressure: sum(&load.pressure, &rate.pressure),
             displacement: sum(&load.displacement, &rate.displacement),

@@ -68,23 +68,21 @@ impl Solver {
 
     /// Solves an equation from pressures `start`, of which `base` knows the displacements of most. Steps are
     /// in single precision, and so are displacements as long as that is within the tolerance.
-    pub(super) fn solve<F: Fn(usize) -> f64>(
+    pub(super) fn solve<F: Fn(usize) -> f64 + Sync + Send>(
         &mut self,
         equation: &Equation<F>,
         mut start: Vec<f64>,
         base: &Field,
         directions: &mut Directions,
     ) -> Result<Field, Error> {
-        let nodes = self.set.nodes().iter().map(|&node| node as usize);
-        let b: Vec<f64> = nodes.clone().map(&equation.rhs).collect();
-        let mut x = Vec::new();
+        let (mut b, mut x) = (Vec::new(), Vec::new());
+        self.set.fill(&mut b, |_, node| (equation.rhs)(node));
         self.set.gather(&start, &mut x);
         let (mut u, mut drift);
         if base.is_known() {
-            let change: Vec<f64> = nodes
-                .zip(&x)
-                .map(|(node, x)| x - base.pressure[node])
-                .collect();
+            let mut change = Vec::new();
+            self.set
+                .fill(&mut change, |place, node| x[place] - base.pressure[node]);
             u = base.displacement.clone();
             let added = self.operator.add(&self.set, &change, &mut u)?;
             drift = base.drift.hypot(SINGLE * added);
@@ -136,8 +134,7 @@ impl Solver {
             }
             last = fresh;
         }
-        start.fill(0.0);
-        self.set.scatter(&x, &mut start);
+        self.set.spread(&x, &mut start);
         Ok(Field {
             pressure: start,
             displacement: u,
@@ -146,8 +143,10 @@ impl Solver {
     }
 
     fn residual(&self, b: &[f64], u: &[f64]) -> Vec<f64> {
-        let nodes = self.set.nodes().iter().zip(b);
-        nodes.map(|(&node, b)| b - u[node as usize]).collect()
+        let mut residual = Vec::new();
+        self.set
+            .fill(&mut residual, |place, node| b[place] - u[node]);
+        residual
     }
 }
 
