@@ -11,7 +11,7 @@ use crate::plane::Case;
 use crate::report::Report;
 use crate::rules::Findings;
 use crate::surfaces::{PAPER_GRADIENT, PAPER_NODES, SIDE, SQ};
-use crate::verdicts::{scientific, signed};
+use crate::words::{list as and, scientific, signed};
 use asperity_cli::outcome::Failure;
 
 /// First contact against smallest gap.
@@ -23,10 +23,10 @@ pub(crate) fn rules(report: &Report) -> String {
             found.backward,
             found.negative,
             found.examined,
-            scientific(found.least_pressure, 2).replace('-', "−"),
+            scientific(found.least_pressure, 2),
             found.overlapping,
             found.examined,
-            scientific(found.least_gap, 2).replace('-', "−"),
+            scientific(found.least_gap, 2),
         )
     };
     let parted = rules
@@ -102,7 +102,7 @@ pub(crate) fn peers(report: &Report) -> String {
 }
 
 /// Where the paper is wrong or ambiguous.
-pub(crate) fn list(report: &Report) -> Result<String, Failure> {
+pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failure> {
     let [printed, corrected] =
         misprint::residuals().map_err(|error| Failure::new("the example of eq. (19)", error))?;
     let study = &report.study;
@@ -134,8 +134,8 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
     let slopes = all(&|i| report.figure7.fits[i].line[0].decimals(1));
     let approaches = all(&|i| report.figure7.fits[i].approach.decimals(1));
     let starts = all(&|i| {
-        let [offset, amplitude, _, _] = report.figure7.fits[i].exponentials[1];
-        signed(offset.mean + amplitude.mean, 2)
+        let fit = report.figure7.fits[i].small;
+        signed(fit.offset.mean + fit.amplitude.mean, 2)
     });
     let raw = all(&|i| report.figure6.ratios[i].at[1].1.decimals(2));
     let less = all(&|i| report.figure6.ratios[i].at[1].2.decimals(2));
@@ -189,8 +189,10 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
          that are real and in metres. With these, Sq is met exactly by every seed (`SelfAffine`)."
             .to_string(),
         format!(
-            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1: {gradients}. k under the greatest load is {ends}, but \
-             1.0 in the paper: it cannot have had the surface of its own table."
+            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1 with eq. (23): {gradients}. k under the greatest load is \
+             {ends}, but 1.0 in the paper. Not contradicted by both: {}. The table may be wrong or the amplitudes; \
+             see \"Which surface the paper had\".",
+            and(possible)
         ),
         format!(
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \

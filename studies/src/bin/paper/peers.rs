@@ -31,7 +31,7 @@ pub(crate) struct Comparison {
 pub(crate) fn heights() -> Result<HeightMap, Failure> {
     let sample = || {
         let grid = grid(NODES)?;
-        HeightMap::sample(&Rough::Table1.surface(&grid, SEED)?, &grid)
+        Rough::Table1.heights(&grid, SEED)
     };
     sample().map_err(|error| Failure::new("the surface of the comparison", error))
 }

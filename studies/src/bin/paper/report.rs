@@ -3,22 +3,32 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use crate::effort::Effort;
 use crate::figure3::Figure3;
 use crate::figure4::Figure4;
 use crate::figure5::Figure5;
 use crate::figure6::Figure6;
 use crate::figure7::Figure7;
 use crate::figure8::Figure8;
+use crate::iterations::Iterations;
 use crate::peers::Comparison;
 use crate::rules::Rules;
 use crate::study::Study;
-use crate::{findings, sections, verdicts};
+use crate::whole_path::WholePath;
+use crate::{candidates, conclusions, criteria, findings, method, sections, statements};
 use asperity_cli::outcome::Failure;
 
 /// The study writes between these lines of the page, and leaves the rest alone.
-const BEGIN: &str = "<!-- written by the study `paper`: begin -->";
-const END: &str = "<!-- written by the study `paper`: end -->";
-const TITLE: &str = "# Validation\n\n";
+const FIGURES: [&str; 2] = [
+    "<!-- written by the study `paper`: begin -->",
+    "<!-- written by the study `paper`: end -->",
+];
+/// The same for the whole path.
+const WHOLE_PATH: [&str; 2] = [
+    "<!-- written by the study `paper`, whole path: begin -->",
+    "<!-- written by the study `paper`, whole path: end -->",
+];
+const TITLE: &str = "# Validation\n";
 
 /// All that was found.
 pub(crate) struct Report {
@@ -31,20 +41,31 @@ pub(crate) struct Report {
     pub(crate) figure8: Figure8,
     pub(crate) rules: Rules,
     pub(crate) peers: Vec<Comparison>,
+    pub(crate) iterations: Iterations,
+    pub(crate) effort: Effort,
+    /// If its file was given.
+    pub(crate) whole_path: Option<WholePath>,
 }
 
 impl Report {
+    /// Names of the surfaces.
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        let families = self.study.families.iter();
+        families.map(|family| family.rough.name()).collect()
+    }
+
     /// Writes the page alone, into the directory of the pictures.
     pub(crate) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
-        let text = self.text("")?;
-        std::fs::write(name, format!("{TITLE}{text}"))
+        let page = self.merged(TITLE.to_string(), "")?;
+        std::fs::write(name, page)
             .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
         Ok(name.to_path_buf())
     }
 
     /// Puts the page into a file that others write as well, and the pictures into images/ next to it.
     pub(crate) fn publish(&self, name: &Path) -> Result<PathBuf, Failure> {
-        let text = self.text("images/paper_")?;
+        let present = std::fs::read_to_string(name).unwrap_or(TITLE.to_string());
+        let page = self.merged(present, "images/paper_")?;
         let publish = || -> Result<(), Box<dyn Error>> {
             let images = name.parent().unwrap_or(Path::new("")).join("images");
             std::fs::create_dir_all(&images)?;
@@ -53,8 +74,7 @@ impl Report {
                 let copy = images.join(format!("paper_{}", file.to_string_lossy()));
                 std::fs::copy(picture, copy)?;
             }
-            let present = std::fs::read_to_string(name).unwrap_or_default();
-            std::fs::write(name, merged(&present, &text))?;
+            std::fs::write(name, page)?;
             Ok(())
         };
         publish()
@@ -62,23 +82,51 @@ impl Report {
         Ok(name.to_path_buf())
     }
 
-    fn pictures(&self) -> [&PathBuf; 6] {
-        [
+    fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+        let figures = [
             &self.figure3.picture,
             &self.figure4.picture,
             &self.figure5.picture,
             &self.figure6.picture,
             &self.figure7.picture,
             &self.figure8.picture,
-        ]
+        ];
+        let whole_path = self.whole_path.iter().map(|path| &path.picture);
+        figures.into_iter().chain(whole_path)
     }
 
-    /// The page between the markers; names of pictures begin with `prefix`.
+    /// A page with the text in its places; names of pictures begin with `prefix`.
+    fn merged(&self, present: String, prefix: &str) -> Result<String, Failure> {
+        let page = put(&present, FIGURES, &self.text(prefix)?);
+        Ok(match &self.whole_path {
+            Some(path) => put(&page, WHOLE_PATH, &sections::whole_path(path, prefix)),
+            None => page,
+        })
+    }
+
+    /// The figures.
     fn text(&self, prefix: &str) -> Result<String, Failure> {
+        let names = self.names();
+        let (conclusions, statements) = (conclusions::claims(self), statements::claims(self));
+        let (method, candidates) = (method::claims(self), candidates::claims(self));
+        let claims = conclusions.iter().chain(&statements).chain(&method);
         let sections = [
             self.introduction(),
-            verdicts::conclusions(self),
-            verdicts::surfaces(self),
+            criteria::criteria(claims),
+            format!(
+                "### The conclusions of the paper\n\n{}",
+                criteria::table(&names, &conclusions)
+            ),
+            format!(
+                "### Its other statements on the figures\n\n{}",
+                criteria::table(&names, &statements)
+            ),
+            format!(
+                "### Its statements on the method\n\n{}\n{}",
+                criteria::table(&["here"], &method),
+                method::tables(self)
+            ),
+            candidates::section(self, &candidates),
             sections::figure3(self, prefix),
             sections::figure4(self, prefix),
             sections::figure5(self, prefix),
@@ -87,9 +135,11 @@ impl Report {
             sections::figure8(self, prefix),
             findings::rules(self),
             findings::peers(self),
-            findings::list(self)?,
+            findings::list(self, &candidates::possible(self, &candidates))?,
         ];
-        Ok(format!("{BEGIN}\n\n{}\n\n{END}\n", sections.join("\n\n")))
+        Ok(sections
+            .map(|text| text.trim_end().to_string())
+            .join("\n\n"))
     }
 
     fn introduction(&self) -> String {
@@ -124,26 +174,19 @@ impl Report {
              approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
              * **Without units**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
              E\\*.\n\
-             * **Verdicts** on numbers: *agrees* within two standard deviations or 5 %, *near* within \
-             20 %, else *differs*.",
+             * **Three surfaces**, since the paper's cannot be told for certain: see \
+             \"Which surface the paper had\".",
             study.nodes, study.seeds, study.nodes, study.nodes, study.seeds, study.path_nodes,
         )
     }
 }
 
-/// A page with the text in the place of what is between the markers, or at its top.
-fn merged(present: &str, text: &str) -> String {
-    let parts = present.split_once(BEGIN).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(END)?;
-        Some((before, after.trim_start_matches('\n')))
+/// A page with the text in the place of what is between the markers, or at its end.
+fn put(present: &str, [begin, end]: [&str; 2], text: &str) -> String {
+    let parts = present.split_once(begin).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(end)?;
+        Some((before.to_string(), after))
     });
-    let (before, after) = match parts {
-        Some(parts) => parts,
-        None => (TITLE, present.strip_prefix(TITLE).unwrap_or(present)),
-    };
-    if after.is_empty() {
-        format!("{before}{text}")
-    } else {
-        format!("{before}{text}\n{after}")
-    }
+    let (before, after) = parts.unwrap_or((format!("{}\n\n", present.trim_end()), "\n"));
+    format!("{before}{begin}\n\n{text}\n\n{end}{after}")
 }

@@ -60,13 +60,13 @@ impl Study {
             for seed in 1..=seeds {
                 let found = options
                     .reuse
-                    .then(|| Run::read(directory, rough, seed))
+                    .then(|| Run::read(directory, rough, nodes, seed))
                     .flatten();
                 let run = match found {
                     Some(run) => run,
                     None => {
                         let run = Run::new(rough, seed, nodes, path_nodes)?;
-                        run.write(directory)?;
+                        run.write(directory, nodes)?;
                         run
                     }
                 };

@@ -1,0 +1,131 @@
+//! Memory and time of paths, against what the paper says of them.
+
+use std::f64::consts::PI;
+use std::time::Instant;
+
+use asperity::surface::Paraboloid;
+use asperity::{Boussinesq, ContactRule, LoadingSolver, RecursiveCholesky};
+
+use crate::surfaces::{E_STAR, Rough, grid};
+use asperity_cli::outcome::Failure;
+
+/// The meshes that the paper calls practical, and the areas.
+const MESHES: [usize; 4] = [128, 256, 512, 1024];
+const AREAS: [f64; 2] = [0.01, 0.1];
+/// The headline case of the paper.
+const HEADLINE: usize = 256;
+/// The paper's own procedure is timed on this mesh, to so many nodes.
+const OWN_MESH: usize = 128;
+const OWN_NODES: usize = 4000;
+/// Steps of it between which its growth is measured, and how many around each are looked at.
+const OWN_STEPS: [usize; 2] = [2000, 3900];
+const AROUND: usize = 100;
+
+/// A path to an area on a mesh.
+pub(crate) struct Path {
+    pub(crate) mesh: usize,
+    pub(crate) area: f64,
+    pub(crate) contact: usize,
+    /// Half of the influence matrix, bytes.
+    pub(crate) factor: f64,
+    /// Wall time, if it was run.
+    pub(crate) seconds: Option<f64>,
+}
+
+pub(crate) struct Effort {
+    pub(crate) paths: Vec<Path>,
+    /// Nodes of the headline case, its time, and the bytes it holds at its end over those of the whole matrix.
+    pub(crate) headline: (usize, f64, f64),
+    /// α in the time n^α of a step of the paper's procedure.
+    pub(crate) step_exponent: f64,
+}
+
+impl Effort {
+    /// Runs the paths with at most as many nodes in contact as a tenth of a mesh of `nodes` a side.
+    pub(crate) fn new(nodes: usize) -> Result<Self, Failure> {
+        let failed = |error: asperity::Error| Failure::new("the paths for memory and time", error);
+        let mut paths = Vec::new();
+        for mesh in MESHES {
+            for area in AREAS {
+                let contact = (area * (mesh * mesh) as f64) as usize;
+                let run = 10 * contact <= nodes * nodes;
+                let seconds = run.then(|| time(mesh, contact)).transpose();
+                paths.push(Path {
+                    mesh,
+                    area,
+                    contact,
+                    factor: 4.0 * (contact as f64).powi(2),
+                    seconds: seconds.map_err(failed)?,
+                });
+            }
+        }
+        Ok(Self {
+            paths,
+            headline: headline().map_err(failed)?,
+            step_exponent: step_exponent().map_err(failed)?,
+        })
+    }
+}
+
+/// Seconds of the path to so many nodes, Table 1, seed 1.
+fn time(mesh: usize, contact: usize) -> Result<f64, asperity::Error> {
+    eprintln!("time: {contact} nodes of {mesh} x {mesh}");
+    let grid = grid(mesh)?;
+    let heights = Rough::Table1.heights(&grid, 1)?;
+    let start = Instant::now();
+    let kernel = Boussinesq::new(grid, E_STAR)?;
+    let path = LoadingSolver::builder(&heights, &kernel).max_nodes(contact);
+    for state in path.build()? {
+        state?;
+    }
+    Ok(start.elapsed().as_secs_f64())
+}
+
+/// The sphere to a contact of π/16 of its mesh.
+fn headline() -> Result<(usize, f64, f64), asperity::Error> {
+    eprintln!("time: the headline case");
+    let start = Instant::now();
+    let kernel = Boussinesq::new(grid(HEADLINE)?, E_STAR)?;
+    let sphere = Paraboloid::new(1.0)?;
+    let mut path = LoadingSolver::builder(&sphere, &kernel)
+        .updater(RecursiveCholesky::new())
+        .max_area_fraction(PI / 16.0)
+        .build()?;
+    let mut nodes = 0;
+    for state in path.by_ref() {
+        nodes = state?.contact_nodes;
+    }
+    let matrix = 8.0 * (nodes as f64).powi(2);
+    let seconds = start.elapsed().as_secs_f64();
+    Ok((nodes, seconds, path.bytes() as f64 / matrix))
+}
+
+/// How the time of a step of the paper's procedure grows: the least of those around each place, since others use
+/// the machine as well.
+fn step_exponent() -> Result<f64, asperity::Error> {
+    eprintln!("time: the paper's procedure");
+    let grid = grid(OWN_MESH)?;
+    let heights = Rough::Table1.heights(&grid, 1)?;
+    let kernel = Boussinesq::new(grid, E_STAR)?;
+    let mut path = LoadingSolver::builder(&heights, &kernel)
+        .updater(RecursiveCholesky::new())
+        .rule(ContactRule::SmallestGap)
+        .window_size(1)
+        .max_nodes(OWN_NODES)
+        .build()?;
+    let mut least = [f64::INFINITY; 2];
+    let mut step = 0;
+    loop {
+        let start = Instant::now();
+        let Some(state) = path.next() else { break };
+        state?;
+        step += 1;
+        for (least, place) in least.iter_mut().zip(OWN_STEPS) {
+            if place.abs_diff(step) < AROUND {
+                *least = least.min(start.elapsed().as_secs_f64());
+            }
+        }
+    }
+    let [first, second] = OWN_STEPS.map(|place| place as f64);
+    Ok((least[1] / least[0]).ln() / (second / first).ln())
+}
