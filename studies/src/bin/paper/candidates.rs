@@ -8,6 +8,7 @@ use crate::report::Report;
 use crate::study::Family;
 use crate::surfaces::{PAPER_GRADIENT, PAPER_NODES, SIDE, SQ, short_cutoff};
 use crate::words::{list, signed};
+use crate::{conclusions, statements};
 use asperity_studies::spread::Spread;
 
 /// The numbers of the paper that depend on the surface.
@@ -74,6 +75,8 @@ pub(crate) fn claims(report: &Report) -> Vec<Claim> {
             |f| f.stiffness,
             |s| s.scientific(-3, 3),
         ),
+        conclusions::near_two(&report.figure6.ratios),
+        statements::small_patches(report),
     ]
 }
 
@@ -86,8 +89,32 @@ pub(crate) fn possible(report: &Report, claims: &[Claim]) -> Vec<String> {
         // The paper does not say which gradient it means.
         (fits(0) || fits(1)) && fits(2)
     });
-    fits.map(|(_, family)| format!("\"{}\"", family.rough.name()))
+    fits.map(|(_, family)| quoted(family.rough.name()))
         .collect()
+}
+
+fn quoted(name: &str) -> String {
+    format!("\"{name}\"")
+}
+
+/// What the patches say of those that are possible.
+fn by_patches(report: &Report, claims: &[Claim], possible: &[String]) -> String {
+    let Some(patches) = claims.last() else {
+        return String::new();
+    };
+    let names = report.names();
+    let holds = names.iter().zip(&patches.found);
+    let holds = holds.filter(|(_, found)| found.verdict == Verdict::Agrees);
+    let holds: Vec<String> = holds.map(|(name, _)| quoted(name)).collect();
+    let left: Vec<String> = holds
+        .into_iter()
+        .filter(|name| possible.contains(name))
+        .collect();
+    format!(
+        " Of these, \"most of the contact patches are small\" (Fig. 4) holds for {} at every area, as far as \"small\" means \
+         fewer than ten cells.",
+        list(&left)
+    )
 }
 
 pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
@@ -96,7 +123,7 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
     let possible = possible(report, claims);
     let excluded: Vec<String> = names
         .iter()
-        .map(|name| format!("\"{name}\""))
+        .map(|name| quoted(name))
         .filter(|name| !possible.contains(name))
         .collect();
     let mut counts = String::new();
@@ -116,28 +143,29 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
         );
     }
     let verdict = match possible.len() {
-        0 => "none of these surfaces has the paper's gradient and its k under the greatest load"
+        0 => "none of these surfaces has the paper's gradient and its k under the greatest load."
             .to_string(),
         1 => format!(
-            "of these surfaces only {} has the paper's gradient and its k under the greatest load",
+            "only {} has the paper's gradient and its k under the greatest load.",
             list(&possible)
         ),
         _ => format!(
-            "{} all have the paper's gradient and its k under the greatest load; the paper's numbers do not tell them \
-             apart, and so not whether its table or its amplitudes were others than it says",
-            list(&possible)
+            "{} have the paper's gradient and its k under the greatest load. Whether the paper's table or its amplitudes \
+             were others than it says, these two numbers do not tell.{}",
+            list(&possible),
+            by_patches(report, claims, &possible)
         ),
     };
     let against = if excluded.is_empty() {
         String::new()
     } else {
-        format!(" Not so {}.", list(&excluded))
+        format!(" Contradicted: {}.", list(&excluded))
     };
     format!(
         "### Which surface the paper had\n\n\
          Table 1 of the paper with eq. (23), Sq = {} µm, H = 0.8, λᵣ = L/4, on a square of {} mm, does not have the rms \
-         gradient {PAPER_GRADIENT} that the paper states. Two surfaces nearly do, and all three are shown everywhere, with \
-         the same phases for a seed and the same Sq:\n\n\
+         gradient {PAPER_GRADIENT} that the paper states. Two others are shown beside it everywhere, with the same phases \
+         for a seed and the same Sq:\n\n\
          * **Table 1**: amplitudes of waves ∝ √C(q), as a power spectrum means, B = 2π√(C/A₀).\n\
          * **no roll-off**: the same with λᵣ = L, against the paper's table.\n\
          * **amplitudes ∝ C**: all of Table 1, but amplitudes of waves ∝ C(q), as if the root in B had been forgotten.\n\n\
@@ -145,7 +173,7 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
          Gradients of this study's mesh, {} × {}, are those of the sum of waves, and all ratios k use them; with central \
          differences, on {PAPER_NODES} × {PAPER_NODES} nodes, k would be smaller in proportion. The short cut-off is \
          {:.1} µm, {:.1} cells. A surface *has the gradient* if either definition agrees or is near.\n\n{}\n\
-         **Verdict:** {verdict}.{against}",
+         **Verdict:** {verdict}{against}",
         signed(SQ * 1e6, 0),
         signed(SIDE * 1e3, 0),
         criteria::table(&names, claims),

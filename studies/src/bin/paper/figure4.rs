@@ -23,7 +23,7 @@ const AREAS: [f64; 4] = [0.01, 0.05, 0.15, 0.4];
 const MAP: i32 = 216;
 const FONT: i32 = 14;
 /// Pressures over E* h′ from which on the colour is the lightest and the darkest, evenly in the logarithm.
-const SHADES: (f64, f64) = (0.03, 10.0);
+const SHADES: (f64, f64) = (0.1, 10.0);
 /// Patches of fewer cells count as small.
 const SMALL: usize = 10;
 
@@ -35,6 +35,8 @@ pub(crate) struct Map {
     /// Greatest pressure over E*, and over E* h′.
     pub(crate) greatest: f64,
     pub(crate) reduced: f64,
+    /// Whether it is at the border of the square.
+    pub(crate) at_border: bool,
     pub(crate) patches: usize,
     /// The fraction of patches with fewer than ten cells, and of the contact in them.
     pub(crate) small: f64,
@@ -62,6 +64,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure4, Failure> 
             map.area,
             map.greatest,
             map.reduced,
+            f64::from(u8::from(map.at_border)),
             map.patches as f64,
             map.small,
             map.in_small,
@@ -78,6 +81,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure4, Failure> 
             "area",
             "greatest_pressure",
             "greatest_pressure_over_gradient",
+            "greatest_at_border",
             "patches",
             "small_patches",
             "contact_in_small",
@@ -130,6 +134,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
             area: solution.state.contact_area_fraction,
             greatest: solution.max_pressure() / E_STAR,
             reduced: solution.max_pressure() / (E_STAR * family.gradient),
+            at_border: is_at_border(&solution.pressure),
             patches: sizes.len(),
             small: small as f64 / sizes.len() as f64,
             in_small: in_small / contact,
@@ -138,6 +143,13 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         });
     }
     Ok(maps)
+}
+
+/// Whether a node of the border has the greatest value.
+fn is_at_border(values: &DMatrix<f64>) -> bool {
+    let (nx, ny) = values.shape();
+    let (ix, iy) = values.iamax_full();
+    ix == 0 || iy == 0 || ix + 1 == nx || iy + 1 == ny
 }
 
 fn draw(maps: &[Map], name: &Path) -> Result<PathBuf, Failure> {

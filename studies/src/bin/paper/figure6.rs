@@ -95,7 +95,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure6, Failure> 
         charts.push(Chart {
             title: format!("{}, h′ = {:.3}", family.rough.name(), gradient),
             x: Axis::plain_logarithmic("contact area A / A₀", LEAST, 1.0),
-            y: Axis::plain("k = A E* h′ / W", 0.0, 3.5),
+            y: Axis::plain("k = A E* h′ / W", 0.0, 4.0),
             series,
             legend: Corner::BottomLeft,
         });
@@ -133,9 +133,9 @@ fn against_persson(study: &Study) -> Chart {
     Chart {
         title: "Area over Persson's erf(√2 W/A₀E*h′), means".to_string(),
         x: Axis::plain_logarithmic("contact area A / A₀", LEAST, 1.0),
-        y: Axis::plain("A / A of Persson", 0.8, 1.8),
+        y: Axis::plain("A / A of Persson", 0.8, 2.0),
         series,
-        legend: Corner::BottomLeft,
+        legend: Corner::TopRight,
     }
 }
 

@@ -131,7 +131,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
         Chart {
             title: "Exact slope: constant where ḡ is logarithmic".to_string(),
             x: load(),
-            y: Axis::plain("γ = −dḡ/d(ln W) / Sq", 0.0, 0.8),
+            y: Axis::plain("γ = −dḡ/d(ln W) / Sq", 0.0, 1.1),
             series: decay,
             legend: Corner::TopLeft,
         },

@@ -27,6 +27,13 @@ pub(crate) struct Comparison {
     pub(crate) pressure: [f64; 2],
 }
 
+impl Comparison {
+    /// Relative difference of the greatest pressures.
+    pub(crate) fn difference(&self) -> f64 {
+        (self.pressure[0] / self.pressure[1] - 1.0).abs()
+    }
+}
+
 /// Heights of the common surface, from Table 1.
 pub(crate) fn heights() -> Result<HeightMap, Failure> {
     let sample = || {

@@ -79,7 +79,7 @@ impl WholePath {
             seed: 1,
             points,
         };
-        let (gradient, _) = Rough::Table1.gradients(mesh, 1).map_err(failed)?;
+        let gradient = Rough::Table1.gradient(mesh).map_err(failed)?;
         Ok(Self {
             mesh,
             path_nodes: study.path_nodes,
@@ -221,7 +221,7 @@ fn draw(run: &Run, gradient: f64, directory: &Path) -> Result<PathBuf, Failure> 
                 }),
                 upright(area, 1e-3, 5.0),
             ],
-            legend: Corner::TopRight,
+            legend: Corner::BottomLeft,
         },
         Chart {
             title: "Fig. 7: approach and contact stiffness".to_string(),

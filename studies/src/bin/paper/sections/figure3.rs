@@ -57,7 +57,7 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
          the edge lies (full contact: one load). \
          Orders of convergence by a fit from N = 21 to 641:\n\n\
          | case | inner error | rms error | orders, inner and rms |\n|---|---|---|---|\n{rows}\n\
-         **Verdict: agrees.** Away from the edge of contact the error is of second order in the cell size. Over the \
+         Away from the edge of contact the error is of second order in the cell size. Over the \
          whole contact it is of first order, because the edge cuts cells; in full contact there is no edge, and it is \
          of second order. Free waves have an error of their own that no finer mesh removes.",
         picture(

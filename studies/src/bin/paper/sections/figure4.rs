@@ -12,12 +12,13 @@ pub(crate) fn figure4(report: &Report, prefix: &str) -> String {
     for map in &report.figure4.maps {
         let _ = writeln!(
             rows,
-            "| {} | {:.1} % | {} | {:.3} | {:.2} | {} | {:.0} % | {:.0} % | {:.0} % |",
+            "| {} | {:.1} % | {} | {:.3} | {:.2} | {} | {} | {:.0} % | {:.0} % | {:.0} % |",
             map.surface,
             100.0 * map.area,
             scientific(map.load, 3),
             map.greatest,
             map.reduced,
+            if map.at_border { "border" } else { "inside" },
             map.patches,
             100.0 * map.small,
             100.0 * map.in_small,
@@ -29,10 +30,10 @@ pub(crate) fn figure4(report: &Report, prefix: &str) -> String {
          The paper: \"most of the contact patches are small and sparsely distributed …, while the majority of \
          the contact points belong to large patches\". Counted for seed 1, with patches of fewer than ten cells \
          as small and the largest tenth of the patches as large:\n\n\
-         | surface | A/A₀ | W/A₀E\\* | greatest p/E\\* | greatest p/E\\*h′ | patches | small ones | contact in small ones | \
-         contact in the largest tenth |\n|---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         Colours of the maps are even in the logarithm of p/E\\*h′. The pressure is greatest along the border of the square \
-         at large contact: the cause is the finite punch on a free half-space, and not roughness.",
+         | surface | A/A₀ | W/A₀E\\* | greatest p/E\\* | greatest p/E\\*h′ | where | patches | small ones | contact in small ones | \
+         contact in the largest tenth |\n|---|---|---|---|---|---|---|---|---|---|\n{rows}\n\
+         Colours of the maps are even in the logarithm of p/E\\*h′. Where it is greatest at the border \
+         of the square, the cause is the finite punch on a free half-space, and not roughness.",
         picture(
             prefix,
             "figure4",

@@ -1,15 +1,10 @@
-//! Fig. 7: approach and contact stiffness against load.
+//! The fits of Fig. 7.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
 
 use crate::fit::{Fit, Shape};
 use crate::run::{GREATEST_LOAD, Run};
-use crate::study::{Family, Study};
-use crate::table::write_csv;
-use asperity_cli::axis::Axis;
-use asperity_cli::chart::{self, BLACK, Chart, Corner, GREY, PURPLE, Series, Style, colour};
-use asperity_cli::outcome::Failure;
+use crate::study::Family;
 use asperity_studies::line::Line;
 use asperity_studies::spread::Spread;
 
@@ -30,7 +25,7 @@ pub(crate) const LARGE_LOAD: f64 = 0.02;
 pub(crate) const LINE_UNIT: f64 = 20.0;
 /// The part of the punch's stiffness from which on K counts as saturated.
 pub(crate) const SATURATED: f64 = 0.95;
-const SAMPLES: usize = 300;
+pub(super) const SAMPLES: usize = 300;
 
 /// y₀, A, t and rms deviation of an exponential through u/Sq.
 #[derive(Clone, Copy)]
@@ -71,131 +66,8 @@ pub(crate) struct Fits {
     pub(crate) saturated_at: Spread,
 }
 
-pub(crate) struct Figure7 {
-    pub(crate) fits: Vec<Fits>,
-    pub(crate) picture: PathBuf,
-}
-
-pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> {
-    let failed = |error: Box<dyn Error>| Failure::new("the fits of Fig. 7", error);
-    let mut fits = Vec::new();
-    let mut rows = Vec::new();
-    let (mut small, mut all, mut stiffness, mut logarithmic) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (place, family) in study.families.iter().enumerate() {
-        fits.push(Fits::of(family, study.punch).map_err(failed)?);
-        let colour = colour(place);
-        for (index, run) in family.runs.iter().enumerate() {
-            rows.extend(run.points.iter().map(|p| {
-                let numbers = [run.seed as f64, p.load, -p.approach, p.contact_stiffness];
-                [
-                    vec![family.rough.name().to_string()],
-                    numbers.map(|n| n.to_string()).to_vec(),
-                ]
-                .concat()
-            }));
-            let name = if index == 0 { family.rough.name() } else { "" };
-            let approach = run.points.iter().map(|p| (p.load, -p.approach));
-            let light = run.evenly(0.0, SMALL_LOAD, SAMPLES);
-            let light = light.iter().map(|p| (p.load, -p.approach));
-            small.push(Series::new(name, colour, Style::Line, light));
-            all.push(Series::new(name, colour, Style::Line, approach));
-            let k = run.points.iter().map(|p| (p.load, p.contact_stiffness));
-            stiffness.push(Series::new(name, colour, Style::Line, k.clone()));
-            logarithmic.push(Series::new(name, colour, Style::Line, k));
-        }
-        if let Some(run) = family.runs.first() {
-            let points = light_loads(run, SMALL_LOAD);
-            let fit = Fit::with_offset(&points, Shape::Decay).map_err(failed)?;
-            let curve = small_loads().map(|w| (w, fit.at(w)));
-            small.push(Series::new("", BLACK, Style::Dashed, curve));
-            let line = line(run);
-            let ends = [0.0, GREATEST_LOAD].map(|w| (w, line.at(w)));
-            all.push(Series::new("", BLACK, Style::Dashed, ends));
-        }
-    }
-    let (y0, a, t) = PAPER_EXPONENTIAL;
-    let paper = small_loads().map(|w| (w, y0 + a * (-w / t).exp()));
-    small.push(Series::new("the paper's fit", PURPLE, Style::Line, paper));
-    let (slope, intercept) = PAPER_LINE;
-    let paper = [0.0, GREATEST_LOAD].map(|w| (w, LINE_UNIT * (intercept + slope * w)));
-    all.push(Series::new(
-        "the paper's line × 20",
-        PURPLE,
-        Style::Dashed,
-        paper,
-    ));
-    let punch = [(0.0, study.punch), (GREATEST_LOAD, study.punch)];
-    stiffness.push(Series::new(
-        "rigid square punch",
-        GREY,
-        Style::Dashed,
-        punch,
-    ));
-    let punch = [(1e-6, study.punch), (GREATEST_LOAD, study.punch)];
-    logarithmic.push(Series::new(
-        "rigid square punch",
-        GREY,
-        Style::Dashed,
-        punch,
-    ));
-    write_csv(
-        &directory.join("figure7.csv"),
-        &[
-            "surface",
-            "seed",
-            "load",
-            "approach_over_sq",
-            "contact_stiffness",
-        ],
-        rows.into_iter(),
-    )?;
-    let lowest = all
-        .iter()
-        .flat_map(|s| &s.points)
-        .map(|p| p.1)
-        .fold(0.0, f64::min);
-    let charts = [
-        Chart {
-            title: "Small loads, exponential fits (dashed)".to_string(),
-            x: Axis::plain("load W / A₀E*", 0.0, SMALL_LOAD),
-            y: Axis::plain("normal approach u / Sq", -4.0, 0.0),
-            series: small,
-            legend: Corner::TopRight,
-        },
-        Chart {
-            title: "All loads, linear fits (dashed)".to_string(),
-            x: Axis::plain("load W / A₀E*", 0.0, GREATEST_LOAD),
-            y: Axis::plain("normal approach u / Sq", 1.05 * lowest, 0.0),
-            series: all,
-            legend: Corner::TopRight,
-        },
-        Chart {
-            title: "Contact stiffness".to_string(),
-            x: Axis::plain("load W / A₀E*", 0.0, GREATEST_LOAD),
-            y: Axis::plain("K Sq / A₀E*", 0.0, 1.1 * study.punch),
-            series: stiffness,
-            legend: Corner::BottomRight,
-        },
-        Chart {
-            title: "Contact stiffness, from the lightest loads".to_string(),
-            x: Axis::plain_logarithmic("load W / A₀E*", 1e-6, GREATEST_LOAD),
-            y: Axis::plain_logarithmic("K Sq / A₀E*", 3e-5, 1e-2),
-            series: logarithmic,
-            legend: Corner::BottomRight,
-        },
-    ];
-    let picture = chart::draw(&charts, 2, &directory.join("figure7.png"))?;
-    Ok(Figure7 { fits, picture })
-}
-
-/// Loads at which curves of the first chart are drawn.
-fn small_loads() -> impl Iterator<Item = f64> {
-    (0..=100).map(|k| SMALL_LOAD * f64::from(k) / 100.0)
-}
-
 /// (W, −δ/Sq) at evenly spaced loads up to `greatest`.
-fn light_loads(run: &Run, greatest: f64) -> Vec<(f64, f64)> {
+pub(super) fn light_loads(run: &Run, greatest: f64) -> Vec<(f64, f64)> {
     let points = run.evenly(0.0, greatest, SAMPLES);
     points.iter().map(|p| (p.load, -p.approach)).collect()
 }
@@ -222,23 +94,31 @@ impl Approach {
     }
 }
 
-/// Relative rms deviations of the three shapes through K.
-fn growth(run: &Run) -> Result<[f64; 3], Box<dyn Error>> {
+/// What K may grow like, in the order of [`Fits::growth`].
+pub(super) const GROWTHS: [Shape; 3] = [Shape::Growth, Shape::Saturation, Shape::Power];
+
+/// Those of two parameters through K at light loads.
+pub(super) fn growths(run: &Run) -> Result<[Fit; 3], Box<dyn Error>> {
+    let points = growth_loads(run);
+    let [growing, saturating, power] = GROWTHS.map(|shape| Fit::through_zero(&points, shape));
+    Ok([growing?, saturating?, power?])
+}
+
+/// (W, K Sq/A₀E*) at evenly spaced loads from [`LEAST_LOAD`] to [`SMALL_LOAD`].
+pub(super) fn growth_loads(run: &Run) -> Vec<(f64, f64)> {
     let points = run.evenly(LEAST_LOAD, SMALL_LOAD, SAMPLES);
-    let points: Vec<_> = points
+    points
         .iter()
         .map(|p| (p.load, p.contact_stiffness))
-        .collect();
+        .collect()
+}
+
+/// Their rms deviations over the rms K.
+fn growth(run: &Run) -> Result<[f64; 3], Box<dyn Error>> {
+    let points = growth_loads(run);
     let squares = points.iter().map(|(_, k)| k * k).sum::<f64>();
     let rms = (squares / points.len() as f64).sqrt();
-    let relative = |shape| -> Result<f64, Box<dyn Error>> {
-        Ok(Fit::through_zero(&points, shape)?.deviation / rms)
-    };
-    Ok([
-        relative(Shape::Growth)?,
-        relative(Shape::Saturation)?,
-        relative(Shape::Power)?,
-    ])
+    Ok(growths(run)?.map(|fit| fit.deviation / rms))
 }
 
 /// A/A₀ of the first state with 95 % of the stiffness of the punch.
@@ -250,7 +130,7 @@ fn saturated_at(run: &Run, punch: f64) -> Option<f64> {
 }
 
 /// The line through −δ/Sq at large loads.
-fn line(run: &Run) -> Line {
+pub(super) fn line(run: &Run) -> Line {
     let points = run.evenly(LARGE_LOAD, GREATEST_LOAD, SAMPLES);
     let points: Vec<_> = points.iter().map(|p| (p.load, -p.approach)).collect();
     Line::fit(&points)
@@ -267,7 +147,7 @@ fn exponent(run: &Run) -> Line {
 }
 
 impl Fits {
-    fn of(family: &Family, punch: f64) -> Result<Self, Box<dyn Error>> {
+    pub(super) fn of(family: &Family, punch: f64) -> Result<Self, Box<dyn Error>> {
         let lines: Vec<Line> = family.runs.iter().map(line).collect();
         let growth: Vec<[f64; 3]> = family.runs.iter().map(growth).collect::<Result<_, _>>()?;
         let exponents = family.runs.iter().map(|run| exponent(run).slope);
