@@ -12,6 +12,8 @@ use asperity_cli::outcome::Failure;
 /// The meshes that the paper calls practical, and the areas.
 const MESHES: [usize; 4] = [128, 256, 512, 1024];
 const AREAS: [f64; 2] = [0.01, 0.1];
+/// Longer paths than to so many nodes take minutes.
+const MOST_NODES: usize = 12_000;
 /// The headline case of the paper.
 const HEADLINE: usize = 256;
 /// The paper's own procedure is timed on this mesh, to so many nodes.
@@ -41,14 +43,14 @@ pub(crate) struct Effort {
 }
 
 impl Effort {
-    /// Runs the paths with at most as many nodes in contact as a tenth of a mesh of `nodes` a side.
+    /// Runs the paths with at most [`MOST_NODES`] in contact, and a tenth of a mesh of `nodes` a side.
     pub(crate) fn new(nodes: usize) -> Result<Self, Failure> {
         let failed = |error: asperity::Error| Failure::new("the paths for memory and time", error);
         let mut paths = Vec::new();
         for mesh in MESHES {
             for area in AREAS {
                 let contact = (area * (mesh * mesh) as f64) as usize;
-                let run = 10 * contact <= nodes * nodes;
+                let run = contact <= MOST_NODES.min(nodes * nodes / 10);
                 let seconds = run.then(|| time(mesh, contact)).transpose();
                 paths.push(Path {
                     mesh,

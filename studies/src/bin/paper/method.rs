@@ -181,7 +181,7 @@ pub(crate) fn tables(report: &Report) -> String {
          grids by their part. Both until no gap in contact and no overlap is above 10⁻⁸ of the approach:\n\n\
          | W/A₀E\\* | nodes | plain | ours | convolutions |\n|---|---|---|---|---|\n{}\n\n\
          Paths by this crate on the machine that wrote this page, in seconds of wall time with whatever else ran there \
-         (`docs/performance.md` has times of an idle one, and 1024² to 10 %), and the factor that the paper's procedure holds, \
+         (`docs/performance.md` has times of an idle one, and of the longer paths), and the factor that the paper's procedure holds, \
          4n² bytes:\n\n\
          | mesh | A/A₀ | nodes | factor | time [s] |\n|---|---|---|---|---|\n{}\n\n\
          \"The recursion approach saves half of the computation\": one solution with L Lᵀ, 2n² flops, in place of two.",
