@@ -134,11 +134,11 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
         };
         let _ = writeln!(
             counts,
-            "* **{name}**: {} of {} numbers agree, {} are near, {} differ, {} are undecided.",
-            count(Verdict::Agrees),
+            "* **{name}**: of {} rows {} agree, {} near, {} differ or in part, {} undecided.",
             claims.len(),
+            count(Verdict::Agrees),
             count(Verdict::Near),
-            count(Verdict::Differs),
+            count(Verdict::Differs) + count(Verdict::InPart),
             count(Verdict::Undecided),
         );
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use asperity::surface::Paraboloid;
-use asperity::{Boussinesq, ContactRule, LoadingSolver, RecursiveCholesky};
+use asperity::{Boussinesq, LoadingSolver, RecursiveCholesky};
 
 use crate::surfaces::{E_STAR, Rough, grid};
 use asperity_cli::outcome::Failure;
@@ -16,13 +16,6 @@ const AREAS: [f64; 2] = [0.01, 0.1];
 const MOST_NODES: usize = 12_000;
 /// The headline case of the paper.
 const HEADLINE: usize = 256;
-/// The paper's own procedure is timed on this mesh, to so many nodes.
-const OWN_MESH: usize = 128;
-const OWN_NODES: usize = 4000;
-/// Steps of it between which its growth is measured, and how many around each are looked at.
-const OWN_STEPS: [usize; 2] = [2000, 3900];
-const AROUND: usize = 100;
-
 /// A path to an area on a mesh.
 pub(crate) struct Path {
     pub(crate) mesh: usize,
@@ -38,8 +31,9 @@ pub(crate) struct Effort {
     pub(crate) paths: Vec<Path>,
     /// Nodes of the headline case, its time, and the bytes it holds at its end over those of the whole matrix.
     pub(crate) headline: (usize, f64, f64),
-    /// α in the time n^α of a step of the paper's procedure.
-    pub(crate) step_exponent: f64,
+    /// Multiplications of a step of the paper's recursion with as many nodes, over those of a step in which y₁ and y₂
+    /// are solved for anew.
+    pub(crate) recursion: f64,
 }
 
 impl Effort {
@@ -61,10 +55,11 @@ impl Effort {
                 });
             }
         }
+        let headline = headline().map_err(failed)?;
         Ok(Self {
             paths,
-            headline: headline().map_err(failed)?,
-            step_exponent: step_exponent().map_err(failed)?,
+            headline,
+            recursion: recursion(headline.0 as f64),
         })
     }
 }
@@ -102,32 +97,13 @@ fn headline() -> Result<(usize, f64, f64), asperity::Error> {
     Ok((nodes, seconds, path.bytes() as f64 / matrix))
 }
 
-/// How the time of a step of the paper's procedure grows: the least of those around each place, since others use
-/// the machine as well.
-fn step_exponent() -> Result<f64, asperity::Error> {
-    eprintln!("time: the paper's procedure");
-    let grid = grid(OWN_MESH)?;
-    let heights = Rough::Table1.heights(&grid, 1)?;
-    let kernel = Boussinesq::new(grid, E_STAR)?;
-    let mut path = LoadingSolver::builder(&heights, &kernel)
-        .updater(RecursiveCholesky::new())
-        .rule(ContactRule::SmallestGap)
-        .window_size(1)
-        .max_nodes(OWN_NODES)
-        .build()?;
-    let mut least = [f64::INFINITY; 2];
-    let mut step = 0;
-    loop {
-        let start = Instant::now();
-        let Some(state) = path.next() else { break };
-        state?;
-        step += 1;
-        for (least, place) in least.iter_mut().zip(OWN_STEPS) {
-            if place.abs_diff(step) < AROUND {
-                *least = least.min(start.elapsed().as_secs_f64());
-            }
-        }
-    }
-    let [first, second] = OWN_STEPS.map(|place| place as f64);
-    Ok((least[1] / least[0]).ln() / (second / first).ln())
+/// The multiplications of a step with n nodes, counted: eqs. (10) to (19) against a new solution for each of y₁ and y₂.
+fn recursion(n: f64) -> f64 {
+    // One substitution with a triangular factor.
+    let substitution = 0.5 * n * (n + 1.0);
+    // The new row of the factor, x by the transpose of it, products of c with y₁, y₂ and x, and x times two numbers.
+    let step = 2.0 * substitution + 5.0 * n;
+    // The new row, and two substitutions for each solution.
+    let anew = 5.0 * substitution;
+    step / anew
 }
