@@ -26,6 +26,7 @@ mod iterations;
 mod method;
 mod misprint;
 mod options;
+mod page;
 mod peers;
 mod plane;
 mod polonsky_keer;

@@ -42,6 +42,9 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     )
 }
 
+/// The fit over one of the ranges.
+type Part = fn(&Fits) -> &Approach;
+
 fn table(report: &Report) -> String {
     let fits = &report.figure7.fits;
     let mut table = Table::new(&report.names());
@@ -49,10 +52,13 @@ fn table(report: &Report) -> String {
         table.row(quantity, paper, fits.iter().map(value));
     };
     let [lighter, heavier] = OTHER_LOADS;
-    let ranges: [(f64, fn(&Fits) -> &Approach); 3] = [
-        (lighter, |f| &f.others[0]),
-        (SMALL_LOAD, |f| &f.small),
-        (heavier, |f| &f.others[1]),
+    let of_lighter: Part = |f| &f.others[0];
+    let of_small: Part = |f| &f.small;
+    let of_heavier: Part = |f| &f.others[1];
+    let ranges = [
+        (lighter, of_lighter),
+        (SMALL_LOAD, of_small),
+        (heavier, of_heavier),
     ];
     let (y0, a, t) = PAPER_EXPONENTIAL;
     for (load, of) in ranges {
