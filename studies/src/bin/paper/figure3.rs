@@ -210,7 +210,7 @@ fn draw(
         "orders 1 and 2",
         GREY,
         Style::Dashed,
-        slope(1, 0.3),
+        slope(1, 0.06),
     ));
     errors.push(Series::new("", GREY, Style::Dashed, slope(2, 3e-4)));
     let mesh = Chart {
@@ -225,7 +225,6 @@ fn draw(
         x: Axis::plain_logarithmic("length of the strip / width of the domain", 0.2, 40.0),
         y: Axis::plain_logarithmic("change of p/p₀, |x| < 0.6 a", 1e-7, 1e-1),
         series: vec![
-            Series::new("", BLUE, Style::Line, lengths.iter().copied()),
             Series::new("measured", BLUE, Style::Dots, lengths.iter().copied()),
             Series::new(
                 "order 2",
@@ -243,7 +242,6 @@ fn draw(
         x: Axis::plain_logarithmic("number of waves (paper: 5)", 0.9, 17.0),
         y: Axis::plain_logarithmic("inner error / p*, N = 161", 1e-5, 1e-1),
         series: vec![
-            Series::new("", PURPLE, Style::Line, waves.iter().copied()),
             Series::new("measured", PURPLE, Style::Dots, waves.iter().copied()),
             Series::new(
                 "order 2",

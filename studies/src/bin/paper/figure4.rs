@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::surface::HeightMap;
-use asperity::{Boussinesq, FixedLoadSolver};
+use asperity::patches::{Connectivity, Patches};
+use asperity::{Boundary, Boussinesq, FixedLoadSolver};
 use nalgebra::DMatrix;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -22,8 +22,8 @@ const AREAS: [f64; 4] = [0.01, 0.05, 0.15, 0.4];
 /// Pixels a side of a map.
 const MAP: i32 = 216;
 const FONT: i32 = 14;
-/// From this pressure over E* h′ on the colour is the darkest.
-const DARKEST: f64 = 1.5;
+/// Pressures over E* h′ from which on the colour is the lightest and the darkest, evenly in the logarithm.
+const SHADES: (f64, f64) = (0.1, 10.0);
 /// Patches of fewer cells count as small.
 const SMALL: usize = 10;
 
@@ -32,8 +32,11 @@ pub(crate) struct Map {
     pub(crate) surface: &'static str,
     pub(crate) load: f64,
     pub(crate) area: f64,
-    /// Greatest pressure over E*.
+    /// Greatest pressure over E*, and over E* h′.
     pub(crate) greatest: f64,
+    pub(crate) reduced: f64,
+    /// Whether it is at the border of the square.
+    pub(crate) at_border: bool,
     pub(crate) patches: usize,
     /// The fraction of patches with fewer than ten cells, and of the contact in them.
     pub(crate) small: f64,
@@ -60,6 +63,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure4, Failure> 
             map.load,
             map.area,
             map.greatest,
+            map.reduced,
+            f64::from(u8::from(map.at_border)),
             map.patches as f64,
             map.small,
             map.in_small,
@@ -75,6 +80,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure4, Failure> 
             "load",
             "area",
             "greatest_pressure",
+            "greatest_pressure_over_gradient",
+            "greatest_at_border",
             "patches",
             "small_patches",
             "contact_in_small",
@@ -92,8 +99,7 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         return Ok(Vec::new());
     };
     let grid = grid(study.nodes).map_err(failed)?;
-    let surface = family.rough.surface(&grid, run.seed).map_err(failed)?;
-    let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
+    let heights = family.rough.heights(&grid, run.seed).map_err(failed)?;
     let kernel = Boussinesq::new(grid, E_STAR).map_err(failed)?;
     let mut solver = FixedLoadSolver::builder(&heights, &kernel)
         .tolerance(TOLERANCE)
@@ -108,7 +114,14 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         let solution = solver
             .solve(point.load * NOMINAL_AREA * E_STAR)
             .map_err(failed)?;
-        let mut sizes = patches(&solution.contact_map);
+        let patches = Patches::new(
+            &solution.contact_map,
+            &grid,
+            Boundary::Free,
+            Connectivity::Four,
+        )
+        .map_err(failed)?;
+        let mut sizes: Vec<usize> = patches.patches().iter().map(|patch| patch.nodes).collect();
         sizes.sort_unstable();
         let contact = sizes.iter().sum::<usize>() as f64;
         let small = sizes.partition_point(|size| *size < SMALL);
@@ -120,6 +133,8 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
             load: point.load,
             area: solution.state.contact_area_fraction,
             greatest: solution.max_pressure() / E_STAR,
+            reduced: solution.max_pressure() / (E_STAR * family.gradient),
+            at_border: is_at_border(&solution.pressure),
             patches: sizes.len(),
             small: small as f64 / sizes.len() as f64,
             in_small: in_small / contact,
@@ -130,40 +145,17 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
     Ok(maps)
 }
 
-/// Cells of each patch; patches are connected across the edges of cells.
-fn patches(contact: &DMatrix<bool>) -> Vec<usize> {
-    let (nx, ny) = contact.shape();
-    let mut left = contact.clone();
-    let mut sizes = Vec::new();
-    let mut open = Vec::new();
-    for iy in 0..ny {
-        for ix in 0..nx {
-            let mut size = 0;
-            open.push((ix, iy));
-            while let Some((x, y)) = open.pop() {
-                // Beyond the left and lower border the index wraps round and is outside as well.
-                let Some(cell) = left.get_mut((x, y)) else {
-                    continue;
-                };
-                if !std::mem::take(cell) {
-                    continue;
-                }
-                size += 1;
-                let (before, below) = (x.wrapping_sub(1), y.wrapping_sub(1));
-                open.extend([(before, y), (x + 1, y), (x, below), (x, y + 1)]);
-            }
-            if size > 0 {
-                sizes.push(size);
-            }
-        }
-    }
-    sizes
+/// Whether a node of the border has the greatest value.
+fn is_at_border(values: &DMatrix<f64>) -> bool {
+    let (nx, ny) = values.shape();
+    let (ix, iy) = values.iamax_full();
+    ix == 0 || iy == 0 || ix + 1 == nx || iy + 1 == ny
 }
 
 fn draw(maps: &[Map], name: &Path) -> Result<PathBuf, Failure> {
     let columns = AREAS.len() as i32;
     let rows = (maps.len() as i32 + columns - 1) / columns;
-    let (gap, left, right, top, bottom) = (14, 52, 84, 62, 46);
+    let (gap, left, right, top, bottom) = (34, 58, 70, 62, 56);
     let width = left + columns * (MAP + gap) + right;
     let height = rows * (MAP + top) + bottom;
     draw_fine(name, (width, height), |area| {
@@ -179,11 +171,18 @@ fn draw(maps: &[Map], name: &Path) -> Result<PathBuf, Failure> {
                 text_rise: 0.2,
             };
             map.draw(area, &panel, column == 0, row + 1 == rows)?;
-            if column + 1 == columns {
-                colour_bar(area, &panel)?;
-            }
         }
-        Ok(())
+        let bar = Panel {
+            left: FINE * (left + columns * (MAP + gap) - gap / 2),
+            top: FINE * top,
+            width: FINE * 16,
+            height: FINE * (rows * (MAP + top) - top),
+            font: FINE * FONT,
+            stroke: FINE as u32,
+            text_rise: 0.2,
+        };
+        let axis = Axis::plain_logarithmic("p / E*h′", SHADES.0, SHADES.1);
+        bar.colour_bar(area, &axis)
     })
 }
 
@@ -210,7 +209,7 @@ impl Map {
                     edge(iy + 1, ny) - edge(iy, ny),
                 );
                 let corners = [(x, y), (x + size.0, y + size.1)];
-                area.draw(&Rectangle::new(corners, shade(pressure / DARKEST).filled()))?;
+                area.draw(&Rectangle::new(corners, colour(pressure).filled()))?;
             }
         }
         panel.border(area)?;
@@ -245,11 +244,8 @@ impl Map {
     }
 }
 
-fn colour_bar<DB: DrawingBackend>(area: &Area<DB>, map: &Panel) -> Drawn<DB> {
-    let bar = Panel {
-        left: map.left + map.width + FINE * 14,
-        width: FINE * 14,
-        ..*map
-    };
-    bar.colour_bar(area, &Axis::plain("p / E*h′", 0.0, DARKEST))
+/// The colour of a pressure over E* h′.
+fn colour(pressure: f64) -> RGBColor {
+    let (from, to) = SHADES;
+    shade((pressure / from).ln() / (to / from).ln())
 }

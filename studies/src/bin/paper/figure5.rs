@@ -2,25 +2,30 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::run::Run;
-use crate::study::Study;
+use crate::run::{GREATEST_LOAD, Run};
+use crate::study::{Family, Study};
+use crate::surfaces::PAPER_GRADIENT;
 use crate::table::write_csv;
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{self, BLACK, Chart, Corner, Series, Style, colour};
+use asperity_cli::chart::{self, BLACK, Chart, Corner, PURPLE, Series, Style, colour};
 use asperity_cli::outcome::Failure;
 use asperity_studies::line::Line;
 use asperity_studies::spread::Spread;
 
 /// Up to where the paper fits a line.
 pub(crate) const STRAIGHT: f64 = 0.3;
+/// The paper's state under its greatest load, A/A₀ from its k = 1.0 and its gradient.
+pub(crate) const PAPER_END: (f64, f64) = (GREATEST_LOAD, GREATEST_LOAD / PAPER_GRADIENT);
 /// Evenly spaced loads of the fit.
 const SAMPLES: usize = 300;
 
 /// The fit of one surface.
 pub(crate) struct Straight {
     pub(crate) pearson: Spread,
-    /// A / A₀ per W / A₀E*.
-    pub(crate) slope: Spread,
+    /// A / A₀ per W / A₀E*: of the line, and in the lower and the upper half of the loads beyond 30 %.
+    pub(crate) slopes: [Spread; 3],
+    /// Runs in which each of these is less than the one before.
+    pub(crate) falling: usize,
     /// Greatest deviation from the line over 30 %.
     pub(crate) worst: Spread,
     /// A / A₀ under the greatest load.
@@ -66,14 +71,22 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             }
         }
         let of = |value: fn(&(Line, f64)) -> f64| Spread::of(lines.iter().map(value));
+        let slopes = slopes(family, &lines);
         fits.push(Straight {
             pearson: of(|(line, _)| line.pearson),
-            slope: of(|(line, _)| line.slope),
+            slopes: [0, 1, 2].map(|k| Spread::of(slopes.iter().map(|found| found[k]))),
+            falling: slopes.iter().filter(|s| s[0] > s[1] && s[1] > s[2]).count(),
             worst: of(|(_, worst)| *worst),
             end: family.at_end(|p| p.area),
         });
     }
     below.extend(lines_drawn);
+    whole.push(Series::new(
+        "the paper's end",
+        PURPLE,
+        Style::Dots,
+        [PAPER_END],
+    ));
     write_csv(
         &directory.join("figure5.csv"),
         &["surface", "seed", "load", "area", "corrected_area"],
@@ -86,7 +99,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
     let charts = [
         Chart {
             title: "Real contact area, all loads".to_string(),
-            x: Axis::plain("load W / A₀E*", 0.0, greatest(&whole)),
+            x: Axis::plain("load W / A₀E*", 0.0, 1.05 * greatest(&whole)),
             y: Axis::plain("contact area A / A₀", 0.0, 1.0),
             series: whole,
             legend: Corner::TopLeft,
@@ -101,6 +114,24 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
     ];
     let picture = chart::draw(&charts, 2, &directory.join("figure5.png"))?;
     Ok(Figure5 { fits, picture })
+}
+
+/// Slopes of every run that goes beyond 30 % contact: of its line, and of lines through the lower and the upper
+/// half of the loads beyond.
+fn slopes(family: &Family, lines: &[(Line, f64)]) -> Vec<[f64; 3]> {
+    let runs = family.runs.iter().zip(lines);
+    runs.filter_map(|(run, (line, _))| {
+        let from = run.at_area(STRAIGHT)?.load;
+        let to = run.last()?.load;
+        let middle = 0.5 * (from + to);
+        let slope = |from, to| {
+            let points = run.evenly(from, to, SAMPLES);
+            let points: Vec<_> = points.iter().map(|p| (p.load, p.area)).collect();
+            Line::fit(&points).slope
+        };
+        Some([line.slope, slope(from, middle), slope(middle, to)])
+    })
+    .collect()
 }
 
 /// (load, area) at evenly spaced loads up to 30 % contact.

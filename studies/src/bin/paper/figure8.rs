@@ -18,6 +18,10 @@ use asperity_studies::spread::Spread;
 pub(crate) const PAPER_RANGE: (f64, f64) = (4e-3, 2e-2);
 /// By which fraction γ may fall short of its greatest value and still count as constant.
 pub(crate) const TOLERANCE: f64 = 0.1;
+/// Loads a quarter of the lower and two and a half times the upper end: the law should not hold there.
+pub(crate) const OUTSIDE: [f64; 2] = [1e-3, 5e-2];
+/// Light, moderate and heavy loads, between which the growth of K_i is measured.
+pub(crate) const GROWTH: [(f64, f64); 3] = [(1e-4, 1e-3), PAPER_RANGE, (3e-2, 1e-1)];
 const LEAST: f64 = 1e-5;
 const SAMPLES: usize = 400;
 
@@ -31,6 +35,12 @@ pub(crate) struct Gap {
     pub(crate) range: (f64, f64),
     /// γ at the ends of the paper's range, over γ of the line.
     pub(crate) ends: [Spread; 2],
+    /// Greatest deviation of γ on the mean curve from γ of the line in the paper's range, as a fraction.
+    pub(crate) inside: f64,
+    /// γ on the mean curve at each of [`OUTSIDE`], over the greatest.
+    pub(crate) outside: [f64; 2],
+    /// Exponents of K_i ~ W^α over each of [`GROWTH`].
+    pub(crate) exponents: [Spread; 3],
 }
 
 pub(crate) struct Figure8 {
@@ -41,7 +51,8 @@ pub(crate) struct Figure8 {
 pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> {
     let mut gaps = Vec::new();
     let mut rows = Vec::new();
-    let (mut gap, mut decay, mut stiffness) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut gap, mut decay, mut stiffness, mut growth) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (place, family) in study.families.iter().enumerate() {
         gaps.push(Gap::of(family));
         let colour = colour(place);
@@ -69,6 +80,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
             decay.push(line(|p| p.decay()));
             stiffness.push(line(|p| p.interfacial_stiffness));
         }
+        let name = format!("{}, mean", family.rough.name());
+        growth.push(Series::new(name, colour, Style::Line, exponents(family)));
         if let Some(run) = family.runs.first() {
             let fit = logarithmic(run);
             let ends = [PAPER_RANGE.0 / 4.0, PAPER_RANGE.1 * 2.5];
@@ -80,11 +93,18 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
     let upright =
         |load: f64| (0..=4000).map(move |k| (load, 10_f64.powf(f64::from(k) / 400.0 - 6.0)));
     let (from, to) = (upright(PAPER_RANGE.0), upright(PAPER_RANGE.1));
-    for charts in [&mut gap, &mut decay, &mut stiffness] {
+    for charts in [&mut gap, &mut decay, &mut stiffness, &mut growth] {
         let name = "the paper's range";
         charts.push(Series::new(name, GREY, Style::Dashed, from.clone()));
         charts.push(Series::new("", GREY, Style::Dashed, to.clone()));
     }
+    let ends = [(LEAST, 1.0), (GREATEST_LOAD, 1.0)];
+    growth.push(Series::new(
+        "1: growth at a constant rate",
+        BLACK,
+        Style::Dashed,
+        ends,
+    ));
     write_csv(
         &directory.join("figure8.csv"),
         &[
@@ -111,7 +131,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
         Chart {
             title: "Exact slope: constant where ḡ is logarithmic".to_string(),
             x: load(),
-            y: Axis::plain("γ = −dḡ/d(ln W) / Sq", 0.0, 0.8),
+            y: Axis::plain("γ = −dḡ/d(ln W) / Sq", 0.0, 1.1),
             series: decay,
             legend: Corner::TopLeft,
         },
@@ -120,6 +140,13 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
             x: load(),
             y: Axis::plain_logarithmic("Kᵢ Sq / A₀E*", 1e-5, 10.0),
             series: stiffness,
+            legend: Corner::TopLeft,
+        },
+        Chart {
+            title: "Growth of the interfacial stiffness".to_string(),
+            x: load(),
+            y: Axis::plain("α = d(ln Kᵢ)/d(ln W)", 0.0, 4.0),
+            series: growth,
             legend: Corner::TopLeft,
         },
     ];
@@ -136,6 +163,34 @@ fn logarithmic(run: &Run) -> Line {
         .map(|p| (p.load.ln(), p.mean_gap))
         .collect();
     Line::fit(&points)
+}
+
+/// The exponent of K_i ~ W^α around each load, over half a decade, the mean over the seeds.
+fn exponents(family: &Family) -> Vec<(f64, f64)> {
+    let half = 10_f64.powf(0.25);
+    let loads = (0..=SAMPLES).map(|k| {
+        let (from, to) = (LEAST * half, GREATEST_LOAD / half);
+        from * (to / from).powf(k as f64 / SAMPLES as f64)
+    });
+    loads
+        .map(|load| {
+            (
+                load,
+                exponent(family, (load / half, (load * half).min(GREATEST_LOAD))).mean,
+            )
+        })
+        .filter(|(_, exponent)| exponent.is_finite())
+        .collect()
+}
+
+/// The exponent of K_i ~ W^α between two loads.
+fn exponent(family: &Family, (from, to): (f64, f64)) -> Spread {
+    family.spread(|run| {
+        // The greatest load is met to rounding.
+        let last = run.last()?.load;
+        let (a, b) = (run.at_load(from)?, run.at_load(to.min(last))?);
+        Some((b.interfacial_stiffness / a.interfacial_stiffness).ln() / (to / from).ln())
+    })
 }
 
 impl Gap {
@@ -167,8 +222,15 @@ impl Gap {
                 runs.filter_map(|(run, line)| Some(run.at_load(load)?.decay() / -line.slope)),
             )
         };
+        let decay = Spread::of(lines.iter().map(|l| -l.slope));
+        let (from, to) = PAPER_RANGE;
+        let inside = (0..=SAMPLES).map(|k| from * (to / from).powf(k as f64 / SAMPLES as f64));
+        let inside = inside.map(|load| (mean(load) / decay.mean - 1.0).abs());
         Self {
-            decay: Spread::of(lines.iter().map(|l| -l.slope)),
+            inside: inside.fold(0.0, f64::max),
+            outside: OUTSIDE.map(|load| mean(load) / greatest),
+            exponents: GROWTH.map(|range| exponent(family, range)),
+            decay,
             pearson: Spread::of(lines.iter().map(|l| l.pearson)),
             greatest,
             range,

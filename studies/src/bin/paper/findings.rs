@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use asperity::reference::SQUARE_PUNCH_STIFFNESS;
 
+use crate::criteria::Verdict;
 use crate::figure3::{NODES, WAVES};
 use crate::figure7::PAPER_EXPONENTIAL;
 use crate::misprint;
@@ -11,8 +12,11 @@ use crate::plane::Case;
 use crate::report::Report;
 use crate::rules::Findings;
 use crate::surfaces::{PAPER_GRADIENT, PAPER_NODES, SIDE, SQ};
-use crate::verdicts::{scientific, signed};
+use crate::words::{list as and, scientific, signed};
 use asperity_cli::outcome::Failure;
+
+/// By how many tolerances greatest pressures may differ.
+const FACTOR: f64 = 100.0;
 
 /// First contact against smallest gap.
 pub(crate) fn rules(report: &Report) -> String {
@@ -23,10 +27,10 @@ pub(crate) fn rules(report: &Report) -> String {
             found.backward,
             found.negative,
             found.examined,
-            scientific(found.least_pressure, 2).replace('-', "−"),
+            scientific(found.least_pressure, 2),
             found.overlapping,
             found.examined,
-            scientific(found.least_gap, 2).replace('-', "−"),
+            scientific(found.least_gap, 2),
         )
     };
     let parted = rules
@@ -40,9 +44,9 @@ pub(crate) fn rules(report: &Report) -> String {
          | rule | steps back | p < 0 in states | least p / mean p | overlap in states | least gap / Sq |\n\
          |---|---|---|---|---|---|\n{}\n{}\n\n\
          They part {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
-         differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq. **Verdict:** the paper's \
-         curves hardly depend on its rule, since every node joins sooner or later; its statement that there are no \
-         negative pressures does not hold.",
+         differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq: so much of \
+         the paper's curves is due to its rule. The verdict on its statement that there are no negative pressures is in the \
+         table above.",
         rules.nodes,
         rules.nodes,
         rules.steps,
@@ -77,7 +81,7 @@ pub(crate) fn peers(report: &Report) -> String {
             peer.nodes[1],
             theirs,
             ours,
-            scientific((theirs / ours - 1.0).abs(), 1),
+            scientific(peer.difference(), 1),
         );
     }
     format!(
@@ -88,21 +92,23 @@ pub(crate) fn peers(report: &Report) -> String {
          `studies/src/bin/paper/peers.py`, which says how.\n\n\
          | program | half-space | tolerance | W/A₀E\\* | nodes, theirs | ours | greatest p/E\\*, theirs | ours | difference |\n\
          |---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         **Verdict:** {}.",
-        if report
-            .peers
-            .iter()
-            .all(|peer| peer.nodes[0] == peer.nodes[1])
-        {
-            "the same nodes in contact in every case, and pressures that agree within their tolerances"
-        } else {
-            "contact sets differ in some nodes; see the table"
-        },
+         **Verdict:** {} (*agrees* if every case has the same number of nodes and greatest pressures within {FACTOR} times the \
+         program's tolerance, which is one of all gaps or pressures together; *in part* if one of the two; else *differs*).",
+        Verdict::of(&[
+            report
+                .peers
+                .iter()
+                .all(|peer| peer.nodes[0] == peer.nodes[1]),
+            report
+                .peers
+                .iter()
+                .all(|peer| peer.difference() <= FACTOR * peer.tolerance),
+        ])
     )
 }
 
 /// Where the paper is wrong or ambiguous.
-pub(crate) fn list(report: &Report) -> Result<String, Failure> {
+pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failure> {
     let [printed, corrected] =
         misprint::residuals().map_err(|error| Failure::new("the example of eq. (19)", error))?;
     let study = &report.study;
@@ -134,8 +140,8 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
     let slopes = all(&|i| report.figure7.fits[i].line[0].decimals(1));
     let approaches = all(&|i| report.figure7.fits[i].approach.decimals(1));
     let starts = all(&|i| {
-        let [offset, amplitude, _, _] = report.figure7.fits[i].exponentials[1];
-        signed(offset.mean + amplitude.mean, 2)
+        let fit = report.figure7.fits[i].small;
+        signed(fit.offset.mean + fit.amplitude.mean, 2)
     });
     let raw = all(&|i| report.figure6.ratios[i].at[1].1.decimals(2));
     let less = all(&|i| report.figure6.ratios[i].at[1].2.decimals(2));
@@ -189,8 +195,10 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
          that are real and in metres. With these, Sq is met exactly by every seed (`SelfAffine`)."
             .to_string(),
         format!(
-            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1: {gradients}. k under the greatest load is {ends}, but \
-             1.0 in the paper: it cannot have had the surface of its own table."
+            "**The rms gradient {PAPER_GRADIENT}** contradicts Table 1 with eq. (23): {gradients}. k under the greatest load is \
+             {ends}, but 1.0 in the paper. Not contradicted by both: {}. The table may be wrong or the amplitudes; \
+             see \"Which surface the paper had\".",
+            and(possible)
         ),
         format!(
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
@@ -219,8 +227,9 @@ pub(crate) fn list(report: &Report) -> Result<String, Failure> {
         ),
         format!(
             "**Memory.** k = 1.0 with the gradient {PAPER_GRADIENT} at 0.1 A₀E\\* means A/A₀ = {area:.2}: {:.1} × 10⁵ nodes of \
-             512², whose factor takes {:.0} GB, on a computer with 8 GB. Another method must have been used there, \
-             unreported. Here it is `FixedLoadSolver`, from {} nodes on.",
+             512², whose factor takes {:.0} GB, on a computer with 8 GB. Beyond its limit the paper names conjugate \
+             gradients with FFT for eq. (11), but not where it used them, nor what they cost. Here it is \
+             `FixedLoadSolver`, from {} nodes on.",
             nodes / 1e5,
             4.0 * nodes * nodes / 1e9,
             study.path_nodes

@@ -7,9 +7,13 @@
 //!
 //! Writes for each of Figs. 3 to 8 a picture and the numbers behind it, and `run_*.csv` with the
 //! whole loading of every surface. With `--report docs/validation.md`, also a page with each number
-//! that the paper states, our own with its spread over the seeds, and a verdict.
+//! and statement of the paper, our own numbers with their spread over the seeds, and a verdict by a criterion.
+//! With `--whole-path`, the path of every node as well.
 
-mod exponential;
+mod candidates;
+mod conclusions;
+mod criteria;
+mod effort;
 mod figure3;
 mod figure4;
 mod figure5;
@@ -17,18 +21,25 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod findings;
+mod fit;
+mod iterations;
+mod method;
 mod misprint;
 mod options;
+mod page;
 mod peers;
 mod plane;
+mod polonsky_keer;
 mod report;
 mod rules;
 mod run;
 mod sections;
+mod statements;
 mod study;
 mod surfaces;
 mod table;
-mod verdicts;
+mod whole_path;
+mod words;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -38,10 +49,13 @@ use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use clap::Parser;
 
+use effort::Effort;
+use iterations::Iterations;
 use options::Options;
 use report::Report;
 use rules::Rules;
 use study::Study;
+use whole_path::WholePath;
 
 fn main() -> ExitCode {
     match run(&Options::parse()) {
@@ -87,7 +101,12 @@ fn run(options: &Options) -> Result<(), Failure> {
     let figure8 = figure8.transpose()?;
     written.extend(figure8.iter().map(|figure| figure.picture.clone()));
 
-    // The page needs all of them.
+    let whole_path = options.whole_path.as_ref();
+    let whole_path = whole_path.map(|name| WholePath::new(name, &study, out));
+    let whole_path = whole_path.transpose()?;
+    written.extend(whole_path.iter().map(|path| path.picture.clone()));
+
+    // The page needs all figures.
     let first = figure3.zip(figure4).zip(figure5);
     let others = figure6.zip(figure7).zip(figure8);
     if let Some((((figure3, figure4), figure5), ((figure6, figure7), figure8))) = first.zip(others)
@@ -95,6 +114,9 @@ fn run(options: &Options) -> Result<(), Failure> {
         let report = Report {
             rules: Rules::new(study.nodes)?,
             peers: peers::compare()?,
+            iterations: Iterations::new(study.nodes)?,
+            effort: Effort::new(study.nodes)?,
+            whole_path,
             study,
             figure3,
             figure4,

@@ -29,9 +29,13 @@ pub(crate) struct Options {
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub(crate) out: PathBuf,
 
-    /// Take the runs that --out holds already, of the same --nodes, instead of computing them
+    /// Take the runs that --out holds already of these surfaces, seeds and nodes, instead of computing them
     #[arg(long)]
     pub(crate) reuse: bool,
+
+    /// path.csv of `asperity path --nodes N --max-area-fraction 1`: draw it and report on it as well
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "figure")]
+    pub(crate) whole_path: Option<PathBuf>,
 
     /// Only write the surface that `peers.py` wants, as a .npy file
     #[arg(long, value_name = "FILE.npy")]

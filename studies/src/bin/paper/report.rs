@@ -1,24 +1,17 @@
-//! The page of verdicts: everything in it comes from this study.
+//! All that was found.
 
-use std::error::Error;
-use std::path::{Path, PathBuf};
-
+use crate::effort::Effort;
 use crate::figure3::Figure3;
 use crate::figure4::Figure4;
 use crate::figure5::Figure5;
 use crate::figure6::Figure6;
 use crate::figure7::Figure7;
 use crate::figure8::Figure8;
+use crate::iterations::Iterations;
 use crate::peers::Comparison;
 use crate::rules::Rules;
 use crate::study::Study;
-use crate::{findings, sections, verdicts};
-use asperity_cli::outcome::Failure;
-
-/// The study writes between these lines of the page, and leaves the rest alone.
-const BEGIN: &str = "<!-- written by the study `paper`: begin -->";
-const END: &str = "<!-- written by the study `paper`: end -->";
-const TITLE: &str = "# Validation\n\n";
+use crate::whole_path::WholePath;
 
 /// All that was found.
 pub(crate) struct Report {
@@ -31,119 +24,16 @@ pub(crate) struct Report {
     pub(crate) figure8: Figure8,
     pub(crate) rules: Rules,
     pub(crate) peers: Vec<Comparison>,
+    pub(crate) iterations: Iterations,
+    pub(crate) effort: Effort,
+    /// If its file was given.
+    pub(crate) whole_path: Option<WholePath>,
 }
 
 impl Report {
-    /// Writes the page alone, into the directory of the pictures.
-    pub(crate) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
-        let text = self.text("")?;
-        std::fs::write(name, format!("{TITLE}{text}"))
-            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
-        Ok(name.to_path_buf())
-    }
-
-    /// Puts the page into a file that others write as well, and the pictures into images/ next to it.
-    pub(crate) fn publish(&self, name: &Path) -> Result<PathBuf, Failure> {
-        let text = self.text("images/paper_")?;
-        let publish = || -> Result<(), Box<dyn Error>> {
-            let images = name.parent().unwrap_or(Path::new("")).join("images");
-            std::fs::create_dir_all(&images)?;
-            for picture in self.pictures() {
-                let file = picture.file_name().ok_or("a picture without a name")?;
-                let copy = images.join(format!("paper_{}", file.to_string_lossy()));
-                std::fs::copy(picture, copy)?;
-            }
-            let present = std::fs::read_to_string(name).unwrap_or_default();
-            std::fs::write(name, merged(&present, &text))?;
-            Ok(())
-        };
-        publish()
-            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
-        Ok(name.to_path_buf())
-    }
-
-    fn pictures(&self) -> [&PathBuf; 6] {
-        [
-            &self.figure3.picture,
-            &self.figure4.picture,
-            &self.figure5.picture,
-            &self.figure6.picture,
-            &self.figure7.picture,
-            &self.figure8.picture,
-        ]
-    }
-
-    /// The page between the markers; names of pictures begin with `prefix`.
-    fn text(&self, prefix: &str) -> Result<String, Failure> {
-        let sections = [
-            self.introduction(),
-            verdicts::conclusions(self),
-            verdicts::surfaces(self),
-            sections::figure3(self, prefix),
-            sections::figure4(self, prefix),
-            sections::figure5(self, prefix),
-            sections::figure6(self, prefix),
-            sections::figure7(self, prefix),
-            sections::figure8(self, prefix),
-            findings::rules(self),
-            findings::peers(self),
-            findings::list(self)?,
-        ];
-        Ok(format!("{BEGIN}\n\n{}\n\n{END}\n", sections.join("\n\n")))
-    }
-
-    fn introduction(&self) -> String {
-        let study = &self.study;
-        let path = 100.0 * study.path_nodes as f64 / (study.nodes * study.nodes) as f64;
-        let (mut area, mut approach, mut stiffness) = (0.0_f64, 0.0_f64, 0.0_f64);
-        let mut gap = 0.0_f64;
-        for run in study.families.iter().flat_map(|family| &family.runs) {
-            let seam = run.seam().unwrap_or_default();
-            area = area.max(seam.area);
-            approach = approach.max(seam.approach);
-            stiffness = stiffness.max(seam.contact_stiffness);
-            gap = gap.max(seam.mean_gap);
-        }
-        format!(
-            "## The paper, figure by figure\n\n\
-             Every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
-             the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 (2020), \"the \
-             paper\", next to ours. This part of the page, numbers and pictures, is written by\n\n\
-             ```text\n\
-             cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
-             --report docs/validation.md\n\
-             ```\n\n\
-             Without options the program does the same on 256 × 256 nodes in a few minutes, and writes \
-             into `out/paper`.\n\n\
-             * **Rough surfaces**: {} × {} nodes, {} seeds each; \"a ± b\" is the mean over the seeds and \
-             the sample standard deviation.\n\
-             * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area), one \
-             state for each node; from there fixed loads, each with its exact tangent stiffness, up to \
-             0.1 A₀E\\*. Where the two meet they differ, at worst over all runs, by {area:.0e} of the area \
-             (a node that just touches counts in the path; under a fixed load it may not), {approach:.0e} of the \
-             approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
-             * **Without units**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
-             E\\*.\n\
-             * **Verdicts** on numbers: *agrees* within two standard deviations or 5 %, *near* within \
-             20 %, else *differs*.",
-            study.nodes, study.seeds, study.nodes, study.nodes, study.seeds, study.path_nodes,
-        )
-    }
-}
-
-/// A page with the text in the place of what is between the markers, or at its top.
-fn merged(present: &str, text: &str) -> String {
-    let parts = present.split_once(BEGIN).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(END)?;
-        Some((before, after.trim_start_matches('\n')))
-    });
-    let (before, after) = match parts {
-        Some(parts) => parts,
-        None => (TITLE, present.strip_prefix(TITLE).unwrap_or(present)),
-    };
-    if after.is_empty() {
-        format!("{before}{text}")
-    } else {
-        format!("{before}{text}\n{after}")
+    /// Names of the surfaces.
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        let families = self.study.families.iter();
+        families.map(|family| family.rough.name()).collect()
     }
 }

@@ -50,8 +50,7 @@ impl Rules {
     pub(crate) fn new(nodes: usize) -> Result<Self, Failure> {
         let failed = |error: asperity::Error| Failure::new("the comparison of rules", error);
         let grid = grid(nodes).map_err(failed)?;
-        let surface = Rough::Table1.surface(&grid, 1).map_err(failed)?;
-        let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
+        let heights = Rough::Table1.heights(&grid, 1).map_err(failed)?;
         let steps = NODES.min(grid.nodes() / 5);
         eprintln!("rules: {steps} nodes of {nodes} x {nodes} by each");
         let follow = |rule| examine(&heights, grid, rule, steps).map_err(failed);

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use asperity::contact::ContactSequence;
+use asperity::patches::{Connectivity, PatchHistory, Patches};
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactEvent, ContactState, FixedLoadSolver, Grid, LoadingSolver};
+use asperity::{Boundary, Boussinesq, ContactState, FixedLoadSolver, LoadingSolver, LoadingState};
 use nalgebra::DMatrix;
 
 use crate::surfaces::{E_STAR, NOMINAL_AREA, Rough, SQ, grid};
@@ -14,9 +16,6 @@ use asperity_cli::outcome::Failure;
 pub(crate) const GREATEST_LOAD: f64 = 0.1;
 /// Ratio of a fixed load to the one before, at most.
 const STEP: f64 = 1.12;
-/// (π − 1 + ln 2)/24 of Yastrebov, Anciaux and Molinari (2017): by how many cells the counted area is too
-/// large for each cell side of the border of the contact.
-const STAIRCASE: f64 = 0.118_114_2;
 /// Tolerance of the fixed loads, relative to the approach.
 pub(crate) const TOLERANCE: f64 = 1e-8;
 
@@ -72,8 +71,7 @@ impl Run {
         };
         let start = Instant::now();
         let grid = grid(nodes).map_err(failed)?;
-        let surface = rough.surface(&grid, seed).map_err(failed)?;
-        let heights = HeightMap::sample(&surface, &grid).map_err(failed)?;
+        let heights = rough.heights(&grid, seed).map_err(failed)?;
         let kernel = Boussinesq::new(grid, E_STAR).map_err(failed)?;
         let mut points = follow(&heights, &kernel, path_nodes).map_err(failed)?;
         let seconds = start.elapsed().as_secs_f64();
@@ -86,8 +84,16 @@ impl Run {
             .map_err(failed)?;
         for solution in solver.sweep(loads.iter().map(|load| load * NOMINAL_AREA * E_STAR)) {
             let solution = solution.map_err(failed)?;
-            let edges = edges(&solution.contact_map);
-            points.push(Point::new(&solution.state, edges, &grid, false));
+            let patches = Patches::new(
+                &solution.contact_map,
+                &grid,
+                Boundary::Free,
+                Connectivity::Four,
+            )
+            .map_err(failed)?;
+            let areas = patches.patches().iter();
+            let areas = areas.map(|patch| patch.perimeter.corrected_area(patch.nodes, &grid));
+            points.push(Point::new(&solution.state, areas.sum(), false));
         }
         eprintln!(
             "  {}, seed {seed}: path to {:.1} % contact in {seconds:.0} s, {} fixed loads to {:.1} % in {:.0} s",
@@ -170,13 +176,13 @@ impl Run {
         })
     }
 
-    fn file(directory: &Path, rough: Rough, seed: u64) -> PathBuf {
-        directory.join(format!("run_{}_{seed}.csv", rough.key()))
+    fn file(directory: &Path, rough: Rough, nodes: usize, seed: u64) -> PathBuf {
+        directory.join(format!("run_{}_{nodes}_{seed}.csv", rough.key()))
     }
 
     /// Writes the points for [`Self::read`].
-    pub(crate) fn write(&self, directory: &Path) -> Result<(), Failure> {
-        let name = Self::file(directory, self.rough, self.seed);
+    pub(crate) fn write(&self, directory: &Path, nodes: usize) -> Result<(), Failure> {
+        let name = Self::file(directory, self.rough, nodes, self.seed);
         let rows = self.points.iter().map(|p| {
             [
                 p.load,
@@ -207,8 +213,8 @@ impl Run {
     }
 
     /// Reads what [`Self::write`] wrote, `None` if there is no such file.
-    pub(crate) fn read(directory: &Path, rough: Rough, seed: u64) -> Option<Self> {
-        let name = Self::file(directory, rough, seed);
+    pub(crate) fn read(directory: &Path, rough: Rough, nodes: usize, seed: u64) -> Option<Self> {
+        let name = Self::file(directory, rough, nodes, seed);
         let mut reader = csv::Reader::from_path(name).ok()?;
         let rows = reader.deserialize::<[f64; 8]>();
         let points = rows.map(|row| {
@@ -232,13 +238,13 @@ impl Run {
 }
 
 impl Point {
-    fn new(state: &ContactState, edges: usize, grid: &Grid, event: bool) -> Self {
+    /// A state in SI units, and its contact area without what cells count too much.
+    fn new(state: &ContactState, corrected_area: f64, event: bool) -> Self {
         let force = NOMINAL_AREA * E_STAR;
-        let area = state.contact_area_fraction;
         Self {
             load: state.load / force,
-            area,
-            corrected: area - STAIRCASE * edges as f64 / grid.nodes() as f64,
+            area: state.contact_area_fraction,
+            corrected: corrected_area / NOMINAL_AREA,
             approach: state.approach / SQ,
             mean_gap: state.mean_gap / SQ,
             contact_stiffness: known(state.contact_stiffness) * SQ / force,
@@ -274,62 +280,41 @@ fn follow(
     kernel: &Boussinesq,
     path_nodes: usize,
 ) -> Result<Vec<Point>, asperity::Error> {
-    let path = LoadingSolver::builder(heights, kernel)
+    let mut path = LoadingSolver::builder(heights, kernel)
         .max_nodes(path_nodes)
         .max_load(GREATEST_LOAD * NOMINAL_AREA * E_STAR)
         .build()?;
-    let grid = path.grid();
-    let mut contact = DMatrix::from_element(grid.nx(), grid.ny(), false);
-    let mut edges = 0;
-    let mut points: Vec<Point> = Vec::new();
+    let mut states: Vec<LoadingState> = Vec::new();
     let mut pending = None;
     let mut next = 1;
-    for state in path {
+    for state in path.by_ref() {
         let state = state?;
-        // At the limit no node joins.
-        if state.event == ContactEvent::Touch {
-            // A node adds its edges with neighbours out of contact and removes the others.
-            let (present, all) = neighbours(&contact, state.node);
-            edges += all;
-            edges -= 2 * present;
-            contact[state.node] = true;
-        }
-        let point = Point::new(&state, edges, &grid, true);
-        pending = Some(point);
+        pending = Some(state);
         // First touch carries no load and divides nothing.
         if state.step >= next && state.load > 0.0 {
-            points.push(point);
+            states.push(state);
             pending = None;
             next = state.step + 1 + state.step / 500;
         }
     }
-    points.extend(pending);
-    Ok(points)
+    states.extend(pending);
+    let areas = corrected_areas(&ContactSequence::with_order(
+        path.grid(),
+        path.contact_order(),
+    )?);
+    let points = states.iter().map(|state| {
+        let area = areas.get(state.contact_nodes.wrapping_sub(1));
+        Point::new(state, area.copied().unwrap_or_default(), true)
+    });
+    Ok(points.collect())
 }
 
-/// How many neighbours of a node are in contact, and how many there are.
-fn neighbours(contact: &DMatrix<bool>, (ix, iy): (usize, usize)) -> (usize, usize) {
-    let around = [
-        (ix.wrapping_sub(1), iy),
-        (ix + 1, iy),
-        (ix, iy.wrapping_sub(1)),
-        (ix, iy + 1),
-    ];
-    let there = around.iter().filter_map(|node| contact.get(*node));
-    there.fold((0, 0), |(present, all), inside| {
-        (present + usize::from(*inside), all + 1)
-    })
-}
-
-/// Edges of cells between contact and no contact, those at the border of the grid left out.
-fn edges(contact: &DMatrix<bool>) -> usize {
-    let (nx, ny) = contact.shape();
-    let along_x = (0..ny).flat_map(|iy| (1..nx).map(move |ix| ((ix - 1, iy), (ix, iy))));
-    let along_y = (1..ny).flat_map(|iy| (0..nx).map(move |ix| ((ix, iy - 1), (ix, iy))));
-    along_x
-        .chain(along_y)
-        .filter(|(a, b)| contact[*a] != contact[*b])
-        .count()
+/// Contact areas without what cells count too much, for every state of a path.
+pub(crate) fn corrected_areas(contact: &ContactSequence) -> Vec<f64> {
+    let grid = contact.grid();
+    PatchHistory::new(contact, Boundary::Free, Connectivity::Four)
+        .map(|state| state.corrected_area(&grid))
+        .collect()
 }
 
 /// Loads from the end of a path to the greatest, evenly spaced in the logarithm; none if the path

@@ -11,8 +11,7 @@ pub(crate) struct Family {
     pub(crate) rough: Rough,
     /// Rms gradient of the sum of waves: the one that all results are reduced with.
     pub(crate) gradient: f64,
-    /// The same by central differences on the mesh of the study, and on the paper's.
-    pub(crate) central: f64,
+    /// The same by central differences on the paper's mesh.
     pub(crate) central_paper: f64,
     pub(crate) runs: Vec<Run>,
 }
@@ -54,19 +53,17 @@ impl Study {
         eprintln!("rough surfaces: {nodes} x {nodes} nodes, {seeds} seeds each");
         let mut families = Vec::new();
         for rough in Rough::ALL {
-            let (gradient, central) = rough.gradients(nodes, 1).map_err(failed)?;
-            let (_, central_paper) = rough.gradients(PAPER_NODES, 1).map_err(failed)?;
             let mut runs = Vec::new();
             for seed in 1..=seeds {
                 let found = options
                     .reuse
-                    .then(|| Run::read(directory, rough, seed))
+                    .then(|| Run::read(directory, rough, nodes, seed))
                     .flatten();
                 let run = match found {
                     Some(run) => run,
                     None => {
                         let run = Run::new(rough, seed, nodes, path_nodes)?;
-                        run.write(directory)?;
+                        run.write(directory, nodes)?;
                         run
                     }
                 };
@@ -74,9 +71,8 @@ impl Study {
             }
             families.push(Family {
                 rough,
-                gradient,
-                central,
-                central_paper,
+                gradient: rough.gradient(nodes).map_err(failed)?,
+                central_paper: rough.central_gradient(PAPER_NODES).map_err(failed)?,
                 runs,
             });
         }

@@ -1,0 +1,158 @@
+//! The page of verdicts: everything in it comes from this study.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use crate::report::Report;
+use crate::{candidates, conclusions, criteria, findings, method, sections, statements};
+use asperity_cli::outcome::Failure;
+
+/// The study writes between these lines of the page, and leaves the rest alone.
+const FIGURES: [&str; 2] = [
+    "<!-- written by the study `paper`: begin -->",
+    "<!-- written by the study `paper`: end -->",
+];
+/// The same for the whole path.
+const WHOLE_PATH: [&str; 2] = [
+    "<!-- written by the study `paper`, whole path: begin -->",
+    "<!-- written by the study `paper`, whole path: end -->",
+];
+const TITLE: &str = "# Validation\n";
+
+impl Report {
+    /// Writes the page alone, into the directory of the pictures.
+    pub(crate) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
+        let page = self.merged(TITLE.to_string(), "")?;
+        std::fs::write(name, page)
+            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
+        Ok(name.to_path_buf())
+    }
+
+    /// Puts the page into a file that others write as well, and the pictures into images/ next to it.
+    pub(crate) fn publish(&self, name: &Path) -> Result<PathBuf, Failure> {
+        let present = std::fs::read_to_string(name).unwrap_or(TITLE.to_string());
+        let page = self.merged(present, "images/paper_")?;
+        let publish = || -> Result<(), Box<dyn Error>> {
+            let images = name.parent().unwrap_or(Path::new("")).join("images");
+            std::fs::create_dir_all(&images)?;
+            for picture in self.pictures() {
+                let file = picture.file_name().ok_or("a picture without a name")?;
+                let copy = images.join(format!("paper_{}", file.to_string_lossy()));
+                std::fs::copy(picture, copy)?;
+            }
+            std::fs::write(name, page)?;
+            Ok(())
+        };
+        publish()
+            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
+        Ok(name.to_path_buf())
+    }
+
+    fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+        let figures = [
+            &self.figure3.picture,
+            &self.figure4.picture,
+            &self.figure5.picture,
+            &self.figure6.picture,
+            &self.figure7.picture,
+            &self.figure8.picture,
+        ];
+        let whole_path = self.whole_path.iter().map(|path| &path.picture);
+        figures.into_iter().chain(whole_path)
+    }
+
+    /// A page with the text in its places; names of pictures begin with `prefix`.
+    fn merged(&self, present: String, prefix: &str) -> Result<String, Failure> {
+        let page = put(&present, FIGURES, &self.text(prefix)?);
+        Ok(match &self.whole_path {
+            Some(path) => put(&page, WHOLE_PATH, &sections::whole_path(path, prefix)),
+            None => page,
+        })
+    }
+
+    /// The figures.
+    fn text(&self, prefix: &str) -> Result<String, Failure> {
+        let names = self.names();
+        let (conclusions, statements) = (conclusions::claims(self), statements::claims(self));
+        let (method, candidates) = (method::claims(self), candidates::claims(self));
+        let claims = conclusions.iter().chain(&statements).chain(&method);
+        let sections = [
+            self.introduction(),
+            criteria::criteria(claims),
+            format!(
+                "### The conclusions of the paper\n\n{}",
+                criteria::table(&names, &conclusions)
+            ),
+            format!(
+                "### Its other statements on the figures\n\n{}",
+                criteria::table(&names, &statements)
+            ),
+            format!(
+                "### Its statements on the method\n\n{}\n{}",
+                criteria::table(&["here"], &method),
+                method::tables(self)
+            ),
+            candidates::section(self, &candidates),
+            sections::figure3(self, prefix),
+            sections::figure4(self, prefix),
+            sections::figure5(self, prefix),
+            sections::figure6(self, prefix),
+            sections::figure7(self, prefix),
+            sections::figure8(self, prefix),
+            findings::rules(self),
+            findings::peers(self),
+            findings::list(self, &candidates::possible(self, &candidates))?,
+        ];
+        Ok(sections
+            .map(|text| text.trim_end().to_string())
+            .join("\n\n"))
+    }
+
+    fn introduction(&self) -> String {
+        let study = &self.study;
+        let path = 100.0 * study.path_nodes as f64 / (study.nodes * study.nodes) as f64;
+        let (mut area, mut approach, mut stiffness) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let mut gap = 0.0_f64;
+        for run in study.families.iter().flat_map(|family| &family.runs) {
+            let seam = run.seam().unwrap_or_default();
+            area = area.max(seam.area);
+            approach = approach.max(seam.approach);
+            stiffness = stiffness.max(seam.contact_stiffness);
+            gap = gap.max(seam.mean_gap);
+        }
+        format!(
+            "## The paper, figure by figure\n\n\
+             Every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
+             the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 (2020), \"the \
+             paper\", next to ours. This part of the page, numbers and pictures, is written by\n\n\
+             ```text\n\
+             cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
+             --report docs/validation.md\n\
+             ```\n\n\
+             Without options the program does the same on 256 × 256 nodes in a few minutes, and writes \
+             into `out/paper`.\n\n\
+             * **Rough surfaces**: {} × {} nodes, {} seeds each; \"a ± b\" is the mean over the seeds and \
+             the sample standard deviation.\n\
+             * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area), one \
+             state for each node; from there fixed loads, each with its exact tangent stiffness, up to \
+             0.1 A₀E\\*. Where the two meet they differ, at worst over all runs, by {area:.0e} of the area \
+             (a node that just touches counts in the path; under a fixed load it may not), {approach:.0e} of the \
+             approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
+             * **Without units**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
+             E\\*.\n\
+             * **Three surfaces**, since the paper's cannot be told for certain: see \
+             \"Which surface the paper had\".",
+            study.nodes, study.seeds, study.nodes, study.nodes, study.seeds, study.path_nodes,
+        )
+    }
+}
+
+/// A page with the text in the place of what is between the markers, or at its end.
+fn put(present: &str, [begin, end]: [&str; 2], text: &str) -> String {
+    let parts = present.split_once(begin).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(end)?;
+        Some((before.to_string(), after))
+    });
+    let (before, after) = parts.unwrap_or((format!("{}\n\n", present.trim_end()), "\n"));
+    format!("{before}{begin}\n\n{text}\n\n{end}{after}")
+}
