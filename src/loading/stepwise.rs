@@ -13,7 +13,7 @@ use crate::updater::{LinearUpdater, Solution};
 const TIE: f64 = 1e-13;
 /// Events at a single approach, for each node of the grid, after which no end of them is expected.
 /// Nodes that touch and leave together are sorted out by the least index among them, which comes to
-/// an end (Murty, Opsearch 11 (1974) 123), in practice after one or two events a node.
+/// an end (Murty, Opsearch 11 (1974) 123–130), in practice after one or two events a node.
 const TIED_EVENTS: usize = 20;
 /// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
 /// otherwise nodes that neither gain nor lose pressure could touch and leave without end.

@@ -135,8 +135,8 @@ impl InfluenceKernel for Boussinesq {
         Boundary::Free
     }
 
-    /// Love's influence matrix is an inverse M-matrix (checked on grids from 8² to 40², strips, and
-    /// cells of aspect 1 to 10), and its principal submatrices inherit that.
+    /// Love's influence matrix is an inverse M-matrix (checked on grids from 8² to 40², strips, and cells of
+    /// aspect 1 to 10⁶ on small grids), and its principal submatrices inherit that.
     fn contact_growth(&self) -> ContactGrowth {
         ContactGrowth::Convex
     }
