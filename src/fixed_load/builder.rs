@@ -4,7 +4,7 @@ use super::budget::MemoryBudget;
 use super::hierarchy::Hierarchy;
 use super::settings::Settings;
 use super::solver::FixedLoadSolver;
-use crate::{Error, InfluenceKernel, Problem, Surface, memory};
+use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
 
 /// Sets up a [`FixedLoadSolver`].
 #[derive(Clone, Copy)]
@@ -55,7 +55,10 @@ impl FixedLoadBuilder<'_> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a tolerance that is not between 0 and 1, both excluded;
+    /// [`Error::OutOfRange`] for a tolerance that is not between 0 and 1, both excluded, and for a periodic kernel with
+    /// cells more than [`MAX_ASPECT`](PeriodicBoussinesq::MAX_ASPECT) times as long as wide: from ten times that on,
+    /// iterations on [`Spectral`](crate::Spectral) were found to end without an answer. A path with a
+    /// factor, a single row of nodes and a free boundary know no such limit.
     /// [`Error::MemoryBudget`] if the grid is too large for the budget; and those of [`Problem::new`].
     pub fn build(self) -> Result<FixedLoadSolver, Error> {
         let settings = self.settings;
@@ -64,6 +67,7 @@ impl FixedLoadBuilder<'_> {
             .memory_budget
             .unwrap_or_else(memory::default_budget);
         let grid = self.kernel.grid();
+        check_cells(&grid, self.kernel.boundary())?;
         let memory = MemoryBudget::new(budget, &grid, settings.nested)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         // A kernel of one's own may say something else when it is asked again.
@@ -71,6 +75,20 @@ impl FixedLoadBuilder<'_> {
         let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
         Ok(FixedLoadSolver::with(settings, hierarchy))
     }
+}
+
+/// `Ok` if iterations come to an answer on these cells.
+fn check_cells(grid: &Grid, boundary: Boundary) -> Result<(), Error> {
+    let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
+    let is_strip = grid.nx() == 1 || grid.ny() == 1;
+    if boundary == Boundary::Free || is_strip || aspect <= PeriodicBoussinesq::MAX_ASPECT {
+        return Ok(());
+    }
+    Err(Error::OutOfRange {
+        quantity: "ratio of the sides of a periodic cell",
+        value: aspect,
+        expected: "at most 1000 for a single load; a path with a factor takes any",
+    })
 }
 
 impl std::fmt::Debug for FixedLoadBuilder<'_> {

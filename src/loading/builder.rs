@@ -140,7 +140,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 
     /// Ends the path with an error before it holds more than this many bytes; every state up to there has
     /// then been yielded. By default three quarters of the machine's memory, where the system tells it
-    /// (Linux), and without limit elsewhere. Close to the limit windows become smaller.
+    /// (Linux), and without limit elsewhere. Close to the limit windows become smaller. What each thread takes for
+    /// products of matrices, some 5 MB, comes on top of it.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.memory_budget = Some(bytes);
         self

@@ -1,7 +1,11 @@
 //! From a single node to far beyond full contact, and tolerances from coarse to impossible.
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Error, Grid};
+use asperity::updater::RecursiveCholesky;
+use asperity::{
+    Boundary, Boussinesq, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, Spectral,
+};
+use nalgebra::DMatrix;
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, rough, solver};
@@ -86,16 +90,64 @@ fn tension_that_was_cut_off_does_not_keep_a_load_from_its_tolerance() {
     }
 }
 
+/// Long cells: a free half-space takes any, in hardly more iterations than square ones; a periodic one up to 1000,
+/// beyond which there is an error at the door, and a path with a factor.
+#[test]
+fn long_cells() {
+    for (nx, ny) in [(10, 3), (3, 10), (32, 32), (100, 1)] {
+        let heights = DMatrix::from_fn(nx, ny, |ix, iy| {
+            let (x, y) = (ix as f64, iy as f64);
+            (0.31 * x + 0.2 * y).sin() + (0.17 * y - 0.05 * x).cos() + 0.3 * (0.9 * x * y).sin()
+        });
+        let map = HeightMap::new(heights).unwrap();
+        for aspect in [1.0, 30.0, 1e3, 1001.0, 2.3e5, 1e6] {
+            let grid = Grid::new(nx, ny, 1.0, aspect).unwrap();
+            let kernels: [Box<dyn InfluenceKernel>; 2] = [
+                Box::new(Boussinesq::new(grid, 1.0).unwrap()),
+                Box::new(Spectral::new(grid, 1.0).unwrap()),
+            ];
+            for kernel in &kernels {
+                let is_periodic = kernel.boundary() == Boundary::Periodic;
+                let path = LoadingSolver::builder(&map, kernel).updater(RecursiveCholesky::new());
+                let states: Vec<_> = path.build().unwrap().map(Result::unwrap).collect();
+                assert_eq!(states.len(), nx * ny);
+                let built = FixedLoadSolver::new(&map, kernel);
+                if is_periodic && aspect > 1e3 && ny > 1 {
+                    let refused = built.map(drop);
+                    assert!(
+                        matches!(refused, Err(Error::OutOfRange { .. })),
+                        "{refused:?}"
+                    );
+                    continue;
+                }
+                let mut solver = built.unwrap();
+                for part in [10, 2] {
+                    // Between two events of the path, which has its pressure from a factor.
+                    let load =
+                        0.5 * (states[nx * ny / part - 1].load + states[nx * ny / part].load);
+                    let solution = solver.solve(load).unwrap();
+                    check(&solver, &solution, 1e-8);
+                    assert_eq!(solution.state.contact_nodes, nx * ny / part);
+                    // Up to 70 were measured, most of them for the stiffness.
+                    let effort = solution.effort;
+                    assert!(
+                        effort.iterations + effort.stiffness_iterations < 200,
+                        "{effort:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// Sums are taken in fixed chunks: the number of threads does not touch a bit.
 #[cfg(feature = "rayon")]
 #[test]
 fn threads_do_not_change_a_bit() {
-    use asperity::InfluenceKernel;
-
     let grid = Grid::new(150, 130, 1.0 / 150.0, 1.0 / 150.0).unwrap();
     let map = rough(&grid, 3);
     for kernel in Kernel::all(grid, 1.0) {
-        let load = if kernel.boundary() == asperity::Boundary::Free {
+        let load = if kernel.boundary() == Boundary::Free {
             0.1
         } else {
             0.05

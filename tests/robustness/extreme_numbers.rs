@@ -5,8 +5,8 @@ use asperity::loading::{History, LoadingSolver};
 use asperity::surface::HeightMap;
 use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
-    LoadingState, PeriodicBoussinesq,
+    Boundary, Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, Grid,
+    InfluenceKernel, LoadingState, PeriodicBoussinesq,
 };
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -220,7 +220,7 @@ fn sensible_paths_far_from_one() {
         (1e-60, 1e-60, 1e60),
         (1e100, 1e-50, 1e-50),
         (1e-9, 1e-9, 1e11),
-        (1e100, 1e120, 1e-15),
+        (1e80, 1e100, 1e-15),
     ] {
         let grid = Grid::new(4, 5, cell, cell).unwrap();
         let states = run(
@@ -324,9 +324,13 @@ fn extreme_loads_and_approaches_are_refused() {
                     match solver.solve_target(target) {
                         Ok(solution) => {
                             let state = solution.state;
-                            for value in [state.approach, state.load, state.energy] {
+                            for value in [state.approach, state.load] {
                                 assert!(value.is_normal() && value > 0.0, "{target:?}: {state:?}");
                             }
+                            // Far beyond full contact of a periodic half-space, where the tolerance is relative to
+                            // the pressure, nothing is left of the energy of the gaps.
+                            let free = kernel.boundary() == Boundary::Free;
+                            assert!(state.energy.is_finite() && (state.energy > 0.0 || !free));
                             let fields = [
                                 &solution.pressure,
                                 &solution.gap,

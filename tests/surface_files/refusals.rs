@@ -2,9 +2,12 @@
 
 use std::fs;
 use std::io::ErrorKind;
+use std::path::PathBuf;
 
-use asperity::io::read_surface;
-use asperity::{Error, FileError};
+use asperity::io::{channels, read_npy, read_surface, write_gsf, write_npy, write_vti, write_x3p};
+use asperity::record::LoadingRecord;
+use asperity::{Error, FileError, Grid};
+use nalgebra::DMatrix;
 
 use super::{Scratch, own};
 
@@ -39,11 +42,48 @@ fn a_pipe_is_refused() {
     let made = std::process::Command::new("mkfifo").arg(&pipe.0).status();
     // Without the program there is nothing to try.
     if made.is_ok_and(|status| status.success()) {
-        let error = read_surface(&pipe.0).unwrap_err();
-        assert!(
-            matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == pipe.0 && reason.contains("regular")),
-            "{error}"
-        );
+        for error in [
+            read_surface(&pipe.0).map(drop).unwrap_err(),
+            read_npy(&pipe.0).map(drop).unwrap_err(),
+            channels(&pipe.0).map(drop).unwrap_err(),
+            LoadingRecord::read_npz(&pipe.0).map(drop).unwrap_err(),
+        ] {
+            assert!(
+                matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == pipe.0 && reason.contains("regular")),
+                "{error}"
+            );
+        }
+    }
+}
+
+/// What cannot be written names the file and the cause: no folder of that name, no space left.
+#[test]
+fn files_that_cannot_be_written() {
+    let grid = Grid::new(3, 2, 1.0, 1.0).unwrap();
+    let field = DMatrix::from_element(3, 2, 1.0);
+    let nowhere = Scratch::new("nowhere");
+    let mut places = vec![nowhere.0.join("file")];
+    // A device that is always full, where there is one.
+    places.extend(
+        [PathBuf::from("/dev/full")]
+            .into_iter()
+            .filter(|path| path.exists()),
+    );
+    for place in places {
+        for error in [
+            write_npy(&place, &field).unwrap_err(),
+            write_gsf(&place, &grid, &field, "m").unwrap_err(),
+            write_x3p(&place, &grid, &field).unwrap_err(),
+            write_vti(&place, &grid, &[("height", &field)]).unwrap_err(),
+        ] {
+            let Error::File(FileError::Io { path, source }) = &error else {
+                panic!("{error}");
+            };
+            assert_eq!(*path, place);
+            let message = error.to_string();
+            let told = [place.display().to_string(), source.to_string()];
+            assert!(told.iter().all(|part| message.contains(part)), "{message}");
+        }
     }
 }
 

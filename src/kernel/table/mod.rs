@@ -12,6 +12,11 @@ use crate::{Error, Grid, KernelError};
 /// A gauge below this part of a good one makes the matrix of full contact, which is singular in the zero gauge,
 /// worse conditioned than any other.
 const LEAST_GAUGE: f64 = 1e-3;
+/// Beyond so many times a good one, digits of everything else are lost beside it.
+const GREATEST_GAUGE: f64 = 1e3;
+/// What stands in for such a gauge, as a multiple of a good one: above the least gauge of any kernel of this
+/// crate, so that promises of growth that held still hold.
+const LARGE_GAUGE: f64 = 10.0;
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
 ///
@@ -315,11 +320,14 @@ impl KernelTable {
         self.gauge().map(|mean| of_coefficients(mean, least))
     }
 
-    /// The same kernel in a gauge in which its matrix is well conditioned, also on the whole grid: where its own
-    /// gauge is far less than [`Self::computing_gauge`].
+    /// The same kernel in a gauge in which its matrix is well conditioned, also on the whole grid: another one where
+    /// its own is far from [`Self::computing_gauge`].
     pub(crate) fn regular(self) -> Self {
         match (self.gauge(), self.computing_gauge()) {
-            (Some(gauge), Some(other)) if gauge < LEAST_GAUGE * other => self.in_gauge(other),
+            (Some(gauge), Some(good)) if gauge < LEAST_GAUGE * good => self.in_gauge(good),
+            (Some(gauge), Some(good)) if gauge > GREATEST_GAUGE * good => {
+                self.in_gauge(LARGE_GAUGE * good)
+            }
             _ => self,
         }
     }
