@@ -4,9 +4,9 @@ use crate::krylov::Preconditioner;
 use crate::{Error, Grid};
 
 /// Numbers for each node of a grid, whatever the load: initial gap and influence coefficients (6), the
-/// convolution in both precisions with its buffers (17), preconditioner (4), iterate (3) and solution
-/// (5).
-const VALUES: usize = 35;
+/// convolution in both precisions with its buffers (18), search directions (2), preconditioner (4), iterate (3)
+/// and solution (5).
+const VALUES: usize = 38;
 /// Numbers for each node in contact that conjugate gradients take with their preconditioner.
 const CONTACT_VALUES: usize = 14;
 
