@@ -1,0 +1,54 @@
+//! Which errors an input deserves.
+
+use asperity::{ContactGrowth, Error};
+
+use crate::dense::Dense;
+
+/// What is known of a problem that ended with an error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Circumstances {
+    /// Roundings times the condition number: the error of a solution relative to itself. Infinite if the matrix is not
+    /// positive definite.
+    pub(crate) error: f64,
+    pub(crate) growth: ContactGrowth,
+    /// Whether memory was limited.
+    pub(crate) budget: bool,
+    /// What an iteration was asked for, if there is one.
+    pub(crate) tolerance: Option<f64>,
+    /// Nodes that touch or leave together at the last state.
+    pub(crate) on_the_edge: usize,
+}
+
+impl Circumstances {
+    /// Of a problem, with an exact solution wanted and no bound on memory.
+    pub(crate) fn of(dense: &Dense, growth: ContactGrowth) -> Self {
+        let condition = dense.condition().unwrap_or(f64::INFINITY);
+        Self {
+            error: condition * Dense::rounding(dense.nodes()),
+            growth,
+            budget: false,
+            tolerance: None,
+            on_the_edge: 0,
+        }
+    }
+
+    /// Whether an error is deserved.
+    pub(crate) fn deserve(&self, error: &Error) -> bool {
+        match error {
+            Error::MemoryBudget { .. } => self.budget,
+            // A pivot is the least eigenvalue at best.
+            Error::NotPositiveDefinite { .. } | Error::FactorizationFailed { .. } => {
+                self.error > 1e-3
+            }
+            // The signs that are promised are looked at to 1e-9 or better.
+            Error::NotMonotone { .. } => self.growth != ContactGrowth::Unknown && self.error > 1e-6,
+            // States are recognised to 1e-6.
+            Error::NotOnPath { .. } => self.error > 1e-6,
+            Error::NoConvergence { .. } => self
+                .tolerance
+                .is_some_and(|tolerance| self.error > tolerance),
+            Error::Cycling { .. } => self.growth == ContactGrowth::Unknown && self.on_the_edge > 1,
+            _ => false,
+        }
+    }
+}
