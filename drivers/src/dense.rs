@@ -150,6 +150,8 @@ pub(crate) struct ContactSet<'a> {
     nodes: Vec<usize>,
     is_in: Vec<bool>,
     factor: Cholesky<f64, Dyn>,
+    /// Gaps in contact that a solution may leave besides rounding, relative to the approach.
+    residual: f64,
     /// `‖C_II⁻¹‖`.
     inverse: f64,
     /// `1 + ‖C_OI C_II⁻¹‖`.
@@ -172,7 +174,9 @@ pub(crate) struct Instant {
 
 impl<'a> ContactSet<'a> {
     /// `None` if the matrix is not positive definite in double precision.
-    pub(crate) fn new(dense: &'a Dense, nodes: &[usize]) -> Option<Self> {
+    ///
+    /// Gaps in contact may be off by `residual` of the approach besides rounding.
+    pub(crate) fn new(dense: &'a Dense, nodes: &[usize], residual: f64) -> Option<Self> {
         let all = dense.nodes();
         let mut is_in = vec![false; all];
         for &node in nodes {
@@ -189,6 +193,7 @@ impl<'a> ContactSet<'a> {
             nodes: nodes.to_vec(),
             is_in,
             factor,
+            residual,
             inverse: norm(&inverse),
             carried,
             rate: DVector::zeros(0),
@@ -198,7 +203,7 @@ impl<'a> ContactSet<'a> {
         let rate = set.solve(&ones);
         let displacement = &dense.influence * &rate;
         let lengths = 1.0 + set.carried_lengths(&rate);
-        set.closing_error = set.carried * lengths * Dense::rounding(all);
+        set.closing_error = set.carried * (lengths * Dense::rounding(all) + residual);
         set.closing = displacement.map(|u| 1.0 - u);
         set.rate = rate;
         Some(set)
@@ -231,9 +236,8 @@ impl<'a> ContactSet<'a> {
         self.is_in[node]
     }
 
-    /// The solution at an approach in the gauge of the kernel, whose gaps in contact may be off by `residual` besides
-    /// rounding.
-    pub(crate) fn at(&self, own_approach: f64, residual: f64) -> Instant {
+    /// The solution at an approach in the gauge of the kernel.
+    pub(crate) fn at(&self, own_approach: f64) -> Instant {
         let dense = self.dense;
         let rhs = self
             .nodes
@@ -243,6 +247,7 @@ impl<'a> ContactSet<'a> {
         let displacement = &dense.influence * &pressure;
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
         let lengths = own_approach.abs() + dense.gap.max() + self.carried_lengths(&pressure);
+        let residual = self.residual * own_approach.abs();
         let gap_error = self.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
         Instant {
             pressure,

@@ -58,15 +58,12 @@ impl Variant {
             1 => Some(draw.whole(1, 8)),
             _ => Some(draw.whole(1, 100)),
         };
-        let rule = draw.one_of(
-            ContactRule::FirstContact,
-            &[
-                ContactRule::FirstContact,
-                ContactRule::FirstContact,
-                ContactRule::ApproximateOrder,
-                ContactRule::SmallestGap,
-            ],
-        );
+        let rule = match draw.whole(0, 4) {
+            0 => ContactRule::ApproximateOrder,
+            // It sums up Schur complements, of which iterations give no more than estimates.
+            1 if !iterations => ContactRule::SmallestGap,
+            _ => ContactRule::FirstContact,
+        };
         Self {
             solver,
             window,

@@ -40,6 +40,8 @@ pub(crate) struct Walk<'a> {
     demands: Demands,
     contact: Vec<usize>,
     last: Option<LoadingState>,
+    /// The sum of what the energies of all states so far may be off: it is a sum of works, which need not all be positive.
+    energy_error: f64,
     tally: Tally,
     /// Whether the matrix of the contact was too ill-conditioned once: nothing was looked at from there on.
     blind: bool,
@@ -53,6 +55,7 @@ impl<'a> Walk<'a> {
             demands,
             contact: Vec::new(),
             last: None,
+            energy_error: 0.0,
             tally: Tally::default(),
             blind: false,
         }
@@ -123,7 +126,7 @@ impl<'a> Walk<'a> {
 
     /// `Ok` if nothing can happen any more: no gap closes, and no pressure falls.
     pub(crate) fn check_no_more_events(&mut self) -> Result<(), Violation> {
-        let Some(set) = ContactSet::new(self.dense, &self.contact) else {
+        let Some(set) = ContactSet::new(self.dense, &self.contact, self.demands.residual) else {
             return Ok(());
         };
         for node in 0..self.dense.nodes() {
@@ -221,9 +224,8 @@ impl<'a> Walk<'a> {
         if self.blind {
             return None;
         }
-        let set = ContactSet::new(self.dense, &self.contact)?;
-        let residual = self.demands.residual * found.own_approach.abs();
-        let instant = set.at(found.own_approach, residual);
+        let set = ContactSet::new(self.dense, &self.contact, self.demands.residual)?;
+        let instant = set.at(found.own_approach);
         let worst = instant.gap_error.max(set.closing_error);
         (worst <= self.demands.hopeless).then_some((set, instant))
     }
@@ -262,7 +264,12 @@ impl<'a> Walk<'a> {
         tally.close("load", found.sum, sum, allowed)?;
         let gap = instant.gap.mean();
         tally.close("mean gap", found.mean_gap, gap, instant.gap_error)?;
-        let (energy, allowed) = set.energy(instant);
+        let (energy, error) = set.energy(instant);
+        self.energy_error += error;
+        let allowed = match self.demands.signs {
+            true => error,
+            false => self.energy_error,
+        };
         tally.close("energy", found.energy, energy, allowed)
     }
 
