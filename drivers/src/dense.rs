@@ -84,8 +84,44 @@ impl Dense {
         &self.gap
     }
 
-    pub(crate) fn influence(&self) -> &DMatrix<f64> {
-        &self.influence
+    /// `C p`, and the greatest of `|C| |p|`.
+    pub(crate) fn displace(&self, pressure: &DVector<f64>) -> (DVector<f64>, f64) {
+        let absolute = pressure.abs();
+        let rows = self.influence.row_iter();
+        let lengths = rows.map(|row| {
+            let terms = row.iter().zip(absolute.iter());
+            terms.map(|(c, p)| c.abs() * p).sum()
+        });
+        let displacement = &self.influence * pressure;
+        (displacement, lengths.fold(0.0, f64::max))
+    }
+
+    /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own displacement:
+    /// their errors are measured in it. The problem itself where the mean displacement means something.
+    pub(crate) fn in_computing_gauge(mut self) -> Self {
+        if let Some(gauge) = self.gauge {
+            let least = self.influence.column(0).min() - gauge;
+            // Of a single node nothing but its gauge is known.
+            let other = if least < 0.0 { -1.5 * least } else { gauge };
+            self.influence.add_scalar_mut(other - gauge);
+            self.gauge = Some(other);
+        }
+        self
+    }
+
+    /// `C(0, 0) p̄` for pressures of this sum, which errors are relative to where the approach is less; nothing where the mean
+    /// displacement means something.
+    pub(crate) fn own_displacement(&self, sum: f64) -> f64 {
+        match self.gauge {
+            Some(_) => self.influence[(0, 0)] * sum / self.nodes() as f64,
+            None => 0.0,
+        }
+    }
+
+    /// The displacement for a unit sum of pressures that is not reported: nothing where the mean displacement means
+    /// something.
+    pub(crate) fn gauge(&self) -> f64 {
+        self.gauge.unwrap_or(0.0)
     }
 
     /// Whether approaches are those of the mean planes.
@@ -110,7 +146,7 @@ impl Dense {
 
     /// The approach in the gauge of the kernel, from what is reported.
     pub(crate) fn own_approach(&self, approach: f64, load: f64) -> f64 {
-        self.own_length(approach) + self.gauge.unwrap_or(0.0) * self.own_sum(load)
+        self.own_length(approach) + self.gauge() * self.own_sum(load)
     }
 
     pub(crate) fn scalars(&self, state: &asperity::ContactState) -> Scalars {
@@ -168,6 +204,8 @@ pub(crate) struct Instant {
     pub(crate) pressure: DVector<f64>,
     pub(crate) displacement: DVector<f64>,
     pub(crate) gap: DVector<f64>,
+    /// What cancels in a gap.
+    pub(crate) lengths: f64,
     pub(crate) gap_error: f64,
     pub(crate) pressure_error: f64,
 }
@@ -201,8 +239,8 @@ impl<'a> ContactSet<'a> {
             closing_error: 0.0,
         };
         let rate = set.solve(&ones);
-        let displacement = &dense.influence * &rate;
-        let lengths = 1.0 + set.carried_lengths(&rate);
+        let (displacement, lengths) = dense.displace(&rate);
+        let lengths = 1.0 + lengths;
         set.closing_error = set.carried * (lengths * Dense::rounding(all) + residual);
         set.closing = displacement.map(|u| 1.0 - u);
         set.rate = rate;
@@ -219,19 +257,6 @@ impl<'a> ContactSet<'a> {
         field
     }
 
-    /// The greatest of `|C| |p|`.
-    fn carried_lengths(&self, pressure: &DVector<f64>) -> f64 {
-        let absolute = pressure.abs();
-        let rows = self.dense.influence.row_iter();
-        rows.map(|row| {
-            row.iter()
-                .zip(absolute.iter())
-                .map(|(c, p)| c.abs() * p)
-                .sum()
-        })
-        .fold(0.0, f64::max)
-    }
-
     pub(crate) fn contains(&self, node: usize) -> bool {
         self.is_in[node]
     }
@@ -244,15 +269,16 @@ impl<'a> ContactSet<'a> {
             .iter()
             .map(|&node| own_approach - dense.gap[node]);
         let pressure = self.solve(&DVector::from_iterator(self.nodes.len(), rhs));
-        let displacement = &dense.influence * &pressure;
+        let (displacement, lengths) = dense.displace(&pressure);
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
-        let lengths = own_approach.abs() + dense.gap.max() + self.carried_lengths(&pressure);
+        let lengths = own_approach.abs() + dense.gap.max() + lengths;
         let residual = self.residual * own_approach.abs();
         let gap_error = self.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
         Instant {
             pressure,
             displacement,
             gap,
+            lengths,
             gap_error,
             pressure_error: self.inverse * gap_error,
         }
@@ -270,10 +296,10 @@ impl<'a> ContactSet<'a> {
 
     /// The elastic energy, of the mean planes where the mean displacement is arbitrary, and its error.
     pub(crate) fn energy(&self, instant: &Instant) -> (f64, f64) {
-        let gauge = self.dense.gauge.unwrap_or(0.0);
+        let gauge = self.dense.gauge();
         let sum = instant.pressure.sum();
         let energy = instant.pressure.dot(&instant.displacement) - gauge * sum * sum;
-        let lengths = self.carried_lengths(&instant.pressure) + gauge.abs() * sum.abs();
+        let lengths = instant.lengths + gauge.abs() * sum.abs();
         let pressures = instant.pressure.abs().sum();
         let error = pressures * (Dense::rounding(self.dense.nodes()) * lengths + instant.gap_error);
         (0.5 * energy, error)

@@ -7,10 +7,12 @@
 //! | driver | input | compared with |
 //! |---|---|---|
 //! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
+//! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
 
 mod compare;
 mod dense;
 mod draw;
+mod fixed_loads;
 mod kernels;
 mod limits;
 mod paths;
@@ -21,5 +23,6 @@ mod variant;
 mod verdict;
 mod walk;
 
+pub use fixed_loads::fixed_loads;
 pub use paths::paths;
 pub use verdict::{Tally, Verdict, Violation};

@@ -107,13 +107,7 @@ impl<'a> Trial<'a> {
     ) -> Result<(Tally, Vec<LoadingState>), Violation> {
         let demands = Demands {
             residual: if variant.is_exact() { 0.0 } else { ITERATED },
-            // The paper's rule sums up Schur complements, which iterations only estimate.
-            stiffness: if variant.is_exact() || !paper {
-                0.0
-            } else {
-                ESTIMATED
-            },
-            signs: !paper,
+            signs: variant.rule != ContactRule::SmallestGap,
             ..Demands::EXACT
         };
         let parts = [draw.unit(), draw.unit()];

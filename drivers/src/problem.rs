@@ -50,8 +50,11 @@ impl Sample {
     pub(crate) fn context(&self) -> String {
         let grid = self.kernel.grid();
         let peak = self.surface.peak_to_valley();
+        // Enough to make the case again without its bytes.
+        let heights = self.surface.matrix().as_slice();
+        let heights = if heights.len() > 20 { &[] } else { heights };
         format!(
-            "{:?} on {} x {} nodes of {:e} x {:e}, {peak:e} high",
+            "{:?} on {} x {} nodes of {:e} x {:e}, {peak:e} high {heights:?}",
             self.class,
             grid.nx(),
             grid.ny(),

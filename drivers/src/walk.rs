@@ -83,6 +83,11 @@ impl<'a> Walk<'a> {
         self.tally
     }
 
+    /// The nodes in contact where the walk stands.
+    pub(crate) fn contact(&self) -> &[usize] {
+        &self.contact
+    }
+
     /// Compares fields with those of a state on the contact where the walk stands.
     pub(crate) fn compare_fields(
         &mut self,
