@@ -26,6 +26,8 @@ pub(crate) struct Dense {
     gap: DVector<f64>,
     /// Mean of the coefficients where it is arbitrary: the displacement for a unit sum of pressures.
     gauge: Option<f64>,
+    /// The gauge of the kernel as it was given: the size of what rounds in its coefficients.
+    given_gauge: f64,
     cell_area: f64,
     length: f64,
     compliance: f64,
@@ -63,8 +65,10 @@ impl Dense {
         });
         let arbitrary = kernel.boundary() == Boundary::Periodic
             && kernel.mean_displacement() == MeanDisplacement::Arbitrary;
+        let gauge = arbitrary.then(|| influence.column(0).mean());
         Self {
-            gauge: arbitrary.then(|| influence.column(0).mean()),
+            gauge,
+            given_gauge: gauge.unwrap_or(0.0).abs(),
             gap: DVector::from_iterator(
                 grid.nodes(),
                 heights.iter().map(|height| (highest - height) / length),
@@ -84,7 +88,7 @@ impl Dense {
         &self.gap
     }
 
-    /// `C p`, and the greatest of `|C| |p|`.
+    /// `C p`, and the greatest of `|C| |p|`, in the gauge of the kernel as it was given if that is more.
     pub(crate) fn displace(&self, pressure: &DVector<f64>) -> (DVector<f64>, f64) {
         let absolute = pressure.abs();
         let rows = self.influence.row_iter();
@@ -93,7 +97,8 @@ impl Dense {
             terms.map(|(c, p)| c.abs() * p).sum()
         });
         let displacement = &self.influence * pressure;
-        (displacement, lengths.fold(0.0, f64::max))
+        let given = self.given_gauge * absolute.sum();
+        (displacement, lengths.fold(0.0, f64::max) + given)
     }
 
     /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own displacement:

@@ -54,11 +54,6 @@ impl<'a> Draw<'a> {
         self.0.bytes(count.min(self.0.len())).unwrap_or_default()
     }
 
-    /// How many bytes are left.
-    pub(crate) fn left(&self) -> usize {
-        self.0.len()
-    }
-
     /// All bytes that are left.
     pub(crate) fn rest(self) -> &'a [u8] {
         self.0.take_rest()

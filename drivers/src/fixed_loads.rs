@@ -2,7 +2,8 @@
 
 use asperity::loading::History;
 use asperity::{
-    ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, Grid, InfluenceKernel, LoadingState,
+    ContactGrowth, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, Grid, InfluenceKernel,
+    LoadingState,
 };
 use nalgebra::DVector;
 
@@ -176,6 +177,13 @@ impl Judge {
             (ContactTarget::AreaFraction(value), Error::LessThanOneNode { .. }) => {
                 value * (self.grid.nodes() as f64) < 1.0 + 1e-12
             }
+            // Nothing says that the mean gap of a body of which nothing is known falls below every value, or at all.
+            (ContactTarget::MeanGap(value), Error::NoConvergence { .. }) => {
+                let mut states = states.iter();
+                self.circumstances.growth == ContactGrowth::Unknown
+                    && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
+                    && value < unloaded
+            }
             // A number of nodes that no load has, since others touch together with them.
             (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
                 self.is_unreachable(fraction)
@@ -184,6 +192,13 @@ impl Judge {
         };
         if deserved || self.is_hopeless(error) {
             return Ok(Tally::refusal());
+        }
+        let searched = matches!(
+            target,
+            ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_)
+        );
+        if self.circumstances.is_known_of_fixed_loads(error, searched) {
+            return Ok(Tally::known_fault());
         }
         self.circumstances.judge(error)
     }

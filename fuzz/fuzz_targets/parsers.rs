@@ -1,5 +1,6 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
-    let _ = data;
+    let verdict = asperity_drivers::parsers(data);
+    assert!(verdict.is_ok(), "{verdict:?}");
 });
