@@ -17,6 +17,7 @@ mod draw;
 mod edits;
 mod files;
 mod fixed_loads;
+mod judge;
 mod kernels;
 mod limits;
 mod parsers;
