@@ -107,9 +107,9 @@ fn fixed_loads_are_right() -> Result<(), Violation> {
 }
 
 #[test]
-fn files_are_read_or_refused() -> Result<(), Violation> {
+fn parsers_are_right() -> Result<(), Violation> {
     compared(drive(
-        "files_are_read_or_refused",
+        "parsers_are_right",
         asperity_drivers::parsers,
         4000,
         400,
@@ -117,9 +117,9 @@ fn files_are_read_or_refused() -> Result<(), Violation> {
 }
 
 #[test]
-fn records_are_read_or_refused() -> Result<(), Violation> {
+fn records_are_right() -> Result<(), Violation> {
     compared(drive(
-        "records_are_read_or_refused",
+        "records_are_right",
         asperity_drivers::records,
         100,
         400,
