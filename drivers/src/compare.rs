@@ -22,12 +22,10 @@ const MEAN_GAP: f64 = 5e-6;
 /// Up to 0.3 % of the errors exceed their estimate, by a factor of two.
 const SURE: f64 = 2.0;
 
-/// Compares states, the first ones of which are those behind which the path went on, with exact ones: events up to ties, and
-/// scalars where no tie makes the order of equals matter.
+/// Compares states with exact ones: events up to ties, and scalars where no tie makes the order of equals matter.
 pub(crate) fn same_path(
     found: &[LoadingState],
     exact: &[LoadingState],
-    earlier: usize,
     tally: &mut Tally,
 ) -> Result<(), Violation> {
     let Some(first) = exact.first() else {
@@ -49,8 +47,8 @@ pub(crate) fn same_path(
         };
         let apart = (own.approach - expected.approach).abs();
         if state.node != expected.node && apart > tie(k) {
-            // A known fault: behind other states, and with small windows, the order is no better than the approach says.
-            let known = earlier > 0 && apart <= SURE * state.approach_error;
+            // A known fault: without a factor the order is no better than the states say of their approaches.
+            let known = apart <= SURE * state.approach_error;
             ensure!(known, "{}: {apart:e} apart", context());
             tally.known += 1;
             return Ok(());
