@@ -61,8 +61,9 @@ impl Circumstances {
             // A path that goes one event at a time looks at pressures to 10⁻¹⁰ of the greatest one, whatever the updater:
             // iterations leave 10⁻¹⁰ of the approach in gaps, which is more of a pressure by the condition number.
             Error::NotMonotone { .. } => stepwise,
-            // Heights of 10³⁸ and more: somewhere a product overflows.
+            // Behind other states iterations begin with numbers that single precision does not hold: from heights of 10³⁹ on.
             Error::NoConvergence { residual, .. } => stepwise && residual.is_nan(),
+            Error::NotFinite { .. } => self.tolerance.is_some(),
             _ => false,
         }
     }
