@@ -1,0 +1,115 @@
+//! Two paths that ought to be one, one of them found without a factor.
+
+use std::collections::HashMap;
+
+use asperity::LoadingState;
+
+use crate::verdict::{Tally, Violation, ensure};
+
+/// Events closer than this, relative to the approach, are ties: `asperity::loading` says so.
+const TIE: f64 = 1e-9;
+/// The same relative to the mean initial gap, where there is no approach yet.
+const FIRST_TIE: f64 = 1e-13;
+
+/// How far states between the ends of windows may be off: `asperity::loading` speaks of 1e-5 at worst on large grids, and a
+/// window is a large part of so short a path as these.
+const LOAD: f64 = 1e-4;
+const STIFFNESS: f64 = 3e-5;
+const INTERFACIAL: f64 = 3e-4;
+/// Relative to the initial one.
+const MEAN_GAP: f64 = 5e-6;
+
+/// Up to 0.3 % of the errors exceed their estimate, by a factor of two.
+const SURE: f64 = 2.0;
+
+/// Compares states with exact ones: events up to ties, and scalars where no tie makes the order of equals matter.
+pub(crate) fn same_path(
+    found: &[LoadingState],
+    exact: &[LoadingState],
+    tally: &mut Tally,
+) -> Result<(), Violation> {
+    let Some(first) = exact.first() else {
+        return Ok(());
+    };
+    let initial = first.mean_gap;
+    let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
+    let tie = |k: usize| (TIE * exact[k].approach).max(FIRST_TIE * initial);
+    for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
+        let context = || format!("{state:?} in place of {expected:?}");
+        ensure!(
+            (state.step, state.contact_nodes) == (expected.step, expected.contact_nodes),
+            "{}",
+            context()
+        );
+        let own = place.get(&state.node).map(|&own| &exact[own]);
+        let Some(own) = own else {
+            return Err(Violation::new(context()));
+        };
+        let apart = (own.approach - expected.approach).abs();
+        if state.node != expected.node && apart > tie(k) {
+            // A known fault: without a factor the order is no better than the states say of their approaches.
+            let known = apart <= SURE * state.approach_error;
+            ensure!(known, "{}: {apart:e} apart", context());
+            tally.known += 1;
+            return Ok(());
+        }
+        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
+        if next - expected.approach <= tie(k) || expected.approach <= tie(k) {
+            continue;
+        }
+        // What the state itself says of its approach, and what follows from it.
+        let error = SURE * state.approach_error;
+        let rate = expected
+            .contact_stiffness
+            .or(expected.interfacial_stiffness);
+        let by_error = error * rate.filter(|rate| rate.is_finite()).unwrap_or(0.0);
+        let mut scalars = [
+            (
+                "load",
+                state.load,
+                expected.load,
+                LOAD * expected.load + by_error,
+            ),
+            (
+                "energy",
+                state.energy,
+                expected.energy,
+                3.0 * LOAD * expected.energy + (expected.load + by_error) * error,
+            ),
+            (
+                "mean gap",
+                state.mean_gap,
+                expected.mean_gap,
+                MEAN_GAP * initial + error,
+            ),
+        ]
+        .to_vec();
+        let pairs = [
+            (
+                state.contact_stiffness,
+                expected.contact_stiffness,
+                STIFFNESS,
+            ),
+            (
+                state.interfacial_stiffness,
+                expected.interfacial_stiffness,
+                INTERFACIAL,
+            ),
+        ];
+        for (a, b, allowed) in pairs {
+            match (a, b) {
+                (Some(a), Some(b)) if b.is_finite() => {
+                    scalars.push(("stiffness", a, b, allowed * b));
+                }
+                (a, b) => ensure!(a == b, "{}", context()),
+            }
+        }
+        for (what, a, b, allowed) in scalars {
+            tally
+                .close(what, a, b, allowed)
+                .map_err(|violation| violation.during(context()))?;
+        }
+        tally.checked += 1;
+    }
+    Ok(())
+}

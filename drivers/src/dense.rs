@@ -1,0 +1,343 @@
+//! The contact problem as one dense matrix: what every state is compared with.
+//!
+//! Nothing is shared with the library but the influence coefficients. On a set I of nodes in contact the pressures
+//! are `p = C_II⁻¹ (δ e − g_I)` by a Cholesky factor of nalgebra, made afresh for every set. What was found is a state
+//! of contact at the approach δ, and the only one, if no such pressure and no gap elsewhere is negative.
+//!
+//! # How large an error may be
+//!
+//! A solution by a factor has a residual of some n roundings of the numbers that it cancels, the lengths
+//! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
+//! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
+//! the very set.
+
+use asperity::{Boundary, InfluenceKernel, LoadingState, MeanDisplacement};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Roundings of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
+/// and of the path.
+const ROUNDINGS: f64 = 4.0;
+const ANYWAY: f64 = 16.0;
+
+/// A contact problem in units of its own, so that no product of them overflows: powers of two, which round nothing.
+#[derive(Debug)]
+pub(crate) struct Dense {
+    influence: DMatrix<f64>,
+    gap: DVector<f64>,
+    /// Mean of the coefficients where it is arbitrary: the displacement for a unit sum of pressures.
+    gauge: Option<f64>,
+    /// The gauge of the kernel as it was given: the size of what rounds in its coefficients.
+    given_gauge: f64,
+    cell_area: f64,
+    length: f64,
+    compliance: f64,
+}
+
+/// The scalars of a state in the units of a [`Dense`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scalars {
+    /// In the gauge of the kernel.
+    pub(crate) own_approach: f64,
+    pub(crate) sum: f64,
+    pub(crate) mean_gap: f64,
+    pub(crate) stiffness: Option<f64>,
+    pub(crate) interfacial: Option<f64>,
+    pub(crate) energy: f64,
+}
+
+/// A power of two near a positive number.
+fn near(value: f64) -> f64 {
+    2_f64.powf(value.log2().round())
+}
+
+impl Dense {
+    pub(crate) fn new(kernel: &dyn InfluenceKernel, heights: &DMatrix<f64>) -> Self {
+        let grid = kernel.grid();
+        let compliance = near(kernel.coefficient(0, 0));
+        let highest = heights.max();
+        let greatest = highest - heights.min();
+        // Of a flat surface no length is given.
+        let length = near(if greatest > 0.0 { greatest } else { grid.dx() });
+        let influence = DMatrix::from_fn(grid.nodes(), grid.nodes(), |i, j| {
+            let (a, b) = (grid.coordinates(i), grid.coordinates(j));
+            let (di, dj) = (a.0 as isize - b.0 as isize, a.1 as isize - b.1 as isize);
+            kernel.coefficient(di, dj) / compliance
+        });
+        let arbitrary = kernel.boundary() == Boundary::Periodic
+            && kernel.mean_displacement() == MeanDisplacement::Arbitrary;
+        let gauge = arbitrary.then(|| influence.column(0).mean());
+        Self {
+            gauge,
+            given_gauge: gauge.unwrap_or(0.0).abs(),
+            gap: DVector::from_iterator(
+                grid.nodes(),
+                heights.iter().map(|height| (highest - height) / length),
+            ),
+            influence,
+            cell_area: grid.cell_area(),
+            length,
+            compliance,
+        }
+    }
+
+    pub(crate) fn nodes(&self) -> usize {
+        self.gap.len()
+    }
+
+    pub(crate) fn gap(&self) -> &DVector<f64> {
+        &self.gap
+    }
+
+    /// `C p`, and the greatest of `|C| |p|`, in the gauge of the kernel as it was given if that is more.
+    pub(crate) fn displace(&self, pressure: &DVector<f64>) -> (DVector<f64>, f64) {
+        let absolute = pressure.abs();
+        let rows = self.influence.row_iter();
+        let lengths = rows.map(|row| {
+            let terms = row.iter().zip(absolute.iter());
+            terms.map(|(c, p)| c.abs() * p).sum()
+        });
+        let displacement = &self.influence * pressure;
+        let given = self.given_gauge * absolute.sum();
+        (displacement, lengths.fold(0.0, f64::max) + given)
+    }
+
+    /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own displacement:
+    /// their errors are measured in it. The problem itself where the mean displacement means something.
+    pub(crate) fn in_computing_gauge(mut self) -> Self {
+        if let Some(gauge) = self.gauge {
+            let least = self.influence.column(0).min() - gauge;
+            // Of a single node nothing but its gauge is known.
+            let other = if least < 0.0 { -1.5 * least } else { gauge };
+            self.influence.add_scalar_mut(other - gauge);
+            self.gauge = Some(other);
+        }
+        self
+    }
+
+    /// `C(0, 0) p̄` for pressures of this sum, which errors are relative to where the approach is less; nothing where the mean
+    /// displacement means something.
+    pub(crate) fn own_displacement(&self, sum: f64) -> f64 {
+        match self.gauge {
+            Some(_) => self.influence[(0, 0)] * sum / self.nodes() as f64,
+            None => 0.0,
+        }
+    }
+
+    /// The displacement for a unit sum of pressures that is not reported: nothing where the mean displacement means
+    /// something.
+    pub(crate) fn gauge(&self) -> f64 {
+        self.gauge.unwrap_or(0.0)
+    }
+
+    /// Whether approaches are those of the mean planes.
+    pub(crate) fn is_gauged(&self) -> bool {
+        self.gauge.is_some()
+    }
+
+    /// A length \[m\] in its own units.
+    pub(crate) fn own_length(&self, length: f64) -> f64 {
+        length / self.length
+    }
+
+    /// A pressure \[Pa\] in its own units.
+    pub(crate) fn own_pressure(&self, pressure: f64) -> f64 {
+        pressure / self.length * self.compliance
+    }
+
+    /// A load \[N\] as a sum of pressures in its own units.
+    pub(crate) fn own_sum(&self, load: f64) -> f64 {
+        self.own_pressure(load / self.cell_area)
+    }
+
+    /// The approach in the gauge of the kernel, from what is reported.
+    pub(crate) fn own_approach(&self, approach: f64, load: f64) -> f64 {
+        self.own_length(approach) + self.gauge() * self.own_sum(load)
+    }
+
+    pub(crate) fn scalars(&self, state: &asperity::ContactState) -> Scalars {
+        let stiffness = |k: f64| k / self.cell_area * self.compliance;
+        Scalars {
+            own_approach: self.own_approach(state.approach, state.load),
+            sum: self.own_sum(state.load),
+            mean_gap: self.own_length(state.mean_gap),
+            stiffness: state.contact_stiffness.map(stiffness),
+            interfacial: state.interfacial_stiffness.map(stiffness),
+            energy: self.own_length(self.own_pressure(state.energy / self.cell_area)),
+        }
+    }
+
+    /// The condition number of the whole matrix in the maximum norm, `None` if it is not positive definite in double
+    /// precision.
+    pub(crate) fn condition(&self) -> Option<f64> {
+        let inverse = self.influence.clone().cholesky()?.inverse();
+        Some(norm(&self.influence) * norm(&inverse))
+    }
+
+    /// The roundings of n nodes, relative to the lengths that cancel.
+    pub(crate) fn rounding(nodes: usize) -> f64 {
+        ROUNDINGS * (ANYWAY + nodes as f64) * f64::EPSILON
+    }
+}
+
+/// Greatest sum of absolute values of a row.
+fn norm(matrix: &DMatrix<f64>) -> f64 {
+    let rows = matrix.row_iter().map(|row| row.abs().sum());
+    rows.fold(0.0, f64::max)
+}
+
+/// The equations of one set of nodes in contact.
+pub(crate) struct ContactSet<'a> {
+    dense: &'a Dense,
+    nodes: Vec<usize>,
+    is_in: Vec<bool>,
+    factor: Cholesky<f64, Dyn>,
+    /// Gaps in contact that a solution may leave besides rounding, relative to the approach.
+    residual: f64,
+    /// `‖C_II⁻¹‖`.
+    inverse: f64,
+    /// `1 + ‖C_OI C_II⁻¹‖`.
+    carried: f64,
+    /// `y₂ = C_II⁻¹ e`, by node of the grid, and how fast gaps close.
+    pub(crate) rate: DVector<f64>,
+    pub(crate) closing: DVector<f64>,
+    /// Error of the latter.
+    pub(crate) closing_error: f64,
+}
+
+/// The solution on a set at an approach.
+pub(crate) struct Instant {
+    pub(crate) pressure: DVector<f64>,
+    pub(crate) displacement: DVector<f64>,
+    pub(crate) gap: DVector<f64>,
+    /// What cancels in a gap.
+    pub(crate) lengths: f64,
+    pub(crate) gap_error: f64,
+    pub(crate) pressure_error: f64,
+}
+
+impl<'a> ContactSet<'a> {
+    /// `None` if the matrix is not positive definite in double precision.
+    ///
+    /// Gaps in contact may be off by `residual` of the approach besides rounding.
+    pub(crate) fn new(dense: &'a Dense, nodes: &[usize], residual: f64) -> Option<Self> {
+        let all = dense.nodes();
+        let mut is_in = vec![false; all];
+        for &node in nodes {
+            is_in[node] = true;
+        }
+        let columns = dense.influence.select_columns(nodes);
+        let factor = columns.select_rows(nodes).cholesky()?;
+        let inverse = factor.inverse();
+        let outside: Vec<usize> = (0..all).filter(|&node| !is_in[node]).collect();
+        let carried = 1.0 + norm(&(columns.select_rows(&outside) * &inverse));
+        let ones = DVector::from_element(nodes.len(), 1.0);
+        let mut set = Self {
+            dense,
+            nodes: nodes.to_vec(),
+            is_in,
+            factor,
+            residual,
+            inverse: norm(&inverse),
+            carried,
+            rate: DVector::zeros(0),
+            closing: DVector::zeros(0),
+            closing_error: 0.0,
+        };
+        let rate = set.solve(&ones);
+        let (displacement, lengths) = dense.displace(&rate);
+        let lengths = 1.0 + lengths;
+        set.closing_error = set.carried * (lengths * Dense::rounding(all) + residual);
+        set.closing = displacement.map(|u| 1.0 - u);
+        set.rate = rate;
+        Some(set)
+    }
+
+    /// `C_II⁻¹ b`, on the whole grid.
+    fn solve(&self, rhs: &DVector<f64>) -> DVector<f64> {
+        let solved = self.factor.solve(rhs);
+        let mut field = DVector::zeros(self.dense.nodes());
+        for (&node, value) in self.nodes.iter().zip(solved.iter()) {
+            field[node] = *value;
+        }
+        field
+    }
+
+    pub(crate) fn contains(&self, node: usize) -> bool {
+        self.is_in[node]
+    }
+
+    /// The solution at an approach in the gauge of the kernel.
+    pub(crate) fn at(&self, own_approach: f64) -> Instant {
+        let dense = self.dense;
+        let rhs = self
+            .nodes
+            .iter()
+            .map(|&node| own_approach - dense.gap[node]);
+        let pressure = self.solve(&DVector::from_iterator(self.nodes.len(), rhs));
+        let (displacement, lengths) = dense.displace(&pressure);
+        let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
+        let lengths = own_approach.abs() + dense.gap.max() + lengths;
+        let residual = self.residual * own_approach.abs();
+        let gap_error = self.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
+        Instant {
+            pressure,
+            displacement,
+            gap,
+            lengths,
+            gap_error,
+            pressure_error: self.inverse * gap_error,
+        }
+    }
+
+    /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much.
+    pub(crate) fn sum_error(&self, gap_error: f64) -> f64 {
+        self.rate.abs().sum() * gap_error
+    }
+
+    /// How far a rate of pressure is off.
+    pub(crate) fn rate_error(&self) -> f64 {
+        self.inverse * self.closing_error
+    }
+
+    /// The elastic energy, of the mean planes where the mean displacement is arbitrary, and its error.
+    pub(crate) fn energy(&self, instant: &Instant) -> (f64, f64) {
+        let gauge = self.dense.gauge();
+        let sum = instant.pressure.sum();
+        let energy = instant.pressure.dot(&instant.displacement) - gauge * sum * sum;
+        let lengths = instant.lengths + gauge.abs() * sum.abs();
+        let pressures = instant.pressure.abs().sum();
+        let error = pressures * (Dense::rounding(self.dense.nodes()) * lengths + instant.gap_error);
+        (0.5 * energy, error)
+    }
+
+    /// `dW/dδ` and `−dW/dḡ`, each with its error relative to itself.
+    pub(crate) fn stiffnesses(&self) -> [(f64, f64); 2] {
+        let stiffness = self.rate.sum();
+        let relative = self.sum_error(self.closing_error) / stiffness.abs();
+        let all = self.dense.nodes();
+        let closing: f64 = (0..all)
+            .filter(|&node| !self.is_in[node])
+            .map(|node| self.closing[node])
+            .sum();
+        let closing = closing / all as f64;
+        [
+            (stiffness, relative),
+            (
+                stiffness / closing,
+                relative + self.closing_error / closing.abs(),
+            ),
+        ]
+    }
+
+    /// Whether approaches are those of the mean planes, where no distant point stays put.
+    pub(crate) fn is_gauged(&self) -> bool {
+        self.dense.is_gauged()
+    }
+}
+
+/// The scalars of a state of a path.
+impl Dense {
+    pub(crate) fn of(&self, state: &LoadingState) -> Scalars {
+        self.scalars(&state.contact)
+    }
+}

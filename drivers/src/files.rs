@@ -1,0 +1,45 @@
+//! Real files of every format to begin with, from the tests of the library.
+
+/// A file of the folder `tests/data/surface_files`.
+macro_rules! file {
+    ($name:literal) => {
+        include_bytes!(concat!("../../tests/data/surface_files/", $name))
+    };
+}
+
+/// One file of each format and kind.
+pub(crate) const FILES: [&[u8]; 16] = [
+    file!("missing.npy"),
+    file!("missing.gsf"),
+    file!("masked.gwy"),
+    file!("missing_ascii.sdf"),
+    file!("missing_bcr_i2.sdf"),
+    file!("missing_iso2_f8.sdf"),
+    file!("plain_iso2_f4.sdf"),
+    file!("missing_f64.x3p"),
+    file!("missing_i16_mask.x3p"),
+    file!("missing_i16.sur"),
+    file!("missing_i32_compressed.sur"),
+    file!("missing_f32.al3d"),
+    file!("missing_u32.vk4"),
+    file!("missing_matrix.asc"),
+    file!("plain_gwyddion.txt"),
+    file!("missing.xyz"),
+];
+
+/// How files of each format begin.
+pub(crate) const BEGINNINGS: [&[u8]; 13] = [
+    b"\x93NUMPY\x01\x00",
+    b"Gwyddion Simple Field 1.0\n",
+    b"GWYPGwyContainer\0",
+    b"aISO-1.0",
+    b"bISO-2.0",
+    b"aBCR-1.0",
+    b"bBCR-1.0",
+    b"PK\x03\x04",
+    b"DIGITAL SURF",
+    b"DSCOMPRESSED",
+    b"AliconaImaging\0",
+    b"VK4_",
+    b"x y z\n",
+];

@@ -1,0 +1,289 @@
+//! Solutions for one load, or another target, looked at densely and beside the path.
+
+use asperity::loading::History;
+use asperity::{
+    ContactGrowth, ContactState, ContactTarget, Error, FixedLoadSolution, Grid, LoadingState,
+};
+use nalgebra::DVector;
+
+use crate::dense::{ContactSet, Dense};
+use crate::refusal::Circumstances;
+use crate::verdict::{Tally, Verdict, Violation, ensure};
+use crate::walk::{Demands, Walk};
+
+/// How often the roundings of a solution a tolerance has to be for a solver to be sure of it.
+const SURE: f64 = 100.0;
+
+/// How the solver is set up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Settings {
+    pub(crate) tolerance: f64,
+    pub(crate) nested: bool,
+    pub(crate) stiffness: bool,
+}
+
+/// What is known of the problem.
+pub(crate) struct Judge {
+    pub(crate) dense: Dense,
+    pub(crate) grid: Grid,
+    pub(crate) history: History,
+    pub(crate) circumstances: Circumstances,
+    pub(crate) settings: Settings,
+}
+
+impl Judge {
+    /// Whether an error could not be helped.
+    pub(crate) fn refusal(&self, error: &Error, target: ContactTarget) -> Verdict {
+        let states = self.history.states();
+        let unloaded = states.first().map_or(0.0, |state| state.mean_gap);
+        let deserved = match (target, error) {
+            (
+                ContactTarget::Load(value) | ContactTarget::Approach(value),
+                Error::NotPositive { .. },
+            ) => !(value > 0.0 && value.is_finite()),
+            (ContactTarget::Approach(approach), Error::ApproachNotReached { .. }) => {
+                self.dense.is_gauged() && approach >= unloaded * (1.0 - 1e-13)
+            }
+            (ContactTarget::MeanGap(value), Error::OutOfRange { .. }) => {
+                !(value > 0.0 && value < unloaded * (1.0 - 1e-13))
+            }
+            (ContactTarget::AreaFraction(value), Error::OutOfRange { .. }) => {
+                !(value > 0.0 && value <= 1.0)
+            }
+            (ContactTarget::AreaFraction(value), Error::LessThanOneNode { .. }) => {
+                value * (self.grid.nodes() as f64) < 1.0 + 1e-12
+            }
+            // Nothing says that the mean gap of a body of which nothing is known falls below every value, or at all.
+            (ContactTarget::MeanGap(value), Error::NoConvergence { .. }) => {
+                let mut states = states.iter();
+                self.circumstances.growth == ContactGrowth::Unknown
+                    && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
+                    && value < unloaded
+            }
+            // A number of nodes that no load has, since others touch together with them.
+            (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
+                self.is_unreachable(fraction)
+            }
+            _ => false,
+        };
+        if deserved || self.is_hopeless(error) {
+            return Ok(Tally::refusal());
+        }
+        let searched = matches!(
+            target,
+            ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_)
+        );
+        if self.circumstances.is_known_of_fixed_loads(error, searched) {
+            return Ok(Tally::known_fault());
+        }
+        self.circumstances.judge(error)
+    }
+
+    /// Whether the tolerance lies below the roundings of a solution.
+    fn is_hopeless(&self, error: &Error) -> bool {
+        matches!(error, Error::NoConvergence { .. })
+            && self.settings.tolerance < SURE * self.circumstances.error
+    }
+
+    /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions are
+    /// exact.
+    fn is_unreachable(&self, fraction: f64) -> bool {
+        let Ok(nodes) = self.grid.nodes_in(fraction) else {
+            return true;
+        };
+        let states = self.history.states();
+        let mut has = states
+            .iter()
+            .zip(states.iter().skip(1).map(Some).chain([None]));
+        let Some((state, next)) = has.find(|(state, _)| state.contact_nodes == nodes) else {
+            return true;
+        };
+        let end = next.map_or(f64::INFINITY, |next| next.load);
+        let slack = (SURE * self.settings.tolerance).max(self.circumstances.error);
+        end - state.load <= slack * self.grid.nodes() as f64 * end
+    }
+
+    /// Looks at a solution.
+    pub(crate) fn solution(&self, solution: &FixedLoadSolution, target: ContactTarget) -> Verdict {
+        let mut tally = Tally::default();
+        let (state, dense) = (&solution.state, &self.dense);
+        let nodes = self.grid.nodes();
+        let found = dense.scalars(state);
+        let pressure = DVector::from_iterator(
+            nodes,
+            solution.pressure.iter().map(|p| dense.own_pressure(*p)),
+        );
+        let sum = pressure.sum();
+        ensure!(pressure.min() >= 0.0, "a pressure is negative");
+        let rounding = Dense::rounding(nodes);
+        tally.close("sum of pressures", found.sum, sum, rounding * sum)?;
+        let (displacement, lengths) = dense.displace(&pressure);
+        let rounding = rounding * (lengths + found.own_approach.abs() + dense.gap().max());
+        let own = dense.own_displacement(sum);
+        let allowed =
+            self.settings.tolerance * dense.own_length(state.approach).max(own) + rounding;
+        let gap = dense.gap() + displacement.add_scalar(-found.own_approach);
+        let mut mean_gap = 0.0;
+        let mut contact = Vec::new();
+        for node in 0..nodes {
+            let (p, own) = (pressure[node], dense.own_length(solution.gap[node]));
+            tally.close("gap", own, gap[node], rounding)?;
+            let in_contact = solution.contact_map[node];
+            ensure!(
+                in_contact == (p > 0.0 || own <= 0.0),
+                "node {node} is in contact: {in_contact}, with pressure {p:e} and gap {own:e}"
+            );
+            if in_contact {
+                contact.push(node);
+                tally.close("gap in contact", gap[node], 0.0, allowed)?;
+            } else {
+                mean_gap += gap[node] / nodes as f64;
+            }
+            tally.not_negative("gap", gap[node], allowed)?;
+        }
+        ensure!(
+            state.contact_nodes == contact.len(),
+            "{} nodes are in contact, not {}",
+            contact.len(),
+            state.contact_nodes
+        );
+        tally.close("mean gap", found.mean_gap, mean_gap, rounding)?;
+        let energy = 0.5 * (pressure.dot(&displacement) - dense.gauge() * sum * sum);
+        tally.close("energy", found.energy, energy, rounding * sum)?;
+        self.check_stiffness(solution, &contact, &mut tally)?;
+        self.check_target(solution, target)?;
+        self.check_path(state, &pressure, &contact, allowed, &mut tally)?;
+        tally.checked += 1;
+        Ok(tally)
+    }
+
+    /// Stiffnesses are those of the contact of the solution, solved to its tolerance.
+    fn check_stiffness(
+        &self,
+        solution: &FixedLoadSolution,
+        contact: &[usize],
+        tally: &mut Tally,
+    ) -> Result<(), Violation> {
+        let found = self.dense.scalars(&solution.state);
+        let Some(interfacial) = found.interfacial else {
+            ensure!(!self.settings.stiffness, "there is no stiffness");
+            return Ok(());
+        };
+        ensure!(
+            found.stiffness.is_none() == self.dense.is_gauged(),
+            "the contact stiffness is {:?}",
+            found.stiffness
+        );
+        let set = ContactSet::new(&self.dense, contact, self.settings.tolerance);
+        let Some(set) = set.filter(|set| set.closing_error < 0.1) else {
+            return Ok(());
+        };
+        let [(stiffness, error), (expected, interfacial_error)] = set.stiffnesses();
+        if let Some(found) = found.stiffness {
+            tally.close(
+                "contact stiffness",
+                found,
+                stiffness,
+                error * stiffness.abs(),
+            )?;
+        }
+        if contact.len() == self.grid.nodes() {
+            ensure!(
+                interfacial == f64::INFINITY,
+                "in full contact the interfacial stiffness is {interfacial:e}"
+            );
+        } else if interfacial_error < 0.1 {
+            let allowed = interfacial_error * expected.abs();
+            tally.close("interfacial stiffness", interfacial, expected, allowed)?;
+        }
+        let area = self.grid.cell_area() * set.rate.sum();
+        let allowed = (set.rate_error() + error * set.rate.amax()) / area.abs();
+        for (found, rate) in solution.pressure_rate.iter().zip(set.rate.iter()) {
+            tally.close("rate of pressure", *found, rate / area, allowed)?;
+        }
+        Ok(())
+    }
+
+    fn check_target(
+        &self,
+        solution: &FixedLoadSolution,
+        target: ContactTarget,
+    ) -> Result<(), Violation> {
+        let state = &solution.state;
+        let tolerance = self.settings.tolerance;
+        let is_there = match target {
+            ContactTarget::Load(load) => state.load == load,
+            ContactTarget::Approach(approach) => {
+                (state.approach - approach).abs() <= tolerance * approach
+            }
+            ContactTarget::MeanGap(mean_gap) => {
+                (state.mean_gap - mean_gap).abs() <= tolerance * state.approach
+            }
+            ContactTarget::AreaFraction(fraction) => {
+                self.grid.nodes_in(fraction).ok() == Some(state.contact_nodes)
+                    || self.is_unreachable(fraction)
+            }
+            _ => true,
+        };
+        ensure!(is_there, "{state:?} is not at the target");
+        Ok(())
+    }
+
+    /// The state of the path at the same load.
+    ///
+    /// With the pressures p and gaps w of the solution and p*, w* of the path the difference d = p − p* of two pressures of
+    /// one sum has `dᵀ C d = dᵀ (w − w*) ≤ pᵀ w − p*ᵀ w`, because neither p nor w* is negative and `p*ᵀ w* = 0`: at most the
+    /// sums of both times the greatest gap in contact or overlap.
+    fn check_path(
+        &self,
+        state: &ContactState,
+        pressure: &DVector<f64>,
+        contact: &[usize],
+        allowed: f64,
+        tally: &mut Tally,
+    ) -> Result<(), Violation> {
+        let Some(exact) = self.history.at_load(state.load) else {
+            // Of a flat surface, or one whose path has ended.
+            return Ok(());
+        };
+        let Some((set, order)) = self.contact_of(&exact)? else {
+            return Ok(());
+        };
+        let found = self.dense.of(&exact);
+        let instant = set.at(found.own_approach);
+        let difference = pressure - &instant.pressure;
+        let sums = pressure.sum() + instant.pressure.abs().sum();
+        let (displacement, _) = self.dense.displace(&difference);
+        let energy = difference.dot(&displacement);
+        let allowed = allowed + instant.gap_error;
+        tally.not_negative("energy of a difference", energy, sums * allowed)?;
+        tally.close("energy of a difference", energy, 0.0, sums * allowed)?;
+        let mut same: Vec<usize> = order;
+        same.sort_unstable();
+        if same == contact {
+            // Then `C_II d = Δδ e + r`, of which the sum of d leaves nothing but r.
+            let own = self.dense.own_approach(state.approach, state.load);
+            let error = set.sum_error(allowed) / set.rate.sum().abs();
+            tally.close(
+                "approach of the path",
+                own,
+                found.own_approach,
+                error + allowed,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The equations of the contact of a state of the path, and its nodes.
+    fn contact_of(
+        &self,
+        state: &LoadingState,
+    ) -> Result<Option<(ContactSet<'_>, Vec<usize>)>, Violation> {
+        let mut walk = Walk::new(&self.dense, self.grid, Demands::EXACT);
+        let events = self.history.events();
+        let steps = events.partition_point(|event| event.step <= state.step);
+        walk.skip(&events[..steps])?;
+        let nodes = walk.contact().to_vec();
+        Ok(ContactSet::new(&self.dense, &nodes, 0.0).map(|set| (set, nodes)))
+    }
+}

@@ -1,0 +1,155 @@
+//! Half-spaces and other bodies: those of the library, and tables of coefficients that promise nothing.
+
+use asperity::kernel::{KernelTable, MeanDisplacement};
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral,
+};
+
+use crate::draw::Draw;
+
+/// What a kernel is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Class {
+    /// Love's rectangle, and the same as a table that promises nothing.
+    Free,
+    FreeTable,
+    /// The periodic half-spaces, and the same in another gauge.
+    Periodic,
+    PeriodicInGauge,
+    Spectral,
+    SpectralInGauge,
+    /// Coefficients that fall exponentially: a positive definite matrix that promises nothing.
+    Exponential,
+    /// A symbol drawn at random: nodes leave the contact. The mean displacement is real or arbitrary.
+    Physical,
+    Arbitrary,
+    /// Coefficients drawn at random, which may be indefinite.
+    Random,
+}
+
+/// Kernels whose matrices are positive definite by theory, on any grid that they accept.
+const DEFINITE: [Class; 8] = [
+    Class::FreeTable,
+    Class::Periodic,
+    Class::PeriodicInGauge,
+    Class::Spectral,
+    Class::SpectralInGauge,
+    Class::Exponential,
+    Class::Physical,
+    Class::Arbitrary,
+];
+
+/// A kernel, or why there is none.
+pub(crate) struct Made {
+    pub(crate) class: Class,
+    pub(crate) kernel: Result<Box<dyn InfluenceKernel + Send + Sync>, Error>,
+}
+
+/// A kernel on `grid` with the modulus `e_star`, of a class that is drawn; definite ones only if that is said.
+pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, definite: bool) -> Made {
+    let all: &[Class] = &[
+        Class::FreeTable,
+        Class::Periodic,
+        Class::PeriodicInGauge,
+        Class::Spectral,
+        Class::SpectralInGauge,
+        Class::Exponential,
+        Class::Physical,
+        Class::Arbitrary,
+        Class::Random,
+    ];
+    let class = draw.one_of(Class::Free, if definite { &DEFINITE } else { all });
+    Made {
+        class,
+        kernel: make(draw, grid, e_star, class),
+    }
+}
+
+fn make(
+    draw: &mut Draw<'_>,
+    grid: Grid,
+    e_star: f64,
+    class: Class,
+) -> Result<Box<dyn InfluenceKernel + Send + Sync>, Error> {
+    let unknown = ContactGrowth::Unknown;
+    // Compliances are of the order of a cell over the modulus.
+    let scale = grid.dx().max(grid.dy()) / e_star;
+    Ok(match class {
+        Class::Free => Box::new(Boussinesq::new(grid, e_star)?),
+        Class::FreeTable => {
+            let love = Boussinesq::new(grid, e_star)?;
+            let coefficient = |di, dj| love.coefficient(di, dj);
+            Box::new(KernelTable::from_fn(
+                grid,
+                Boundary::Free,
+                unknown,
+                coefficient,
+            )?)
+        }
+        Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
+        Class::PeriodicInGauge => {
+            let kernel = PeriodicBoussinesq::new(grid, e_star)?;
+            let gauge = kernel.gauge() * draw.decades(-2.0, 2.0);
+            Box::new(kernel.with_gauge(gauge)?)
+        }
+        Class::Spectral => Box::new(Spectral::new(grid, e_star)?),
+        Class::SpectralInGauge => {
+            let kernel = Spectral::new(grid, e_star)?;
+            let gauge = kernel.gauge() * draw.decades(-2.0, 2.0);
+            Box::new(kernel.with_gauge(gauge)?)
+        }
+        Class::Exponential => {
+            let reach = draw.decades(-1.0, 1.0);
+            let coefficient =
+                |di: isize, dj: isize| scale * (-(di as f64).hypot(dj as f64) / reach).exp();
+            Box::new(KernelTable::from_fn(
+                grid,
+                Boundary::Free,
+                unknown,
+                coefficient,
+            )?)
+        }
+        Class::Physical | Class::Arbitrary => {
+            let mean = match class {
+                Class::Physical => MeanDisplacement::Physical,
+                _ => MeanDisplacement::Arbitrary,
+            };
+            // Even in q as it must be: a random amplitude for each pair of opposite waves.
+            let spread = draw.between(0.0, 2.0);
+            let mut noise = draw.noise();
+            let amplitudes: Vec<f64> = (0..64).map(|_| 10_f64.powf(spread * noise())).collect();
+            let (lx, ly) = grid.sides();
+            let symbol = |qx: f64, qy: f64| {
+                let turn = std::f64::consts::TAU;
+                let (kx, ky) = (
+                    (qx * lx / turn).abs().round(),
+                    (qy * ly / turn).abs().round(),
+                );
+                scale * amplitudes[(7 * kx as usize + 3 * ky as usize) % 64]
+            };
+            Box::new(KernelTable::from_symbol(grid, mean, unknown, symbol)?)
+        }
+        Class::Random => {
+            let strength = draw.unit();
+            let mut noise = draw.noise();
+            let (nx, ny) = grid.shape();
+            let values: Vec<f64> = (0..nx * ny).map(|_| 2.0 * noise() - 1.0).collect();
+            let coefficient = |di: isize, dj: isize| {
+                let (di, dj) = (di.unsigned_abs(), dj.unsigned_abs());
+                let own = (di, dj) == (0, 0);
+                scale
+                    * if own {
+                        1.0
+                    } else {
+                        strength * values[di + nx * dj]
+                    }
+            };
+            Box::new(KernelTable::from_fn(
+                grid,
+                Boundary::Free,
+                unknown,
+                coefficient,
+            )?)
+        }
+    })
+}

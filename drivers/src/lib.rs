@@ -1,0 +1,38 @@
+//! Drivers: arbitrary bytes in, an answer of the library out, and an independent look at it.
+//!
+//! Each driver makes an input of bytes, hostile or sensible, asks the library, and checks what it says without the
+//! library's help. The same drivers serve a fuzzer (`fuzz` in the repository), which looks for bytes that reach new code,
+//! and random tests with seeds (`cargo test`), which need no nightly toolchain.
+//!
+//! | driver | input | compared with |
+//! |---|---|---|
+//! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
+//! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
+//! | [`parsers()`] | files of heights, hostile ones most of all | what is read after it was written again |
+//! | [`records()`] | paths on disk, tampered with | the record before it was written, and dense fields |
+
+mod compare;
+mod dense;
+mod draw;
+mod edits;
+mod files;
+mod fixed_loads;
+mod judge;
+mod kernels;
+mod limits;
+mod parsers;
+mod paths;
+mod problem;
+mod records;
+mod refusal;
+mod scratch;
+mod surfaces;
+mod variant;
+mod verdict;
+mod walk;
+
+pub use fixed_loads::fixed_loads;
+pub use parsers::parsers;
+pub use paths::paths;
+pub use records::records;
+pub use verdict::{Tally, Verdict, Violation};

@@ -1,0 +1,106 @@
+//! Whole contact problems.
+
+use asperity::{Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq};
+
+use crate::draw::Draw;
+use crate::kernels::{self, Class, Made};
+use crate::surfaces;
+use crate::verdict::{Tally, Verdict, Violation, ensure};
+
+/// Nodes of the largest grid: a dense check of each state takes some n³ operations.
+const MOST_NODES: usize = 81;
+
+/// A surface on a body.
+pub(crate) struct Sample {
+    pub(crate) surface: HeightMap,
+    pub(crate) kernel: Box<dyn InfluenceKernel + Send + Sync>,
+    pub(crate) class: Class,
+}
+
+/// A problem that was drawn, or what there is to say of it if it was refused.
+pub(crate) enum Drawn {
+    Sample(Sample),
+    Refused(Verdict),
+}
+
+impl Sample {
+    /// Draws grid, heights and kernel; kernels that are positive definite by theory only if that is said.
+    pub(crate) fn draw(draw: &mut Draw<'_>, definite: bool) -> Result<Drawn, Violation> {
+        let grid = grid(draw)?;
+        // Squares of pressures, and heights squared times modulus times cell, stay within double precision.
+        let (height, modulus) = match draw.once_in(4) {
+            true => (draw.decades(-40.0, 40.0), draw.decades(-40.0, 40.0)),
+            false => (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0)),
+        };
+        let heights = surfaces::heights(draw, grid.shape()) * height;
+        let surface = HeightMap::new(heights)
+            .map_err(|error| Violation::new(format!("finite heights were refused: {error}")))?;
+        let Made { class, kernel } = kernels::kernel(draw, grid, modulus, definite);
+        match kernel {
+            Ok(kernel) => Ok(Drawn::Sample(Self {
+                surface,
+                kernel,
+                class,
+            })),
+            Err(error) => Ok(Drawn::Refused(judge(&error, &grid, class))),
+        }
+    }
+
+    /// For messages.
+    pub(crate) fn context(&self) -> String {
+        let grid = self.kernel.grid();
+        let peak = self.surface.peak_to_valley();
+        // Enough to make the case again without its bytes.
+        let heights = self.surface.matrix().as_slice();
+        let heights = if heights.len() > 20 { &[] } else { heights };
+        format!(
+            "{:?} on {} x {} nodes of {:e} x {:e}, {peak:e} high {heights:?}",
+            self.class,
+            grid.nx(),
+            grid.ny(),
+            grid.dx(),
+            grid.dy()
+        )
+    }
+}
+
+/// A grid: small squares, strips and whatever lies between, with cells from square to 10⁴ times as long as wide.
+fn grid(draw: &mut Draw<'_>) -> Result<Grid, Violation> {
+    let (nx, ny) = match draw.whole(0, 3) {
+        0 => (draw.whole(1, 5), draw.whole(1, 5)),
+        1 => (draw.whole(1, 9), draw.whole(1, 9)),
+        2 => (1, draw.whole(1, MOST_NODES)),
+        _ => (draw.whole(1, MOST_NODES), 1),
+    };
+    let dx = match draw.once_in(4) {
+        true => draw.decades(-40.0, 40.0),
+        false => draw.decades(-8.0, 0.0),
+    };
+    let aspect = match draw.whole(0, 3) {
+        0 | 1 => 1.0,
+        2 => draw.decades(-1.0, 1.0),
+        _ => draw.decades(-4.0, 4.0),
+    };
+    Grid::new(nx, ny, dx, dx * aspect)
+        .map_err(|error| Violation::new(format!("a sensible grid was refused: {error}")))
+}
+
+/// Whether a kernel could only be refused.
+fn judge(error: &Error, grid: &Grid, class: Class) -> Verdict {
+    let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
+    let deserved = match (error, class) {
+        (Error::OutOfRange { .. }, Class::Periodic | Class::PeriodicInGauge) => {
+            aspect > PeriodicBoussinesq::MAX_ASPECT
+        }
+        // Nothing is known of a single node whose mean displacement is arbitrary.
+        (Error::NotPositiveDefinite { .. }, Class::Arbitrary) => grid.nodes() == 1,
+        _ => false,
+    };
+    ensure!(
+        deserved,
+        "{class:?} on {} x {} nodes, cells 1 : {aspect}: {error}",
+        grid.nx(),
+        grid.ny()
+    );
+    Ok(Tally::refusal())
+}

@@ -1,0 +1,333 @@
+//! A walk along the states of a path, each of which is looked at densely.
+//!
+//! Between two events the set of nodes in contact does not change and all is linear in the approach. So a path is right if
+//! at *both* ends of each interval no pressure and no gap is negative, and if the node of an event has neither pressure nor
+//! gap there: any other node that touched earlier would overlap at the end of the interval. The solution of a positive
+//! definite complementarity problem is the only one, so that this also fixes the order of events, up to nodes that touch at
+//! the same approach to rounding.
+
+use asperity::loading::ContactEvent;
+use asperity::{Grid, LoadingState};
+use nalgebra::{DMatrix, DVector};
+
+use crate::dense::{ContactSet, Dense, Instant, Scalars};
+use crate::verdict::{Tally, Violation, ensure};
+
+/// What may be asked of the states.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Demands {
+    /// Gaps in contact that a solution may leave, relative to the approach.
+    pub(crate) residual: f64,
+    /// Whether pressures and gaps must not be negative: not with the paper's rule.
+    pub(crate) signs: bool,
+    /// Error relative to the pressures from which on a matrix is too ill-conditioned to say anything.
+    pub(crate) hopeless: f64,
+}
+
+impl Demands {
+    /// Exact to rounding.
+    pub(crate) const EXACT: Self = Self {
+        residual: 0.0,
+        signs: true,
+        hopeless: 1e-3,
+    };
+}
+
+/// Where a walk stands.
+pub(crate) struct Walk<'a> {
+    dense: &'a Dense,
+    grid: Grid,
+    demands: Demands,
+    contact: Vec<usize>,
+    last: Option<LoadingState>,
+    /// The sum of what the energies of all states so far may be off: it is a sum of works, which need not all be positive.
+    energy_error: f64,
+    tally: Tally,
+    /// Whether the matrix of the contact was too ill-conditioned once: nothing was looked at from there on.
+    blind: bool,
+}
+
+impl<'a> Walk<'a> {
+    pub(crate) fn new(dense: &'a Dense, grid: Grid, demands: Demands) -> Self {
+        Self {
+            dense,
+            grid,
+            demands,
+            contact: Vec::new(),
+            last: None,
+            energy_error: 0.0,
+            tally: Tally::default(),
+            blind: false,
+        }
+    }
+
+    /// Looks at every state, the next of the path each.
+    pub(crate) fn follow(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
+        for state in states {
+            self.step(state)
+                .map_err(|violation| violation.during(format!("{state:?}")))?;
+        }
+        Ok(())
+    }
+
+    /// Goes behind states that were looked at before, without looking at them.
+    pub(crate) fn skip(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
+        for state in states {
+            self.take(state)?;
+            self.last = Some(*state);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The nodes in contact where the walk stands.
+    pub(crate) fn contact(&self) -> &[usize] {
+        &self.contact
+    }
+
+    /// Compares fields with those of a state on the contact where the walk stands.
+    pub(crate) fn compare_fields(
+        &mut self,
+        state: &LoadingState,
+        pressure: &DMatrix<f64>,
+        gap: &DMatrix<f64>,
+    ) -> Result<(), Violation> {
+        let found = self.dense.of(state);
+        let Some((set, instant)) = self.solved(&found) else {
+            return Ok(());
+        };
+        self.check_scalars(&found, &set, &instant)?;
+        self.check_signs(&set, &instant)?;
+        for node in 0..self.dense.nodes() {
+            let own = self.dense.own_pressure(pressure[node]);
+            let expected = instant.pressure[node];
+            self.tally
+                .close("pressure", own, expected, instant.pressure_error)?;
+            let own = self.dense.own_length(gap[node]);
+            let expected = instant.gap[node];
+            self.tally.close("gap", own, expected, instant.gap_error)?;
+        }
+        self.tally.checked += 1;
+        Ok(())
+    }
+
+    /// How many nodes are about to touch or to leave at the last state, as far as rounding lets see: pressures of the
+    /// contact and gaps elsewhere that are zero to a hundred times the error they may have. All of them, where nothing can be
+    /// said.
+    pub(crate) fn on_the_edge(&self) -> usize {
+        let state = self.last.as_ref().map(|state| self.dense.of(state));
+        let Some((set, instant)) = state.and_then(|found| self.solved(&found)) else {
+            return self.dense.nodes();
+        };
+        let is_zero = |node: &usize| match set.contains(*node) {
+            true => instant.pressure[*node].abs() <= 100.0 * instant.pressure_error,
+            false => instant.gap[*node].abs() <= 100.0 * instant.gap_error,
+        };
+        (0..self.dense.nodes()).filter(is_zero).count()
+    }
+
+    /// `Ok` if nothing can happen any more: no gap closes, and no pressure falls.
+    pub(crate) fn check_no_more_events(&mut self) -> Result<(), Violation> {
+        let Some(set) = ContactSet::new(self.dense, &self.contact, self.demands.residual) else {
+            return Ok(());
+        };
+        for node in 0..self.dense.nodes() {
+            if set.contains(node) {
+                let allowed = set.rate_error();
+                self.tally
+                    .not_negative("least rate of pressure", set.rate[node], allowed)?;
+            } else {
+                let opening = -set.closing[node];
+                self.tally
+                    .not_negative("least rate of a gap", opening, set.closing_error)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Does to the contact what happens at a state; the node, unless nothing happens.
+    fn take(&mut self, state: &LoadingState) -> Result<Option<usize>, Violation> {
+        let (ix, iy) = state.node;
+        let node = self.grid.node(ix, iy);
+        let Some(node) = node else {
+            return Err(Violation::new("its node is not on the grid"));
+        };
+        let place = self.contact.iter().position(|&other| other == node);
+        match (state.event, place) {
+            (ContactEvent::Touch, None) => self.contact.push(node),
+            (ContactEvent::Release, Some(place)) => {
+                self.contact.remove(place);
+            }
+            (ContactEvent::Limit, _) => return Ok(None),
+            (event, _) => {
+                return Err(Violation::new(format!(
+                    "node {node} has the event {event:?} while its place in the contact is {place:?}"
+                )));
+            }
+        }
+        Ok(Some(node))
+    }
+
+    fn step(&mut self, state: &LoadingState) -> Result<(), Violation> {
+        let found = self.dense.of(state);
+        let before = self.last.and_then(|_| self.solved(&found));
+        let last = self.last;
+        let node = self.take(state)?;
+        self.check_counts(state)?;
+        if let (Some((set, instant)), Some(last)) = (&before, last) {
+            self.check_scalars(&found, set, instant)?;
+            self.check_signs(set, instant)?;
+            if let Some(node) = node {
+                let size = instant.gap[node].abs();
+                let (what, value, allowed) = if set.contains(node) {
+                    let value = instant.pressure[node];
+                    (
+                        "pressure of the node that leaves",
+                        value,
+                        instant.pressure_error,
+                    )
+                } else {
+                    ("gap of the node that touches", size, instant.gap_error)
+                };
+                self.tally.close(what, value, 0.0, allowed)?;
+            }
+            let allowed = set.sum_error(instant.gap_error);
+            let change = found.sum - self.dense.own_sum(last.load);
+            if self.demands.signs {
+                self.tally
+                    .not_negative("growth of the load", change, allowed)?;
+                let change = found.own_approach - self.dense.of(&last).own_approach;
+                self.tally
+                    .not_negative("growth of the approach", change, instant.gap_error)?;
+            }
+        } else if last.is_none() {
+            let first = (state.step, state.approach, state.load, state.energy);
+            ensure!(first == (1, 0.0, 0.0, 0.0), "it is no first touch");
+            let highest = (0..self.dense.nodes()).find(|&node| self.dense.gap()[node] == 0.0);
+            ensure!(
+                node == highest,
+                "the first of the highest nodes is {highest:?}"
+            );
+        }
+        if let Some((set, instant)) = self.solved(&found) {
+            self.check_scalars(&found, &set, &instant)?;
+            self.check_stiffnesses(&found, &set)?;
+            self.check_signs(&set, &instant)?;
+            self.tally.checked += 1;
+        } else {
+            self.blind = true;
+        }
+        self.last = Some(*state);
+        Ok(())
+    }
+
+    /// The equations of the contact, solved at the approach of a state; `None` where nothing can be said.
+    fn solved(&self, found: &Scalars) -> Option<(ContactSet<'a>, Instant)> {
+        if self.blind {
+            return None;
+        }
+        let set = ContactSet::new(self.dense, &self.contact, self.demands.residual)?;
+        let instant = set.at(found.own_approach);
+        let worst = instant.gap_error.max(set.closing_error);
+        (worst <= self.demands.hopeless).then_some((set, instant))
+    }
+
+    fn check_counts(&self, state: &LoadingState) -> Result<(), Violation> {
+        let nodes = self.contact.len();
+        let events = self.last.map_or(0, |last| last.step);
+        let expected = match state.event {
+            ContactEvent::Limit => events,
+            _ => events + 1,
+        };
+        ensure!(
+            state.contact_nodes == nodes && state.step == expected,
+            "{nodes} nodes are in contact after {expected} events"
+        );
+        // Products of two numbers, in whichever order.
+        let area = nodes as f64 * self.grid.cell_area();
+        let fraction = nodes as f64 / self.grid.nodes() as f64;
+        ensure!(
+            (state.contact_area - area).abs() <= 4.0 * f64::EPSILON * area
+                && (state.contact_area_fraction - fraction).abs() <= f64::EPSILON,
+            "the area is {area:e}, a fraction of {fraction:e}"
+        );
+        Ok(())
+    }
+
+    fn check_scalars(
+        &mut self,
+        found: &Scalars,
+        set: &ContactSet<'_>,
+        instant: &Instant,
+    ) -> Result<(), Violation> {
+        let tally = &mut self.tally;
+        let sum = instant.pressure.sum();
+        let allowed = set.sum_error(instant.gap_error);
+        tally.close("load", found.sum, sum, allowed)?;
+        let gap = instant.gap.mean();
+        tally.close("mean gap", found.mean_gap, gap, instant.gap_error)?;
+        let (energy, error) = set.energy(instant);
+        self.energy_error += error;
+        let allowed = match self.demands.signs {
+            true => error,
+            false => self.energy_error,
+        };
+        tally.close("energy", found.energy, energy, allowed)
+    }
+
+    fn check_stiffnesses(
+        &mut self,
+        found: &Scalars,
+        set: &ContactSet<'_>,
+    ) -> Result<(), Violation> {
+        let [(contact, error), (interfacial, interfacial_error)] = set.stiffnesses();
+        match found.stiffness {
+            Some(stiffness) => {
+                let allowed = error * contact.abs();
+                self.tally
+                    .close("contact stiffness", stiffness, contact, allowed)?;
+            }
+            None => ensure!(set.is_gauged(), "there is no contact stiffness"),
+        }
+        ensure!(
+            !(set.is_gauged() && found.stiffness.is_some()),
+            "there is a contact stiffness, but no distant point that stays put"
+        );
+        let Some(stiffness) = found.interfacial else {
+            return Err(Violation::new("there is no interfacial stiffness"));
+        };
+        if self.contact.len() == self.dense.nodes() {
+            ensure!(
+                stiffness == f64::INFINITY,
+                "in full contact the interfacial stiffness is {stiffness:e}"
+            );
+        } else if interfacial_error < 0.1 {
+            let allowed = interfacial_error * interfacial.abs();
+            self.tally
+                .close("interfacial stiffness", stiffness, interfacial, allowed)?;
+        }
+        Ok(())
+    }
+
+    fn check_signs(&mut self, set: &ContactSet<'_>, instant: &Instant) -> Result<(), Violation> {
+        if !self.demands.signs {
+            return Ok(());
+        }
+        let (inside, outside): (Vec<usize>, Vec<usize>) =
+            (0..self.dense.nodes()).partition(|&node| set.contains(node));
+        let least = |nodes: &[usize], field: &DVector<f64>| {
+            let values = nodes.iter().map(|&node| field[node]);
+            values.fold(f64::INFINITY, f64::min)
+        };
+        let pressure = least(&inside, &instant.pressure);
+        self.tally
+            .not_negative("least pressure", pressure, instant.pressure_error)?;
+        let gap = least(&outside, &instant.gap);
+        self.tally
+            .not_negative("least gap", gap, instant.gap_error)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,127 @@
+//! Every driver on random bytes.
+//!
+//! `ASPERITY_DRIVER_SEED` chooses other bytes, and `ASPERITY_DRIVER_CASES` how many cases there are of each driver, or
+//! `ASPERITY_DRIVER_SECONDS` for how long. A case that fails is printed with its bytes:
+//! `ASPERITY_DRIVER_BYTES=… cargo test --release -p asperity-drivers --test drivers NAME` repeats it.
+
+use std::env;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use asperity_drivers::{Tally, Verdict, Violation};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+const SEED: u64 = 2020;
+
+/// A number from the environment, if it is there.
+fn number(name: &str) -> Result<Option<u64>, Violation> {
+    match env::var(name) {
+        Ok(text) => match text.parse() {
+            Ok(number) => Ok(Some(number)),
+            Err(_) => Err(Violation::new(format!(
+                "{name} is '{text}', which is no number"
+            ))),
+        },
+        Err(_) => Ok(None),
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn from_hex(text: &str) -> Option<Vec<u8>> {
+    let digits = |k: usize| u8::from_str_radix(text.get(k..k + 2)?, 16).ok();
+    (0..text.len()).step_by(2).map(digits).collect()
+}
+
+/// One case; a panic of the library is a violation as well.
+fn case(driver: fn(&[u8]) -> Verdict, bytes: &[u8]) -> Verdict {
+    catch_unwind(AssertUnwindSafe(|| driver(bytes)))
+        .unwrap_or_else(|_| Err(Violation::new("the library panicked")))
+}
+
+/// Runs a driver on as many random inputs as it is told to, up to so many bytes each.
+fn drive(
+    name: &str,
+    driver: fn(&[u8]) -> Verdict,
+    cases: u64,
+    most_bytes: usize,
+) -> Result<Tally, Violation> {
+    if let Ok(text) = env::var("ASPERITY_DRIVER_BYTES") {
+        let bytes = from_hex(&text)
+            .ok_or_else(|| Violation::new("ASPERITY_DRIVER_BYTES holds no hexadecimal bytes"))?;
+        return case(driver, &bytes);
+    }
+    let seed = number("ASPERITY_DRIVER_SEED")?.unwrap_or(SEED);
+    let seconds = number("ASPERITY_DRIVER_SECONDS")?;
+    let cases = number("ASPERITY_DRIVER_CASES")?.unwrap_or(cases);
+    let start = Instant::now();
+    let goes_on = |k: u64| match seconds {
+        Some(seconds) => start.elapsed() < Duration::from_secs(seconds),
+        None => k < cases,
+    };
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut tally = Tally::default();
+    let mut k = 0;
+    while goes_on(k) {
+        let length = random.next_u64() as usize % (most_bytes + 1);
+        let mut bytes = vec![0; length];
+        random.fill_bytes(&mut bytes);
+        tally += case(driver, &bytes).map_err(|violation| {
+            let bytes = hex(&bytes);
+            Violation::new(format!(
+                "{violation}\n{name}, seed {seed}, case {k}: ASPERITY_DRIVER_BYTES={bytes}"
+            ))
+        })?;
+        k += 1;
+    }
+    println!("{name}: {k} cases of seed {seed}, {tally:?}");
+    Ok(tally)
+}
+
+/// `Ok` if most of the cases came to be compared with something: a driver that refuses its own inputs tests nothing.
+fn compared(tally: Tally) -> Result<(), Violation> {
+    if env::var("ASPERITY_DRIVER_BYTES").is_ok() || tally.checked > tally.refused / 20 {
+        return Ok(());
+    }
+    Err(Violation::new(format!(
+        "hardly anything was compared: {tally:?}"
+    )))
+}
+
+#[test]
+fn paths_are_right() -> Result<(), Violation> {
+    compared(drive("paths_are_right", asperity_drivers::paths, 150, 400)?)
+}
+
+#[test]
+fn fixed_loads_are_right() -> Result<(), Violation> {
+    compared(drive(
+        "fixed_loads_are_right",
+        asperity_drivers::fixed_loads,
+        100,
+        400,
+    )?)
+}
+
+#[test]
+fn parsers_are_right() -> Result<(), Violation> {
+    compared(drive(
+        "parsers_are_right",
+        asperity_drivers::parsers,
+        4000,
+        400,
+    )?)
+}
+
+#[test]
+fn records_are_right() -> Result<(), Violation> {
+    compared(drive(
+        "records_are_right",
+        asperity_drivers::records,
+        100,
+        400,
+    )?)
+}
