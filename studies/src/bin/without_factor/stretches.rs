@@ -9,6 +9,8 @@ use asperity::updater::ConjugateGradient;
 
 /// Events of a stretch: as many as a window of the path has.
 const LENGTH: usize = 60;
+/// Of the exact solutions. Nodes that touch within ten times this, over their closing rate, join together.
+const TOLERANCE: f64 = 1e-12;
 /// Events closer than this, relative to their approach, are ties.
 const TIE: f64 = 1e-9;
 
@@ -23,7 +25,7 @@ pub(crate) fn compare(record: &LoadingRecord, stretches: usize) -> Result<(), Bo
         let count = LENGTH + room * k / (stretches + 1);
         let before: History = states[..count].iter().copied().collect();
         let mut path = LoadingSolver::builder(record.heights(), &kernel)
-            .updater(ConjugateGradient::new())
+            .updater(ConjugateGradient::with_tolerance(TOLERANCE)?)
             .window_size(1)
             .max_nodes(states[count - 1].contact_nodes + LENGTH)
             .resume(&before)?;
