@@ -139,9 +139,9 @@ fn a_path_that_failed_does_not_go_on() {
     let surface = rough(&grid(), 6);
     let kernel = &kernels(grid())[0].1;
     // Not enough for the whole factor.
-    let budget = LoadingSolver::new(&surface, kernel).unwrap().bytes() + 20_000;
-    let builder = LoadingSolver::builder(&surface, kernel).memory_budget(budget);
-    let mut path = builder.build().unwrap();
+    let builder = || LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new());
+    let budget = builder().build().unwrap().bytes() + 20_000;
+    let mut path = builder().memory_budget(budget).build().unwrap();
     let error = path.find_map(Result::err).unwrap();
     assert!(matches!(error, Error::MemoryBudget { .. }), "{error}");
     assert_eq!(path.end(), Some(LoadingEnd::Memory));
