@@ -7,7 +7,7 @@
 //! is a convolution, which [`Convolution`] does by fast Fourier transform in a time that hardly
 //! grows faster than the number of nodes, and [`direct_sum`] term by term as it stands here.
 //!
-//! What lies outside the grid is the kernel's [`Boundary`](crate::Boundary):
+//! What lies outside the grid is the kernel's [`Boundary`]:
 //!
 //! * With a free boundary the fields are padded with zeros (Hockney's method) to px ≥ 2 nx − 1 by
 //!   py ≥ 2 ny − 1 nodes, so that the transform's own periodicity never reaches the grid, and to

@@ -9,7 +9,7 @@ use super::limits::Limits;
 use super::paper::Paper;
 use super::releases::Releases;
 use super::rule::ContactRule;
-use super::run::{LoadingRun, LoadingTimings};
+use super::run::{LoadingRun, LoadingTimings, Memory};
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
@@ -188,9 +188,11 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             problem,
             updater: self.updater,
             queue: VecDeque::new(),
-            memory_budget: budget,
+            memory: Memory {
+                budget,
+                fixed: fixed_bytes,
+            },
             last,
-            fixed_bytes,
             timings: LoadingTimings::default(),
         };
         run.updater.make_room(&run.problem, budget - fixed_bytes)?;

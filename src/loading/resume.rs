@@ -38,7 +38,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let order = run.contact.order().to_vec();
         let grid = run.problem.grid();
         run.contact = ContactSequence::new(grid);
-        let budget = run.memory_budget.saturating_sub(run.fixed_bytes);
+        let budget = run.memory.budget.saturating_sub(run.memory.fixed);
         join_all(
             &mut run.updater,
             &run.problem,

@@ -39,6 +39,14 @@ pub struct LoadingTimings {
     pub events: Duration,
 }
 
+/// Bytes that a path may hold, and those that it holds whatever the number of nodes in contact, in proportion to
+/// the grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Memory {
+    pub(super) budget: usize,
+    pub(super) fixed: usize,
+}
+
 /// The rooms of a path: each holds one thing, and procedures go from one to the next.
 #[derive(Debug)]
 pub(super) struct LoadingRun<U> {
@@ -50,11 +58,9 @@ pub(super) struct LoadingRun<U> {
     pub(super) front: Front,
     /// States that are computed and not yielded yet.
     pub(super) queue: VecDeque<LoadingState>,
-    pub(super) memory_budget: usize,
+    pub(super) memory: Memory,
     /// The last state computed, behind which no other falls; `None` where contact need not grow.
     pub(super) last: Option<ContactState>,
-    /// Bytes held whatever the number of nodes in contact, in proportion to the grid.
-    pub(super) fixed_bytes: usize,
     pub(super) timings: LoadingTimings,
 }
 
@@ -224,12 +230,12 @@ impl<U: LinearUpdater> LoadingRun<U> {
         // Nodes of that contact have left the updater since.
         let own = self.updater.bytes(self.contact.len(), 0);
         let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
-        let needed = self.fixed_bytes.saturating_add(own);
+        let needed = self.memory.fixed.saturating_add(own);
         let needed = needed.saturating_add(rebuilt);
-        if needed > self.memory_budget {
+        if needed > self.memory.budget {
             return Err(Error::MemoryBudget {
                 needed,
-                budget: self.memory_budget,
+                budget: self.memory.budget,
                 nodes_that_fit: self.contact.len(),
             });
         }
@@ -249,13 +255,13 @@ impl<U: LinearUpdater> LoadingRun<U> {
 
     /// The greatest window up to `size` that stays within the memory budget.
     pub(super) fn affordable(&self, mut size: usize) -> Result<usize, Error> {
-        let (count, budget) = (self.contact.len(), self.memory_budget);
+        let (count, budget) = (self.contact.len(), self.memory.budget);
         loop {
             let needed = self
                 .updater
                 .bytes(count + size, size)
                 .saturating_add(Touched::bytes(size))
-                .saturating_add(self.fixed_bytes);
+                .saturating_add(self.memory.fixed);
             if needed <= budget {
                 return Ok(size);
             }

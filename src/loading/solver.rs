@@ -242,7 +242,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let run = &self.run;
-        run.fixed_bytes
+        run.memory
+            .fixed
             .saturating_add(run.updater.bytes(run.contact.len(), 0))
     }
 }
