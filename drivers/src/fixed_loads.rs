@@ -1,6 +1,8 @@
 //! Single loads, and other targets, without the path to them.
 
-use asperity::{ContactTarget, FixedLoadSolution, FixedLoadSolver, InfluenceKernel};
+use asperity::{
+    ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, InfluenceKernel, PeriodicBoussinesq,
+};
 
 use crate::dense::Dense;
 use crate::draw::Draw;
@@ -48,8 +50,14 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         .nested(settings.nested)
         .stiffness(settings.stiffness)
         .build();
-    let mut solver =
-        solver.map_err(|error| Violation::new(format!("{settings:?} was refused: {error}")))?;
+    let mut solver = match solver {
+        Ok(solver) => solver,
+        // Cells so long that iterations come to no answer.
+        Err(Error::OutOfRange { value, .. }) if value > PeriodicBoussinesq::MAX_ASPECT => {
+            return Ok(Tally::refusal());
+        }
+        Err(error) => return Err(Violation::new(format!("{settings:?} was refused: {error}"))),
+    };
     let judge = Judge {
         dense,
         grid: sample.kernel.grid(),
