@@ -149,6 +149,11 @@ impl Dense {
         self.own_pressure(load / self.cell_area)
     }
 
+    /// The displacement under a load \[N\] that is not reported, in the gauge of the kernel \[m\].
+    pub(crate) fn uniform_displacement(&self, load: f64) -> f64 {
+        self.gauge().abs() * self.own_sum(load) * self.length
+    }
+
     /// The approach in the gauge of the kernel, from what is reported.
     pub(crate) fn own_approach(&self, approach: f64, load: f64) -> f64 {
         self.own_length(approach) + self.gauge() * self.own_sum(load)

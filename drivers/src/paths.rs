@@ -169,7 +169,12 @@ impl<'a> Trial<'a> {
         let events = History::from_iter(states.iter().copied());
         let whole: Vec<LoadingState> = earlier.iter().chain(events.events()).copied().collect();
         if variant.rule == ContactRule::FirstContact {
-            same_path(&whole, expected, &mut tally)?;
+            same_path(
+                &whole,
+                expected,
+                |load| self.dense.uniform_displacement(load),
+                &mut tally,
+            )?;
         }
         if let Some(error) = failure {
             tally += self.circumstances(variant).judge(&error)?;
