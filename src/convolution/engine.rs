@@ -124,7 +124,7 @@ impl Engine<f64> {
     }
 
     /// The same convolution with another answer to uniform pressure: none.
-    pub(super) fn without_mean(&self) -> Self {
+    pub(super) fn without_mean(self) -> Self {
         let filter = &*self.filter;
         let mut symbol = filter.symbol.clone();
         symbol[0] = 0.0;
@@ -133,7 +133,7 @@ impl Engine<f64> {
             symbol,
             ..*filter
         };
-        Self::of(filter, self.spectra.clone())
+        Self::of(filter, self.spectra)
     }
 
     /// `Ok` if the symbol of a periodic kernel is positive, the first `skipped` waves left out.
@@ -193,8 +193,8 @@ impl<T: Real> Engine<T> {
 
     fn bytes_with(grid: &Grid, transforms: &Transforms<T>) -> usize {
         let (columns, rows, padded) = (transforms.columns(), grid.ny(), transforms.padded().1);
-        let line = BLOCK * pitch(columns.max(rows)) * size_of::<Complex<T>>();
-        let scratch = line + transforms.workspace().bytes();
+        let lines = Scratch::lines(transforms) * size_of::<Complex<T>>();
+        let scratch = lines + transforms.workspace().bytes();
         let spectra = BLOCK * (blocks(rows) * columns + blocks(columns) * rows);
         columns * padded * size_of::<T>()
             + spectra * size_of::<Complex<T>>()
@@ -254,11 +254,18 @@ impl<T: Real> Filter<T> {
     }
 }
 
+impl<T: Real> Scratch<T> {
+    /// Length of a block of rows, or of padded columns.
+    fn lines(transforms: &Transforms<T>) -> usize {
+        BLOCK * pitch(transforms.columns().max(transforms.padded().1))
+    }
+}
+
 impl<T: Real> Spectra<T> {
     fn new(grid: &Grid, transforms: &Transforms<T>) -> Self {
         let (columns, rows) = (transforms.columns(), grid.ny());
         let scratch = Scratch {
-            lines: vec![T::ZERO; BLOCK * pitch(columns.max(transforms.padded().1))],
+            lines: vec![T::ZERO; Scratch::lines(transforms)],
             work: transforms.workspace(),
         };
         Self {

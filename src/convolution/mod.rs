@@ -161,7 +161,7 @@ impl Convolution {
     }
 
     /// The same about the mean displacement, for a periodic kernel: in the zero gauge.
-    pub(crate) fn without_mean(&self) -> Self {
+    pub(crate) fn without_mean(self) -> Self {
         Self {
             engine: self.engine.without_mean(),
         }

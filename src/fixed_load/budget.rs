@@ -1,15 +1,19 @@
 //! What a solver may hold in memory.
 
+use super::settings::COARSEST;
+use crate::convolution::Convolution;
+use crate::kernel::Blocks;
 use crate::krylov::Preconditioner;
-use crate::{Error, Grid};
+use crate::{Boundary, Error, Grid, Problem};
 
-/// Numbers for each node of a grid, whatever the load: initial gap and influence coefficients (6), the
-/// convolution in both precisions with its buffers (18), search directions (2), preconditioner (4), iterate (3)
-/// and solution (5).
-const VALUES: usize = 38;
-/// Bytes of the transforms' plans and working memory on small grids, where they count: 0.5 MB were measured on
-/// 400 × 4 nodes.
-const WORKSPACE: usize = 640 << 10;
+/// Numbers for each node of a grid besides its convolution, whatever the load: initial gap (1), influence
+/// coefficients of a coarser grid (4), preconditioner (4), iterate and buffers (7), and solution (6).
+const VALUES: usize = 22;
+/// Bytes for each node along the sides of a grid that the plans of its transforms take: 240 were measured on 1 × 9000
+/// nodes.
+const PLANS: usize = 256;
+/// Bytes of plans and working memory on the smallest grids, where they count: 100 kB were measured on 3 × 3 nodes.
+const WORKSPACE: usize = 256 << 10;
 /// Numbers for each node in contact that conjugate gradients take with their preconditioner.
 const CONTACT_VALUES: usize = 14;
 
@@ -25,12 +29,19 @@ impl MemoryBudget {
     ///
     /// # Errors
     ///
-    /// [`Error::MemoryBudget`] if the grids alone exceed it.
-    pub(super) fn new(budget: usize, grid: &Grid, nested: bool) -> Result<Self, Error> {
-        let finest = grid.nodes() * VALUES * size_of::<f64>();
-        // A quarter as many nodes on each coarser grid.
-        let grids = if nested { finest + finest / 3 } else { finest };
-        let grids = WORKSPACE + grids;
+    /// [`Error::MemoryBudget`] if the grids alone exceed it, and those of [`Grid::new`].
+    pub(super) fn new(
+        budget: usize,
+        grid: &Grid,
+        boundary: Boundary,
+        nested: bool,
+    ) -> Result<Self, Error> {
+        let mut level = *grid;
+        let mut grids = WORKSPACE + Problem::bytes_on(grid, boundary) + on_level(&level, boundary);
+        while nested && level.nx().max(level.ny()) > COARSEST {
+            level = Blocks::new(level, boundary)?.grid();
+            grids += on_level(&level, boundary);
+        }
         let memory = Self { budget, grids };
         memory.check(0)?;
         Ok(memory)
@@ -53,4 +64,12 @@ impl MemoryBudget {
             nodes_that_fit: self.budget.saturating_sub(self.grids) / each,
         })
     }
+}
+
+/// Bytes that a level holds on its grid.
+fn on_level(grid: &Grid, boundary: Boundary) -> usize {
+    let convolution = Convolution::bytes_on(grid, boundary);
+    // In single precision as well.
+    let convolutions = convolution + convolution / 2;
+    grid.nodes() * VALUES * size_of::<f64>() + convolutions + (grid.nx() + grid.ny()) * PLANS
 }

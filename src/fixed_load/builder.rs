@@ -44,8 +44,8 @@ impl FixedLoadBuilder<'_> {
     }
 
     /// Bytes that may be held at most, by default three quarters of the machine's memory where the
-    /// system says how much that is: some 370 for each node of the grid, and some 350 for each node in
-    /// contact. More is an [`Error::MemoryBudget`], before it is allocated.
+    /// system says how much that is: some 500 for each node of a square grid, several times as many on thin ones, and
+    /// some 350 for each node in contact. More is an [`Error::MemoryBudget`], before it is allocated.
     pub fn memory_budget(mut self, bytes: usize) -> Self {
         self.settings.memory_budget = Some(bytes);
         self
@@ -67,8 +67,9 @@ impl FixedLoadBuilder<'_> {
             .memory_budget
             .unwrap_or_else(memory::default_budget);
         let grid = self.kernel.grid();
-        check_cells(&grid, self.kernel.boundary())?;
-        let memory = MemoryBudget::new(budget, &grid, settings.nested)?;
+        let boundary = self.kernel.boundary();
+        check_cells(&grid, boundary)?;
+        let memory = MemoryBudget::new(budget, &grid, boundary, settings.nested)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         // A kernel of one's own may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;

@@ -4,15 +4,13 @@ use super::active_set::ActiveSet;
 use super::budget::MemoryBudget;
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
-use super::settings::Settings;
+use super::settings::{COARSEST, Settings};
 use crate::convolution::Convolution;
 use crate::kernel::Blocks;
 use crate::krylov::sum;
 use crate::parallel::inside;
 use crate::{Error, Problem};
 
-/// Sides of at most so many nodes are not coarsened further.
-const COARSEST: usize = 16;
 /// Tolerance on the coarser grids, whose solutions are only starts, relative to the approach ...
 const COARSE_TOLERANCE: f64 = 1e-2;
 /// ... or to so many rms heights: long waves that are wrong by more are costly on the finest grid.

@@ -128,25 +128,28 @@ fn paths_stay_within_their_budget() {
     assert!(partial > 5, "{partial}");
 }
 
-/// The same of single loads, up to full contact.
+/// The same of single loads, up to full contact, and on grids so thin that working memory is most of it.
 #[test]
 fn single_loads_stay_within_their_budget() {
     let mut partial = 0;
-    for grid in grids() {
+    let larger = [(200, 200, 20), (40, 900, 40), (1, 9000, 20), (3000, 4, 30)]
+        .map(|(nx, ny, megabytes)| (Grid::new(nx, ny, 1.0, 1.0).unwrap(), megabytes));
+    for (grid, megabytes) in grids().map(|grid| (grid, 1)).into_iter().chain(larger) {
         let map = rough(&grid);
         let kernels: [Box<dyn InfluenceKernel + Sync>; 2] = [
             Box::new(Boussinesq::new(grid, 1.0).unwrap()),
             Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
         ];
         for kernel in &kernels {
-            for budget in [2, 3, 4, 5, 6, 7, 8, 12].map(|megabytes| megabytes << 18) {
+            for tenths in [5, 8, 10, 12, 14, 20] {
+                let budget = (megabytes << 20) * tenths / 10;
                 let mut solved = 0;
                 let bytes = peak(|| {
                     let builder = FixedLoadSolver::builder(&map, kernel).memory_budget(budget);
                     let Ok(mut solver) = builder.build() else {
                         return;
                     };
-                    for load in [1.0, 100.0, 1e5] {
+                    for load in [1.0, 1e7] {
                         match solver.solve(load) {
                             Ok(_) => solved += 1,
                             Err(Error::MemoryBudget { .. }) => {}
@@ -154,10 +157,14 @@ fn single_loads_stay_within_their_budget() {
                         }
                     }
                 });
-                assert!(bytes <= budget, "{bytes} bytes within a budget of {budget}");
-                partial += usize::from(solved > 0 && solved < 3);
+                let shape = grid.shape();
+                assert!(
+                    bytes <= budget,
+                    "{bytes} bytes within a budget of {budget} on {shape:?}, {solved} loads"
+                );
+                partial += usize::from(solved == 1);
             }
         }
     }
-    assert!(partial > 1, "{partial}");
+    assert!(partial > 2, "{partial}");
 }
