@@ -69,13 +69,6 @@ impl Judge {
         if deserved || self.is_hopeless(error) {
             return Ok(Tally::refusal());
         }
-        let searched = matches!(
-            target,
-            ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_)
-        );
-        if self.circumstances.is_known_of_fixed_loads(error, searched) {
-            return Ok(Tally::known_fault());
-        }
         self.circumstances.judge(error)
     }
 

@@ -53,39 +53,9 @@ impl Circumstances {
         }
     }
 
-    /// Whether an error is one that the library ought not to give, and that is known. To be deleted one by one as they are
-    /// mended.
-    pub(crate) fn is_known(&self, error: &Error) -> bool {
-        let stepwise = self.growth == ContactGrowth::Unknown && self.tolerance.is_some();
-        match error {
-            // A path that goes one event at a time looks at pressures to 10⁻¹⁰ of the greatest one, whatever the updater:
-            // iterations leave 10⁻¹⁰ of the approach in gaps, which is more of a pressure by the condition number.
-            Error::NotMonotone { .. } => stepwise,
-            // Behind other states iterations begin with numbers that single precision does not hold: from heights of 10³⁹ on.
-            Error::NoConvergence { residual, .. } => stepwise && residual.is_nan(),
-            Error::NotFinite { .. } => self.tolerance.is_some(),
-            _ => false,
-        }
-    }
-
-    /// The same of solutions for one load, with a load that was given or one that was searched for.
-    pub(crate) fn is_known_of_fixed_loads(&self, error: &Error, searched: bool) -> bool {
-        match error {
-            // Searches for an area or a mean gap go from load to load, each from the solution before. Where nodes touch
-            // together, on symmetric surfaces, such a start may end in no convergence; the same loads by themselves do not.
-            Error::NoConvergence { residual, .. } => searched && residual.is_infinite(),
-            // The kernel on a coarser grid of an odd number of nodes need not be positive definite where the kernel is.
-            Error::FactorizationFailed { .. } => self.growth == ContactGrowth::Unknown,
-            _ => false,
-        }
-    }
-
-    /// `Ok` if an error is deserved, or known.
+    /// `Ok` if an error is deserved.
     pub(crate) fn judge(&self, error: &Error) -> Verdict {
-        if self.deserve(error) {
-            return Ok(Tally::refusal());
-        }
-        ensure!(self.is_known(error), "{self:?}: {error}");
-        Ok(Tally::known_fault())
+        ensure!(self.deserve(error), "{self:?}: {error}");
+        Ok(Tally::refusal())
     }
 }

@@ -51,8 +51,6 @@ pub struct Tally {
     pub checked: usize,
     /// Refusals that the input deserved.
     pub refused: usize,
-    /// Faults of the library that are known and not mended yet: `src/refusal.rs` lists them.
-    pub known: usize,
     /// Greatest error found, in units of what was allowed.
     pub worst: f64,
 }
@@ -62,14 +60,6 @@ impl Tally {
     pub(crate) fn refusal() -> Self {
         Self {
             refused: 1,
-            ..Self::default()
-        }
-    }
-
-    /// Nothing but a known fault.
-    pub(crate) fn known_fault() -> Self {
-        Self {
-            known: 1,
             ..Self::default()
         }
     }
@@ -117,7 +107,6 @@ impl AddAssign for Tally {
     fn add_assign(&mut self, other: Self) {
         self.checked += other.checked;
         self.refused += other.refused;
-        self.known += other.known;
         self.worst = self.worst.max(other.worst);
     }
 }

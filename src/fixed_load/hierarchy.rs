@@ -143,7 +143,8 @@ fn scale(pressure: &mut [f64], prescribed: Prescribed) {
 }
 
 /// Solves well enough for a start on the next finer grid, and where that takes too many iterations
-/// leaves what they have come to.
+/// leaves what they have come to. A kernel may be positive definite on the finest grid and not on this one: then
+/// its start is uniform.
 fn solve_roughly(
     level: &mut Level,
     prescribed: Prescribed,
@@ -163,6 +164,10 @@ fn solve_roughly(
     };
     match inside(|| ActiveSet::new(level, prescribed, criteria).solve(false)) {
         Ok(_) | Err(Error::NoConvergence { .. }) => Ok(()),
+        Err(Error::FactorizationFailed { .. }) => {
+            start_uniformly(level, prescribed);
+            Ok(())
+        }
         Err(error) => Err(error),
     }
 }

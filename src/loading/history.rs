@@ -62,23 +62,35 @@ impl History {
     /// in full contact can be read, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
-        self.read(load, |state| state.load, ContactState::at_load)
+        let after = self.states.partition_point(|state| state.load <= load);
+        self.read(load, after, |state| state.load, ContactState::at_load)
     }
 
     /// The state at an approach \[m\]; see [`Self::at_load`].
     #[must_use]
     pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {
-        self.read(approach, |state| state.approach, ContactState::at_approach)
+        let after = self
+            .states
+            .partition_point(|state| state.approach <= approach);
+        self.read(
+            approach,
+            after,
+            |state| state.approach,
+            ContactState::at_approach,
+        )
     }
 
-    /// The state at a mean gap \[m\]; see [`Self::at_load`].
+    /// The state at a mean gap \[m\]; see [`Self::at_load`]. On a body of which nothing is known the mean gap may
+    /// rise again: the first state there.
     #[must_use]
     pub fn at_mean_gap(&self, mean_gap: f64) -> Option<LoadingState> {
-        // It falls as the path goes on.
+        let mut states = self.states.iter();
+        let after = states.position(|state| state.mean_gap < mean_gap);
         self.read(
-            -mean_gap,
-            |state| -state.mean_gap,
-            |state, minus| state.at_mean_gap(-minus),
+            mean_gap,
+            after.unwrap_or(self.states.len()),
+            |state| state.mean_gap,
+            ContactState::at_mean_gap,
         )
     }
 
@@ -98,19 +110,17 @@ impl History {
         (found.contact_area_fraction <= limit).then_some(*found)
     }
 
-    /// The state at a target, from the last one that is not beyond it.
+    /// The state at a target, from the one before the first that is beyond it.
     fn read(
         &self,
         target: f64,
+        after: usize,
         quantity: impl Fn(&LoadingState) -> f64,
         at: impl Fn(&ContactState, f64) -> Option<ContactState>,
     ) -> Option<LoadingState> {
         if target.is_nan() {
             return None;
         }
-        let after = self
-            .states
-            .partition_point(|state| quantity(state) <= target);
         let last = self.states.get(after.checked_sub(1)?)?;
         let is_there = after < self.states.len()
             || last.contact_area_fraction == 1.0

@@ -55,6 +55,7 @@ mod releases;
 mod resume;
 mod rule;
 mod run;
+mod scales;
 mod snapshot;
 mod solver;
 mod state;

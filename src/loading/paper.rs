@@ -2,6 +2,7 @@
 
 use super::gap_field::Line;
 use super::run::LoadingRun;
+use super::scales::Scales;
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
@@ -46,6 +47,8 @@ impl Paper {
             run.front
                 .touch(event.unit_stiffness, event.closing, contact_nodes);
         }
-        run.enqueue(run.steps(), ContactEvent::Touch, line.node, contact_nodes)
+        let (front, event) = (run.front, (run.steps(), ContactEvent::Touch, line.node));
+        let error = Scales::of(run).overlap(front.approach()) / line.closing.abs();
+        run.enqueue_at(&front, event, contact_nodes, error)
     }
 }

@@ -276,12 +276,13 @@ impl<U: LinearUpdater> LoadingRun<U> {
         }
     }
 
-    /// The first node in contact whose pressure at an approach is negative, relative to the greatest one,
-    /// by more than `tolerance`, or not a number.
-    pub(super) fn negative_pressure(&self, approach: f64, tolerance: f64) -> Option<(usize, f64)> {
+    /// The first node in contact whose pressure at an approach is not a number, or below zero by more than rounding and
+    /// what goes with an overlap that the solution may leave.
+    pub(super) fn negative_pressure(&self, approach: f64, overlap: f64) -> Option<(usize, f64)> {
         let mut pressures = self.field.pressures(&self.contact, approach);
         let greatest = pressures.clone().map(|(_, p)| p).fold(0.0, f64::max);
-        pressures.find(|(_, p)| p.is_nan() || *p < -tolerance * greatest)
+        let most = TOLERANCE * greatest + overlap / self.problem.table().self_influence();
+        pressures.find(|(_, p)| p.is_nan() || *p < -most)
     }
 
     /// The greatest y₂.

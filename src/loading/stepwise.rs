@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use super::run::{LoadingRun, TOLERANCE};
+use super::run::LoadingRun;
+use super::scales::Scales;
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
@@ -23,6 +24,8 @@ const LEAST_RATE: f64 = 1e-12;
 #[derive(Debug, Clone, Copy)]
 struct Upcoming {
     approach: f64,
+    /// What that may be off by.
+    error: f64,
     node: usize,
     event: ContactEvent,
 }
@@ -32,8 +35,8 @@ struct Upcoming {
 pub(super) struct Stepwise {
     upcoming: Option<Upcoming>,
     window: Window,
-    /// (approach, node) of the nodes out of contact whose gap closes.
-    touches: Vec<(f64, usize)>,
+    /// Those of the nodes out of contact whose gap closes.
+    touches: Vec<Upcoming>,
     /// Events so far at the approach of the front.
     tied: usize,
     /// Whether the next event has been looked for.
@@ -76,9 +79,11 @@ impl Stepwise {
         }
         run.front.advance(next.approach);
         let contact_nodes = run.contact.len();
-        let checked = self
-            .survey(run)
-            .and_then(|()| run.enqueue(step, next.event, next.node, contact_nodes));
+        let event = (step, next.event, next.node);
+        let checked = self.survey(run).and_then(|()| {
+            let front = run.front;
+            run.enqueue_at(&front, event, contact_nodes, next.error)
+        });
         // The order of contact must be that of the states before; the updater stays without the node. One
         // that touched may stay where it is: behind all others.
         if checked.is_err()
@@ -127,7 +132,8 @@ impl Stepwise {
         self.upcoming = None;
         let approach = run.front.approach();
         run.renew_field(approach)?;
-        if let Some((node, value)) = run.negative_pressure(approach, TOLERANCE) {
+        let overlap = Scales::of(run).overlap(approach);
+        if let Some((node, value)) = run.negative_pressure(approach, overlap) {
             return Err(run.not_monotone("pressure", node, value));
         }
         run.front.renew_stiffness(run.field.solution());
@@ -136,35 +142,41 @@ impl Stepwise {
         self.touches.reserve(run.problem.grid().nodes());
         run.survey(true, |line| {
             if line.closing > LEAST_RATE {
-                let time = line.gap / line.closing;
-                self.touches.push((approach + time, line.node));
+                self.touches.push(Upcoming {
+                    approach: approach + line.gap / line.closing,
+                    error: overlap / line.closing,
+                    node: line.node,
+                    event: ContactEvent::Touch,
+                });
             }
         })?;
-        self.upcoming = self.first_event(run);
+        self.upcoming = self.first_event(run, overlap);
         run.timings.choice += start.elapsed();
         Ok(())
     }
 
     /// The next event: of all that would come first, or within rounding of it, the one of the node of lowest
     /// index.
-    fn first_event<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Option<Upcoming> {
+    fn first_event<U: LinearUpdater>(&self, run: &LoadingRun<U>, overlap: f64) -> Option<Upcoming> {
         let front = run.front.approach();
-        let upcoming = |event, node, approach: f64| Upcoming {
-            approach: approach.max(front),
-            node,
-            event,
-        };
-        let touches = self.touches.iter();
-        let touches =
-            touches.map(|&(approach, node)| upcoming(ContactEvent::Touch, node, approach));
         let Solution { pressure, rate, .. } = run.field.solution();
         // What y₂ has to be below for a node to lose its pressure.
         let slowest = -LEAST_RATE * run.greatest_rate();
+        let tension = overlap / run.problem.table().self_influence();
         let releases = run.contact.order().iter().zip(pressure).zip(rate);
         let releases = releases
             .filter(|(_, rate)| **rate < slowest)
-            .map(|((&node, p), rate)| upcoming(ContactEvent::Release, node, front - p / rate));
-        let events = touches.chain(releases);
+            .map(|((&node, p), rate)| Upcoming {
+                approach: front - p / rate,
+                error: -tension / rate,
+                node,
+                event: ContactEvent::Release,
+            });
+        let events = self.touches.iter().copied().chain(releases);
+        let events = events.map(|event| Upcoming {
+            approach: event.approach.max(front),
+            ..event
+        });
         let first = events
             .clone()
             .map(|event| event.approach)

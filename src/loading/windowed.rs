@@ -197,7 +197,7 @@ impl Windowed {
 /// Whether a pressure or a gap at an approach is negative, beyond rounding. Returns the approach until which none was, as far as the
 /// rates tell.
 fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option<f64> {
-    if run.negative_pressure(approach, TOLERANCE).is_some() {
+    if run.negative_pressure(approach, 0.0).is_some() {
         return Some(f64::NEG_INFINITY);
     }
     let overlap = -TOLERANCE * (run.problem.greatest_gap() + approach);

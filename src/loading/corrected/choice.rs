@@ -1,9 +1,9 @@
 //! Which nodes to watch.
 
 use super::Corrected;
-use super::scales::Scales;
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
+use crate::loading::scales::Scales;
 use crate::updater::LinearUpdater;
 
 /// A window watches this part of the contact at most, as long as that is small.

@@ -1,9 +1,9 @@
 //! Nodes that touch together, too many to be watched: a flat punch, a plateau.
 
 use super::Corrected;
-use super::scales::Scales;
 use crate::Error;
 use crate::loading::run::LoadingRun;
+use crate::loading::scales::Scales;
 use crate::loading::state::ContactEvent;
 use crate::updater::{LinearUpdater, Touched};
 

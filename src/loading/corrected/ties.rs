@@ -4,12 +4,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::correction::Correction;
 use super::play::{Course, Played, play};
-use super::scales::Scales;
 use super::watched::Watched;
 use crate::Error;
 use crate::loading::front::Front;
 use crate::loading::gap_field;
 use crate::loading::run::LoadingRun;
+use crate::loading::scales::Scales;
 use crate::updater::{LinearUpdater, Solution, SolveRequest};
 
 /// The error of a time is estimated as the greatest of
@@ -158,7 +158,8 @@ impl Ties<'_> {
     }
 
     /// Whether events are those of nodes that symmetry maps to each other: the same gap and the same closing
-    /// rate when the window began.
+    /// rate when the window began, and the same time. Before first touch all nodes close at the same rate, and
+    /// what joins first tells them apart.
     fn is_orbit(&self, first: usize, last: usize) -> bool {
         let line = |event: usize| self.watched.lines[self.settled.events[event].position];
         let scales = self.scales;
@@ -167,7 +168,9 @@ impl Ties<'_> {
             && first < last
             && (first..last).all(|event| {
                 let ([a, b], [other_a, other_b]) = (line(event), line(event + 1));
-                (a - other_a).abs() < 10.0 * scales.tolerance * scales.length
+                let events = &self.settled.events;
+                events[event + 1].time - events[event].time <= scales.tie
+                    && (a - other_a).abs() < 10.0 * scales.tolerance * scales.length
                     && (b - other_b).abs() < rate * b.max(1e-3)
             })
     }

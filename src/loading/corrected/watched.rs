@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 
 use super::correction::AtEnd;
 use super::play::{Course, Played};
-use super::scales::Scales;
 use crate::Error;
 use crate::loading::run::LoadingRun;
+use crate::loading::scales::Scales;
 use crate::updater::Schur;
 
 /// The window ends at its widest spacing behind this part of its events.

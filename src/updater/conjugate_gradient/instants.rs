@@ -6,8 +6,27 @@
 /// interpolated by the sum of their pressures. It makes a start for solutions inside the window, from both sides.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Instants {
-    /// (sum of the pressures on nodes that joined, pressure left out at each node of the grid), by the first.
-    known: Vec<(f64, Vec<f32>)>,
+    /// By the sum of pressures.
+    known: Vec<Instant>,
+}
+
+#[derive(Debug, Clone)]
+struct Instant {
+    /// Of the pressures on nodes that joined.
+    sum: f64,
+    /// Pressure left out at each node of the grid, in units of the greatest.
+    left_out: Vec<f32>,
+    unit: f64,
+}
+
+impl Instant {
+    /// Adds a part of what was left out.
+    fn add(&self, part: f64, pressure: &mut [f64]) {
+        let part = part * self.unit;
+        for (value, left_out) in pressure.iter_mut().zip(&self.left_out) {
+            *value += part * f64::from(*left_out);
+        }
+    }
 }
 
 /// As many as pay for their memory: the end of the window, and the last ones before.
@@ -21,10 +40,16 @@ impl Instants {
 
     /// Adds an instant with its solution and what the local solutions made of it.
     pub(super) fn add(&mut self, sum: f64, solved: &[f64], carried: &[f64]) {
-        let left_out = solved.iter().zip(carried);
-        let left_out = left_out.map(|(a, b)| (a - b) as f32).collect();
-        let place = self.known.partition_point(|(other, _)| *other < sum);
-        self.known.insert(place, (sum, left_out));
+        let left_out = solved.iter().zip(carried).map(|(a, b)| a - b);
+        let most = left_out.clone().fold(0.0, |most: f64, p| most.max(p.abs()));
+        let unit = if most > 0.0 { most } else { 1.0 };
+        let instant = Instant {
+            sum,
+            left_out: left_out.map(|p| (p / unit) as f32).collect(),
+            unit,
+        };
+        let place = self.known.partition_point(|other| other.sum < sum);
+        self.known.insert(place, instant);
         if self.known.len() > MOST {
             // Ties are settled in the order of time.
             self.known.remove(0);
@@ -33,23 +58,19 @@ impl Instants {
 
     /// Adds to a pressure what the local solutions leave out of it.
     pub(super) fn complete(&self, sum: f64, pressure: &mut [f64]) {
-        let after = self.known.partition_point(|(other, _)| *other < sum);
-        let Some((next, of_next)) = self.known.get(after) else {
+        let after = self.known.partition_point(|other| other.sum < sum);
+        let Some(next) = self.known.get(after) else {
             return;
         };
         let last = after.checked_sub(1).and_then(|last| self.known.get(last));
-        let before = last.map_or(0.0, |(last, _)| *last);
-        let part = (sum - before) / (next - before);
+        let before = last.map_or(0.0, |last| last.sum);
+        let part = (sum - before) / (next.sum - before);
         if !(0.0..=1.0).contains(&part) {
             return;
         }
-        for (value, left_out) in pressure.iter_mut().zip(of_next) {
-            *value += part * f64::from(*left_out);
-        }
-        if let Some((_, of_last)) = last {
-            for (value, left_out) in pressure.iter_mut().zip(of_last) {
-                *value += (1.0 - part) * f64::from(*left_out);
-            }
+        next.add(part, pressure);
+        if let Some(last) = last {
+            last.add(1.0 - part, pressure);
         }
     }
 }
@@ -82,6 +103,14 @@ mod tests {
         assert_eq!(completed(&instants, -1.0), [10.0, 20.0]);
         instants.clear();
         assert_eq!(completed(&instants, 3.0), [10.0, 20.0]);
+        // Beyond the range of single precision, on either side.
+        for unit in [1e100, 1e-100] {
+            let mut pressure = vec![0.0; 2];
+            instants.add(4.0, &[unit, 2.0 * unit], &[0.0, 0.0]);
+            instants.complete(2.0, &mut pressure);
+            assert_eq!(pressure, [0.5 * unit, unit]);
+            instants.clear();
+        }
     }
 
     #[test]
@@ -90,7 +119,7 @@ mod tests {
         for sum in [8.0, 1.0, 2.0, 3.0, 4.0] {
             instants.add(sum, &[sum], &[0.0]);
         }
-        let sums: Vec<f64> = instants.known.iter().map(|(sum, _)| *sum).collect();
+        let sums: Vec<f64> = instants.known.iter().map(|instant| instant.sum).collect();
         assert_eq!(sums, [3.0, 4.0, 8.0]);
     }
 }

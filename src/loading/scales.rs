@@ -15,9 +15,10 @@ const UNWATCHED: f64 = 100.0;
 /// Lengths of a window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scales {
-    /// What errors are relative to: the approach at the window's beginning.
+    /// What errors are relative to: the approach at the window's beginning, or a part of the mean gap if that is
+    /// greater.
     pub(super) length: f64,
-    /// Tolerance of the solutions, relative to it.
+    /// Tolerance of the solutions, relative to it; 0 if the updater is exact to rounding.
     pub(super) tolerance: f64,
     /// Events closer than this are ties.
     pub(super) tie: f64,
@@ -25,15 +26,15 @@ pub(super) struct Scales {
 
 impl Scales {
     pub(super) fn of<U: LinearUpdater>(run: &LoadingRun<U>) -> Self {
-        let approach = run.front.approach();
-        let length = if approach > 0.0 {
-            approach
-        } else {
-            run.problem.least_length()
-        };
+        let length = run.front.approach().max(run.problem.least_length());
+        let profile = run.updater.profile();
         Self {
             length,
-            tolerance: run.updater.profile().tolerance,
+            tolerance: if profile.exact {
+                0.0
+            } else {
+                profile.tolerance
+            },
             tie: (TIE * length).max(ROUNDING * run.problem.greatest_gap()),
         }
     }
@@ -51,8 +52,8 @@ impl Scales {
         (self.tolerance * self.length / span.max(1e-12 * self.length)).clamp(least, most)
     }
 
-    /// Overlap that a solution at an approach may leave, and the tension that goes with it times a
-    /// compliance.
+    /// Overlap that a solution at an approach may leave, the tension that goes with it times a compliance, and what
+    /// an approach may be off by, times the closing rate of the gap that closes there.
     pub(super) fn overlap(&self, approach: f64) -> f64 {
         UNWATCHED * self.tolerance * approach.max(self.length)
     }
