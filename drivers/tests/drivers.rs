@@ -125,3 +125,23 @@ fn records_are_right() -> Result<(), Violation> {
         400,
     )?)
 }
+
+/// Cases that an earlier version failed. As the drivers change what they make of their bytes, so do these.
+#[test]
+fn earlier_failures_are_mended() -> Result<(), Violation> {
+    let cases = include_str!("cases.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
+    for line in cases {
+        let (name, text) = line.split_once(' ').unwrap_or_default();
+        let driver = match name {
+            "paths" => asperity_drivers::paths,
+            "fixed_loads" => asperity_drivers::fixed_loads,
+            _ => return Err(Violation::new(format!("there is no driver '{name}'"))),
+        };
+        let bytes = from_hex(text).unwrap_or_default();
+        case(driver, &bytes)
+            .map_err(|violation| Violation::new(format!("{violation}\n{name} {text}")))?;
+    }
+    Ok(())
+}

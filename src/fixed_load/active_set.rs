@@ -22,6 +22,9 @@ const STRICTEST: f64 = 0.125;
 /// Nodes join for overlaps above this part of the tolerance: what is smaller is rounding, and nodes
 /// would come and go without end.
 const DEAD_BAND: f64 = 0.1;
+/// Rounds without a smaller error in the set after which nodes join one by one. Where contact grows with the load that
+/// does not happen; on other bodies whole groups of nodes may come and go without end.
+const PATIENCE: usize = 20;
 
 /// The search for the nodes in contact on one grid.
 #[derive(Debug)]
@@ -32,6 +35,11 @@ pub(super) struct ActiveSet<'a> {
     progress: Progress,
     /// Smallest error so far, relative to the scale of the criteria.
     best: f64,
+    /// Smallest error in the set so far, and rounds since.
+    least: f64,
+    stalled: usize,
+    /// Whether the last round ended with the solution on its set, and not where a node lost its pressure.
+    is_solved: bool,
 }
 
 impl<'a> ActiveSet<'a> {
@@ -42,6 +50,9 @@ impl<'a> ActiveSet<'a> {
             criteria,
             progress: Progress::default(),
             best: f64::INFINITY,
+            least: f64::INFINITY,
+            stalled: 0,
+            is_solved: true,
         }
     }
 
@@ -66,6 +77,10 @@ impl<'a> ActiveSet<'a> {
                 inner = LEAST_INNER.max(TIGHTENING * inner);
             }
             previous = errors.in_set();
+            self.stalled += 1;
+            if previous < self.least {
+                (self.least, self.stalled) = (previous, 0);
+            }
             let approach = self.level.iterate.approach;
             let worst = errors.worst() / criteria.scale(approach);
             if worst.is_nan() || !approach.is_finite() {
@@ -145,21 +160,49 @@ impl<'a> ActiveSet<'a> {
     fn round(&mut self, criteria: Criteria, inner: f64) -> Result<Errors, Error> {
         let approach = self.level.iterate.approach;
         let deepest = approach - DEAD_BAND * criteria.tolerance * criteria.scale(approach);
+        if self.stalled >= PATIENCE {
+            return self.cautious_round(criteria, deepest);
+        }
         // Nodes with pressure or overlap.
         self.level.choose_contact(|node, pressure, closure| {
             pressure[node] != 0.0 || closure[node] < deepest
         })?;
-        if matches!(self.prescribed, Prescribed::Approach(_)) && self.level.gauge.is_some() {
-            self.leave_one_out()?;
-        }
+        self.leave_one_out()?;
         Descent::new(self.level, self.prescribed, criteria).run(inner, &mut self.progress)
     }
 
-    /// Takes the widest gap out of a contact that is everywhere, if the mean displacement is arbitrary.
+    /// A round of the primal active-set method: the node that overlaps most joins the solution on a set, and pressures go
+    /// towards the new solution as far as none becomes negative. The energy falls with every change of the set, so
+    /// that no set comes again (Nocedal and Wright, Numerical Optimization, 2006, 16.5).
+    fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
+        let closure = &self.level.iterate.closure;
+        let pressure = &self.level.iterate.pressure;
+        let lower = |best: Option<usize>, node: usize| match best {
+            Some(best) if closure[best] <= closure[node] => Some(best),
+            _ => Some(node),
+        };
+        let overlapping = (0..closure.len()).filter(|&node| closure[node] < deepest);
+        let joining = overlapping
+            .filter(|&node| self.is_solved && pressure[node] == 0.0)
+            .fold(None, lower);
+        self.level
+            .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
+        self.leave_one_out()?;
+        let descent = Descent::new(self.level, self.prescribed, criteria);
+        let errors = descent.run_to_the_edge(LEAST_INNER, &mut self.progress)?;
+        self.is_solved = errors.residual < f64::INFINITY;
+        Ok(errors)
+    }
+
+    /// Takes the widest gap out of a contact that is everywhere, if an approach is prescribed and the mean displacement is
+    /// arbitrary.
     ///
     /// Uniform pressure does not displace such a contact relative to its mean plane, so that no
     /// pressure there answers to an approach; short of full contact, some node is always out.
     fn leave_one_out(&mut self) -> Result<(), Error> {
+        if !(matches!(self.prescribed, Prescribed::Approach(_)) && self.level.gauge.is_some()) {
+            return Ok(());
+        }
         let Iterate {
             pressure,
             closure,

@@ -55,19 +55,56 @@ impl<'a> Descent<'a> {
     /// Conjugate gradients until the residual is below `inner` times the errors of the set itself,
     /// then release of nodes with tension.
     pub(super) fn run(mut self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
-        let start = Start {
-            pressure: self.pressure.clone(),
-            closure: self.closure.clone(),
-            approach: self.level.iterate.approach,
-        };
+        let start = self.start();
         let errors = self.iterate(inner, progress)?;
         if errors.tension > self.tolerance() {
             self.release(&start)?;
-            return Ok(Errors {
-                residual: f64::INFINITY,
-                ..errors
-            });
+            return Ok(errors.unsolved());
         }
+        self.keep();
+        Ok(errors)
+    }
+
+    /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as none
+    /// becomes negative: the nodes that lose their pressure first are set free.
+    pub(super) fn run_to_the_edge(
+        mut self,
+        inner: f64,
+        progress: &mut Progress,
+    ) -> Result<Errors, Error> {
+        let start = self.start();
+        let errors = self.iterate(inner, progress)?;
+        if errors.tension > self.tolerance() {
+            let pairs = start.pressure.iter().zip(&self.pressure);
+            let reach = pairs
+                .filter(|(_, x)| **x < 0.0)
+                .map(|(from, x)| from / (from - x));
+            let part = reach.fold(1.0, f64::min);
+            for (x, from) in self.pressure.iter_mut().zip(&start.pressure) {
+                let is_free = *x < 0.0 && from / (from - *x) <= part;
+                *x = if is_free {
+                    0.0
+                } else {
+                    (from + part * (*x - from)).max(0.0)
+                };
+            }
+            self.move_there()?;
+            return Ok(errors.unsolved());
+        }
+        self.keep();
+        Ok(errors)
+    }
+
+    fn start(&self) -> Start {
+        Start {
+            pressure: self.pressure.clone(),
+            closure: self.closure.clone(),
+            approach: self.level.iterate.approach,
+        }
+    }
+
+    /// Makes the pressures those of the level, without what is left of tension.
+    fn keep(&mut self) {
         for value in &mut self.pressure {
             *value = value.max(0.0);
         }
@@ -75,7 +112,6 @@ impl<'a> Descent<'a> {
         iterate
             .contact
             .scatter(&self.pressure, &mut iterate.pressure);
-        Ok(errors)
     }
 
     /// Conjugate gradients; pressures may become negative.

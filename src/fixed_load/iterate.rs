@@ -81,6 +81,14 @@ impl Errors {
         greatest(2, 0.0, |i| [self.overlap, self.tension][i])
     }
 
+    /// The same of a set on which the solution is not known.
+    pub(super) fn unsolved(self) -> Self {
+        Self {
+            residual: f64::INFINITY,
+            ..self
+        }
+    }
+
     /// All of it; NaN if any is.
     pub(super) fn worst(&self) -> f64 {
         greatest(2, 0.0, |i| [self.residual, self.in_set()][i])

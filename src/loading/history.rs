@@ -129,3 +129,36 @@ impl History {
         contact.is_finite().then(|| last.with(contact))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_gap_that_rises_again_is_read_where_it_is_first() {
+        let state = |step: usize, mean_gap: f64| {
+            let contact = ContactState {
+                contact_nodes: step,
+                approach: step as f64,
+                load: step as f64,
+                contact_area: step as f64,
+                contact_area_fraction: 0.1 * step as f64,
+                mean_gap,
+                contact_stiffness: Some(1.0),
+                interfacial_stiffness: Some(10.0),
+                energy: step as f64,
+            };
+            LoadingState::new(step, ContactEvent::Touch, (step, 0), contact)
+        };
+        let gaps = [1.0, 0.9, 0.8, 0.95, 0.7];
+        let history: History = (1..).zip(gaps).map(|(k, gap)| state(k, gap)).collect();
+        let step_at = |gap| history.at_mean_gap(gap).map(|state| state.step);
+        assert_eq!(step_at(0.85), Some(2));
+        assert_eq!(step_at(0.9), Some(2));
+        assert_eq!(step_at(0.75), Some(4));
+        assert_eq!(step_at(0.7), Some(5));
+        for outside in [1.1, 0.6, f64::NAN] {
+            assert_eq!(step_at(outside), None);
+        }
+    }
+}

@@ -20,6 +20,7 @@ mod records;
 mod records_on_disk;
 mod reference_paths;
 mod releases;
+mod small_without_factor;
 mod smallest_gap;
 mod ties;
 mod undisturbed;
