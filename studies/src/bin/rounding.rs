@@ -1,0 +1,170 @@
+//! What rounding does to a path: drift over tens of thousands of nodes, and the condition of the matrix against the
+//! aspect of cells and the size of the grid. Prints the tables of docs/reliability.md.
+
+use std::error::Error;
+
+use asperity::surface::HeightMap;
+use asperity::updater::RecursiveCholesky;
+use asperity::{
+    Boussinesq, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    PeriodicBoussinesq, Problem, SelfAffine, Spectral,
+};
+use clap::{Parser, Subcommand};
+use nalgebra::DMatrix;
+
+/// Measures what rounding does to a path.
+#[derive(Parser)]
+struct Options {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// Scalars that are carried from node to node, against those of the pressure solved for afresh. Memory: 4 n² bytes.
+    Drift {
+        /// Nodes a side.
+        #[arg(long, default_value_t = 256)]
+        nodes: usize,
+        /// Nodes in contact at the end.
+        #[arg(long, default_value_t = 60_000)]
+        contact: usize,
+        /// Nodes in contact between two lines.
+        #[arg(long, default_value_t = 6_000)]
+        every: usize,
+    },
+    /// Condition numbers, and what is left of the conditions of contact on the path of each.
+    Condition,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    match Options::parse().what {
+        What::Drift {
+            nodes,
+            contact,
+            every,
+        } => drift(nodes, contact, every),
+        What::Condition => condition(),
+    }
+}
+
+fn relative(value: f64, expected: f64) -> f64 {
+    (value / expected - 1.0).abs()
+}
+
+fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error>> {
+    let surface = SelfAffine::zhang2020(1);
+    let kernel = Boussinesq::new(Grid::square(nodes, 1e-2)?, 115e9)?;
+    let mut path = LoadingSolver::builder(&surface, &kernel)
+        .updater(RecursiveCholesky::new())
+        .max_nodes(contact)
+        .build()?;
+    let mut loads = FixedLoadSolver::builder(&surface, &kernel)
+        .tolerance(1e-11)
+        .build()?;
+    let cell = path.grid().cell_area();
+    println!("| nodes | load | mean gap | energy | stiffness | approach | gap in contact |");
+    println!("|---|---|---|---|---|---|---|");
+    let mut last: Option<LoadingState> = None;
+    while let Some(state) = path.next() {
+        let state = state?;
+        let is_last = state.contact_nodes == contact;
+        last = Some(state);
+        if !state.contact_nodes.is_multiple_of(every) && !is_last {
+            continue;
+        }
+        let pressure = path.pressure()?;
+        let displacement = path.displacement()?;
+        let certificate = path.certificate()?;
+        let energy = 0.5 * cell * pressure.dot(&displacement);
+        let single = loads.solve(state.load)?.state;
+        let stiffness = [state.contact_stiffness, single.contact_stiffness];
+        let [Some(own), Some(other)] = stiffness else {
+            return Err("there is no contact stiffness".into());
+        };
+        println!(
+            "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
+            state.contact_nodes,
+            relative(state.load, cell * pressure.sum()),
+            relative(state.mean_gap, path.gap()?.mean()),
+            relative(state.energy, energy),
+            relative(own, other),
+            relative(state.approach, single.approach),
+            certificate.greatest_contact_gap,
+        );
+    }
+    let Some(last) = last else {
+        return Err("the path has no states".into());
+    };
+    println!("\n{} events", last.step);
+    Ok(())
+}
+
+/// Rough, without ties.
+fn rough(grid: &Grid) -> Result<HeightMap, asperity::Error> {
+    let (nx, ny) = grid.shape();
+    HeightMap::new(DMatrix::from_fn(nx, ny, |ix, iy| {
+        let (x, y) = (ix as f64, iy as f64);
+        (1.3 * x + 0.7 * y).sin() + (0.9 * y - 0.4 * x).cos() + 0.3 * (1.9 * x * y).sin()
+    }))
+}
+
+type Kernel = Box<dyn InfluenceKernel>;
+
+fn kernels(grid: Grid) -> [(&'static str, Result<Kernel, asperity::Error>); 3] {
+    let free = Boussinesq::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
+    let periodic = PeriodicBoussinesq::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
+    let spectral = Spectral::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
+    [
+        ("free, Love", free),
+        ("periodic, Love", periodic),
+        ("spectral", spectral),
+    ]
+}
+
+fn condition() -> Result<(), Box<dyn Error>> {
+    println!(
+        "| half-space | nodes | aspect | condition | least pressure | least gap | gap in contact |"
+    );
+    println!("|---|---|---|---|---|---|---|");
+    let sizes = [8, 16, 32].map(|nodes| (nodes, 1.0));
+    let aspects = (1..=6).map(|power| (16, 10_f64.powi(power)));
+    for (nodes, aspect) in sizes.into_iter().chain(aspects) {
+        let grid = Grid::new(nodes, nodes, 1.0, 1.0 / aspect)?;
+        for (name, kernel) in kernels(grid) {
+            let rest = kernel
+                .and_then(|kernel| line(&grid, &*kernel))
+                .unwrap_or_else(|error| format!("refused: {error} | | |"));
+            println!("| {name} | {nodes}² | {aspect:.0e} | {rest} |");
+        }
+    }
+    Ok(())
+}
+
+/// Condition of the whole matrix, and the worst of the certificates of a path to full contact.
+fn line(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<String, asperity::Error> {
+    let surface = rough(grid)?;
+    let problem = Problem::new(&surface, kernel)?;
+    let nodes = grid.nodes();
+    let matrix = DMatrix::from_fn(nodes, nodes, |i, j| {
+        problem.coefficient(i, j).unwrap_or(0.0)
+    });
+    let values = matrix.symmetric_eigenvalues();
+    let mut path = LoadingSolver::builder(&surface, kernel)
+        .updater(RecursiveCholesky::new())
+        .build()?;
+    let (mut pressure, mut gap, mut contact) = (0.0_f64, 0.0_f64, 0.0_f64);
+    while let Some(state) = path.next() {
+        if state?.contact_nodes % 8 != 0 {
+            continue;
+        }
+        let certificate = path.certificate()?;
+        pressure = pressure.min(certificate.least_pressure);
+        gap = gap.min(certificate.least_gap);
+        contact = contact.max(certificate.greatest_contact_gap);
+    }
+    let condition = values.max() / values.min();
+    Ok(format!(
+        "{condition:.1e} | {pressure:.1e} | {gap:.1e} | {contact:.1e}"
+    ))
+}
