@@ -1,6 +1,7 @@
 //! What must not change the result: coarser grids, gauges, the way in which a kernel is given.
 
-use asperity::{Boussinesq, ContactState, FixedLoadSolver, Grid};
+use asperity::kernel::MeanDisplacement;
+use asperity::{Boussinesq, ContactGrowth, ContactState, FixedLoadSolver, Grid, KernelTable};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, Plain, rough, solver};
@@ -92,4 +93,34 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
         assert!((found / expected - 1.0).abs() < 1e-11);
     }
     assert_eq!(without.state, expected.state);
+}
+
+/// A body of which nothing is known but its symbol, positive on each wave of the grid. On coarser grids of odd numbers of
+/// nodes it need not be positive definite, and whole groups of nodes may come and go.
+#[test]
+fn any_symbol_is_solved_from_coarser_grids() {
+    let grid = Grid::new(67, 1, 1.0, 1.0).unwrap();
+    let map = rough(&grid, 5);
+    for seed in 1..40 {
+        let symbol = |qx: f64, _: f64| {
+            let wave = (qx.abs() * 67.0 / std::f64::consts::TAU).round();
+            // Somewhere between 0.01 and 100, another number for each wave.
+            let random = (0.618_033_988_7 * f64::from(seed) * (wave + 1.0).powi(2)).fract();
+            10_f64.powf(4.0 * random - 2.0)
+        };
+        let mean = MeanDisplacement::Physical;
+        let kernel = KernelTable::from_symbol(grid, mean, ContactGrowth::Unknown, symbol).unwrap();
+        for load in [0.1, 3.0] {
+            let [nested, plain] = [true, false].map(|nested| {
+                let builder = FixedLoadSolver::builder(&map, &kernel).tolerance(1e-11);
+                let mut solver = builder.nested(nested).build().unwrap();
+                let solution = solver.solve(load).unwrap();
+                check(&solver, &solution, 1e-11);
+                solution
+            });
+            // The solution is the only one: the tolerance times the condition.
+            let error = (&nested.pressure - &plain.pressure).amax();
+            assert!(error < 1e-7 * plain.max_pressure(), "{error:e}");
+        }
+    }
 }
