@@ -168,7 +168,10 @@ impl<'a> ActiveSet<'a> {
             pressure[node] != 0.0 || closure[node] < deepest
         })?;
         self.leave_one_out()?;
-        Descent::new(self.level, self.prescribed, criteria).run(inner, &mut self.progress)
+        let mut progress = self.progress;
+        let errors = self.descent(criteria)?.run(inner, &mut progress)?;
+        self.progress = progress;
+        Ok(errors)
     }
 
     /// A round of the primal active-set method: the node that overlaps most joins the solution on a set, and pressures go
@@ -188,10 +191,21 @@ impl<'a> ActiveSet<'a> {
         self.level
             .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
         self.leave_one_out()?;
-        let descent = Descent::new(self.level, self.prescribed, criteria);
-        let errors = descent.run_to_the_edge(LEAST_INNER, &mut self.progress)?;
+        let mut progress = self.progress;
+        let errors = self
+            .descent(criteria)?
+            .run_to_the_edge(LEAST_INNER, &mut progress)?;
+        self.progress = progress;
         self.is_solved = errors.residual < f64::INFINITY;
         Ok(errors)
+    }
+
+    /// The way down on the set that was chosen, which is empty where pressures have cancelled.
+    fn descent(&mut self, criteria: Criteria) -> Result<Descent<'_>, Error> {
+        if self.level.iterate.contact.len() == 0 {
+            return Err(self.no_convergence());
+        }
+        Ok(Descent::new(self.level, self.prescribed, criteria))
     }
 
     /// Takes the widest gap out of a contact that is everywhere, if an approach is prescribed and the mean displacement is
