@@ -238,7 +238,7 @@ fn malformed_updaters() {
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
             "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
-            "nan rate" => matches!(error, Error::NotMonotone { .. }),
+            "nan rate" => matches!(error, Error::Updater(UpdaterError::ContactNotClosed { .. })),
             _ => matches!(error, Error::Updater(UpdaterError::UpdaterMismatch { .. })),
         };
         assert!(typed, "{what}: {error}");

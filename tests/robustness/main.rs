@@ -7,6 +7,7 @@ mod common;
 mod bad_input;
 mod bad_kernels;
 mod extreme_numbers;
+mod failing_parts;
 mod hostile_calls;
 mod limits;
 mod memory_budget;
