@@ -2,11 +2,14 @@
 
 use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
 
-/// An output that keeps quiet once it has failed: an archive that is dropped unfinished would try to end itself, and
-/// complain on stderr. The failure is told once more at the end.
+/// An output that keeps quiet once it has failed, and goes on as if all was written: an archive that is dropped unfinished
+/// would try to end itself, and complain on stderr. The failure is told once more at the end.
 pub(super) struct Output<W> {
     inner: W,
     failure: Option<ErrorKind>,
+    /// Where the next byte goes, and how many there are.
+    at: u64,
+    end: u64,
 }
 
 impl<W> Output<W> {
@@ -14,6 +17,8 @@ impl<W> Output<W> {
         Self {
             inner,
             failure: None,
+            at: 0,
+            end: 0,
         }
     }
 
@@ -43,7 +48,10 @@ impl<W: Write> Output<W> {
 
 impl<W: Write> Write for Output<W> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        self.attempt(bytes.len(), |inner| inner.write(bytes))
+        let written = self.attempt(bytes.len(), |inner| inner.write(bytes))?;
+        self.at += written as u64;
+        self.end = self.end.max(self.at);
+        Ok(written)
     }
 
     fn flush(&mut self) -> Result<()> {
@@ -53,6 +61,12 @@ impl<W: Write> Write for Output<W> {
 
 impl<W: Seek> Seek for Output<W> {
     fn seek(&mut self, to: SeekFrom) -> Result<u64> {
-        self.attempt(0, |inner| inner.seek(to))
+        let place = match to {
+            SeekFrom::Start(place) => place,
+            SeekFrom::Current(change) => self.at.saturating_add_signed(change),
+            SeekFrom::End(change) => self.end.saturating_add_signed(change),
+        };
+        self.at = self.attempt(place, |inner| inner.seek(to))?;
+        Ok(self.at)
     }
 }

@@ -164,6 +164,15 @@ impl<U: LinearUpdater> LoadingRun<U> {
                 found: schur.size(),
             }));
         }
+        let matrix = schur.matrix();
+        let lower = (0..nodes.len()).flat_map(|j| (j..nodes.len()).map(move |i| (i, j)));
+        let numbers = lower.map(|place| matrix[place]);
+        if !numbers
+            .chain(schur.row_sums().iter().copied())
+            .all(f64::is_finite)
+        {
+            return Err(self.not_finite());
+        }
         self.timings.windows += 1;
         Ok(())
     }

@@ -237,7 +237,7 @@ fn malformed_updaters() {
         let mut path = builder.updater(updater).window_size(3).build().unwrap();
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
-            "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
+            "nan" => matches!(error, Error::NotFinite { step: 1 }),
             "nan rate" => matches!(error, Error::Updater(UpdaterError::ContactNotClosed { .. })),
             _ => matches!(error, Error::Updater(UpdaterError::UpdaterMismatch { .. })),
         };

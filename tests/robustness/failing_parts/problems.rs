@@ -6,7 +6,7 @@ use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    PeriodicBoussinesq,
+    PeriodicBoussinesq, Problem,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -115,6 +115,10 @@ impl Small {
     ) -> Result<Path, asperity::Error> {
         let updater = Failing::new(make(), fault, at);
         self.builder().updater(updater).build()
+    }
+
+    pub(super) fn problem(&self) -> Problem {
+        Problem::new(&self.heights, &self.kernel).unwrap()
     }
 
     /// All states of the path without a fault.
