@@ -33,6 +33,8 @@ impl<W> Output<W> {
             && error.kind() != ErrorKind::Interrupted
         {
             self.failure = Some(error.kind());
+            // It may have been back in a header, before what an archive takes for the place where its members end.
+            self.at = self.end;
         }
         done
     }
