@@ -300,7 +300,11 @@ mod tests {
         let file = std::env::temp_dir().join(name);
         let tried = is_refused_at_every_byte(
             |disk| record.write(disk, &[]),
-            |bytes| std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok(),
+            |bytes| {
+                // A new file each time: some systems wait for the disk before they replace what is in one.
+                let _ = std::fs::remove_file(&file);
+                std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok()
+            },
         );
         std::fs::remove_file(&file)?;
         tried?;
