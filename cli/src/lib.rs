@@ -10,12 +10,16 @@ pub mod number;
 pub mod outcome;
 pub mod panel;
 pub mod picture;
+pub mod speech;
+pub mod whole_file;
 
-/// Prints a line. If nobody reads any more (`asperity … | head`), it is lost, and the work goes on.
+/// Prints a line, see [`speech`].
 #[macro_export]
 macro_rules! say {
-    ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stdout(), $($text)*);
-    }};
+    () => {
+        $crate::say!("")
+    };
+    ($($text:tt)*) => {
+        $crate::speech::print(format_args!($($text)*))
+    };
 }

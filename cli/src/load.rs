@@ -13,6 +13,7 @@ use clap::Args;
 
 use crate::elasticity::Elasticity;
 use crate::reading::Reading;
+use crate::values::bytes;
 
 /// The contact of a measured surface under given loads, each solved by itself: one line for each
 ///
@@ -54,6 +55,10 @@ pub(crate) struct Options {
     )]
     tolerance: f64,
 
+    /// Bytes that may be held at most, 2e9 say [default: three quarters of the memory]
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    memory_budget: Option<usize>,
+
     /// Directory for pressure_K.npy and gap_K.npy, K counting the loads from 0
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
@@ -71,10 +76,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let start = Instant::now();
     let mut solver = half_space(options.periodic, grid, e_star)
         .and_then(|half_space| {
-            FixedLoadSolver::builder(&surface, &half_space)
+            let mut builder = FixedLoadSolver::builder(&surface, &half_space)
                 .tolerance(options.tolerance)
-                .stiffness(false)
-                .build()
+                .stiffness(false);
+            if let Some(budget) = options.memory_budget {
+                builder = builder.memory_budget(budget);
+            }
+            builder.build()
         })
         .map_err(|error| Failure::new("no solution can begin", error))?;
     eprintln!(

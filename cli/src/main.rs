@@ -12,6 +12,7 @@ mod values;
 
 use std::process::ExitCode;
 
+use asperity_cli::speech;
 use clap::{Parser, Subcommand};
 
 /// Exact elastic contact of rough surfaces.
@@ -43,7 +44,7 @@ fn main() -> ExitCode {
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
     };
-    match done {
+    match done.and_then(|()| speech::check()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report();

@@ -1,7 +1,5 @@
 //! Pictures of pixels, as PNG files.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use plotters::prelude::*;
@@ -9,6 +7,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
 use crate::outcome::Failure;
 use crate::panel::{Area, Drawn};
+use crate::whole_file;
 
 /// Pixels of a fine drawing for one of its picture: what makes lines smooth.
 pub const FINE: i32 = 3;
@@ -19,9 +18,8 @@ pub fn draw(
     size: (i32, i32),
     drawing: impl for<'a> FnOnce(&Area<BitMapBackend<'a>>) -> Drawn<BitMapBackend<'a>>,
 ) -> Result<PathBuf, Failure> {
-    pixels(size, drawing)
-        .and_then(|pixels| write(name, size, &pixels))
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+    let encoded = pixels(size, drawing).and_then(|pixels| encode(size, &pixels));
+    write(name, encoded)
 }
 
 /// Draws something [`FINE`] times as large as the picture, and writes the picture.
@@ -30,9 +28,9 @@ pub fn draw_fine(
     (width, height): (i32, i32),
     drawing: impl for<'a> FnOnce(&Area<BitMapBackend<'a>>) -> Drawn<BitMapBackend<'a>>,
 ) -> Result<PathBuf, Failure> {
-    pixels((FINE * width, FINE * height), drawing)
-        .and_then(|fine| write(name, (width, height), &averages(&fine, width as usize)))
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+    let encoded = pixels((FINE * width, FINE * height), drawing)
+        .and_then(|fine| encode((width, height), &averages(&fine, width as usize)));
+    write(name, encoded)
 }
 
 /// Three bytes for each pixel of a drawing on white.
@@ -66,19 +64,30 @@ fn averages(pixels: &[u8], columns: usize) -> Vec<u8> {
         .collect()
 }
 
-fn write(name: &Path, (width, height): (i32, i32), pixels: &[u8]) -> Result<PathBuf, String> {
-    let encode = || -> Result<(), EncodingError> {
-        let file = BufWriter::new(File::create(name)?);
-        let mut encoder = Encoder::new(file, width as u32, height as u32);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        // Even areas compress best as they are.
-        encoder.set_compression(Compression::High);
-        encoder.set_filter(Filter::NoFilter);
-        encoder.write_header()?.write_image_data(pixels)
+/// The bytes of a PNG file.
+fn encode((width, height): (i32, i32), pixels: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    // Even areas compress best as they are.
+    encoder.set_compression(Compression::High);
+    encoder.set_filter(Filter::NoFilter);
+    let write = |mut image: png::Writer<&mut Vec<u8>>| -> Result<(), EncodingError> {
+        image.write_image_data(pixels)?;
+        image.finish()
     };
-    match encode() {
-        Ok(()) => Ok(name.to_path_buf()),
-        Err(error) => Err(error.to_string()),
+    let written = encoder.write_header().and_then(write);
+    written.map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn write(name: &Path, encoded: Result<Vec<u8>, String>) -> Result<PathBuf, Failure> {
+    match encoded {
+        Ok(bytes) => whole_file::write(name, bytes),
+        Err(error) => Err(Failure::new(
+            format!("cannot write {}", name.display()),
+            error,
+        )),
     }
 }

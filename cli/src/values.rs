@@ -10,6 +10,12 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of bytes, which may be given as `2e9`.
+pub(crate) fn bytes(text: &str) -> Result<usize, String> {
+    // Beyond all there are it is the greatest.
+    positive(text).map(|bytes| bytes as usize)
+}
+
 /// A part of an area.
 pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     let value = number(text)?;

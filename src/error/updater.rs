@@ -33,6 +33,25 @@ pub enum UpdaterError {
         tolerance: f64,
     },
 
+    /// A solution that does not close the contact: its pressures are not those of the nodes in contact. So it is if an
+    /// updater is wrong, or has been given wrong events before, and if the kernel is too badly conditioned for it.
+    #[error(
+        "the updater's solution leaves a {quantity} of {value} at node ({ix}, {iy}) in contact, where rounding \
+         is {tolerance} at most"
+    )]
+    ContactNotClosed {
+        /// A gap \[m\], or what is left of its rate.
+        quantity: &'static str,
+        /// Node index along x.
+        ix: usize,
+        /// Node index along y.
+        iy: usize,
+        /// What should be zero.
+        value: f64,
+        /// What would have been taken for rounding.
+        tolerance: f64,
+    },
+
     /// More nodes are to be watched than there is memory for.
     #[error("no memory is to be had for the Schur complement of {nodes} watched nodes")]
     TooManyWatched {

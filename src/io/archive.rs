@@ -10,6 +10,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 use super::bytes::read_file;
 use super::fault::Fault;
 use super::npy::{self, header_of};
+use super::output::Output;
 use crate::Error;
 
 /// How many times the size of its archive a member may take: arrays of one number compress a thousand times.
@@ -19,13 +20,13 @@ const LARGE: usize = u32::MAX as usize / 2;
 
 /// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
 pub(crate) struct ArchiveWriter<W: Write + Seek> {
-    zip: ZipWriter<W>,
+    zip: ZipWriter<Output<W>>,
 }
 
 impl<W: Write + Seek> ArchiveWriter<W> {
     pub(crate) fn new(output: W) -> Self {
         Self {
-            zip: ZipWriter::new(output),
+            zip: ZipWriter::new(Output::new(output)),
         }
     }
 
@@ -89,7 +90,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
     }
 
     pub(crate) fn finish(self) -> std::io::Result<()> {
-        self.zip.finish()?.flush()
+        self.zip.finish()?.finish()
     }
 }
 

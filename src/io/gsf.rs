@@ -2,8 +2,7 @@
 //!
 //! Source: Gwyddion's user guide, chapter "Gwyddion Simple Field file format".
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
 use nalgebra::DMatrix;
@@ -11,6 +10,7 @@ use nalgebra::DMatrix;
 use super::bytes::{Bytes, shape};
 use super::fault::Fault;
 use super::raw::{Channel, Parsed, decode};
+use super::whole_file;
 use crate::{Error, Grid};
 
 const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
@@ -105,7 +105,7 @@ impl<'a> Header<'a> {
 /// Writes a field on its grid as a Gwyddion Simple Field, which holds seven digits of each value; NaN stays NaN. The unit
 /// is that of the values: "m" for heights and gaps, "Pa" for pressures.
 ///
-/// An existing file is overwritten.
+/// An existing file is replaced, once the new one is whole.
 ///
 /// # Errors
 ///
@@ -126,12 +126,11 @@ pub fn write_gsf(
         });
     }
     let path = path.as_ref();
-    File::create(path)
-        .and_then(|file| write(BufWriter::new(file), grid, values, unit))
+    whole_file::write(path, |output| write(output, grid, values, unit))
         .map_err(|error| Fault::Io(error).in_file(path, "Gwyddion Simple Field"))
 }
 
-fn write(
+pub(super) fn write(
     mut output: impl Write,
     grid: &Grid,
     values: &DMatrix<f64>,

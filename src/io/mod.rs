@@ -55,6 +55,7 @@ mod fault;
 mod npy;
 mod number;
 mod vti;
+pub(crate) mod whole_file;
 
 #[cfg(feature = "io")]
 mod al3d;
@@ -62,6 +63,8 @@ mod al3d;
 pub(crate) mod archive;
 #[cfg(feature = "io")]
 mod format;
+#[cfg(all(test, feature = "io"))]
+pub(crate) mod full_disk;
 #[cfg(feature = "io")]
 mod gsf;
 #[cfg(feature = "io")]
@@ -70,6 +73,8 @@ mod gwy;
 mod measured;
 #[cfg(feature = "io")]
 mod options;
+#[cfg(feature = "io")]
+mod output;
 #[cfg(feature = "io")]
 mod raw;
 #[cfg(feature = "io")]

@@ -2,13 +2,13 @@
 //!
 //! Source: VTK User's Guide, 11th edition, "XML File Formats".
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
 use super::fault::Fault;
+use super::whole_file;
 use crate::{Error, Grid};
 
 /// What errors call the format.
@@ -17,7 +17,7 @@ const NAME: &str = "VTK image";
 /// Writes fields on a grid as an image of VTK, which ParaView opens: one array for each field, on the cells of the grid, in
 /// the plane z = 0, lengths in metres.
 ///
-/// An existing file is overwritten.
+/// An existing file is replaced, once the new one is whole.
 ///
 /// # Errors
 ///
@@ -31,12 +31,11 @@ pub fn write_vti(
         grid.check_shape(field.shape())?;
     }
     let path = path.as_ref();
-    File::create(path)
-        .and_then(|file| write(BufWriter::new(file), grid, fields))
+    whole_file::write(path, |output| write(output, grid, fields))
         .map_err(|error| Fault::Io(error).in_file(path, NAME))
 }
 
-fn write(
+pub(super) fn write(
     mut output: impl Write,
     grid: &Grid,
     fields: &[(&str, &DMatrix<f64>)],

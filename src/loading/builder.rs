@@ -42,6 +42,17 @@ impl LoadingSolver {
         Self::builder(surface, kernel).build()
     }
 
+    /// `Ok` if a path on a grid has room within a memory budget, by default that of
+    /// [`LoadingBuilder::memory_budget`]: to be asked before a large surface is made. A path asks it too.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] if not even the grid fits.
+    pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
+        let budget = budget.unwrap_or_else(memory::default_budget);
+        fixed_bytes(grid, boundary, budget).map(drop)
+    }
+
     /// Sets up the path of `surface` on the half-space of `kernel`.
     pub fn builder<'a>(
         surface: &'a dyn Surface,
@@ -163,7 +174,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         }
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
         let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
-        let fixed_bytes = check_room(&grid, boundary, budget)?;
+        let fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         // A kernel of one's own may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
@@ -249,7 +260,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 /// # Errors
 ///
 /// [`Error::MemoryBudget`] if they exceed the budget.
-fn check_room(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, Error> {
+fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, Error> {
     let needed = LoadingRun::<Handover>::bytes_on(grid, boundary);
     if needed <= budget {
         return Ok(needed);

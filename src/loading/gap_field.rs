@@ -67,27 +67,12 @@ impl GapField {
         self.time
     }
 
-    /// Solves on the contact at an approach, for rates that serve over a span of it, and computes all
-    /// displacements, unless that was done last.
-    pub(super) fn renew<U: LinearUpdater>(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        updater: &mut U,
-        [approach, span]: [f64; 2],
-    ) -> Result<(), Error> {
-        if self.belongs_to(contact, approach) {
-            return Ok(());
-        }
-        self.solve(problem, contact, updater, [approach, span])
-    }
-
     /// Whether everything is that of a contact at an approach.
     pub(super) fn belongs_to(&self, contact: &ContactSequence, approach: f64) -> bool {
         self.revision == Some(contact.revision()) && self.approach == approach
     }
 
-    /// Solves on the contact, whatever was done last.
+    /// Solves on the contact at an approach, for rates that serve over a span of it, and computes all displacements.
     pub(super) fn solve<U: LinearUpdater>(
         &mut self,
         problem: &Problem,
@@ -129,6 +114,13 @@ impl GapField {
     /// The solution on the contact.
     pub(super) fn solution(&self) -> &Solution {
         &self.solution
+    }
+
+    /// What a solution leaves of the contact conditions at a node in contact: its gap, and the rate of that.
+    pub(super) fn left_at(&self, problem: &Problem, node: usize) -> [f64; 2] {
+        let [u, rate] = &self.displacement;
+        let gap = problem.initial_gap()[node] + u[node] - self.approach;
+        [gap, rate[node] - 1.0]
     }
 
     /// (node, pressure) of the contact at an approach, in the order of contact.

@@ -72,11 +72,10 @@ impl<U: LinearUpdater> LoadingRun<U> {
 
     /// Makes the gap field that of the present contact at an approach.
     pub(super) fn renew_field(&mut self, approach: f64) -> Result<(), Error> {
-        let at = [approach, f64::INFINITY];
-        self.field
-            .renew(&self.problem, &self.contact, &mut self.updater, at)?;
-        self.timings.convolution = self.field.time();
-        Ok(())
+        if self.field.belongs_to(&self.contact, approach) {
+            return Ok(());
+        }
+        self.solve_field(approach, f64::INFINITY)
     }
 
     /// Solves on the present contact at an approach, for rates that serve over a span.
@@ -85,6 +84,40 @@ impl<U: LinearUpdater> LoadingRun<U> {
         self.field
             .solve(&self.problem, &self.contact, &mut self.updater, at)?;
         self.timings.convolution = self.field.time();
+        if self.updater.profile().exact {
+            self.check_closed(approach)?;
+        }
+        Ok(())
+    }
+
+    /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n roundings of
+    /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements.
+    fn check_closed(&self, approach: f64) -> Result<(), Error> {
+        let own = self.problem.table().self_influence();
+        let sum = |values: &[f64]| own * values.iter().map(|value| value.abs()).sum::<f64>();
+        let Solution { pressure, rate, .. } = self.field.solution();
+        let lengths = [
+            self.problem.greatest_gap() + approach.abs() + sum(pressure),
+            1.0 + sum(rate),
+        ];
+        for &node in self.contact.order() {
+            let left = self.field.left_at(&self.problem, node);
+            for (k, quantity) in ["gap", "rate of the gap"].into_iter().enumerate() {
+                let (value, tolerance) = (left[k], TOLERANCE * lengths[k]);
+                // NaN is none either.
+                let is_closed = value.abs() <= tolerance && tolerance.is_finite();
+                if !is_closed {
+                    let (ix, iy) = self.problem.grid().coordinates(node);
+                    return Err(Error::Updater(UpdaterError::ContactNotClosed {
+                        quantity,
+                        ix,
+                        iy,
+                        value,
+                        tolerance,
+                    }));
+                }
+            }
+        }
         Ok(())
     }
 
@@ -131,6 +164,15 @@ impl<U: LinearUpdater> LoadingRun<U> {
                 found: schur.size(),
             }));
         }
+        let matrix = schur.matrix();
+        let lower = (0..nodes.len()).flat_map(|j| (j..nodes.len()).map(move |i| (i, j)));
+        let numbers = lower.map(|place| matrix[place]);
+        if !numbers
+            .chain(schur.row_sums().iter().copied())
+            .all(f64::is_finite)
+        {
+            return Err(self.not_finite());
+        }
         self.timings.windows += 1;
         Ok(())
     }
@@ -172,6 +214,14 @@ impl<U: LinearUpdater> LoadingRun<U> {
     pub(super) fn truncate(&mut self, count: usize) -> Result<(), Error> {
         self.contact.truncate(count);
         self.updater.truncate(&self.problem, &self.contact)
+    }
+
+    /// Puts the node that left last back to where it was. What the updater holds is another contact.
+    pub(super) fn take_back_release(&mut self) -> Result<(), Error> {
+        match self.releases.pop() {
+            Some((position, node)) => self.contact.insert(position, node),
+            None => Ok(()),
+        }
     }
 
     /// Puts the state at the front into the queue, after something happened to a node there.

@@ -67,15 +67,7 @@ impl Stepwise {
         if next.event == ContactEvent::Touch {
             self.touch(run, next)?;
         } else {
-            let position = run.contact.remove(next.node)?;
-            let released = run
-                .updater
-                .release(&run.problem, &run.contact, next.node, position);
-            if let Err(error) = released {
-                run.contact.insert(position, next.node)?;
-                return Err(error);
-            }
-            run.releases.push(step, next.node, position);
+            Self::release(run, step, next.node)?;
         }
         run.front.advance(next.approach);
         let contact_nodes = run.contact.len();
@@ -86,11 +78,8 @@ impl Stepwise {
         });
         // The order of contact must be that of the states before; the updater stays without the node. One
         // that touched may stay where it is: behind all others.
-        if checked.is_err()
-            && next.event == ContactEvent::Release
-            && let Some((position, node)) = run.releases.pop()
-        {
-            run.contact.insert(position, node)?;
+        if checked.is_err() && next.event == ContactEvent::Release {
+            run.take_back_release()?;
         }
         checked
     }
@@ -108,6 +97,24 @@ impl Stepwise {
             });
         }
         Ok(())
+    }
+
+    /// Takes a node out of the contact.
+    fn release<U: LinearUpdater>(
+        run: &mut LoadingRun<U>,
+        step: usize,
+        node: usize,
+    ) -> Result<(), Error> {
+        let position = run.contact.remove(node)?;
+        // First, so that earlier contacts are known even if the updater panics.
+        run.releases.push(step, node, position);
+        let released = run
+            .updater
+            .release(&run.problem, &run.contact, node, position);
+        if released.is_err() {
+            run.take_back_release()?;
+        }
+        released
     }
 
     /// Adds a node to the contact.

@@ -1,8 +1,7 @@
 //! Records on disk: archives of arrays that `numpy.load` opens.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::io::{Seek, Write};
+use std::path::Path;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -10,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{KernelRecord, LoadingRecord, Settings};
 use crate::contact::ContactState;
 use crate::io::archive::{Archive, ArchiveWriter};
+use crate::io::whole_file;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
 use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, contact_sequence};
 use crate::surface::HeightMap;
@@ -101,7 +101,8 @@ impl LoadingRecord {
     /// `patches`, `largest_patch` and `perimeter` beside them, `heights`, `activation` (the load at which each node touched, NaN
     /// where none has), the fields given, and `parameters`, a text of JSON with units and versions.
     ///
-    /// The file is written under another name beside its place and then renamed: what has the name is whole.
+    /// The file is written under another name beside its place and then renamed: what has the name is whole. A device is
+    /// written to as it is.
     ///
     /// # Errors
     ///
@@ -121,18 +122,7 @@ impl LoadingRecord {
                 source,
             })
         };
-        let unfinished = unfinished(path);
-        let written = File::create(&unfinished).and_then(|file| {
-            let mut output = BufWriter::new(file);
-            self.write(&mut output, fields)?;
-            output.into_inner()?.sync_all()?;
-            fs::rename(&unfinished, path)
-        });
-        if written.is_err() {
-            // It may not even be there.
-            let _ = fs::remove_file(&unfinished);
-        }
-        written.map_err(failed)
+        whole_file::write(path, |output| self.write(output, fields)).map_err(failed)
     }
 
     fn write(
@@ -293,9 +283,42 @@ fn event(code: f64) -> Option<ContactEvent> {
         .find(|event| self::code(*event) as f64 == code)
 }
 
-/// The name of a file while it is written.
-fn unfinished(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.unfinished", std::process::id()));
-    path.with_file_name(name)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::full_disk::is_refused_at_every_byte;
+    use crate::surface::Paraboloid;
+    use crate::{Boussinesq, LoadingSolver};
+
+    #[test]
+    fn a_record_does_not_fit() -> Result<(), Box<dyn std::error::Error>> {
+        let half_space = Boussinesq::new(Grid::square(2, 1.0)?, 1.0)?;
+        let mut path = LoadingSolver::new(&Paraboloid::new(10.0)?, &half_space)?;
+        let history: History = path.by_ref().collect::<Result<_, _>>()?;
+        let record = LoadingRecord::new(&path, history)?;
+        let name = format!("asperity-full-{}.npz", std::process::id());
+        let file = std::env::temp_dir().join(name);
+        let tried = is_refused_at_every_byte(
+            |disk| record.write(disk, &[]),
+            |bytes| {
+                // A new file each time: some systems wait for the disk before they replace what is in one.
+                let _ = std::fs::remove_file(&file);
+                std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok()
+            },
+        );
+        std::fs::remove_file(&file)?;
+        tried?;
+        #[cfg(target_os = "linux")]
+        {
+            use std::os::unix::fs::FileTypeExt;
+            let full = Path::new("/dev/full");
+            let written = record.write_npz(full, &[]);
+            assert!(
+                matches!(&written, Err(Error::File(FileError::Io { path, .. })) if path == full),
+                "{written:?}"
+            );
+            assert!(std::fs::metadata(full)?.file_type().is_char_device());
+        }
+        Ok(())
+    }
 }

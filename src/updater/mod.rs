@@ -213,6 +213,9 @@ pub trait LinearUpdater {
     /// Solves on the first nodes of `contact`: on all of them while the path advances, on fewer for an
     /// earlier state. A later call must not depend on that.
     ///
+    /// A path holds an [exact](UpdaterProfile::exact) updater to its answer: where that does not close the gaps in
+    /// contact to rounding, the path ends with [`UpdaterError::ContactNotClosed`].
+    ///
     /// # Errors
     ///
     /// Whatever keeps the updater from answering.

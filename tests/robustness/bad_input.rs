@@ -237,8 +237,8 @@ fn malformed_updaters() {
         let mut path = builder.updater(updater).window_size(3).build().unwrap();
         let error = path.find_map(Result::err).unwrap();
         let typed = match what {
-            "nan" => matches!(error, Error::NotPositiveDefinite { .. }),
-            "nan rate" => matches!(error, Error::NotMonotone { .. }),
+            "nan" => matches!(error, Error::NotFinite { step: 1 }),
+            "nan rate" => matches!(error, Error::Updater(UpdaterError::ContactNotClosed { .. })),
             _ => matches!(error, Error::Updater(UpdaterError::UpdaterMismatch { .. })),
         };
         assert!(typed, "{what}: {error}");

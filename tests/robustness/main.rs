@@ -6,7 +6,9 @@ mod common;
 
 mod bad_input;
 mod bad_kernels;
+mod dropped;
 mod extreme_numbers;
+mod failing_parts;
 mod hostile_calls;
 mod limits;
 mod memory_budget;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::say;
+use asperity_cli::whole_file;
 use clap::Args;
 
 use table::Table;
@@ -128,7 +129,5 @@ fn write(rows: &[Row], name: &Path) -> Result<PathBuf, Failure> {
         let columns = columns.map(|(mean, spread)| format!(",{mean:e},{spread:e}"));
         text += &format!("{:e}{}\n", row.load, columns.collect::<String>());
     }
-    fs::write(name, text)
-        .map(|()| name.to_path_buf())
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+    whole_file::write(name, text)
 }

@@ -1,13 +1,13 @@
 //! `patches.csv`: the patches of every state.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use asperity::ContactEvent;
 use asperity::patches::PatchEvent;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::Failure;
+use asperity_cli::whole_file;
 
 use super::followed::Followed;
 
@@ -17,13 +17,13 @@ pub(super) fn write(
     followed: &Followed,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
-    lines(record, followed, name)
-        .map(|()| name.to_path_buf())
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+    let text = lines(record, followed)
+        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
+    whole_file::write(name, text)
 }
 
-fn lines(record: &LoadingRecord, followed: &Followed, name: &Path) -> io::Result<()> {
-    let mut output = BufWriter::new(File::create(name)?);
+fn lines(record: &LoadingRecord, followed: &Followed) -> Result<String, fmt::Error> {
+    let mut output = String::new();
     writeln!(
         output,
         "step,load,contact_area_fraction,patches,largest_patch,perimeter,corrected_area_fraction,event"
@@ -50,5 +50,5 @@ fn lines(record: &LoadingRecord, followed: &Followed, name: &Path) -> io::Result
             patches.corrected_area(&grid) / grid.nominal_area(),
         )?;
     }
-    output.flush()
+    Ok(output)
 }

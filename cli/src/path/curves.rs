@@ -1,6 +1,5 @@
 //! `loading_curve.svg`: area, approach, mean gap and stiffnesses against load.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
@@ -13,6 +12,7 @@ use asperity_cli::chart::{BLUE, ORANGE};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
+use asperity_cli::whole_file;
 
 /// Width and height of the picture.
 const SIZE: (i32, i32) = (1240, 980);
@@ -35,17 +35,15 @@ pub(super) fn draw(
     let mut text = String::new();
     let backend = SVGBackend::with_string(&mut text, (width as u32, height as u32));
     let drawn = panels(&backend.into_drawing_area(), job, states);
-    drawn
-        .map_err(|error| error.to_string().into())
-        .and_then(|()| {
-            let fine = format!("width=\"{width}\" height=\"{height}\"");
-            let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-            std::fs::write(&name, text.replacen(&fine, &size, 1)).map_err(Box::from)
-        })
-        .map_err(|error: Box<dyn Error>| {
-            Failure::new(format!("cannot write {}", name.display()), error)
-        })?;
-    Ok(name)
+    drawn.map_err(|error| {
+        Failure::new(
+            format!("cannot write {}", name.display()),
+            error.to_string(),
+        )
+    })?;
+    let fine = format!("width=\"{width}\" height=\"{height}\"");
+    let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    whole_file::write(&name, text.replacen(&fine, &size, 1))
 }
 
 fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState]) -> Drawn<DB> {

@@ -14,6 +14,7 @@ use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
+use asperity_cli::whole_file::failed;
 
 /// States between two looks at the progress bar and two visits to the disk.
 const STRIDE: usize = 64;
@@ -172,8 +173,4 @@ impl PathFile {
             .map_err(|error| failed(&self.part, error))?;
         Ok(self.name)
     }
-}
-
-fn failed(name: &Path, error: std::io::Error) -> Failure {
-    Failure::new(format!("cannot write {}", name.display()), error)
 }

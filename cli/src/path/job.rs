@@ -8,7 +8,9 @@ use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
 use asperity::updater::Handover;
-use asperity::{ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState};
+use asperity::{
+    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+};
 
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater};
@@ -38,6 +40,7 @@ pub(super) struct Job {
     periodic: Option<Periodic>,
     rule: ContactRule,
     updater: Updater,
+    memory_budget: Option<usize>,
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
     /// What there is of the path already.
@@ -68,6 +71,7 @@ impl Job {
             periodic: options.periodic,
             rule: options.rule.into(),
             updater: options.updater,
+            memory_budget: options.memory_budget,
             targets,
             begun: None,
         })
@@ -96,6 +100,7 @@ impl Job {
             periodic,
             rule: record.settings().rule,
             updater: options.updater,
+            memory_budget: options.memory_budget,
             targets: options.targets(surface.grid(), &record.settings().targets),
             surface,
             begun: Some(record),
@@ -116,6 +121,9 @@ impl Job {
             .rule(self.rule);
         for &target in &self.targets {
             builder = builder.until(target);
+        }
+        if let Some(budget) = self.memory_budget {
+            builder = builder.memory_budget(budget);
         }
         match &self.begun {
             None => builder.build(),
@@ -278,6 +286,11 @@ fn generate(options: &Options) -> Result<Made, Failure> {
         )
     };
     let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
+    let boundary = match options.periodic {
+        None => Boundary::Free,
+        Some(_) => Boundary::Periodic,
+    };
+    LoadingSolver::check_room(&grid, boundary, options.memory_budget).map_err(failed)?;
     let mut surface = SelfAffine::zhang2020(seed);
     let two_cells = 2.0 * grid.dx().max(grid.dy());
     let wanted = surface.short_cutoff_wavelength();

@@ -12,7 +12,7 @@ use super::fields::Format;
 use crate::elasticity::Elasticity;
 use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
-use crate::values::{fraction, positive};
+use crate::values::{bytes, fraction, positive};
 
 /// The exact loading path of a rough surface: one state of contact for each node that touches
 ///
@@ -74,6 +74,10 @@ pub(crate) struct Options {
     /// Go on with the path of a record, to where it was to end unless another end is given
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "side", "side_y", "e_star", "material", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
+
+    /// Bytes that the path may hold at most, 2e9 say [default: three quarters of the memory]
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    pub(super) memory_budget: Option<usize>,
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,

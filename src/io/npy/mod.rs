@@ -2,8 +2,7 @@
 
 mod header;
 
-use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use nalgebra::DMatrix;
@@ -14,6 +13,7 @@ use super::bytes::{Bytes, read_file, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
 use super::raw::{Channel, decode};
+use super::whole_file;
 use crate::Error;
 
 /// Reads a two-dimensional array of `float64`, `float32` or integers from a NumPy `.npy` file.
@@ -43,15 +43,14 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
 ///
 /// Element `[(ix, iy)]` of the matrix is element `[ix, iy]` of the array that `numpy.load` returns.
 /// The file is what `numpy.save` would write, version 1.0 of the format; an existing one is
-/// overwritten.
+/// replaced, once the new one is whole.
 ///
 /// # Errors
 ///
 /// [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_npy(path: impl AsRef<Path>, matrix: &DMatrix<f64>) -> Result<(), Error> {
     let path = path.as_ref();
-    File::create(path)
-        .and_then(|file| write(BufWriter::new(file), matrix))
+    whole_file::write(path, |output| write(output, matrix))
         .map_err(|error| Fault::Io(error).in_file(path, NAME))
 }
 
@@ -156,7 +155,7 @@ fn dimensions(header: &Header, expected: usize) -> Fault {
     ))
 }
 
-fn write(mut output: impl Write, matrix: &DMatrix<f64>) -> std::io::Result<()> {
+pub(super) fn write(mut output: impl Write, matrix: &DMatrix<f64>) -> std::io::Result<()> {
     let (nx, ny) = matrix.shape();
     output.write_all(&header_of("<f8", &[nx, ny]))?;
     for row in matrix.row_iter() {

@@ -18,6 +18,8 @@ use self::record::{Link, Points, Record};
 use super::fault::Fault;
 use super::raw::{Channel, Parsed, decode};
 
+#[cfg(test)]
+pub(super) use self::write::write;
 pub use self::write::write_x3p;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {

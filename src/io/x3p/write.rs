@@ -1,7 +1,6 @@
 //! Writing `.x3p` files.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, Seek, Write};
 use std::path::Path;
 
 use md5::{Digest, Md5};
@@ -11,6 +10,8 @@ use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use super::archive::{DESCRIPTION, hex, md5_of};
 use crate::io::fault::Fault;
+use crate::io::output::Output;
+use crate::io::whole_file;
 use crate::{Error, Grid};
 
 /// What the member with the checksum of the description is called.
@@ -23,7 +24,7 @@ const DATA: &str = "bindata/data.bin";
 ///
 /// Nothing is compressed: the digits of measured heights hardly can be, and a plane could to less than readers accept
 /// that beware of archives made to fill a memory. No time is written, so that the same heights give the same file.
-/// An existing file is overwritten.
+/// An existing file is replaced, once the new one is whole.
 ///
 /// # Errors
 ///
@@ -31,12 +32,11 @@ const DATA: &str = "bindata/data.bin";
 pub fn write_x3p(path: impl AsRef<Path>, grid: &Grid, heights: &DMatrix<f64>) -> Result<(), Error> {
     grid.check_shape(heights.shape())?;
     let path = path.as_ref();
-    File::create(path)
-        .and_then(|file| write(BufWriter::new(file), grid, heights))
+    whole_file::write(path, |output| write(output, grid, heights))
         .map_err(|error| Fault::Io(error).in_file(path, "X3P"))
 }
 
-pub(super) fn write(
+pub(in crate::io) fn write(
     output: impl Write + Seek,
     grid: &Grid,
     heights: &DMatrix<f64>,
@@ -45,7 +45,7 @@ pub(super) fn write(
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default())
         .system(System::Unix);
-    let mut archive = ZipWriter::new(output);
+    let mut archive = ZipWriter::new(Output::new(output));
     // Members of 4 GiB and more need longer fields from the start.
     let long = heights.len() >= (u32::MAX / 8) as usize;
     archive.start_file(DATA, options.large_file(long))?;
@@ -60,7 +60,7 @@ pub(super) fn write(
     archive.write_all(description.as_bytes())?;
     archive.start_file(CHECKSUM, options)?;
     writeln!(archive, "{} *{DESCRIPTION}", md5_of(description.as_bytes()))?;
-    archive.finish()?.flush()
+    archive.finish()?.finish()
 }
 
 /// The bytes of a height: of all numbers that are not finite, the one that the standard knows.

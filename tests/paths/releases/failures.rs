@@ -145,7 +145,8 @@ fn states_before_a_failure_stay() {
             assert_eq!(path.next().unwrap().unwrap(), *expected);
         }
         let error = path.next().unwrap().unwrap_err();
-        assert!(matches!(error, Error::NotMonotone { .. }), "{error}");
+        let closed = matches!(error, Error::Updater(UpdaterError::ContactNotClosed { .. }));
+        assert!(closed, "{error}");
         assert!(path.next().is_none());
         assert_eq!(path.state().as_ref(), expected[..good].last());
         for state in &expected[..good] {

@@ -1,0 +1,59 @@
+//! What tests of the program share.
+#![allow(dead_code, unreachable_pub)]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder that is made with its test, and removed with it.
+pub struct Scratch(pub PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> std::io::Result<Self> {
+        let name = format!("asperity-{name}-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        fs::create_dir_all(&folder)?;
+        Ok(Self(folder))
+    }
+
+    pub fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // It may be gone already.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A file among the data of the library's tests.
+pub fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../tests/data")
+        .join(name)
+}
+
+/// The program in a folder.
+pub fn asperity(folder: &Path, arguments: &[&OsStr]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+/// The program under a limit that a shell sets first.
+pub fn limited(folder: &Path, limit: &str, arguments: &[&OsStr]) -> std::io::Result<Output> {
+    Command::new("sh")
+        .current_dir(folder)
+        .args(["-c", &format!("{limit} && exec \"$@\""), "sh"])
+        .arg(env!("CARGO_BIN_EXE_asperity"))
+        .args(arguments)
+        .output()
+}
+
+/// What a program said on stderr.
+pub fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
