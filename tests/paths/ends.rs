@@ -126,3 +126,26 @@ fn until_is_any_limit() {
         ends(builder().max_load(at.load))
     );
 }
+
+/// A path tells its limits, as they were given, and none that were not.
+#[test]
+fn targets_are_the_limits() {
+    let (surface, kernel) = (rough(&grid(), 2), &kernels(grid())[0].1);
+    let builder = || LoadingSolver::builder(&surface, kernel);
+    let gap = 0.5 * states(&surface, kernel)[0].mean_gap;
+    let load = (builder().max_load(3.0), ContactTarget::Load(3.0));
+    let approach = (builder().max_approach(1e-6), ContactTarget::Approach(1e-6));
+    let mean_gap = (builder().min_mean_gap(gap), ContactTarget::MeanGap(gap));
+    // 18 × 15 nodes.
+    let nodes = (
+        builder().max_nodes(27),
+        ContactTarget::AreaFraction(27.0 / 270.0),
+    );
+    for (builder, target) in [load, approach, mean_gap, nodes] {
+        assert_eq!(builder.build().unwrap().targets(), [target]);
+    }
+    assert_eq!(builder().build().unwrap().targets(), []);
+    let both = builder().max_load(3.0).max_approach(1e-6);
+    let targets = [ContactTarget::Load(3.0), ContactTarget::Approach(1e-6)];
+    assert_eq!(both.build().unwrap().targets(), targets);
+}
