@@ -149,3 +149,28 @@ fn targets_are_the_limits() {
     let targets = [ContactTarget::Load(3.0), ContactTarget::Approach(1e-6)];
     assert_eq!(both.build().unwrap().targets(), targets);
 }
+
+/// What a state is read at, it has to the last bit, whatever the rounding of the rest.
+#[test]
+fn states_are_read_where_they_were_asked_for() {
+    let surface = rough(&grid(), 2);
+    for (name, kernel) in kernels(grid()) {
+        let all = states(&surface, &kernel);
+        let history: History = all.iter().copied().collect();
+        for (k, pair) in all.windows(2).enumerate() {
+            let [before, after] = [&pair[0], &pair[1]];
+            // Anywhere between the two.
+            let part = (0.618 * k as f64).fract();
+            let between = |a: f64, b: f64| a + part * (b - a);
+            let context = format!("{name}, step {}", before.step);
+            let load = between(before.load, after.load);
+            assert_eq!(history.at_load(load).unwrap().load, load, "{context}");
+            let approach = between(before.approach, after.approach);
+            let read = history.at_approach(approach).unwrap();
+            assert_eq!(read.approach, approach, "{context}");
+            let mean_gap = between(before.mean_gap, after.mean_gap);
+            let read = history.at_mean_gap(mean_gap).unwrap();
+            assert_eq!(read.mean_gap, mean_gap, "{context}");
+        }
+    }
+}
