@@ -146,10 +146,7 @@ fn a_sphere_is_symmetric() {
 }
 
 /// Two nodes of a periodic half-space, from full contact back to approaches at which one of them carries: with
-/// the eigenvalue λ of the only wave, it takes all of the load `ΔA 2δ / λ`.
-///
-/// The prediction has pressure at both, and the equations of full contact have no solution at an approach
-/// short of the mean gap: a node has to be taken out first.
+/// the eigenvalue λ of the only wave, it takes all of the load `ΔA 2δ / λ`. The prediction has pressure at both.
 #[test]
 fn from_full_contact_to_an_approach() {
     let grid = Grid::new(2, 1, 1.0, 1.5).unwrap();

@@ -207,7 +207,7 @@ fn what_does_not_repeat_is_refused() -> Result<(), Error> {
                 let (x, y) = (x.min(4 - x) as f64, y.min(5 - y) as f64);
                 let wrong = (di, dj) == odd || (-di, -dj) == odd;
                 if wrong {
-                    0.25
+                    0.3
                 } else {
                     1.0 / (1.0 + x + 2.0 * y)
                 }
@@ -215,12 +215,7 @@ fn what_does_not_repeat_is_refused() -> Result<(), Error> {
         )
     };
     assert!(make((9, 9)).is_ok());
-    for (odd, period) in [
-        ((0, 3), (0, 5)),
-        ((2, 0), (4, 0)),
-        ((3, 0), (4, 0)),
-        ((0, -1), (0, 5)),
-    ] {
+    for (odd, period) in [((0, 3), (0, 5)), ((3, 0), (4, 0)), ((0, -1), (0, 5))] {
         match make(odd) {
             Err(Error::Kernel(KernelError::NotPeriodic {
                 di,
@@ -237,7 +232,7 @@ fn what_does_not_repeat_is_refused() -> Result<(), Error> {
                     named.contains(&odd) || named.contains(&opposite),
                     "{named:?}"
                 );
-                assert!(value == 0.25 || repeated == 0.25);
+                assert!(value == 0.3 || repeated == 0.3);
             }
             other => panic!("{odd:?}: {other:?}"),
         }
