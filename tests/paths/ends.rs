@@ -80,7 +80,9 @@ fn paths_end_exactly_at_their_limits() {
                 assert!(read(&history, beyond).is_none(), "{context}");
                 // Fields of the present state, which is the one at the limit.
                 assert_eq!(path.state(), Some(last));
-                let load = path.pressure().unwrap().sum() * path.grid().cell_area();
+                let pressure = path.pressure().unwrap();
+                assert_eq!(path.max_pressure().unwrap(), pressure.max());
+                let load = pressure.sum() * path.grid().cell_area();
                 assert!((load / last.load - 1.0).abs() < 1e-12, "{context}");
                 let certificate = path.certificate().unwrap();
                 assert!(certificate.least_pressure >= -1e-12, "{context}");
