@@ -129,7 +129,7 @@ impl<'a> ActiveSet<'a> {
         let energy = sum_over(pressure.len(), |i| {
             pressure[i] / sum * (0.5 * (closure[i] + gap[i]))
         });
-        let wider = |best: usize, node: usize| if gap[node] < gap[best] { node } else { best };
+        let lower = |best: usize, node: usize| if gap[node] < gap[best] { node } else { best };
         let highest = (1..gap.len()).fold(0, lower);
         let alone = 0.5 * sum * own + gap[highest];
         // NaN, from a start that failed, is replaced as well.
