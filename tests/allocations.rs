@@ -1,14 +1,10 @@
-//! States cost no allocation: only a new window does. And what says how many bytes it holds is right.
+//! States cost no allocation: only a new window does.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use allocation_counter::measure;
-use asperity::convolution::Convolution;
 use asperity::surface::Paraboloid;
 use asperity::updater::{LinearUpdater, RecursiveCholesky};
-use asperity::{
-    Boussinesq, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
-    SelfAffine, Surface,
-};
+use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine, Surface};
 
 /// One call of `next`.
 struct Call {
@@ -97,39 +93,4 @@ fn growing_windows_allocate_a_few_times_in_all() {
     // Each doubles a buffer whose last size is below 2^17 numbers.
     assert!(other_allocations(&calls) <= 17);
     assert!(windows(&calls) < calls.len() / 4);
-}
-
-/// Convolutions and single loads hold what they say, counted by the allocator: before a load and after it.
-/// The plans of the transforms are what is left out.
-#[test]
-fn bytes_are_what_is_held() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.unwrap().install(|| {
-        let grid = Grid::new(128, 96, 1.0, 1.0).unwrap();
-        let kernels: [Box<dyn InfluenceKernel>; 2] = [
-            Box::new(Boussinesq::new(grid, 1.0).unwrap()),
-            Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
-        ];
-        let surface = Paraboloid::new(100.0).unwrap();
-        for kernel in &kernels {
-            let is_near = |said: usize, counted: i64| {
-                let ratio = said as f64 / counted as f64;
-                assert!((0.93..1.02).contains(&ratio), "{said} of {counted}");
-            };
-            let mut convolution = None;
-            let counted = measure(|| convolution = Some(Convolution::new(kernel).unwrap()));
-            is_near(convolution.unwrap().bytes(), counted.bytes_current);
-            for load in [None, Some(1e-3), Some(1e6)] {
-                let mut solver = None;
-                let counted = measure(|| {
-                    let mut built = FixedLoadSolver::new(&surface, kernel).unwrap();
-                    if let Some(load) = load {
-                        built.solve(load).unwrap();
-                    }
-                    solver = Some(built);
-                });
-                is_near(solver.unwrap().bytes(), counted.bytes_current);
-            }
-        }
-    });
 }
