@@ -252,7 +252,7 @@ mod tests {
     /// not, at its end.
     #[test]
     fn a_release_goes_as_far_as_the_energy_falls() -> Result<(), Error> {
-        for (overshoot, is_whole) in [(30.0, false), (8.0, false), (1.0, true)] {
+        for (overshoot, is_whole) in [(30.0, false), (8.0, false), (1.5, true), (1.0, true)] {
             let (mut level, prescribed) = spread_out()?;
             let begin = level.iterate.pressure.clone();
             let mut descent = Descent::new(&mut level, prescribed, CRITERIA);
@@ -270,6 +270,16 @@ mod tests {
             let sparse = descent.level.preconditioner.sparse();
             release(sparse, &mut end, &descent.weights, prescribed);
             descent.release(&start)?;
+            // The approach is the mean of what lies on the nodes that still carry, by their weights.
+            let carrying: Vec<usize> = (0..end.len())
+                .filter(|&place| descent.pressure[place] > 0.0)
+                .collect();
+            let [moment, total] = carrying.iter().fold([0.0; 2], |[moment, total], &place| {
+                let weight = descent.weights[place];
+                [moment + weight * descent.closure[place], total + weight]
+            });
+            let approach = descent.level.iterate.approach;
+            assert!((approach - moment / total).abs() < 1e-13 * approach);
             let reached = level.iterate.pressure.clone();
             let mut whole = begin.clone();
             level.iterate.contact.scatter(&end, &mut whole);
@@ -282,6 +292,7 @@ mod tests {
                     .map(|(begin, end)| begin + part * (end - begin))
                     .collect();
                 let other = energy(&mut level, &on_the_way)?;
+                // Beyond the middle nothing was asked.
                 if !is_whole || part <= 0.5 {
                     assert!(lowest <= other + rounding, "{overshoot}, {part}");
                 }
