@@ -358,3 +358,16 @@ fn waves_that_hardly_answer_are_accepted() -> Result<(), Error> {
     );
     Ok(())
 }
+
+/// What is said before there is a convolution is what it says itself.
+#[test]
+fn memory_is_known_beforehand() -> Result<(), Error> {
+    for (nx, ny) in [(100, 37), (1, 50), (64, 64)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+        let free = Convolution::new(&Slow(grid))?.bytes();
+        assert_eq!(Convolution::bytes_on(&grid, Boundary::Free), free);
+        let periodic = Convolution::new(&PeriodicBoussinesq::new(grid, 1.0)?)?.bytes();
+        assert_eq!(Convolution::bytes_on(&grid, Boundary::Periodic), periodic);
+    }
+    Ok(())
+}
