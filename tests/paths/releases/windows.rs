@@ -77,8 +77,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
     assert!(paths >= 10 && taken_back >= 30, "{paths} {taken_back}");
 }
 
-/// On a layer gaps are nearly convex: the ends of windows hardly ever contradict their events, unless the wrong
-/// approach is asked.
+/// On a layer gaps are nearly convex: the ends of windows hardly ever contradict their events.
 #[test]
 fn little_is_taken_back_on_a_layer() {
     let kernel = layer(grid(), ContactGrowth::Monotone);
