@@ -113,3 +113,55 @@ impl Conditions {
 fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / scale }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four nodes whose errors are known, all numbers short in binary: everything is exact.
+    #[test]
+    fn errors_are_those_of_the_fields() {
+        let conditions = Conditions {
+            sum: 4.0,
+            length: 2.0,
+        };
+        let nodes = [
+            (2.0, 0.125, true),
+            (0.0, -0.5, false),
+            (1.0, -0.25, true),
+            (0.0, 3.0, false),
+            (-1.0, 0.0, true),
+        ];
+        let certificate = conditions.check(nodes.into_iter());
+        // −1 over a mean of 2/3.
+        assert_eq!(certificate.least_pressure, -1.5);
+        assert_eq!(certificate.least_gap, -0.25);
+        assert_eq!(certificate.greatest_contact_gap, 0.125);
+        // 2 · 1/8 + 1 · 1/4 over 2 · 2.
+        assert_eq!(certificate.complementarity, 0.125);
+        assert_eq!(certificate.load_error, -0.5);
+        assert_eq!(certificate.length, 2.0);
+    }
+
+    /// Nothing in contact is no error, and without any length there is none to divide by.
+    #[test]
+    fn nothing_in_contact() {
+        let conditions = Conditions {
+            sum: 0.0,
+            length: 0.0,
+        };
+        let certificate = conditions.check([(0.0, 0.5, false)].into_iter());
+        assert_eq!(
+            (certificate.least_pressure, certificate.load_error),
+            (0.0, 0.0)
+        );
+        assert_eq!(
+            (certificate.least_gap, certificate.complementarity),
+            (0.5, 0.0)
+        );
+        assert_eq!(
+            (certificate.greatest_contact_gap, certificate.length),
+            (0.0, 1.0)
+        );
+    }
+}

@@ -202,6 +202,16 @@ mod tests {
         Ok(())
     }
 
+    /// A contact of all nodes holds what was said before there was one.
+    #[test]
+    fn bytes_are_those_of_full_contact() -> Result<(), Error> {
+        let grid = Grid::new(30, 20, 1.0, 1.0)?;
+        let contact = ContactSequence::with_order(grid, 0..600)?;
+        let held = size_of_val(contact.order()) + size_of_val(&contact.is_in[..]);
+        assert_eq!(ContactSequence::bytes_on(&grid), held);
+        Ok(())
+    }
+
     #[test]
     fn the_contact_of_any_state_is_a_beginning_of_the_order() -> Result<(), Error> {
         let grid = Grid::new(3, 2, 1.0, 1.0)?;

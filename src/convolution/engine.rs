@@ -201,8 +201,7 @@ impl<T: Real> Engine<T> {
             + parts(grid) * scratch
     }
 
-    /// Writes the displacement under `pressure`, multiplied by the second factor, into
-    /// `displacement`; the first factor brings pressures into the range of T.
+    /// Writes the displacement under `pressure` into `displacement`.
     ///
     /// # Errors
     ///
@@ -210,16 +209,15 @@ impl<T: Real> Engine<T> {
     pub(crate) fn apply<F: Real>(
         &mut self,
         pressure: &[F],
-        factors: [f64; 2],
         displacement: &mut [F],
     ) -> Result<(), Error> {
         self.check_length(pressure)?;
         self.check_length(displacement)?;
         let Self { filter, spectra } = self;
         if spectra.scratch.len() > 1 {
-            inside(|| filter.apply(spectra, pressure, factors, displacement));
+            inside(|| filter.apply(spectra, pressure, displacement));
         } else {
-            filter.apply(spectra, pressure, factors, displacement);
+            filter.apply(spectra, pressure, displacement);
         }
         Ok(())
     }
@@ -238,19 +236,13 @@ impl<T: Real> Engine<T> {
 }
 
 impl<T: Real> Filter<T> {
-    fn apply<F: Real>(
-        &self,
-        spectra: &mut Spectra<T>,
-        pressure: &[F],
-        factors: [f64; 2],
-        displacement: &mut [F],
-    ) {
+    fn apply<F: Real>(&self, spectra: &mut Spectra<T>, pressure: &[F], displacement: &mut [F]) {
         let (transforms, (nx, ny)) = (&self.transforms, self.grid.shape());
         spectra.fill_rows(transforms, ny, |iy, spectrum, work| {
-            transforms.forward_row(&pressure[iy * nx..][..nx], factors[0], spectrum, work);
+            transforms.forward_row(&pressure[iy * nx..][..nx], spectrum, work);
         });
         spectra.filter_columns(transforms, ny, &self.symbol);
-        spectra.restore_rows(transforms, (nx, ny), factors[1], displacement);
+        spectra.restore_rows(transforms, (nx, ny), displacement);
     }
 }
 
@@ -345,7 +337,6 @@ impl<T: Real> Spectra<T> {
         &mut self,
         transforms: &Transforms<T>,
         (nx, ny): (usize, usize),
-        factor: f64,
         displacement: &mut [F],
     ) {
         let pitch = pitch(transforms.columns());
@@ -360,7 +351,7 @@ impl<T: Real> Spectra<T> {
                 let spectra = lines.chunks_mut(pitch);
                 for (values, spectrum) in displacement.chunks_mut(nx).zip(spectra) {
                     let spectrum = &mut spectrum[..transforms.columns()];
-                    transforms.inverse_row(spectrum, factor, values, &mut scratch.work);
+                    transforms.inverse_row(spectrum, values, &mut scratch.work);
                 }
             },
         );

@@ -189,7 +189,7 @@ impl Convolution {
     ///
     /// [`Error::LengthMismatch`] unless both slices have one value for each node.
     pub fn apply(&mut self, pressure: &[f64], displacement: &mut [f64]) -> Result<(), Error> {
-        self.engine.apply(pressure, [1.0, 1.0], displacement)
+        self.engine.apply(pressure, displacement)
     }
 
     /// Writes the displacements \[m\] under two `pressures` \[Pa\] into `displacements`.
@@ -249,7 +249,7 @@ impl SingleConvolution {
         pressure: &[f32],
         displacement: &mut [f32],
     ) -> Result<(), Error> {
-        self.engine.apply(pressure, [1.0, 1.0], displacement)
+        self.engine.apply(pressure, displacement)
     }
 }
 

@@ -7,7 +7,11 @@ use rand_chacha::ChaCha8Rng;
 use super::engine::{PARALLEL_NODES, PARTS};
 use super::transpose::BLOCK;
 use super::{Convolution, direct_sum};
-use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use crate::kernel::KernelTable;
+use crate::{
+    Boundary, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, MeanDisplacement,
+    PeriodicBoussinesq, Spectral,
+};
 
 /// 1 / √(1 + r²): as slow a decay as Boussinesq's, so that a wrong padding shows.
 struct Slow(Grid);
@@ -328,5 +332,42 @@ fn memory_counts_symbol_and_spectra() -> Result<(), Error> {
     // Working memory: each part has the columns of a block, and less than as much again.
     let working = 2 * PARTS * BLOCK * py * 16;
     assert!(convolution.bytes() > least && convolution.bytes() < least + working);
+    Ok(())
+}
+
+/// Short waves that hardly displace anything are positive still, as far as rounding of a sum of all
+/// coefficients can tell: some 10⁻¹⁵ of the greatest.
+#[test]
+fn waves_that_hardly_answer_are_accepted() -> Result<(), Error> {
+    let grid = Grid::square(32, 1.0)?;
+    let shortest = std::f64::consts::PI * 32.0 * std::f64::consts::SQRT_2;
+    let check = |least: f64| {
+        let symbol = |qx: f64, qy: f64| least.powf(qx.hypot(qy) / shortest);
+        let (mean, growth) = (MeanDisplacement::Physical, ContactGrowth::Unknown);
+        let table = KernelTable::from_symbol(grid, mean, growth, symbol)?;
+        Convolution::from_table(&table)?.check_definite(&table)
+    };
+    check(1e-9)?;
+    let rounded = check(1e-18);
+    assert!(
+        matches!(
+            rounded,
+            Err(Error::Kernel(KernelError::SymbolNotPositive { .. }))
+        ),
+        "{rounded:?}"
+    );
+    Ok(())
+}
+
+/// What is said before there is a convolution is what it says itself.
+#[test]
+fn memory_is_known_beforehand() -> Result<(), Error> {
+    for (nx, ny) in [(100, 37), (1, 50), (64, 64)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+        let free = Convolution::new(&Slow(grid))?.bytes();
+        assert_eq!(Convolution::bytes_on(&grid, Boundary::Free), free);
+        let periodic = Convolution::new(&PeriodicBoussinesq::new(grid, 1.0)?)?.bytes();
+        assert_eq!(Convolution::bytes_on(&grid, Boundary::Periodic), periodic);
+    }
     Ok(())
 }

@@ -86,7 +86,6 @@ impl<T: Real> Transforms<T> {
     pub(super) fn forward_row<F: Real>(
         &self,
         values: &[F],
-        factor: f64,
         spectrum: &mut [Complex<T>],
         work: &mut Workspace<T>,
     ) {
@@ -99,7 +98,7 @@ impl<T: Real> Transforms<T> {
             #[inline(always)]
             || {
                 for (place, &value) in inside.iter_mut().zip(values) {
-                    *place = T::rounded(value.widened() * factor);
+                    *place = T::rounded(value.widened());
                 }
             },
         );
@@ -137,7 +136,6 @@ impl<T: Real> Transforms<T> {
     pub(super) fn inverse_row<F: Real>(
         &self,
         spectrum: &mut [Complex<T>],
-        factor: f64,
         values: &mut [F],
         work: &mut Workspace<T>,
     ) {
@@ -156,7 +154,7 @@ impl<T: Real> Transforms<T> {
             #[inline(always)]
             || {
                 for (value, place) in values.iter_mut().zip(&work.row) {
-                    *value = F::rounded(place.widened() * factor);
+                    *value = F::rounded(place.widened());
                 }
             },
         );

@@ -287,3 +287,51 @@ impl<'a> ActiveSet<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::krylov::NodeSet;
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::{Boussinesq, FixedLoadSolver, Grid, InfluenceKernel, PeriodicBoussinesq};
+
+    /// Where everything carries and the mean displacement is arbitrary, no pressure answers to an approach: a
+    /// round takes out the node with the widest gap, and no other. A free half-space needs no such thing.
+    #[test]
+    fn an_approach_leaves_one_node_out() -> Result<(), Error> {
+        let grid = Grid::new(6, 5, 1.0, 1.0)?;
+        let surface = SelfAffine::new(0.8, 4.0, 2.0, Amplitude::RmsHeight(0.01), 1)?;
+        let free = Boussinesq::new(grid, 1.0)?;
+        let periodic = PeriodicBoussinesq::new(grid, 1.0)?;
+        let kernels: [(&dyn InfluenceKernel, usize); 2] = [(&free, 30), (&periodic, 29)];
+        for (kernel, left) in kernels {
+            let mut level = FixedLoadSolver::new(&surface, kernel)?.into_finest();
+            // Uniform pressure displaces the mean plane only: the widest gap is the initial one.
+            level.iterate.pressure.fill(1.0);
+            level.refresh()?;
+            let approach = 0.9 * level.mean_initial_gap();
+            level.iterate.approach = approach;
+            let wider = |best: usize, node: usize| {
+                if level.gap[node] > level.gap[best] {
+                    node
+                } else {
+                    best
+                }
+            };
+            let widest = (1..30).fold(0, wider);
+            let criteria = Criteria {
+                tolerance: 1e-8,
+                floor: 0.0,
+                length: f64::INFINITY,
+                max_iterations: 100,
+                verify: true,
+            };
+            ActiveSet::new(&mut level, Prescribed::Approach(approach), criteria)
+                .round(criteria, INNER)?;
+            assert_eq!(level.iterate.contact.len(), left);
+            let is_in = level.iterate.contact.places()[widest] != NodeSet::NONE;
+            assert_eq!(is_in, left == 30);
+        }
+        Ok(())
+    }
+}

@@ -133,3 +133,185 @@ fn extrapolate(now: &mut [f64], before: &[f64], factor: f64) {
         *now += factor * (*now - before);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::FlatPunch;
+    use crate::{Boussinesq, Error, FixedLoadSolver, Grid, InfluenceKernel, PeriodicBoussinesq};
+
+    const NODES: usize = 6;
+    /// Rounding of some sums of numbers of the order of 10.
+    const ROUNDING: f64 = 1e-13;
+
+    /// States over the sum S of their pressures, all parabolas: pressures `a + b S + c S²` with Σ b = 1 and
+    /// Σ a = Σ c = 0, and displacements and approach likewise. Without `curvature` they are lines.
+    struct States {
+        curvature: f64,
+    }
+
+    impl States {
+        fn pressure(&self, node: usize, sum: f64) -> f64 {
+            let sign = if node.is_multiple_of(2) { 1.0 } else { -1.0 };
+            sign * (0.3 + self.curvature * sum * sum) + sum * (1.0 + sign * 0.4) / NODES as f64
+        }
+
+        fn pressure_rate(&self, node: usize, sum: f64) -> f64 {
+            let sign = if node.is_multiple_of(2) { 1.0 } else { -1.0 };
+            sign * 2.0 * self.curvature * sum + (1.0 + sign * 0.4) / NODES as f64
+        }
+
+        fn closure(&self, node: usize, sum: f64) -> f64 {
+            let node = node as f64;
+            0.7 + node + sum * (0.2 + 0.1 * node) - self.curvature * node * sum * sum
+        }
+
+        fn closure_rate(&self, node: usize, sum: f64) -> f64 {
+            let node = node as f64;
+            0.2 + 0.1 * node - 2.0 * self.curvature * node * sum
+        }
+
+        fn approach(&self, sum: f64) -> f64 {
+            0.5 + 1.5 * sum - self.curvature * sum * sum
+        }
+
+        fn approach_rate(&self, sum: f64) -> f64 {
+            1.5 - 2.0 * self.curvature * sum
+        }
+
+        /// Makes the level hold the state.
+        fn put(&self, level: &mut Level, sum: f64) {
+            let iterate = &mut level.iterate;
+            for node in 0..NODES {
+                iterate.pressure[node] = self.pressure(node, sum);
+                iterate.closure[node] = self.closure(node, sum);
+            }
+            iterate.approach = self.approach(sum);
+        }
+
+        /// Pressure and displacement per unit of approach, in the gauge of the level.
+        fn tangent(&self, level: &Level, sum: f64) -> Tangent {
+            let total = 1.0 / (self.approach_rate(sum) + level.uniform());
+            let nodes = 0..NODES;
+            Tangent {
+                rate: (nodes.clone())
+                    .map(|node| total * self.pressure_rate(node, sum))
+                    .collect(),
+                displacement: nodes
+                    .map(|node| total * (self.closure_rate(node, sum) + level.uniform()))
+                    .collect(),
+            }
+        }
+
+        /// Where the level is from this state at most.
+        fn distance(&self, level: &Level, sum: f64) -> f64 {
+            let iterate = &level.iterate;
+            let nodes = (0..NODES).map(|node| {
+                let pressure = (iterate.pressure[node] - self.pressure(node, sum)).abs();
+                pressure.max((iterate.closure[node] - self.closure(node, sum)).abs())
+            });
+            nodes.fold((iterate.approach - self.approach(sum)).abs(), f64::max)
+        }
+    }
+
+    /// A free half-space, and a periodic one that is computed in a gauge.
+    fn levels() -> Result<[Level; 2], Error> {
+        let grid = Grid::new(3, 2, 1.0, 1.0)?;
+        let free = Boussinesq::new(grid, 1.0)?;
+        let periodic = PeriodicBoussinesq::new(grid, 1.0)?;
+        let level = |kernel: &dyn InfluenceKernel| -> Result<Level, Error> {
+            let mut level = FixedLoadSolver::new(&FlatPunch::default(), kernel)?.into_finest();
+            level.gap = (0..NODES).map(|node| 0.3 * node as f64).collect();
+            Ok(level)
+        };
+        Ok([level(&free)?, level(&periodic)?])
+    }
+
+    /// Without tangents the line through two states, or through one and no contact if the other is too close
+    /// to it for so long a step.
+    #[test]
+    fn lines() -> Result<(), Error> {
+        let states = States { curvature: 0.0 };
+        for mut level in levels()? {
+            let mut continuation = Continuation::default();
+            let in_proportion = |level: &mut Level, continuation: &mut Continuation, from, to| {
+                states.put(level, from);
+                continuation.predict(level, to);
+                let factor = to / from;
+                for node in 0..NODES {
+                    let gap = level.gap[node];
+                    let pressure = factor * states.pressure(node, from);
+                    let closure = gap + factor * (states.closure(node, from) - gap);
+                    assert!((level.iterate.pressure[node] - pressure).abs() < ROUNDING);
+                    assert!((level.iterate.closure[node] - closure).abs() < ROUNDING);
+                }
+                assert!((level.iterate.approach - factor * states.approach(from)).abs() < ROUNDING);
+            };
+            in_proportion(&mut level, &mut continuation, 1.0, 1.2);
+            for (from, to) in [(1.2, 1.5), (1.5, 1.45), (1.45, 1.41)] {
+                states.put(&mut level, from);
+                continuation.predict(&mut level, to);
+                // The second step turns round, and begins anew; the third goes on from it.
+                let distance = states.distance(&level, to);
+                assert_eq!(distance < ROUNDING, to != 1.45, "{to}: {distance:e}");
+            }
+            // More than twice as far as the last step.
+            in_proportion(&mut level, &mut continuation, 1.41, 1.2);
+        }
+        Ok(())
+    }
+
+    /// With tangents the parabola through two states.
+    #[test]
+    fn parabolas() -> Result<(), Error> {
+        let states = States { curvature: 0.02 };
+        for mut level in levels()? {
+            let mut continuation = Continuation::default();
+            // With one tangent a line; with two that are close a parabola.
+            for (from, to, is_parabola) in [
+                (1.0, 1.1, false),
+                (1.1, 1.25, true),
+                (1.25, 1.2, false),
+                (1.2, 1.12, true),
+                (1.12, 0.9, false),
+            ] {
+                states.put(&mut level, from);
+                continuation.tangent = states.tangent(&level, from);
+                continuation.predict(&mut level, to);
+                if is_parabola {
+                    let distance = states.distance(&level, to);
+                    assert!(distance < ROUNDING, "{from} to {to}: {distance:e}");
+                    continue;
+                }
+                let change = to - from;
+                let approach = states.approach(from) + change * states.approach_rate(from);
+                assert!((level.iterate.approach - approach).abs() < ROUNDING);
+                for node in 0..NODES {
+                    let pressure =
+                        states.pressure(node, from) + change * states.pressure_rate(node, from);
+                    let closure =
+                        states.closure(node, from) + change * states.closure_rate(node, from);
+                    assert!((level.iterate.pressure[node] - pressure).abs() < ROUNDING);
+                    assert!((level.iterate.closure[node] - closure).abs() < ROUNDING);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The sum that goes with an approach: in proportion, or along the tangent.
+    #[test]
+    fn sums_at_an_approach() -> Result<(), Error> {
+        let states = States { curvature: 0.0 };
+        for mut level in levels()? {
+            states.put(&mut level, 2.0);
+            let approach = states.approach(2.6);
+            let proportional = Continuation::default().sum_at(&level, approach);
+            let expected = 2.0 * approach / states.approach(2.0);
+            assert!((proportional - expected).abs() < ROUNDING);
+            let known = Continuation::new(states.tangent(&level, 2.0));
+            assert!((known.sum_at(&level, approach) - 2.6).abs() < ROUNDING);
+        }
+        Ok(())
+    }
+}

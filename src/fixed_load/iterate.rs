@@ -94,3 +94,16 @@ impl Errors {
         greatest(2, 0.0, |i| [self.residual, self.in_set()][i])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two fields, and the places of the contact: those of the nodes in it are counted with the preconditioner.
+    #[test]
+    fn bytes_are_those_of_the_fields() {
+        let iterate = Iterate::new(100);
+        let fields = size_of_val(&iterate.pressure[..]) + size_of_val(&iterate.closure[..]);
+        assert_eq!(iterate.bytes(), fields + 100 * size_of::<u32>());
+    }
+}

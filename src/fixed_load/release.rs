@@ -103,3 +103,117 @@ fn correction(inverse: &mut SparseInverse, free: &[bool], x: &[f64]) -> Vec<f64>
     }
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::kernel::KernelTable;
+    use crate::krylov::NodeSet;
+    use crate::{Boussinesq, Error, Grid};
+
+    const NODES: usize = 64;
+    /// Nodes with tension: two neighbours and one by itself.
+    const TENSION: [usize; 3] = [9, 10, 45];
+
+    /// The sparse inverse M of a contact of all nodes, as an operator and as a matrix.
+    fn inverse() -> Result<(SparseInverse, DMatrix<f64>), Error> {
+        let grid = Grid::square(8, 1.0)?;
+        let table = KernelTable::new(&Boussinesq::new(grid, 1.0)?)?;
+        let mut contact = NodeSet::new(NODES);
+        contact.assign(|_| true);
+        let mut inverse = SparseInverse::new(&table);
+        inverse.update(&contact);
+        let mut dense = DMatrix::zeros(NODES, NODES);
+        let (mut unit, mut column) = (vec![0.0; NODES], Vec::new());
+        for j in 0..NODES {
+            unit[j] = 1.0;
+            inverse.apply(&unit, &mut column);
+            dense.column_mut(j).copy_from_slice(&column);
+            unit[j] = 0.0;
+        }
+        Ok((inverse, dense))
+    }
+
+    /// Pressures, three of them negative, with what comes of them by a dense solution, and how far that may
+    /// be missed: the residual that is left on D reaches other nodes through `M_OD M_DD⁻¹`.
+    fn problem(dense: &DMatrix<f64>) -> Result<(Vec<f64>, DVector<f64>, f64), Error> {
+        let mut x: Vec<f64> = (0..NODES).map(|i| 2.0 + (i as f64).sin()).collect();
+        for (place, node) in TENSION.into_iter().enumerate() {
+            x[node] = -0.1 - 0.05 * place as f64;
+        }
+        let own = dense.select_columns(&TENSION);
+        let block = own.select_rows(&TENSION);
+        let tension = DVector::from_iterator(3, TENSION.iter().map(|&node| x[node]));
+        let inverse = (block.try_inverse()).ok_or(Error::FactorizationFailed { nodes: 3 })?;
+        let expected = DVector::from_column_slice(&x) - &own * (&inverse * &tension);
+        let reach = (own * inverse).norm();
+        Ok((x, expected, (ACCURACY * reach + 1e-5) * tension.norm()))
+    }
+
+    /// Nodes with tension end without pressure, and the others change by `−M λ`, in whatever unit.
+    #[test]
+    fn tension_is_set_free() -> Result<(), Error> {
+        let (mut inverse, dense) = inverse()?;
+        let (start, expected, tolerance) = problem(&dense)?;
+        for unit in [1.0, 1e-6, 1e6] {
+            let mut x: Vec<f64> = start.iter().map(|x| unit * x).collect();
+            release(&mut inverse, &mut x, &[], Prescribed::Approach(1.0));
+            for (node, (x, expected)) in x.iter().zip(&expected).enumerate() {
+                let x = x / unit;
+                if TENSION.contains(&node) {
+                    assert_eq!(x, 0.0, "node {node}");
+                } else {
+                    assert!((x - expected).abs() <= tolerance, "{node}: {x} {expected}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A sum that is missing comes back along the weights, and to nodes that carry only.
+    #[test]
+    fn the_sum_is_restored() -> Result<(), Error> {
+        let (mut inverse, dense) = inverse()?;
+        let (start, expected, tolerance) = problem(&dense)?;
+        let weights: Vec<f64> = (0..NODES)
+            .map(|i| 1.0 + 0.5 * (3.0 * i as f64).cos())
+            .collect();
+        let mut x = start.clone();
+        let target = 3.0 * sum(&start);
+        release(&mut inverse, &mut x, &weights, Prescribed::Sum(target));
+        // Rounding of a sum of 64 terms.
+        assert!((sum(&x) / target - 1.0).abs() < 1e-14, "{}", sum(&x));
+        let carrying: Vec<usize> = (0..NODES).filter(|node| !TENSION.contains(node)).collect();
+        let before: f64 = carrying.iter().map(|&node| expected[node]).sum();
+        let capacity: f64 = carrying.iter().map(|&node| weights[node]).sum();
+        let factor = (target - before) / capacity;
+        // The error of every node changes what is missing.
+        let allowed = tolerance * (1.0 + NODES as f64 * 1.5 / capacity);
+        for (node, x) in x.iter().enumerate() {
+            if TENSION.contains(&node) {
+                assert_eq!(*x, 0.0, "node {node}");
+            } else {
+                let expected = expected[node] + factor * weights[node];
+                assert!((x - expected).abs() <= allowed, "{node}: {x} {expected}");
+            }
+        }
+        Ok(())
+    }
+
+    /// Where all have tension nothing is left, and a load that is prescribed is spread evenly.
+    #[test]
+    fn nothing_is_left() -> Result<(), Error> {
+        let (mut inverse, _) = inverse()?;
+        for (prescribed, expected) in [
+            (Prescribed::Approach(1.0), 0.0),
+            (Prescribed::Sum(128.0), 2.0),
+        ] {
+            let mut x = vec![-1.0; NODES];
+            release(&mut inverse, &mut x, &[1.0; NODES], prescribed);
+            assert_eq!(x, [expected; NODES]);
+        }
+        Ok(())
+    }
+}

@@ -194,3 +194,39 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::{Boussinesq, FixedLoadSolver, Grid};
+
+    /// The load to begin with is of the right order: within a step of that of the solution, which is a factor
+    /// of 4.5, in whatever units and for few nodes or many.
+    #[test]
+    fn a_search_begins_near_its_end() -> Result<(), Error> {
+        for (side, e_star) in [(1.0, 1.0), (3e-4, 2e11)] {
+            let grid = Grid::square(48, side)?;
+            let height = Amplitude::RmsHeight(5e-3 * side);
+            let surface = SelfAffine::new(0.8, 0.5 * side, 0.1 * side, height, 1)?;
+            let kernel = Boussinesq::new(grid, e_star)?;
+            let mut solver = FixedLoadSolver::new(&surface, &kernel)?;
+            for nodes in [23, 115, 460] {
+                let fraction = nodes as f64 / grid.nodes() as f64;
+                let solution = solver.solve_target(ContactTarget::AreaFraction(fraction))?;
+                let level = solver.clone().into_finest();
+                let typical = Sought::Nodes(nodes).typical_load(&level);
+                let off = (typical / solution.state.load).ln();
+                assert!(off.abs() < LONGEST, "{nodes} nodes: a factor of e^{off}");
+                let sought = Sought::mean_gap(solution.state.mean_gap, &level, 1e-8)?;
+                assert!(
+                    (sought.typical_load(&level) / solution.state.load)
+                        .ln()
+                        .abs()
+                        < 2.0 * LONGEST
+                );
+            }
+        }
+        Ok(())
+    }
+}

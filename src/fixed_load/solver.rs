@@ -1,6 +1,8 @@
 //! The solver.
 
 use super::hierarchy::Hierarchy;
+#[cfg(test)]
+use super::level::Level;
 use super::search::solve_target;
 use super::settings::Settings;
 use super::solution::FixedLoadSolution;
@@ -137,5 +139,13 @@ impl FixedLoadSolver {
 
     fn stepper(&mut self) -> Stepper<'_> {
         Stepper::new(&self.settings, &mut self.hierarchy)
+    }
+}
+
+#[cfg(test)]
+impl FixedLoadSolver {
+    /// The contact problem on the finest grid, for tests of what works on it.
+    pub(super) fn into_finest(self) -> Level {
+        self.hierarchy.finest
     }
 }

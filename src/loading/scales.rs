@@ -58,3 +58,38 @@ impl Scales {
         UNWATCHED * self.tolerance * approach.max(self.length)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The slower a gap closes, the later it may by its error; but never less than a tie, and no slower than
+    /// rounding tells. Lengths scale with their unit, and rates do not.
+    #[test]
+    fn errors_of_gaps_become_errors_of_times() {
+        for unit in [1.0, 1e-9] {
+            let scales = Scales {
+                length: 2.0 * unit,
+                tolerance: 1e-10,
+                tie: 1e-9 * unit,
+            };
+            // 100 · 1e-10 · 2 over the rate.
+            for (closing, time) in [(1.0, 2e-8), (0.25, 8e-8), (100.0, 1e-9), (0.0, 2e4)] {
+                let found = scales.tie_of(closing) / unit;
+                assert!((found / time - 1.0).abs() < 1e-12, "{closing}: {found:e}");
+            }
+            // Solutions over a span: 1e-10 · 2 / span, between its bounds.
+            for (span, rate) in [(1e-4, 2e-6), (1.0, 5e-7), (0.0, 1e-5)] {
+                let found = scales.rate_tolerance(span * unit);
+                assert!((found / rate - 1.0).abs() < 1e-12, "{span}: {found:e}");
+            }
+            for (approach, overlap) in [(1.0, 2e-8), (3.0, 3e-8)] {
+                let found = scales.overlap(approach * unit) / unit;
+                assert!(
+                    (found / overlap - 1.0).abs() < 1e-12,
+                    "{approach}: {found:e}"
+                );
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Full contact, punches and identities that need no other solver.
 
 use asperity::surface::{FlatPunch, HeightMap, Paraboloid};
-use asperity::{Error, FixedLoadSolver, Grid, Surface};
+use asperity::{ContactTarget, Error, FixedLoadSolver, Grid, Surface};
 use nalgebra::DMatrix;
 
 use crate::common::fixed_load::{check, relative};
@@ -142,5 +142,38 @@ fn a_sphere_is_symmetric() {
         // Mirror images are equal to the tolerance times the condition.
         assert!((value - p[(63 - ix, iy)]).abs() < 1e-9 * p.max());
         assert!((value - p[(iy, ix)]).abs() < 1e-9 * p.max());
+    }
+}
+
+/// Two nodes of a periodic half-space, from full contact back to approaches at which one of them carries: with
+/// the eigenvalue λ of the only wave, it takes all of the load `ΔA 2δ / λ`. The prediction has pressure at both.
+#[test]
+fn from_full_contact_to_an_approach() {
+    let grid = Grid::new(2, 1, 1.0, 1.5).unwrap();
+    let map = HeightMap::new(DMatrix::from_column_slice(2, 1, &[0.0, -0.01])).unwrap();
+    for kernel in Kernel::periodic(grid, 1.0) {
+        let symbol = kernel.symbol(1, 0);
+        let load = |approach: f64| grid.cell_area() * 2.0 * approach / symbol;
+        let mut solver = FixedLoadSolver::builder(&map, &kernel)
+            .tolerance(1e-12)
+            .stiffness(false)
+            .build()
+            .unwrap();
+        // Full contact begins at the mean gap.
+        let mean_gap = 0.005;
+        let targets = [
+            ContactTarget::Load(1.1 * load(mean_gap)),
+            ContactTarget::Approach(0.95 * mean_gap),
+            ContactTarget::Approach(0.9 * mean_gap),
+        ];
+        let solutions: Vec<_> = solver.sweep(targets).map(Result::unwrap).collect();
+        assert_eq!(solutions[0].state.contact_nodes, 2);
+        for (solution, part) in solutions[1..].iter().zip([0.95, 0.9]) {
+            check(&solver, solution, 1e-12);
+            assert_eq!(solution.state.contact_nodes, 1);
+            // One equation, whose error is the tolerance.
+            let error = relative(solution.state.load, load(part * mean_gap));
+            assert!(error < 1e-11, "{error:e}");
+        }
     }
 }

@@ -58,6 +58,27 @@ fn from_a_solution() {
     }
 }
 
+/// With its stiffness a solution is as good a start as the last state of a sweep.
+#[test]
+fn a_solution_brings_its_tangent() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let map = rough(&grid, 29);
+    for kernel in Kernel::all(grid, 1.0) {
+        let mut solver = solver(&map, &kernel, 1e-11);
+        let loads = [0.02, 0.021];
+        let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        let next = solver.solve_from(&swept[0], loads[1]).unwrap();
+        let [again, once] = [&next, &swept[1]].map(|solution| solution.effort.iterations);
+        // Its displacements are computed anew: rounding, which may cost a step.
+        assert!(
+            again <= once + 1,
+            "{again} from a solution, {once} in a sweep"
+        );
+        let cold = solver.solve(loads[1]).unwrap();
+        assert!(once < cold.effort.iterations, "{once}");
+    }
+}
+
 #[test]
 fn an_error_ends_a_sweep() {
     let grid = Grid::square(16, 1.0).unwrap();
@@ -66,4 +87,19 @@ fn an_error_ends_a_sweep() {
     assert!(sweep.next().unwrap().is_ok());
     assert!(matches!(sweep.next(), Some(Err(Error::NotPositive { .. }))));
     assert!(sweep.next().is_none());
+}
+
+/// A sweep promises no solution, which an error may keep from it, and no more than there are targets.
+#[test]
+fn size_hints() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let mut solver = solver(&rough(&grid, 1), &Kernel::free(grid, 1.0), 1e-8);
+    for loads in [vec![1.0, 2.0, 3.0], vec![1.0, -1.0, 2.0]] {
+        let mut sweep = solver.sweep(loads);
+        assert_eq!(sweep.size_hint(), (0, Some(3)));
+        sweep.next();
+        assert_eq!(sweep.size_hint(), (0, Some(2)));
+        while sweep.next().is_some() {}
+        assert_eq!(sweep.size_hint(), (0, Some(0)));
+    }
 }

@@ -54,6 +54,15 @@ fn nested_or_not() {
             let error = (&nested.pressure - &plain.pressure).amax();
             assert!(error < 1e-8 * plain.max_pressure(), "{error:e}");
             assert_eq!(plain.effort.coarse_convolutions, 0.0);
+            assert!(nested.effort.coarse_convolutions > 0.0);
+            // One an iteration, and some to begin and to end with.
+            for effort in [nested.effort, plain.effort] {
+                let steps = effort.iterations + effort.stiffness_iterations;
+                assert!(
+                    (steps + 1..3 * steps).contains(&effort.convolutions),
+                    "{effort:?}"
+                );
+            }
             let [with, without] = [&nested, &plain].map(|solution| solution.effort.iterations);
             assert!(
                 with < without,

@@ -80,7 +80,9 @@ fn paths_end_exactly_at_their_limits() {
                 assert!(read(&history, beyond).is_none(), "{context}");
                 // Fields of the present state, which is the one at the limit.
                 assert_eq!(path.state(), Some(last));
-                let load = path.pressure().unwrap().sum() * path.grid().cell_area();
+                let pressure = path.pressure().unwrap();
+                assert_eq!(path.max_pressure().unwrap(), pressure.max());
+                let load = pressure.sum() * path.grid().cell_area();
                 assert!((load / last.load - 1.0).abs() < 1e-12, "{context}");
                 let certificate = path.certificate().unwrap();
                 assert!(certificate.least_pressure >= -1e-12, "{context}");
@@ -125,4 +127,52 @@ fn until_is_any_limit() {
         ends(builder().until(at.load)),
         ends(builder().max_load(at.load))
     );
+}
+
+/// A path tells its limits, as they were given, and none that were not.
+#[test]
+fn targets_are_the_limits() {
+    let (surface, kernel) = (rough(&grid(), 2), &kernels(grid())[0].1);
+    let builder = || LoadingSolver::builder(&surface, kernel);
+    let gap = 0.5 * states(&surface, kernel)[0].mean_gap;
+    let load = (builder().max_load(3.0), ContactTarget::Load(3.0));
+    let approach = (builder().max_approach(1e-6), ContactTarget::Approach(1e-6));
+    let mean_gap = (builder().min_mean_gap(gap), ContactTarget::MeanGap(gap));
+    // 18 × 15 nodes.
+    let nodes = (
+        builder().max_nodes(27),
+        ContactTarget::AreaFraction(27.0 / 270.0),
+    );
+    for (builder, target) in [load, approach, mean_gap, nodes] {
+        assert_eq!(builder.build().unwrap().targets(), [target]);
+    }
+    assert_eq!(builder().build().unwrap().targets(), []);
+    let both = builder().max_load(3.0).max_approach(1e-6);
+    let targets = [ContactTarget::Load(3.0), ContactTarget::Approach(1e-6)];
+    assert_eq!(both.build().unwrap().targets(), targets);
+}
+
+/// What a state is read at, it has to the last bit, whatever the rounding of the rest.
+#[test]
+fn states_are_read_where_they_were_asked_for() {
+    let surface = rough(&grid(), 2);
+    for (name, kernel) in kernels(grid()) {
+        let all = states(&surface, &kernel);
+        let history: History = all.iter().copied().collect();
+        for (k, pair) in all.windows(2).enumerate() {
+            let [before, after] = [&pair[0], &pair[1]];
+            // Anywhere between the two.
+            let part = (0.618 * k as f64).fract();
+            let between = |a: f64, b: f64| a + part * (b - a);
+            let context = format!("{name}, step {}", before.step);
+            let load = between(before.load, after.load);
+            assert_eq!(history.at_load(load).unwrap().load, load, "{context}");
+            let approach = between(before.approach, after.approach);
+            let read = history.at_approach(approach).unwrap();
+            assert_eq!(read.approach, approach, "{context}");
+            let mean_gap = between(before.mean_gap, after.mean_gap);
+            let read = history.at_mean_gap(mean_gap).unwrap();
+            assert_eq!(read.mean_gap, mean_gap, "{context}");
+        }
+    }
 }

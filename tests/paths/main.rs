@@ -11,6 +11,7 @@ mod continued;
 mod ends;
 mod foreign_states;
 mod handover;
+mod inexact_updaters;
 mod path_properties;
 mod periodic_paths;
 mod physical_mean;

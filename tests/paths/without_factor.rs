@@ -1,17 +1,12 @@
 //! The path without a factor against the path of a factor: the same events, and how far the states may be off.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use asperity::contact::ContactSequence;
 use asperity::loading::{ContactRule, LoadingEnd};
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::updater::{
-    ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
-    Touched, UpdaterProfile,
-};
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
-    Problem, Spectral,
+    Boussinesq, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
 };
 use nalgebra::DMatrix;
 
@@ -21,11 +16,11 @@ const TIE: f64 = 1e-9;
 /// How states between the ends of windows may differ from exact ones, relatively; the mean gap relative to
 /// the initial one. Measured at 128²: at worst 1.3e-5, 3.5e-6, 7e-5, 2e-6; medians a hundred times
 /// smaller. On grids as small as these a window is a large part of the path.
-struct Tolerances {
-    load: f64,
-    stiffness: f64,
-    interfacial: f64,
-    mean_gap: f64,
+pub(crate) struct Tolerances {
+    pub(crate) load: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) interfacial: f64,
+    pub(crate) mean_gap: f64,
 }
 
 const BETWEEN: Tolerances = Tolerances {
@@ -35,7 +30,7 @@ const BETWEEN: Tolerances = Tolerances {
     mean_gap: 5e-6,
 };
 
-fn states<U: LinearUpdater>(
+pub(crate) fn states<U: LinearUpdater>(
     surface: &HeightMap,
     kernel: &dyn InfluenceKernel,
     updater: U,
@@ -50,7 +45,7 @@ fn states<U: LinearUpdater>(
 
 /// Checks states against exact ones: events up to ties, and scalars where no tie makes the order of equals
 /// matter. Returns how many errors of the approach exceed their estimate.
-fn compare(
+pub(crate) fn compare(
     context: &str,
     found: &[LoadingState],
     exact: &[LoadingState],
@@ -114,7 +109,7 @@ fn compare(
     exceeded
 }
 
-fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
+pub(crate) fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
     [
         ("free", Box::new(Boussinesq::new(grid, 1.0).unwrap())),
         (
@@ -125,7 +120,7 @@ fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
     ]
 }
 
-fn rough(grid: &Grid, hurst: f64, seed: u64) -> HeightMap {
+pub(crate) fn rough(grid: &Grid, hurst: f64, seed: u64) -> HeightMap {
     let (lx, ly) = grid.sides();
     let cutoff = 4.0 * grid.dx().max(grid.dy());
     let height = Amplitude::RmsHeight(5e-3);
@@ -288,109 +283,6 @@ fn the_default_hands_over_at_the_same_events() {
     );
 }
 
-/// A factor whose Schur complements are off by a part in a thousand, and positive definite still.
-struct Rounded {
-    inner: RecursiveCholesky,
-    /// The contact in the order in which it was factored: the path may settle another one afterwards.
-    factored: Option<ContactSequence>,
-}
-
-impl Rounded {
-    fn new() -> Self {
-        Self {
-            inner: RecursiveCholesky::new(),
-            factored: None,
-        }
-    }
-}
-
-impl LinearUpdater for Rounded {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        let contact = self.factored.as_ref().unwrap_or(contact);
-        self.inner.watch(problem, contact, nodes, schur)?;
-        let size = nodes.len();
-        let exact = schur.matrix().into_owned();
-        for j in 0..size {
-            for i in j..size {
-                // v vᵀ of something small, different for every node.
-                let part = |k: usize| 0.03 * (1.0 + (nodes[k] as f64).sin()) * exact[(k, k)].sqrt();
-                schur.matrix_mut()[(i, j)] += part(i) * part(j);
-            }
-        }
-        Ok(())
-    }
-
-    /// The factor must be that of the exact complement, in whatever order the path decides: it is made anew
-    /// at every solution.
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        request: SolveRequest,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        let mut inner = RecursiveCholesky::new();
-        let mut joined = ContactSequence::new(problem.grid());
-        let nodes = &contact.order()[..request.count];
-        let mut schur = Schur::default();
-        inner.watch(problem, &joined, nodes, &mut schur)?;
-        let positions: Vec<usize> = (0..nodes.len()).collect();
-        let touched = Touched::of(schur, &positions)?;
-        for &node in nodes {
-            joined.push(node)?;
-        }
-        inner.join(problem, &joined, &touched)?;
-        inner.solve(problem, &joined, request, solution)?;
-        if request.count == contact.len() {
-            self.inner = inner;
-            self.factored = Some(joined);
-        }
-        Ok(())
-    }
-
-    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        let request = SolveRequest::exact(contact.len(), 0.0);
-        self.solve(problem, contact, request, &mut Solution::default())
-    }
-
-    fn profile(&self) -> UpdaterProfile {
-        UpdaterProfile {
-            exact: false,
-            tolerance: 1e-10,
-            ..self.inner.profile()
-        }
-    }
-}
-
-/// The correction belongs to the path and not to conjugate gradients.
-#[test]
-fn any_updater_that_is_not_exact_is_corrected() {
-    let grid = Grid::square(20, 1.0).unwrap();
-    let surface = rough(&grid, 0.8, 7);
-    for (name, kernel) in half_spaces(grid) {
-        let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
-        let found = states(&surface, &kernel, Rounded::new(), Some(24));
-        // Pivots are off by a part in a thousand between the ends of windows.
-        let allowed = Tolerances {
-            load: 1e-3,
-            stiffness: 5e-3,
-            interfacial: 0.1,
-            mean_gap: 1e-4,
-        };
-        compare(name, &found, &exact, &allowed);
-    }
-}
-
 /// The approximate order: the ends of windows are right, and neighbours change places in between.
 #[test]
 fn the_approximate_order_is_nearly_right() {
@@ -405,7 +297,7 @@ fn the_approximate_order_is_nearly_right() {
         .unwrap();
     let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
     assert_eq!(path.timings().ties, 0);
-    let nodes: std::collections::HashSet<_> = found.iter().map(|state| state.node).collect();
+    let nodes: HashSet<_> = found.iter().map(|state| state.node).collect();
     assert_eq!(nodes.len(), exact.len());
     let moved = found
         .iter()

@@ -156,3 +156,15 @@ fn row_sum_norm(matrix: &DMatrix<f64>) -> f64 {
         .map(|row| row.lp_norm(1))
         .fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_norm_is_the_greatest_row() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, -2.0, -3.0, 4.0]);
+        assert_eq!(row_sum_norm(&matrix), 7.0);
+        assert_eq!(row_sum_norm(&matrix.transpose()), 6.0);
+    }
+}

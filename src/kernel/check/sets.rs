@@ -98,3 +98,43 @@ impl Draw {
         nodes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+
+    /// Patches are rectangles or the ellipses in them, which fill most of their box, all of it inside the grid.
+    #[test]
+    fn patches_are_dense() -> Result<(), Error> {
+        let mut draw = Draw(ChaCha8Rng::from_seed([1; 32]));
+        for (nx, ny) in [(20, 13), (1, 40), (40, 1)] {
+            let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+            let (mut whole, mut round) = (0, 0);
+            for _ in 0..200 {
+                let patch = draw.patch(&grid);
+                assert!((1..=LARGEST).contains(&patch.len()));
+                let places: Vec<_> = patch.iter().map(|&node| grid.coordinates(node)).collect();
+                let side = |along: fn(&(usize, usize)) -> usize| {
+                    let places = places.iter().map(along);
+                    let (least, most) = places.fold((usize::MAX, 0), |(least, most), i| {
+                        (least.min(i), most.max(i))
+                    });
+                    1 + most - least
+                };
+                let (width, height) = (side(|place| place.0), side(|place| place.1));
+                assert!(width <= nx && height <= ny);
+                let area = width * height;
+                // A circle has π/4 of its square.
+                assert!(patch.len() <= area && 2 * patch.len() >= area, "{patch:?}");
+                whole += usize::from(patch.len() == area);
+                round += usize::from(patch.len() < area);
+            }
+            assert!(
+                whole > 50 && (round > 20 || nx.min(ny) == 1),
+                "{whole} {round}"
+            );
+        }
+        Ok(())
+    }
+}

@@ -195,7 +195,7 @@ impl KernelTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{PeriodicBoussinesq, Spectral};
+    use crate::kernel::{Boussinesq, PeriodicBoussinesq, Spectral};
 
     /// The average over the nodes of one block of the displacement by unit pressure on another.
     #[test]
@@ -214,6 +214,33 @@ mod tests {
             let found = coarse.coefficient(di, dj).unwrap_or(f64::NAN);
             // 16 terms near 1.
             assert!((found - sum / 4.0).abs() < 1e-14, "{found} {sum}");
+        }
+        Ok(())
+    }
+
+    /// The same on a free half-space, and on a strip, whose blocks are two cells.
+    #[test]
+    fn free_blocks_are_averages() -> Result<(), Error> {
+        for (nx, ny) in [(8, 6), (8, 1), (1, 6)] {
+            let grid = Grid::new(nx, ny, 1.0, 1.5)?;
+            let fine = KernelTable::new(&Boussinesq::new(grid, 1.0)?)?;
+            let (coarse, _) = fine.coarsened()?;
+            let [bx, by] = [nx, ny].map(|n| n.min(2) as isize);
+            let (cx, cy) = (nx as isize / bx, ny as isize / by);
+            assert_eq!(coarse.grid().shape(), (cx as usize, cy as usize));
+            for (di, dj) in (1 - cx..cx).flat_map(|di| (1 - cy..cy).map(move |dj| (di, dj))) {
+                let mut sum = 0.0;
+                for (ax, px) in (0..bx * bx).map(|k| (k % bx, k / bx)) {
+                    for (ay, py) in (0..by * by).map(|k| (k % by, k / by)) {
+                        let value = fine.coefficient(bx * di + ax - px, by * dj + ay - py);
+                        sum += value.unwrap_or(f64::NAN);
+                    }
+                }
+                let found = coarse.coefficient(di, dj).unwrap_or(f64::NAN);
+                let expected = sum / (bx * by) as f64;
+                // 16 terms near 1.
+                assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+            }
         }
         Ok(())
     }

@@ -191,3 +191,52 @@ fn impossible_symbols_are_refused() -> Result<(), Error> {
     assert!(matches!(unknown, Err(Error::NotPositiveDefinite { .. })));
     Ok(())
 }
+
+/// A coefficient that is not that of one period further is found along either direction, and named.
+#[test]
+fn what_does_not_repeat_is_refused() -> Result<(), Error> {
+    let grid = Grid::new(4, 5, 1.0, 1.0)?;
+    let make = |odd: (isize, isize)| {
+        KernelTable::from_fn(
+            grid,
+            Boundary::Periodic,
+            ContactGrowth::Unknown,
+            move |di, dj| {
+                // By distance around the period, but for one offset and its opposite.
+                let (x, y) = (di.rem_euclid(4), dj.rem_euclid(5));
+                let (x, y) = (x.min(4 - x) as f64, y.min(5 - y) as f64);
+                let wrong = (di, dj) == odd || (-di, -dj) == odd;
+                if wrong {
+                    0.3
+                } else {
+                    1.0 / (1.0 + x + 2.0 * y)
+                }
+            },
+        )
+    };
+    assert!(make((9, 9)).is_ok());
+    for (odd, period) in [((0, 3), (0, 5)), ((3, 0), (4, 0)), ((0, -1), (0, 5))] {
+        let made = make(odd);
+        assert!(made.is_err(), "{odd:?}");
+        let Err(Error::Kernel(KernelError::NotPeriodic {
+            di,
+            dj,
+            image_di,
+            image_dj,
+            value,
+            repeated,
+        })) = made
+        else {
+            return made.map(drop);
+        };
+        assert_eq!((image_di - di, image_dj - dj), period);
+        let named = [(di, dj), (image_di, image_dj)];
+        let opposite = (-odd.0, -odd.1);
+        assert!(
+            named.contains(&odd) || named.contains(&opposite),
+            "{named:?}"
+        );
+        assert!(value == 0.3 || repeated == 0.3);
+    }
+    Ok(())
+}

@@ -56,6 +56,30 @@ fn hats_sum_to_one() -> Result<(), Error> {
     Ok(())
 }
 
+/// The hats at a node are what a sum over it alone finds, and their values sum to one.
+#[test]
+fn hats_at_a_node() -> Result<(), Error> {
+    for table in tables()? {
+        let mut space = space(&table)?;
+        let (nx, ny) = table.grid().shape();
+        let mut contact = NodeSet::new(nx * ny);
+        let mut sums = Vec::new();
+        for node in (0..nx * ny).step_by(7) {
+            contact.assign(|other| other == node);
+            space.hats.restrict(&contact, &[1.0], &mut sums);
+            let mut total = 0.0;
+            for (hat, value) in space.hats.at(node % nx, node / nx) {
+                total += value;
+                sums[hat] -= value;
+            }
+            // Rounding of products of numbers up to 1.
+            assert!((total - 1.0).abs() < 1e-14, "node {node}: {total}");
+            assert!(sums.iter().all(|sum| sum.abs() < 1e-14), "node {node}");
+        }
+    }
+    Ok(())
+}
+
 /// P is symmetric, with eigenvalues from 0 to 1.
 #[test]
 fn means_over_hats() -> Result<(), Error> {

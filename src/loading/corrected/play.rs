@@ -151,3 +151,71 @@ fn eliminate(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `3 − 2 t + t²/2 + t³/4` and its slope, in numbers that are short in binary.
+    #[test]
+    fn courses_are_cubics() {
+        let course = Course([3.0, 2.0, 0.5, 0.25]);
+        assert_eq!([course.gap(0.0), course.gap(2.0)], [3.0, 3.0]);
+        assert_eq!([course.closing(0.0), course.closing(2.0)], [2.0, -3.0]);
+    }
+
+    /// The root of `(1 − t) (1 + t²/10)`, which Newton's steps find to rounding, and that of a line; none of a
+    /// gap that opens; and none before the present.
+    #[test]
+    fn gaps_close_at_their_roots() {
+        let cubic = Course([1.0, 1.0, 0.1, -0.1]);
+        assert!((cubic.closes(0.0) - 1.0).abs() < 1e-15);
+        assert_eq!(cubic.closes(1.25), 1.25);
+        assert_eq!(Course([3.0, 2.0, 0.0, 0.0]).closes(0.0), 1.5);
+        assert_eq!(Course([3.0, 2.0, 0.0, 0.0]).closes(2.0), 2.0);
+        for opening in [
+            [1.0, -1.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0, 0.0],
+            [1.0, -1.0, 0.5, 0.0],
+        ] {
+            assert_eq!(Course(opening).closes(0.0), f64::INFINITY);
+        }
+    }
+
+    /// Three nodes of which the second feels half of what the first carries, and the third nothing:
+    /// `2 − t + (t − 1)/2` closes at t = 3.
+    #[test]
+    fn a_node_that_carries_holds_its_neighbours_back() {
+        let schur = DMatrix::from_row_slice(3, 3, &[1.0, 0.5, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        let courses = [[1.0, 1.0], [2.0, 1.0], [2.5, 1.0]].map(|[a, b]| Course([a, b, 0.0, 0.0]));
+        let order = |events: &[Played]| -> Vec<(usize, f64)> {
+            events
+                .iter()
+                .map(|event| (event.position, event.time))
+                .collect()
+        };
+        let (events, bad) = play(&schur, &courses, f64::INFINITY, 9);
+        assert_eq!(order(&events), [(0, 1.0), (2, 2.5), (1, 3.0)]);
+        assert!(bad.is_none());
+        // Up to the horizon, that included, and up to a number; the first is played in any case.
+        for (horizon, most, count) in [(2.5, 9, 2), (2.4, 9, 1), (0.5, 9, 1), (9.0, 2, 2)] {
+            assert_eq!(play(&schur, &courses, horizon, most).0.len(), count);
+        }
+        // 1 / (1 − 1/4) of what is left of closing rate and row sum, 1/2 and 2 − 3/2.
+        let closing = [1.0, 1.0, 1.0];
+        let found = increments(&schur, &closing, &[3.0, 2.0, 5.0], [0, 1].into_iter());
+        assert_eq!(found, [[1.0, 3.0], [0.25 / 0.75, 0.25 / 0.75]]);
+    }
+
+    /// A pivot that is not positive names its node and when it would have touched.
+    #[test]
+    fn bad_pivots_are_named() {
+        let schur = DMatrix::from_row_slice(2, 2, &[1.0, -2.0, -2.0, 1.0]);
+        let courses = [[1.0, 1.0], [4.0, 1.0]].map(|[a, b]| Course([a, b, 0.0, 0.0]));
+        // 4 − t − 2 (t − 1) closes at t = 2, with the pivot 1 − 4.
+        let (events, bad) = play(&schur, &courses, f64::INFINITY, 9);
+        assert_eq!(events.len(), 1);
+        let bad = bad.map(|bad| (bad.node, bad.time, bad.pivot));
+        assert_eq!(bad, Some((1, 2.0, -3.0)));
+    }
+}

@@ -42,14 +42,9 @@ struct Block {
 }
 
 impl Block {
-    /// Some rows of the columns `columns`.
-    fn view(&self, rows: Range<usize>, columns: Range<usize>) -> MatRef<'_, f64> {
-        view(
-            &self.values[rows.start * self.width..],
-            self.width,
-            rows.len(),
-            columns,
-        )
+    /// The first rows of the columns `columns`.
+    fn view(&self, rows: usize, columns: Range<usize>) -> MatRef<'_, f64> {
+        view(&self.values, self.width, rows, columns)
     }
 }
 
@@ -168,9 +163,9 @@ impl Columns {
         }
         parallel::for_each(self.rows * size * size / 2, &mut tasks, |(tiles, s)| {
             let (_, block, columns) = &tiles[0];
-            let here = block.view(0..self.rows, columns.clone());
+            let here = block.view(self.rows, columns.clone());
             for (start, block, rows) in *tiles {
-                let below = block.view(0..self.rows, rows.clone()).transpose();
+                let below = block.view(self.rows, rows.clone()).transpose();
                 let (height, width) = (rows.len(), columns.len());
                 let s = &mut s[*start..];
                 let s = MatMut::from_column_major_slice_with_stride_mut(s, height, width, size);

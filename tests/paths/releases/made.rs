@@ -2,9 +2,11 @@
 
 use super::complementary::restrict;
 use super::table::Table;
-use asperity::Boundary;
-use asperity::loading::ContactEvent;
-use nalgebra::DVector;
+use asperity::kernel::KernelTable;
+use asperity::loading::{ContactEvent, LoadingEnd};
+use asperity::surface::HeightMap;
+use asperity::{Boundary, ContactGrowth, Grid, LoadingSolver};
+use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
@@ -76,4 +78,26 @@ fn a_surface_whose_node_leaves_can_be_made_from_any_set_of_holes_that_says_so() 
     }
     println!("{made} releases made");
     assert!(made >= 100, "{made}");
+}
+
+/// Five nodes in a row that see half of their neighbours: between two that carry the pressure of the middle one
+/// stays as it is, `y₂ = (1, 0, 1)`, and it does not leave. The gap between two such nodes does not close.
+#[test]
+fn a_node_whose_pressure_stays_does_not_leave() {
+    let grid = Grid::new(5, 1, 1.0, 1.0).unwrap();
+    let coefficient = |di: isize, _| [1.0, 0.5, 0.0, 0.0, 0.0][di.unsigned_abs()];
+    let growth = ContactGrowth::Unknown;
+    let kernel = KernelTable::from_fn(grid, Boundary::Free, growth, coefficient).unwrap();
+    let gaps = [0.1, 0.0, 0.2, 50.0, 5.0];
+    let heights = HeightMap::new(DMatrix::from_fn(5, 1, |ix, _| -gaps[ix])).unwrap();
+    let mut path = LoadingSolver::new(&heights, &kernel).unwrap();
+    let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
+    assert!(
+        states
+            .iter()
+            .all(|state| state.event == ContactEvent::Touch)
+    );
+    let order: Vec<usize> = states.iter().map(|state| state.node.0).collect();
+    assert_eq!(order, [1, 0, 2, 4]);
+    assert_eq!(path.end(), Some(LoadingEnd::NoMoreEvents));
 }
