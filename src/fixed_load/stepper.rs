@@ -103,6 +103,26 @@ impl<'a> Stepper<'a> {
         self.to(Prescribed::Approach(approach), sum, None)
     }
 
+    /// Solves on the finest grid from its iterate, and returns the number of iterations: see [`ActiveSet::solve`].
+    fn solve(&mut self, prescribed: Prescribed, prediction: bool) -> Result<usize, Error> {
+        let finest = &mut self.hierarchy.finest;
+        let criteria = Criteria {
+            tolerance: self.settings.tolerance,
+            floor: finest.least_length(prescribed),
+            length: f64::INFINITY,
+            max_iterations: self.settings.max_iterations,
+            verify: true,
+        };
+        inside(|| ActiveSet::new(finest, prescribed, criteria).solve(prediction))
+    }
+
+    /// The same from coarser grids.
+    fn solve_afresh(&mut self, prescribed: Prescribed) -> Result<usize, Error> {
+        self.continuation = Continuation::default();
+        self.hierarchy.start(prescribed, self.settings)?;
+        self.solve(prescribed, false)
+    }
+
     /// Contact where something is `prescribed` and the sum of pressures is about `sum`.
     fn to(
         &mut self,
@@ -112,21 +132,18 @@ impl<'a> Stepper<'a> {
     ) -> Result<FixedLoadSolution, Error> {
         // After an error the finest grid holds no state.
         let is_near = self.last.take().is_some() && Continuation::reaches(self.finest(), sum);
-        if is_near {
+        let iterations = if is_near {
             self.continuation.predict(&mut self.hierarchy.finest, sum);
+            match self.solve(prescribed, true) {
+                // A state is no good start where the next one is nothing like it.
+                Err(Error::NoConvergence { iterations, .. }) => {
+                    iterations + self.solve_afresh(prescribed)?
+                }
+                solved => solved?,
+            }
         } else {
-            self.continuation = Continuation::default();
-            self.hierarchy.start(prescribed, self.settings)?;
-        }
-        let finest = &mut self.hierarchy.finest;
-        let criteria = Criteria {
-            tolerance: self.settings.tolerance,
-            floor: finest.least_length(prescribed),
-            length: f64::INFINITY,
-            max_iterations: self.settings.max_iterations,
-            verify: true,
+            self.solve_afresh(prescribed)?
         };
-        let iterations = inside(|| ActiveSet::new(finest, prescribed, criteria).solve(is_near))?;
         let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
         let effort = SolverEffort {
             iterations,

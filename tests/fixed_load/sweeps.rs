@@ -1,6 +1,6 @@
 //! Many states, each from the one before.
 
-use asperity::{Error, Grid};
+use asperity::{ContactTarget, Error, FixedLoadSolver, Grid};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, rough, solver};
@@ -101,5 +101,37 @@ fn size_hints() {
         assert_eq!(sweep.size_hint(), (0, Some(2)));
         while sweep.next().is_some() {}
         assert_eq!(sweep.size_hint(), (0, Some(0)));
+    }
+}
+
+/// From far beyond full contact back to approaches close to the mean gap, where load grows without bound: without a
+/// stiffness nothing says how far, and such a state is no good start.
+#[test]
+fn back_from_full_contact_without_stiffnesses() {
+    let grid = Grid::square(64, 1.0).unwrap();
+    let map = rough(&grid, 3);
+    let mean_gap = map.max_height() - map.matrix().mean();
+    for kernel in Kernel::periodic(grid, 1.0) {
+        let approach = |part: f64| ContactTarget::Approach(part * mean_gap);
+        let full = solver(&map, &kernel, 1e-10)
+            .solve_target(approach(0.99999))
+            .unwrap();
+        let mut solver = FixedLoadSolver::builder(&map, &kernel)
+            .tolerance(1e-10)
+            .stiffness(false)
+            .build()
+            .unwrap();
+        let targets = [
+            ContactTarget::Load(3.0 * full.state.load),
+            approach(0.9999),
+            approach(0.99),
+            approach(0.9),
+        ];
+        let swept: Vec<_> = solver.sweep(targets).map(Result::unwrap).collect();
+        for (target, swept) in targets.into_iter().zip(swept) {
+            check(&solver, &swept, 1e-10);
+            let cold = solver.solve_target(target).unwrap();
+            assert_eq!(swept.contact_map, cold.contact_map, "{target:?}");
+        }
     }
 }
