@@ -8,8 +8,8 @@ use crate::updater::LinearUpdater;
 
 /// A window watches this part of the contact at most, as long as that is small.
 const PART: usize = 4;
-/// And so many nodes always.
-const FEWEST: usize = 8;
+/// And so many nodes always: what ties with them is watched too, and told apart.
+pub(super) const FEWEST: usize = 8;
 /// Ties with the last watched node are watched too, up to so many times the window.
 const MOST_TIES: usize = 3;
 

@@ -25,6 +25,11 @@ impl Corrected {
         };
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
+        // What their times cannot be told apart by.
+        let error = group.iter().fold(scales.tie, |error, &node| {
+            let line = run.field.line(&run.problem, node, approach);
+            error.max(scales.tie_of(line.closing))
+        });
         group.sort_unstable();
         group.truncate(most);
         let count = run.contact.len();
@@ -53,7 +58,7 @@ impl Corrected {
             start.clamp_mean_gap();
             let step = run.releases.steps(contact_nodes);
             let event = (step, ContactEvent::Touch, node);
-            run.enqueue_at(&start, event, contact_nodes, scales.tie)?;
+            run.enqueue_at(&start, event, contact_nodes, error)?;
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ use super::run::LoadingRun;
 use super::scales::Scales;
 use crate::Error;
 use crate::updater::{LinearUpdater, Schur, Touched};
-use choice::Choice;
+use choice::{Choice, FEWEST};
 use correction::{Correction, correct};
 use play::{Course, play};
 use ties::Settled;
@@ -66,7 +66,7 @@ impl Corrected {
     pub(super) fn new(size: Option<usize>, settles: bool) -> Self {
         let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
         Self {
-            size: size.unwrap_or(watched),
+            size: size.unwrap_or(watched).max(FEWEST),
             settles,
             ranking: Vec::new(),
             ranked: None,
