@@ -193,7 +193,8 @@ impl<'a> Walk<'a> {
                         instant.pressure_error,
                     )
                 } else {
-                    ("gap of the node that touches", size, instant.gap_error)
+                    let allowed = instant.gap_error + TIE * instant.lengths;
+                    ("gap of the node that touches", size, allowed)
                 };
                 self.tally.close(what, value, 0.0, allowed)?;
             }
