@@ -11,7 +11,9 @@ mod extreme_numbers;
 mod failing_parts;
 mod hostile_calls;
 mod limits;
+mod lying_updaters;
 mod memory_budget;
 #[cfg(feature = "rayon")]
 mod memory_peaks;
+mod periodic_kernels;
 mod small_and_tied;
