@@ -88,10 +88,10 @@ fn what_fits_the_budget_runs() -> Done {
     let folder = Scratch::new("space-fits")?;
     flat(&folder.join("256.npy"), 256)?;
     for line in [
-        "load --surface 256.npy --side 1e-3 --e-star 1e9 --load 1 --memory-budget 60e6",
+        "load --surface 256.npy --side 1e-3 --e-star 1e9 --load 1 --memory-budget 64e6",
         "path --nodes 64 --max-area-fraction 0.9 --memory-budget 60e6",
     ] {
-        let done = run(&folder.0, ROOM + 60, line)?;
+        let done = run(&folder.0, ROOM + 64, line)?;
         assert!(done.status.success(), "{}", said(&done));
     }
     let line = "path --nodes 128 --max-area-fraction 0.9 --updater cholesky --memory-budget 60e6";

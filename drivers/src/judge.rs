@@ -14,6 +14,9 @@ use crate::walk::{Demands, Walk};
 /// How often the roundings of a solution a tolerance has to be for a solver to be sure of it.
 const SURE: f64 = 100.0;
 
+/// Least displacement and pressure of a cell that are computed with, by `asperity::Problem::new`.
+const LEAST: f64 = 1e-140;
+
 /// How the solver is set up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
@@ -47,9 +50,13 @@ impl Judge {
             (ContactTarget::MeanGap(value), Error::OutOfRange { .. }) => {
                 !(value > 0.0 && value < unloaded * (1.0 - 1e-13))
             }
-            // A flat surface is in full contact under any load: the one that is tried may be too small to compute with.
+            // A search may come to loads with pressures beyond what is computed with.
+            (
+                ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_),
+                Error::OutOfRange { value, .. },
+            ) if *value != 0.0 && !(LEAST..=1.0 / LEAST).contains(value) => true,
             (ContactTarget::AreaFraction(value), Error::OutOfRange { .. }) => {
-                !(value > 0.0 && value <= 1.0) || unloaded == 0.0
+                !(value > 0.0 && value <= 1.0)
             }
             (ContactTarget::AreaFraction(value), Error::LessThanOneNode { .. }) => {
                 value * (self.grid.nodes() as f64) < 1.0 + 1e-12

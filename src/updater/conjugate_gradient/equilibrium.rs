@@ -150,3 +150,53 @@ impl Equilibrium {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(pressure: [f64; 2], displacement: &[f64], drift: f64) -> Field {
+        Field {
+            pressure: pressure.to_vec(),
+            displacement: displacement.to_vec(),
+            drift,
+        }
+    }
+
+    #[test]
+    fn what_displacements_leave_open() {
+        assert_eq!(field([0.0; 2], &[0.5, 0.25], 0.0).open(), 0.625);
+        // Of what is not known nothing is taken off.
+        assert_eq!(field([0.0; 2], &[], 0.0).open(), 1.0);
+    }
+
+    /// Pressures, displacements and what may be spoilt of them are lines, forwards and backwards; displacements that are
+    /// not known at either end of the sum are not known there.
+    #[test]
+    fn another_approach_is_on_a_line() {
+        let known = Equilibrium {
+            count: 2,
+            approach: 3.0,
+            span: 1.0,
+            load: field([1.0, 2.0], &[10.0, 20.0], 0.5),
+            rate: field([0.25, 0.5], &[2.0, 4.0], 0.125),
+        };
+        let ahead = known.load_at(7.0);
+        assert_eq!(ahead.pressure, [2.0, 4.0]);
+        assert_eq!(ahead.displacement, [18.0, 36.0]);
+        assert_eq!(ahead.drift, 1.0);
+        assert_eq!(known.load_at(1.0).drift, 0.75);
+        for (load, rate) in [(true, false), (false, true), (false, false)] {
+            let mut partly = known.clone();
+            if !load {
+                partly.load.displacement.clear();
+            }
+            if !rate {
+                partly.rate.displacement.clear();
+            }
+            let ahead = partly.load_at(7.0);
+            assert_eq!(ahead.pressure, [2.0, 4.0]);
+            assert!(!ahead.is_known());
+        }
+    }
+}

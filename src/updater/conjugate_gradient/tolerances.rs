@@ -68,3 +68,75 @@ impl Tolerances {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tolerances(span: f64, gap_error: f64, length: f64, open: f64) -> Tolerances {
+        let criteria = Criteria {
+            tolerance: 1e-10,
+            max_iterations: 1,
+        };
+        let request = SolveRequest {
+            count: 1,
+            approach: 1.0,
+            span,
+            gap_error,
+        };
+        Tolerances::of(criteria, request, length, open)
+    }
+
+    fn check(found: Tolerances, load: f64, rate: f64, drift: [f64; 2]) {
+        let pairs = [
+            (found.load, load),
+            (found.rate, rate),
+            (found.drift[0], drift[0]),
+            (found.drift[1], drift[1]),
+        ];
+        for (found, expected) in pairs {
+            // Roundings of a few products.
+            let same = found == expected || (found / expected - 1.0).abs() < 1e-14;
+            assert!(same, "{found:e} {expected:e}");
+        }
+    }
+
+    /// Each bound in turn is the tightest one; the numbers are worked out by hand.
+    #[test]
+    fn the_tightest_bound_counts() {
+        let none = f64::INFINITY;
+        // The solution itself: rounding.
+        check(tolerances(none, 0.0, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
+        // Without a rate; a window that goes nowhere asks for the tolerance times 30.
+        check(tolerances(0.0, 0.0, 2.0, 0.5), 6e-9, 1.5e-5, [none; 2]);
+        check(tolerances(0.0, 1e-6, 2.0, 0.5), 3e-5, 1.5e-5, [none; 2]);
+        // A window of a hundredth of the length: 2e-6 of the span, and a quarter of 30 times the least.
+        check(
+            tolerances(1e-2, 0.0, 1.0, 0.5),
+            30.0 * 1e-8,
+            1.5e-5,
+            [7.5e-10, 7.5e-9],
+        );
+        // A shorter one.
+        check(
+            tolerances(1e-3, 0.0, 1.0, 0.5),
+            30.0 * 2e-9,
+            1.5e-5,
+            [7.5e-10, 7.5e-8],
+        );
+        // Gaps that hardly close: 1e-3 of the rate.
+        check(
+            tolerances(1e-3, 0.0, 1.0, 1e-3),
+            30.0 * 2e-9,
+            1e-6,
+            [7.5e-10, 7.5e-8],
+        );
+        // A window that is long beside the length: 3e-7 of length over span.
+        check(
+            tolerances(10.0, 0.0, 0.1, 0.5),
+            30.0 * 1e-9,
+            3e-9,
+            [7.5e-11, 7.5e-13],
+        );
+    }
+}
