@@ -40,6 +40,11 @@ impl Judge {
         let states = self.history.states();
         let unloaded = states.first().map_or(0.0, |state| state.mean_gap);
         let deserved = match (target, error) {
+            // A search may come to loads with pressures beyond what is computed with.
+            (
+                ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_),
+                Error::OutOfRange { value, .. },
+            ) if *value != 0.0 && !(LEAST..=1.0 / LEAST).contains(value) => true,
             (
                 ContactTarget::Load(value) | ContactTarget::Approach(value),
                 Error::NotPositive { .. },
@@ -50,11 +55,6 @@ impl Judge {
             (ContactTarget::MeanGap(value), Error::OutOfRange { .. }) => {
                 !(value > 0.0 && value < unloaded * (1.0 - 1e-13))
             }
-            // A search may come to loads with pressures beyond what is computed with.
-            (
-                ContactTarget::AreaFraction(_) | ContactTarget::MeanGap(_),
-                Error::OutOfRange { value, .. },
-            ) if *value != 0.0 && !(LEAST..=1.0 / LEAST).contains(value) => true,
             (ContactTarget::AreaFraction(value), Error::OutOfRange { .. }) => {
                 !(value > 0.0 && value <= 1.0)
             }

@@ -191,8 +191,12 @@ impl ReadOptions {
     fn cell(&self, channel: &Channel, path: &Path) -> Result<Option<(f64, f64)>, Error> {
         let (nx, ny) = channel.shape;
         let given = |side: Option<f64>, n: usize, name| {
-            side.map(|side| Error::require_positive(name, side).map(|side| side / n as f64))
-                .transpose()
+            side.map(|side| {
+                let side = Error::require_positive(name, side)?;
+                // The least numbers there are vanish when they are divided.
+                Error::require_positive("cell of that side", side / n as f64)
+            })
+            .transpose()
         };
         let dx = given(self.side, nx, "side along x")?;
         let dy = given(self.side_y, ny, "side along y")?;

@@ -4,7 +4,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use asperity::io::{channels, read_npy, read_surface, write_gsf, write_npy, write_vti, write_x3p};
+use asperity::io::{
+    ReadOptions, channels, read_npy, read_surface, write_gsf, write_npy, write_vti, write_x3p,
+};
 use asperity::record::LoadingRecord;
 use asperity::{Error, FileError, Grid};
 use nalgebra::DMatrix;
@@ -101,4 +103,17 @@ fn bytes_of_no_format_are_shown() {
         "{error}"
     );
     assert!(error.to_string().contains("unknown.sdf"), "{error}");
+}
+
+/// A side may be a number that its cells are not.
+#[test]
+fn sides_of_no_cell() {
+    let file = Scratch::new("side.npy");
+    write_npy(&file.0, &DMatrix::from_element(3, 3, 1.0)).unwrap();
+    let read = |side: f64| ReadOptions::new().side(side).read(&file.0);
+    assert_eq!(read(3e-300).unwrap().cell, Some((1e-300, 1e-300)));
+    for side in [5e-324, 0.0, -1.0, f64::NAN] {
+        let error = read(side).unwrap_err();
+        assert!(matches!(error, Error::NotPositive { .. }), "{error}");
+    }
 }
