@@ -103,11 +103,27 @@ impl Dense {
 
     /// The same problem in the gauge in which solutions for one load are computed, of the size of a cell's own displacement:
     /// their errors are measured in it. The problem itself where the mean displacement means something.
-    pub(crate) fn in_computing_gauge(mut self) -> Self {
+    pub(crate) fn in_computing_gauge(self) -> Self {
+        self.in_gauge(|_, good| good)
+    }
+
+    /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far from a good one. An
+    /// approach that is reported for mean planes goes with the load by that gauge, and by another one only as well as
+    /// the load is known.
+    pub(crate) fn in_gauge_of_paths(self) -> Self {
+        self.in_gauge(|own, good| match own / good {
+            part if part < 1e-3 => good,
+            part if part > 10.0 => 10.0 * good,
+            _ => own,
+        })
+    }
+
+    fn in_gauge(mut self, choose: impl FnOnce(f64, f64) -> f64) -> Self {
         if let Some(gauge) = self.gauge {
             let least = self.influence.column(0).min() - gauge;
             // Of a single node nothing but its gauge is known.
-            let other = if least < 0.0 { -1.5 * least } else { gauge };
+            let good = if least < 0.0 { -1.5 * least } else { gauge };
+            let other = choose(gauge, good);
             self.influence.add_scalar_mut(other - gauge);
             self.gauge = Some(other);
         }

@@ -47,7 +47,7 @@ struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     fn new(sample: &'a Sample) -> Self {
-        let dense = Dense::new(&sample.kernel, sample.surface.matrix());
+        let dense = Dense::new(&sample.kernel, sample.surface.matrix()).in_gauge_of_paths();
         Self {
             sample,
             grid: sample.kernel.grid(),
