@@ -113,7 +113,7 @@ impl Dense {
     pub(crate) fn in_gauge_of_paths(self) -> Self {
         self.in_gauge(|own, good| match own / good {
             part if part < 1e-3 => good,
-            part if part > 10.0 => 10.0 * good,
+            part if part > 1e3 => 10.0 * good,
             _ => own,
         })
     }

@@ -138,6 +138,7 @@ fn earlier_failures_are_mended() -> Result<(), Violation> {
             "paths" => asperity_drivers::paths,
             "fixed_loads" => asperity_drivers::fixed_loads,
             "parsers" => asperity_drivers::parsers,
+            "records" => asperity_drivers::records,
             _ => return Err(Violation::new(format!("there is no driver '{name}'"))),
         };
         let bytes = from_hex(text).unwrap_or_default();

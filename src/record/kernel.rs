@@ -72,6 +72,8 @@ impl KernelRecord {
             KernelOrigin::Spectral { e_star } => KernelTable::new(&Spectral::new(grid, e_star)?),
             KernelOrigin::Other => Err(Error::ForeignKernel),
         }?;
+        // As a problem takes it.
+        let table = table.regular();
         self.check(&table)?;
         Ok(table)
     }

@@ -13,9 +13,11 @@ use crate::{Error, Grid, KernelError};
 /// A gauge below this part of a good one makes the matrix of full contact, which is singular in the zero gauge,
 /// worse conditioned than any other.
 const LEAST_GAUGE: f64 = 1e-3;
-/// Beyond so many times a good one digits are lost beside it, those of an approach without a factor first. This stands in
-/// for it: above the least gauge of any kernel of this crate, so that promises of growth that held still hold.
-const GREATEST_GAUGE: f64 = 10.0;
+/// Beyond so many times a good one, digits of everything else are lost beside it.
+const GREATEST_GAUGE: f64 = 1e3;
+/// What stands in for such a gauge, as a multiple of a good one: above the least gauge of any kernel of this
+/// crate, so that promises of growth that held still hold.
+const LARGE_GAUGE: f64 = 10.0;
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
 ///
@@ -266,7 +268,7 @@ impl KernelTable {
         match (self.gauge(), self.computing_gauge()) {
             (Some(gauge), Some(good)) if gauge < LEAST_GAUGE * good => self.in_gauge(good),
             (Some(gauge), Some(good)) if gauge > GREATEST_GAUGE * good => {
-                self.in_gauge(GREATEST_GAUGE * good)
+                self.in_gauge(LARGE_GAUGE * good)
             }
             _ => self,
         }

@@ -85,7 +85,9 @@ pub fn fill_missing(mut heights: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let (stencil, given, right_side) = Stencil::of_map(&relative);
     drop(relative);
     let solution = inside(|| solve(stencil, given, &right_side))?;
-    let filled = solution.values().map(|u| middle + unit * u);
+    // Rounding must not go beyond what was measured, which may be the greatest number there is.
+    let values = solution.values();
+    let filled = values.map(|u| (middle + unit * u).clamp(lowest, highest));
     for (height, filled) in heights.iter_mut().zip(filled) {
         if !height.is_finite() {
             *height = filled;
