@@ -167,11 +167,7 @@ impl<'a> ActiveSet<'a> {
         self.level.choose_contact(|node, pressure, closure| {
             pressure[node] != 0.0 || closure[node] < deepest
         })?;
-        self.leave_one_out()?;
-        let mut progress = self.progress;
-        let errors = self.descent(criteria)?.run(inner, &mut progress)?;
-        self.progress = progress;
-        Ok(errors)
+        self.descend(criteria, |descent, progress| descent.run(inner, progress))
     }
 
     /// A round of the primal active-set method: the node that overlaps most joins the solution on a set, and pressures go
@@ -190,22 +186,25 @@ impl<'a> ActiveSet<'a> {
             .fold(None, lower);
         self.level
             .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
-        self.leave_one_out()?;
-        let mut progress = self.progress;
-        let errors = self
-            .descent(criteria)?
-            .run_to_the_edge(LEAST_INNER, &mut progress)?;
-        self.progress = progress;
+        let errors = self.descend(criteria, |descent, progress| {
+            descent.run_to_the_edge(LEAST_INNER, progress)
+        })?;
         self.is_solved = errors.residual < f64::INFINITY;
         Ok(errors)
     }
 
-    /// The way down on the set that was chosen, which is empty where pressures have cancelled.
-    fn descent(&mut self, criteria: Criteria) -> Result<Descent<'_>, Error> {
+    /// Goes a way down on the set that was chosen, which is empty where pressures have cancelled.
+    fn descend(
+        &mut self,
+        criteria: Criteria,
+        way: impl FnOnce(Descent<'_>, &mut Progress) -> Result<Errors, Error>,
+    ) -> Result<Errors, Error> {
+        self.leave_one_out()?;
         if self.level.iterate.contact.len() == 0 {
             return Err(self.no_convergence());
         }
-        Ok(Descent::new(self.level, self.prescribed, criteria))
+        let descent = Descent::new(self.level, self.prescribed, criteria);
+        way(descent, &mut self.progress)
     }
 
     /// Takes the widest gap out of a contact that is everywhere, if an approach is prescribed and the mean displacement is

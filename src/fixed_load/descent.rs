@@ -54,53 +54,56 @@ impl<'a> Descent<'a> {
 
     /// Conjugate gradients until the residual is below `inner` times the errors of the set itself,
     /// then release of nodes with tension.
-    pub(super) fn run(mut self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
-        let start = self.start();
-        let errors = self.iterate(inner, progress)?;
-        if errors.tension > self.tolerance() {
-            self.release(&start)?;
-            return Ok(errors.unsolved());
-        }
-        self.keep();
-        Ok(errors)
+    pub(super) fn run(self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
+        self.run_and(inner, progress, Self::release)
     }
 
     /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as none
     /// becomes negative: the nodes that lose their pressure first are set free.
     pub(super) fn run_to_the_edge(
-        mut self,
+        self,
         inner: f64,
         progress: &mut Progress,
     ) -> Result<Errors, Error> {
-        let start = self.start();
+        self.run_and(inner, progress, Self::stop_at_the_edge)
+    }
+
+    /// Conjugate gradients, and `cure` where they leave tension.
+    fn run_and(
+        mut self,
+        inner: f64,
+        progress: &mut Progress,
+        cure: impl FnOnce(&mut Self, &Start) -> Result<(), Error>,
+    ) -> Result<Errors, Error> {
+        let start = Start {
+            pressure: self.pressure.clone(),
+            closure: self.closure.clone(),
+            approach: self.level.iterate.approach,
+        };
         let errors = self.iterate(inner, progress)?;
         if errors.tension > self.tolerance() {
-            let pairs = start.pressure.iter().zip(&self.pressure);
-            let reach = pairs
-                .filter(|(_, x)| **x < 0.0)
-                .map(|(from, x)| from / (from - x));
-            let part = reach.fold(1.0, f64::min);
-            for (x, from) in self.pressure.iter_mut().zip(&start.pressure) {
-                let is_free = *x < 0.0 && from / (from - *x) <= part;
-                *x = if is_free {
-                    0.0
-                } else {
-                    (from + part * (*x - from)).max(0.0)
-                };
-            }
-            self.move_there()?;
+            cure(&mut self, &start)?;
             return Ok(errors.unsolved());
         }
         self.keep();
         Ok(errors)
     }
 
-    fn start(&self) -> Start {
-        Start {
-            pressure: self.pressure.clone(),
-            closure: self.closure.clone(),
-            approach: self.level.iterate.approach,
+    fn stop_at_the_edge(&mut self, start: &Start) -> Result<(), Error> {
+        let pairs = start.pressure.iter().zip(&self.pressure);
+        let reach = pairs
+            .filter(|(_, x)| **x < 0.0)
+            .map(|(from, x)| from / (from - x));
+        let part = reach.fold(1.0, f64::min);
+        for (x, from) in self.pressure.iter_mut().zip(&start.pressure) {
+            let is_free = *x < 0.0 && from / (from - *x) <= part;
+            *x = if is_free {
+                0.0
+            } else {
+                (from + part * (*x - from)).max(0.0)
+            };
         }
+        self.move_there()
     }
 
     /// Makes the pressures those of the level, without what is left of tension.
