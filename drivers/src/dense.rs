@@ -107,12 +107,13 @@ impl Dense {
         self.in_gauge(|_, good| good)
     }
 
-    /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far from a good one. An
-    /// approach that is reported for mean planes goes with the load by that gauge, and by another one only as well as
-    /// the load is known.
+    /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far above a good one or
+    /// lets a coefficient be negative. An approach that is reported for mean planes goes with the load by that gauge,
+    /// and by another one only as well as the load is known.
     pub(crate) fn in_gauge_of_paths(self) -> Self {
+        let least = self.influence.column(0).min();
         self.in_gauge(|own, good| match own / good {
-            part if part < 1e-3 => good,
+            _ if least < 0.0 => good,
             part if part > 1e3 => 10.0 * good,
             _ => own,
         })

@@ -68,9 +68,13 @@ impl Judge {
                     && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
                     && value < unloaded
             }
-            // A number of nodes that no load has, since others touch together with them.
+            // A number of nodes that no load has, since others touch together with them, or that a load beyond which there
+            // are fewer has.
             (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
+                let pairs = states.iter().zip(states.iter().skip(1));
+                let mut falls = pairs.map(|(one, next)| next.contact_nodes < one.contact_nodes);
                 self.is_unreachable(fraction)
+                    || (self.circumstances.growth == ContactGrowth::Unknown && falls.any(|it| it))
             }
             _ => false,
         };

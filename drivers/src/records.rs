@@ -118,7 +118,7 @@ fn bring_back(
     states: &[LoadingState],
     draw: &mut Draw<'_>,
 ) -> Verdict {
-    let dense = Dense::new(&sample.kernel, sample.surface.matrix());
+    let dense = Dense::new(&sample.kernel, sample.surface.matrix()).in_gauge_of_paths();
     let circumstances = Circumstances {
         tolerance: Some(ITERATED),
         ..Circumstances::of(&dense, sample.kernel.contact_growth())

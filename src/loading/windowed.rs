@@ -6,11 +6,16 @@ use super::corrected::Corrected;
 use super::cost::{automatic_window, watched_for};
 use super::gap_field::Line;
 use super::ranking::rank;
-use super::run::{LoadingRun, TOLERANCE};
+use super::run::LoadingRun;
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
+
+/// How far below zero a gap may lie at the end of a window, relative to the greatest initial gap and the approach, before
+/// events are taken back. Ten times the greatest error of a displacement: what is taken back without need costs time
+/// and changes nothing, so that it need not be as sure of an error as [`TOLERANCE`](super::run::TOLERANCE) is.
+const OVERLAP: f64 = 1e-12;
 
 /// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
 /// did is a lower bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
@@ -200,7 +205,7 @@ fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option
     if run.negative_pressure(approach, 0.0).is_some() {
         return Some(f64::NEG_INFINITY);
     }
-    let overlap = -TOLERANCE * (run.problem.greatest_gap() + approach);
+    let overlap = -OVERLAP * (run.problem.greatest_gap() + approach);
     let lines = run.field.lines(&run.problem, &run.contact, approach);
     lines
         .filter(|line| line.gap < overlap)

@@ -10,9 +10,6 @@ use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
-/// A gauge below this part of a good one makes the matrix of full contact, which is singular in the zero gauge,
-/// worse conditioned than any other.
-const LEAST_GAUGE: f64 = 1e-3;
 /// Beyond so many times a good one, digits of everything else are lost beside it.
 const GREATEST_GAUGE: f64 = 1e3;
 /// What stands in for such a gauge, as a multiple of a good one: above the least gauge of any kernel of this
@@ -258,15 +255,20 @@ impl KernelTable {
     /// A gauge to compute in \[m/Pa\], of no influence on results: see [`of_coefficients`]. `None` if
     /// the kernel has none.
     pub(crate) fn computing_gauge(&self) -> Option<f64> {
-        let least = self.values.iter().copied().fold(f64::INFINITY, f64::min);
-        self.gauge().map(|mean| of_coefficients(mean, least))
+        self.gauge().map(|mean| of_coefficients(mean, self.least()))
     }
 
-    /// The same kernel in a gauge in which its matrix is well conditioned, also on the whole grid: another one where
-    /// its own is far from [`Self::computing_gauge`].
+    fn least(&self) -> f64 {
+        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same kernel in a gauge to follow paths in: another one where its own is far above
+    /// [`Self::computing_gauge`], or lets a coefficient be negative. Then a node that touches would draw
+    /// others nearer, so that they touch before the approach that bounds a window; and in the zero gauge
+    /// the matrix of full contact is singular.
     pub(crate) fn regular(self) -> Self {
         match (self.gauge(), self.computing_gauge()) {
-            (Some(gauge), Some(good)) if gauge < LEAST_GAUGE * good => self.in_gauge(good),
+            (Some(_), Some(good)) if self.least() < 0.0 => self.in_gauge(good),
             (Some(gauge), Some(good)) if gauge > GREATEST_GAUGE * good => {
                 self.in_gauge(LARGE_GAUGE * good)
             }

@@ -50,6 +50,30 @@ fn another_gauge_is_a_uniform_displacement() -> Result<(), Error> {
     Ok(())
 }
 
+/// Paths are followed in the gauge of the kernel, unless a coefficient is negative in it or it is beyond 1000 good ones.
+#[test]
+fn a_gauge_with_negative_coefficients_is_exchanged() -> Result<(), Error> {
+    let kernel = Spectral::new(Grid::new(7, 6, 1.0, 40.0)?, 1.0)?;
+    let table = KernelTable::new(&kernel)?;
+    let good = table.computing_gauge().unwrap_or(f64::NAN);
+    // A good gauge is 1.5 times the one in which the least coefficient is 0.
+    for (part, expected) in [
+        (0.0, 1.0),
+        (0.1, 1.0),
+        (0.66, 1.0),
+        (0.67, 0.67),
+        (999.0, 999.0),
+        (1001.0, LARGE_GAUGE),
+    ] {
+        let chosen = table.in_gauge(part * good).regular();
+        assert!(chosen.least() >= 0.0, "{part}");
+        // A mean of 42 numbers up to 1000 times as large as it.
+        let found = chosen.gauge().unwrap_or(f64::NAN) / good;
+        assert!((found / expected - 1.0).abs() < 1e-12, "{part}: {found}");
+    }
+    Ok(())
+}
+
 #[test]
 fn offsets_beyond_the_grid_have_no_coefficient() -> Result<(), Error> {
     let table = KernelTable::new(&Spectral::new(Grid::new(4, 3, 1.0, 1.0)?, 1.0)?)?;
