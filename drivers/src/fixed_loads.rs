@@ -12,6 +12,9 @@ use crate::refusal::Circumstances;
 use crate::variant::{Run, Variant};
 use crate::verdict::{Tally, Verdict, Violation};
 
+/// More than the default: where nodes have to join one by one on bodies that promise nothing, some ten thousand are needed.
+const MOST_ITERATIONS: usize = 50_000;
+
 /// Draws a contact problem and solves it for several loads, approaches, areas and mean gaps, from nothing, from other
 /// solutions and in sweeps. Every solution is checked densely against the tolerance and compared with the path.
 ///
@@ -49,6 +52,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         .tolerance(settings.tolerance)
         .nested(settings.nested)
         .stiffness(settings.stiffness)
+        .max_iterations(MOST_ITERATIONS)
         .build();
     let mut solver = match solver {
         Ok(solver) => solver,
