@@ -133,6 +133,10 @@ mod tests {
         let found = doubts(1e-5, |x, y| 1e3 * rough(x, y))?;
         assert!(matches!(found[..], [Doubt::Steep { .. }]), "{found:?}");
         assert!(found[0].to_string().contains("a thousand times smaller"));
+        // No unit makes a surface of this one.
+        let hopeless = Doubt::Steep { rms_gradient: 1e10 }.to_string();
+        assert!(!hopeless.contains("times smaller"), "{hopeless}");
+        assert!(hopeless.ends_with("are the units of heights and sides right?"));
         Ok(())
     }
 
@@ -142,7 +146,21 @@ mod tests {
             |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (1.7 * y).sin()) + slope * x;
         assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
         let found = doubts(1e-5, tilted(1e-8))?;
-        assert!(matches!(found[..], [Doubt::Tilted { .. }]), "{found:?}");
+        let [doubt @ Doubt::Tilted { plane, left }] = found[..] else {
+            return Err(Error::NotFinite { step: 0 });
+        };
+        // 16 columns at 1e-8 m each: an rms height of 1e-8 √((16² − 1)/12), and two waves of rms 0.7e-9.
+        assert!((plane / 4.61e-8 - 1.0).abs() < 0.01, "{plane}");
+        assert!((left / 1e-9 - 1.0).abs() < 0.1, "{left}");
+        let text = doubt.to_string();
+        assert!(
+            text.contains(&format!("{plane:.3e} m of its rms height")),
+            "{text}"
+        );
+        assert!(
+            text.contains(&format!("{left:.3e} m is roughness")),
+            "{text}"
+        );
         Ok(())
     }
 
@@ -151,5 +169,12 @@ mod tests {
         assert_eq!(Doubt::of_pressure(1e9, 115e9), None);
         let gigapascals = Doubt::of_pressure(60.0, 115.0);
         assert!(gigapascals.is_some_and(|doubt| doubt.to_string().contains("1.150e11")));
+        // Too high for metals, on a modulus that solids have.
+        let high = Doubt::of_pressure(20e9, 115e9).map(|doubt| doubt.to_string());
+        assert!(
+            high.is_some_and(
+                |text| text.contains("2.000e10 Pa, 0.17 of E*") && !text.contains("GPa")
+            )
+        );
     }
 }

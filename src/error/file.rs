@@ -94,3 +94,56 @@ fn unit(found: Option<&str>) -> String {
         None => "no unit".to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Messages name the file, what was found, and what to do.
+    #[test]
+    fn messages_say_what_to_do() {
+        let path = || PathBuf::from("ground.gwy");
+        let channels = || vec!["Height".to_string(), "Phase".to_string()];
+        let which = |wanted: Option<&str>| FileError::WhichChannel {
+            path: path(),
+            wanted: wanted.map(str::to_string),
+            channels: channels(),
+        };
+        assert_eq!(
+            which(None).to_string(),
+            "ground.gwy: choose one map with `ReadOptions::channel` (`--channel`); its maps are [\"Height\", \"Phase\"]"
+        );
+        assert_eq!(
+            which(Some("Depth")).to_string(),
+            "ground.gwy: there is not one map with the name 'Depth'; its maps are [\"Height\", \"Phase\"]"
+        );
+        let unit = |found: Option<&str>| FileError::NoUnit {
+            path: path(),
+            quantity: "heights",
+            found: found.map(str::to_string),
+            option: "`--height-unit`",
+        };
+        assert_eq!(
+            unit(None).to_string(),
+            "ground.gwy: the heights have no unit; give it with `--height-unit`"
+        );
+        assert_eq!(
+            unit(Some("V")).to_string(),
+            "ground.gwy: the heights have the unit 'V', which is no length; give it with `--height-unit`"
+        );
+        let bad = |offset| FileError::BadFile {
+            path: path(),
+            format: "GWY",
+            offset,
+            reason: "it ends early".to_string(),
+        };
+        assert_eq!(
+            bad(Some(7)).to_string(),
+            "ground.gwy is no readable GWY file: it ends early (at byte 7)"
+        );
+        assert_eq!(
+            bad(None).to_string(),
+            "ground.gwy is no readable GWY file: it ends early"
+        );
+    }
+}

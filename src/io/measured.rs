@@ -90,3 +90,72 @@ impl fmt::Display for MeasuredSurface {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 4 × 3 nodes on the plane z = x + 2 y (µm a node), node (1, 1) missing.
+    fn plane(cell: Option<(f64, f64)>) -> MeasuredSurface {
+        let mut heights = DMatrix::from_fn(4, 3, |ix, iy| 1e-6 * (ix as f64 + 2.0 * iy as f64));
+        heights[(1, 1)] = f64::NAN;
+        MeasuredSurface {
+            heights,
+            missing: 1,
+            cell,
+            title: "Topography".to_string(),
+            format: Format::GwyddionSimpleField,
+            notes: vec!["a note".to_string()],
+        }
+    }
+
+    /// A plane is filled by itself, and nothing else changes.
+    #[test]
+    fn a_surface_with_a_hole_is_filled_and_put_on_its_grid() -> Result<(), Error> {
+        let measured = plane(Some((1e-5, 2e-5)));
+        assert_eq!(
+            measured.to_string(),
+            "Gwyddion Simple Field: 4 x 3 nodes, 4e-5 x 6e-5 m, 1 nodes (8.33 %) missing"
+        );
+        let (title, notes) = (measured.title.clone(), measured.notes.clone());
+        let filled = measured.fill_missing()?;
+        assert_eq!(filled.missing, 0);
+        assert_eq!((&filled.title, &filled.notes), (&title, &notes));
+        assert_eq!(
+            filled.to_string(),
+            "Gwyddion Simple Field: 4 x 3 nodes, 4e-5 x 6e-5 m"
+        );
+        let grid = filled.grid()?;
+        assert_eq!((grid.shape(), grid.dx(), grid.dy()), ((4, 3), 1e-5, 2e-5));
+        let surface = filled.topography()?;
+        assert_eq!(surface.grid(), &grid);
+        for (k, z) in surface.map().matrix().iter().enumerate() {
+            let expected = 1e-6 * ((k % 4) as f64 + 2.0 * (k / 4) as f64);
+            // Node (1, 1) to what `fill_missing` promises, 1e-10 of the range; the others as they were.
+            let error = if k == 5 { 1e-10 * 7e-6 } else { 0.0 };
+            assert!((z - expected).abs() <= error, "{k}: {z}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_missing_node_and_an_unknown_size_are_refused() -> Result<(), Error> {
+        let hole = plane(Some((1e-5, 2e-5))).topography();
+        assert!(
+            matches!(hole, Err(Error::HeightNotFinite { ix: 1, iy: 1, .. })),
+            "{hole:?}"
+        );
+        let unknown = plane(None);
+        assert_eq!(
+            unknown.to_string(),
+            "Gwyddion Simple Field: 4 x 3 nodes, of unknown size, 1 nodes (8.33 %) missing"
+        );
+        assert!(matches!(
+            unknown.grid(),
+            Err(Error::File(FileError::NoSide))
+        ));
+        let surface = unknown.fill_missing()?.topography();
+        assert!(matches!(surface, Err(Error::File(FileError::NoSide))));
+        Ok(())
+    }
+}

@@ -80,3 +80,34 @@ impl fmt::Display for LengthUnit {
         f.write_str(self.symbol)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every spelling is read, and written by its symbol; the lengths are those of the SI and of the inch.
+    #[test]
+    fn units_are_written_by_their_symbol() -> Result<(), Error> {
+        let known = [
+            ("meters", "m", 1.0),
+            (" cm ", "cm", 1e-2),
+            ("mm", "mm", 1e-3),
+            ("\u{3bc}m", "µm", 1e-6),
+            ("nm", "nm", 1e-9),
+            ("pm", "pm", 1e-12),
+            ("fm", "fm", 1e-15),
+            ("Angstrom", "Å", 1e-10),
+            ("inch", "in", 25.4e-3),
+        ];
+        for (text, symbol, metres) in known {
+            let unit: LengthUnit = text.parse()?;
+            assert_eq!(unit.to_string(), symbol);
+            assert_eq!((unit.symbol(), unit.metres()), (symbol, metres));
+        }
+        assert!(matches!(
+            "V".parse::<LengthUnit>(),
+            Err(Error::File(FileError::NoLength { unit })) if unit == "V"
+        ));
+        Ok(())
+    }
+}

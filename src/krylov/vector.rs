@@ -111,7 +111,18 @@ mod tests {
 
     #[test]
     fn sums_of_integers_are_exact() {
-        for length in [0_usize, 1, 7, 8, 4096, 4097, 20_000] {
+        for length in [
+            0_usize,
+            1,
+            7,
+            8,
+            4096,
+            4097,
+            20_000,
+            ALONE,
+            ALONE + 1,
+            50_001,
+        ] {
             let exact = (length * length.saturating_sub(1) / 2) as f64;
             assert_eq!(sum_over(length, |i| i as f64), exact);
             let last = length.saturating_sub(1) as f64;
@@ -119,8 +130,27 @@ mod tests {
         }
     }
 
+    /// In small whole numbers, on one thread and on as many as there are: every value is reached once.
+    #[test]
+    fn multiples_are_added_to_every_value() {
+        for length in [0_usize, 1, 4097, ALONE, ALONE + 1, 50_001] {
+            let x: Vec<f32> = (0..length).map(|i| i as f32).collect();
+            let mut y: Vec<f64> = (0..length).map(|i| (3 * i) as f64).collect();
+            add_scaled(&mut y, -2.0, &x);
+            assert!(
+                y.iter().enumerate().all(|(i, y)| *y == i as f64),
+                "{length}"
+            );
+        }
+    }
+
     #[test]
     fn greatest_passes_nan_on() {
         assert!(greatest(3, 0.0, |i| [1.0, f64::NAN, 2.0][i]).is_nan());
+        // In any part of many.
+        for place in [0, 4096, 40_000, 49_999] {
+            let value = |i: usize| if i == place { f64::NAN } else { i as f64 };
+            assert!(greatest(50_000, 0.0, value).is_nan(), "{place}");
+        }
     }
 }

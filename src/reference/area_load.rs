@@ -217,6 +217,14 @@ mod tests {
         Ok(())
     }
 
+    /// Gradient and modulus are kept, and not exchanged.
+    #[test]
+    fn a_law_says_what_it_is_for() -> Result<(), Error> {
+        let law = law()?;
+        assert_eq!((law.rms_gradient(), law.e_star()), (0.2, 50e9));
+        Ok(())
+    }
+
     #[test]
     fn impossible_surfaces_are_refused() {
         for (gradient, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {

@@ -341,6 +341,18 @@ mod tests {
         Ok(())
     }
 
+    /// Parameters are kept, each under its own name.
+    #[test]
+    fn shapes_say_what_they_were_made_of() -> Result<(), Error> {
+        assert_eq!(Paraboloid::new(0.5)?.radius(), 0.5);
+        assert_eq!(EllipticParaboloid::new(0.5, 0.25)?.radii(), (0.5, 0.25));
+        let cylinder = Cylinder::new(0.5, Axis::Y)?;
+        assert_eq!((cylinder.radius(), cylinder.axis()), (0.5, Axis::Y));
+        assert_eq!(Cone::new(0.2)?.slope(), 0.2);
+        assert_eq!(FlatPunch::new(-2e-6)?.height(), -2e-6);
+        Ok(())
+    }
+
     #[test]
     fn bad_parameters_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -189,6 +189,17 @@ mod tests {
         Ok(())
     }
 
+    /// Parameters are kept, each under its own name.
+    #[test]
+    fn waves_say_what_they_were_made_of() -> Result<(), Error> {
+        let wave = Wave::new(2e-6, 3e-3, Axis::Y)?;
+        assert_eq!((wave.amplitude(), wave.wavelength()), (2e-6, 3e-3));
+        assert_eq!(wave.direction(), Axis::Y);
+        let both = BiWave::new(2e-6, 3e-3, 5e-3)?;
+        assert_eq!((both.amplitude(), both.wavelengths()), (2e-6, (3e-3, 5e-3)));
+        Ok(())
+    }
+
     #[test]
     fn bad_parameters_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {

@@ -59,6 +59,21 @@ fn heights_are_pinned_bit_for_bit() -> Result<(), Error> {
     Ok(())
 }
 
+/// The numbers of the paper's Table 1, and of a surface with a long cut-off.
+#[test]
+fn surfaces_say_what_they_were_made_of() -> Result<(), Error> {
+    let paper = SelfAffine::zhang2020(7);
+    assert_eq!((paper.hurst(), paper.seed()), (0.8, 7));
+    assert_eq!(paper.rolloff_wavelength(), 2.5e-3);
+    assert_eq!(paper.short_cutoff_wavelength(), 78.125e-6);
+    assert_eq!(paper.long_cutoff_wavelength(), None);
+    assert_eq!(paper.amplitude(), Amplitude::RmsHeight(50e-6));
+    let cut = paper.with_long_cutoff_wavelength(5e-3)?;
+    assert_eq!(cut.long_cutoff_wavelength(), Some(5e-3));
+    assert_eq!(cut.rolloff_wavelength(), 2.5e-3);
+    Ok(())
+}
+
 #[test]
 fn table_1_has_the_gradient_that_follows_from_it() -> Result<(), Error> {
     let spectrum = SelfAffine::zhang2020(1).spectrum(&Grid::square(256, 1e-2)?)?;
