@@ -129,3 +129,81 @@ impl ContactState {
         Some(Self { mean_gap, ..state })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 N on 8 of 4 × 5 nodes, 5 m² in all, in numbers that are short in binary.
+    fn state() -> Result<ContactState, crate::Error> {
+        let grid = Grid::new(4, 5, 0.5, 0.5)?;
+        Ok(ContactState {
+            contact_stiffness: Some(4.0),
+            interfacial_stiffness: Some(2.0),
+            energy: 6.0,
+            ..ContactState::new(&grid, 8, 3.0, 10.0, 7.0)
+        })
+    }
+
+    #[test]
+    fn areas_and_mean_pressure_are_those_of_the_grid() -> Result<(), crate::Error> {
+        let state = state()?;
+        assert_eq!(state.contact_area, 2.0);
+        assert_eq!(state.contact_area_fraction, 0.4);
+        assert_eq!(state.mean_pressure(), 2.0);
+        Ok(())
+    }
+
+    /// 4 N more: 1 m of approach at 4 N/m, 2 m of mean gap at 2 N/m, and the work of a mean of 12 N over 1 m. The same state
+    /// whichever of the three is asked for.
+    #[test]
+    fn the_same_contact_at_another_load() -> Result<(), crate::Error> {
+        let before = state()?;
+        let after = ContactState {
+            approach: 4.0,
+            load: 14.0,
+            mean_gap: 5.0,
+            energy: 18.0,
+            ..before
+        };
+        assert_eq!(before.at_load(14.0), Some(after));
+        assert_eq!(before.at_approach(4.0), Some(after));
+        assert_eq!(before.at_mean_gap(5.0), Some(after));
+        // Of the mean planes if there is no other approach: 4 N at 2 N/m.
+        let planes = ContactState {
+            contact_stiffness: None,
+            ..before
+        };
+        assert_eq!(planes.at_load(14.0).map(|state| state.approach), Some(5.0));
+        Ok(())
+    }
+
+    /// Without stiffnesses only the state itself is known; where they are infinite, loads alone can be asked for.
+    #[test]
+    fn what_no_stiffness_tells_is_not_told() -> Result<(), crate::Error> {
+        let state = state()?;
+        let unknown = ContactState {
+            contact_stiffness: None,
+            interfacial_stiffness: None,
+            ..state
+        };
+        let full = ContactState {
+            contact_stiffness: None,
+            interfacial_stiffness: Some(f64::INFINITY),
+            ..state
+        };
+        for known in [state, unknown, full] {
+            assert_eq!(known.at_load(10.0), Some(known));
+            assert_eq!(known.at_approach(3.0), Some(known));
+            assert_eq!(known.at_mean_gap(7.0), Some(known));
+        }
+        assert_eq!(unknown.at_load(14.0), None);
+        for stiff in [unknown, full] {
+            assert_eq!(stiff.at_approach(4.0), None);
+            assert_eq!(stiff.at_mean_gap(5.0), None);
+        }
+        let pressed = full.at_load(14.0);
+        assert_eq!(pressed.map(|s| (s.approach, s.mean_gap)), Some((3.0, 7.0)));
+        Ok(())
+    }
+}

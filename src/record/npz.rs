@@ -284,41 +284,4 @@ fn event(code: f64) -> Option<ContactEvent> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::io::full_disk::is_refused_at_every_byte;
-    use crate::surface::Paraboloid;
-    use crate::{Boussinesq, LoadingSolver};
-
-    #[test]
-    fn a_record_does_not_fit() -> Result<(), Box<dyn std::error::Error>> {
-        let half_space = Boussinesq::new(Grid::square(2, 1.0)?, 1.0)?;
-        let mut path = LoadingSolver::new(&Paraboloid::new(10.0)?, &half_space)?;
-        let history: History = path.by_ref().collect::<Result<_, _>>()?;
-        let record = LoadingRecord::new(&path, history)?;
-        let name = format!("asperity-full-{}.npz", std::process::id());
-        let file = std::env::temp_dir().join(name);
-        let tried = is_refused_at_every_byte(
-            |disk| record.write(disk, &[]),
-            |bytes| {
-                // A new file each time: some systems wait for the disk before they replace what is in one.
-                let _ = std::fs::remove_file(&file);
-                std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok()
-            },
-        );
-        std::fs::remove_file(&file)?;
-        tried?;
-        #[cfg(target_os = "linux")]
-        {
-            use std::os::unix::fs::FileTypeExt;
-            let full = Path::new("/dev/full");
-            let written = record.write_npz(full, &[]);
-            assert!(
-                matches!(&written, Err(Error::File(FileError::Io { path, .. })) if path == full),
-                "{written:?}"
-            );
-            assert!(std::fs::metadata(full)?.file_type().is_char_device());
-        }
-        Ok(())
-    }
-}
+mod tests;

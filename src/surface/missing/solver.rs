@@ -98,3 +98,34 @@ fn row_product(a: &[f64], b: &[f64]) -> f64 {
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
     sums.iter().sum::<f64>() + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    /// Numbers that are none come to an end at once, and say so. Heights cannot bring them: they are finite, and between
+    /// −1 and 1 here.
+    #[test]
+    fn what_is_no_number_ends_the_iteration() -> Result<(), Error> {
+        let holed = dmatrix![0.0, 1.0, 0.5; 1.0, f64::NAN, 0.25; 0.5, f64::NAN, 1.0];
+        let (stencil, given, right_side) = Stencil::of_map(&holed);
+        assert!(solve(stencil.clone(), given.clone(), &right_side).is_ok());
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut wrong = right_side.clone();
+            wrong.fill_rows(|_, row| row.fill(bad));
+            let found = solve(stencil.clone(), given.clone(), &wrong).map(drop);
+            // Errors are of the range, of which heights between −1 and 1 have two.
+            assert!(
+                matches!(
+                    found,
+                    Err(Error::NoConvergence { residual, tolerance, iterations: 0 })
+                        if !residual.is_finite() && tolerance == 0.5 * MARGIN * ERROR
+                ),
+                "{found:?}"
+            );
+        }
+        Ok(())
+    }
+}
