@@ -371,3 +371,16 @@ fn memory_is_known_beforehand() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// The tables themselves would fill the screen.
+#[test]
+fn a_convolution_shows_its_size() -> Result<(), Error> {
+    let grid = Grid::new(8, 6, 1.0, 0.5)?;
+    let convolution = Convolution::new(&Spectral::new(grid, 1.0)?)?;
+    let (double, single) = (&convolution, convolution.to_single());
+    for shown in [format!("{double:?}"), format!("{single:?}")] {
+        assert!(shown.contains("padded: (8, 6)"), "{shown}");
+        assert!(shown.len() < 200, "{shown}");
+    }
+    Ok(())
+}

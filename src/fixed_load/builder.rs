@@ -123,3 +123,24 @@ impl FixedLoadSolver {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Boussinesq;
+    use crate::surface::Paraboloid;
+
+    #[test]
+    fn a_builder_shows_its_grid_and_settings() -> Result<(), Error> {
+        let kernel = Boussinesq::new(Grid::new(7, 5, 0.5, 0.25)?, 1.0)?;
+        let surface = Paraboloid::new(1.0)?;
+        let builder = FixedLoadSolver::builder(&surface, &kernel)
+            .tolerance(3e-7)
+            .max_iterations(123);
+        let shown = format!("{builder:?}");
+        assert!(shown.contains(&format!("{:?}", kernel.grid())), "{shown}");
+        assert!(shown.contains("tolerance: 3e-7"), "{shown}");
+        assert!(shown.contains("max_iterations: 123"), "{shown}");
+        Ok(())
+    }
+}

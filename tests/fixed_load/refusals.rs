@@ -51,6 +51,40 @@ fn too_few_iterations() {
     }
 }
 
+/// Stiffnesses that are not reached leave the solution as it was.
+#[test]
+fn too_few_iterations_for_stiffnesses() {
+    let grid = Grid::square(8, 1.0).unwrap();
+    let map = rough(&grid, 3);
+    for kernel in Kernel::all(grid, 1.0) {
+        let mut solution = FixedLoadSolver::builder(&map, &kernel)
+            .stiffness(false)
+            .build()
+            .and_then(|mut solver| solver.solve(0.01))
+            .unwrap();
+        let before = solution.clone();
+        let mut hasty = FixedLoadSolver::builder(&map, &kernel)
+            .tolerance(1e-12)
+            .max_iterations(1)
+            .build()
+            .unwrap();
+        match hasty.add_stiffness(&mut solution) {
+            Err(Error::NoConvergence {
+                residual,
+                tolerance: 1e-12,
+                iterations: 1,
+            }) => assert!(residual > 1e-12, "{residual}"),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(solution.state, before.state);
+        assert_eq!(solution.state.interfacial_stiffness, None);
+        assert_eq!(solution.pressure_rate, before.pressure_rate);
+        let mut patient = solver(&map, &kernel, 1e-8);
+        patient.add_stiffness(&mut solution).unwrap();
+        assert!(solution.state.interfacial_stiffness.unwrap() > 0.0);
+    }
+}
+
 /// The grids are refused before they are allocated, the contact when it grows too large.
 #[test]
 fn memory() {
