@@ -10,6 +10,8 @@ mod correction;
 mod group;
 mod play;
 mod states;
+#[cfg(test)]
+mod tests;
 mod ties;
 mod watched;
 
