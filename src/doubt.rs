@@ -164,6 +164,20 @@ mod tests {
         Ok(())
     }
 
+    /// Heights whose plane is no number are not called tilted.
+    #[test]
+    fn heights_that_overflow_are_not_tilted() -> Result<(), Error> {
+        let sign = |k: f64| if k < 8.0 { 1.0 } else { -1.0 };
+        let found = doubts(1.0, |x, y| f64::MAX * sign(x) * sign(y))?;
+        assert!(
+            !found
+                .iter()
+                .any(|doubt| matches!(doubt, Doubt::Tilted { .. })),
+            "{found:?}"
+        );
+        Ok(())
+    }
+
     #[test]
     fn pressures_that_no_body_bears_are_noticed() {
         assert_eq!(Doubt::of_pressure(1e9, 115e9), None);

@@ -1,7 +1,7 @@
 //! Records of paths: read, replayed, and gone on from.
 
 use crate::problems::{assert_close, grid, kernels, rough};
-use asperity::loading::History;
+use asperity::loading::{ContactEvent, History};
 use asperity::record::LoadingRecord;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
@@ -138,6 +138,80 @@ fn records_of_other_surfaces_and_kernels_are_refused() {
     assert!(matches!(replayed, Err(Error::WrongKernel { .. })));
 }
 
+/// A path that has not begun is resumed at its beginning.
+#[test]
+fn no_states_are_no_path_yet() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (_, all) = whole(&kernel, RecursiveCholesky::new());
+    let nothing: History = [].into_iter().collect();
+    let surface = rough(&grid(), 5);
+    let resumed = LoadingSolver::builder(&surface, &kernel)
+        .updater(RecursiveCholesky::new())
+        .resume(&nothing)
+        .unwrap();
+    assert_eq!(resumed.state(), None);
+    let states: Vec<LoadingState> = resumed.map(Result::unwrap).collect();
+    assert_eq!(states, all);
+}
+
+/// The factor of the nodes in contact is made only if it fits, to the byte.
+#[test]
+fn a_contact_that_does_not_fit_is_not_resumed() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (path, all) = whole(&kernel, RecursiveCholesky::new());
+    let record = cut(&path, &all, 240);
+    let room = LoadingSolver::check_room(&grid(), kernel.boundary(), Some(0));
+    let Err(Error::MemoryBudget { needed: fixed, .. }) = room else {
+        panic!("{room:?}");
+    };
+    let resume = |bytes: usize| {
+        LoadingSolver::builder(record.heights(), &kernel)
+            .updater(RecursiveCholesky::new())
+            .memory_budget(fixed + bytes)
+            .resume(record.history())
+    };
+    let needed = match resume(1000) {
+        Err(Error::MemoryBudget {
+            needed,
+            budget: 1000,
+            nodes_that_fit: 0,
+        }) => needed,
+        other => panic!("{other:?}"),
+    };
+    // A triangle of 240 numbers a side at least.
+    assert!(needed > 240 * 240 / 2 * size_of::<f64>(), "{needed}");
+    assert!(matches!(
+        resume(needed - 1),
+        Err(Error::MemoryBudget { needed: again, budget, .. }) if again == needed && budget == needed - 1
+    ));
+    assert_eq!(resume(needed).unwrap().state(), Some(all[239]));
+}
+
+/// A kernel of which another number of coefficients is remembered is another one.
+#[test]
+fn a_kernel_with_too_few_coefficients_is_refused() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (path, all) = whole(&kernel, RecursiveCholesky::new());
+    let record = cut(&path, &all, 30);
+    let mut remembered = record.kernel().clone();
+    remembered.coefficients.pop();
+    let history: History = record.states().iter().copied().collect();
+    let (heights, settings) = (record.heights().clone(), record.settings().clone());
+    let record =
+        LoadingRecord::from_parts(grid(), heights, remembered, settings, history, None).unwrap();
+    let made = record.make_kernel();
+    assert!(
+        matches!(
+            made,
+            Err(Error::LengthMismatch {
+                expected: 16,
+                found: 15
+            })
+        ),
+        "{made:?}"
+    );
+}
+
 #[test]
 fn states_in_no_order_of_a_path_are_refused() {
     let kernel = Boussinesq::new(grid(), 1e9).unwrap();
@@ -159,6 +233,32 @@ fn states_in_no_order_of_a_path_are_refused() {
     assert!(matches!(twice, Err(Error::AlreadyInContact { .. })));
     let outside = changed(&|state| state.node = (usize::MAX, 3));
     assert!(matches!(outside, Err(Error::NodeOutOfGrid { .. })));
+    // Numbers that do not go with the events, and a limit that is not the end.
+    let not_on_path = |found: Result<LoadingRecord, Error>, numbers: (&str, f64, &str)| match found
+    {
+        Err(Error::NotOnPath {
+            step,
+            quantity,
+            value,
+            expected,
+            load,
+            approach,
+        }) => {
+            assert_eq!((quantity, value, expected), numbers);
+            assert_eq!((load, approach), (all[20].load, all[20].approach));
+            step
+        }
+        other => panic!("{other:?}"),
+    };
+    let limit = changed(&|state| state.event = ContactEvent::Limit);
+    let only_last = ("number of the event", 21.0, "no limit but the last state");
+    assert_eq!(not_on_path(limit, only_last), 21);
+    let step = changed(&|state| state.step = 30);
+    let in_turn = ("number of the event", 30.0, "one more than before");
+    assert_eq!(not_on_path(step, in_turn), 30);
+    let count = changed(&|state| state.contact.contact_nodes = 7);
+    let counted = ("number of nodes in contact", 7.0, "that of the events");
+    assert_eq!(not_on_path(count, counted), 21);
     let nan = changed(&|state| state.contact.load = f64::NAN);
     assert!(matches!(nan, Err(Error::NotFinite { step: 21 })));
 }

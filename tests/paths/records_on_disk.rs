@@ -161,6 +161,15 @@ fn a_record_is_data() {
     let twice = text.replacen("\"step\":2,", "\"step\":3,", 1);
     assert_ne!(twice, text);
     assert!(serde_json::from_str::<LoadingRecord>(&twice).is_err());
+    // And heights of another number of nodes than 18 × 15.
+    let mut fewer: serde_json::Value = serde_json::from_str(&text).unwrap();
+    fewer["heights"].as_array_mut().unwrap().pop();
+    let refused = serde_json::from_value::<LoadingRecord>(fewer).unwrap_err();
+    let refused = refused.to_string();
+    assert!(
+        refused.contains("270") && refused.contains("269"),
+        "{refused}"
+    );
 }
 
 /// Where nothing can be written nothing is left behind.

@@ -1,9 +1,10 @@
 //! The paper's rule, "the node with the smallest gap touches next": reproduced, and shown not to be
 //! exact.
 
+use asperity::kernel::KernelTable;
 use asperity::loading::LoadingSolver;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boussinesq, ContactRule, Grid, InfluenceKernel};
+use asperity::{Boundary, Boussinesq, ContactGrowth, ContactRule, Error, Grid, InfluenceKernel};
 use nalgebra::{DMatrix, DVector};
 
 fn rough(n: usize, seed: u64) -> (Grid, HeightMap) {
@@ -185,4 +186,23 @@ fn the_papers_rule_gives_negative_pressures() {
             "{exact:?}"
         );
     }
+}
+
+/// Two nodes that move as one: the gap of the second never closes, and there is no approach at which it touches.
+#[test]
+fn a_gap_that_does_not_close_is_no_number() {
+    let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
+    let kernel = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, |_, _| 1.0);
+    let heights = HeightMap::new(DMatrix::from_row_slice(2, 1, &[0.0, -0.1])).unwrap();
+    let mut path = LoadingSolver::builder(&heights, &kernel.unwrap())
+        .rule(ContactRule::SmallestGap)
+        .build()
+        .unwrap();
+    assert_eq!(path.next().unwrap().unwrap().node, (0, 0));
+    let failed = path.next().unwrap();
+    assert!(
+        matches!(failed, Err(Error::NotFinite { step: 2 })),
+        "{failed:?}"
+    );
+    assert!(path.next().is_none());
 }

@@ -5,6 +5,7 @@ mod check;
 mod complementary;
 mod failures;
 mod made;
+mod resumed;
 mod table;
 mod windows;
 
