@@ -10,7 +10,7 @@ use asperity::{Error, LoadingSolver, LoadingState};
 fn cases(count: usize) -> impl Iterator<Item = (Table, Vec<f64>, Vec<LoadingState>)> {
     let all = (0..).map(|seed| {
         let (kernel, gaps) = case(seed);
-        let states = kernel.path(&gaps).map(Result::unwrap).collect();
+        let states: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
         (kernel, gaps, states)
     });
     let leaves = |states: &[LoadingState]| {
