@@ -112,10 +112,10 @@ mod tests {
     /// A plane is filled by itself, and nothing else changes.
     #[test]
     fn a_surface_with_a_hole_is_filled_and_put_on_its_grid() -> Result<(), Error> {
-        let measured = plane(Some((1e-5, 2e-5)));
+        let measured = plane(Some((0.5, 0.25)));
         assert_eq!(
             measured.to_string(),
-            "Gwyddion Simple Field: 4 x 3 nodes, 4e-5 x 6e-5 m, 1 nodes (8.33 %) missing"
+            "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m, 1 nodes (8.33 %) missing"
         );
         let (title, notes) = (measured.title.clone(), measured.notes.clone());
         let filled = measured.fill_missing()?;
@@ -123,10 +123,10 @@ mod tests {
         assert_eq!((&filled.title, &filled.notes), (&title, &notes));
         assert_eq!(
             filled.to_string(),
-            "Gwyddion Simple Field: 4 x 3 nodes, 4e-5 x 6e-5 m"
+            "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m"
         );
         let grid = filled.grid()?;
-        assert_eq!((grid.shape(), grid.dx(), grid.dy()), ((4, 3), 1e-5, 2e-5));
+        assert_eq!((grid.shape(), grid.dx(), grid.dy()), ((4, 3), 0.5, 0.25));
         let surface = filled.topography()?;
         assert_eq!(surface.grid(), &grid);
         for (k, z) in surface.map().matrix().iter().enumerate() {
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_missing_node_and_an_unknown_size_are_refused() -> Result<(), Error> {
-        let hole = plane(Some((1e-5, 2e-5))).topography();
+        let hole = plane(Some((0.5, 0.25))).topography();
         assert!(
             matches!(hole, Err(Error::HeightNotFinite { ix: 1, iy: 1, .. })),
             "{hole:?}"

@@ -94,6 +94,15 @@ fn escaped(name: &str) -> String {
 mod tests {
     use super::*;
 
+    /// What XML gives a meaning to, and what it does not allow.
+    #[test]
+    fn names_are_written_as_xml_has_them() {
+        assert_eq!(
+            escaped("a<b & \"c\"\n\u{7f}µ"),
+            "a&lt;b &amp; &quot;c&quot;µ"
+        );
+    }
+
     /// Read back by hand; VTK itself reads it in `studies/files/check_vti.py`.
     #[test]
     fn fields_stand_where_the_header_says() -> Result<(), Box<dyn std::error::Error>> {

@@ -188,12 +188,14 @@ fn the_papers_rule_gives_negative_pressures() {
     }
 }
 
-/// Two nodes that move as one: the gap of the second never closes, and there is no approach at which it touches.
+/// Two nodes that move as one: the gap of the second never closes, and there is no approach at which it touches. The third
+/// has the largest gap, and keeps the mean gap closing.
 #[test]
 fn a_gap_that_does_not_close_is_no_number() {
-    let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
-    let kernel = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, |_, _| 1.0);
-    let heights = HeightMap::new(DMatrix::from_row_slice(2, 1, &[0.0, -0.1])).unwrap();
+    let grid = Grid::new(3, 1, 1.0, 1.0).unwrap();
+    let coefficient = |di: isize, _| [1.0, 1.0, 0.5][di.unsigned_abs()];
+    let kernel = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, coefficient);
+    let heights = HeightMap::new(DMatrix::from_row_slice(3, 1, &[0.0, -0.1, -5.0])).unwrap();
     let mut path = LoadingSolver::builder(&heights, &kernel.unwrap())
         .rule(ContactRule::SmallestGap)
         .build()

@@ -249,3 +249,39 @@ proptest! {
         prop_assert!(parse(&data).is_err());
     }
 }
+
+/// Vectors and texts, as archives hold them, are not read from arrays of other dimensions.
+#[cfg(feature = "io")]
+#[test]
+fn dimensions_are_those_asked_for() -> TestResult {
+    let of = |descr: &str, shape: &[usize], data: &[u8]| {
+        let mut bytes = header_of(descr, shape);
+        bytes.extend(data);
+        bytes
+    };
+    let (number, letter) = (2.5_f64.to_le_bytes(), u32::from('é').to_le_bytes());
+    let (single, plain) = (of("<f8", &[1], &number), of("<U1", &[], &letter));
+    assert_eq!(vector(&single).map_err(named)?, [2.5]);
+    assert_eq!(text(&plain).map_err(named)?, "é");
+    let reason = |fault: Option<Fault>| match fault {
+        Some(Fault::Malformed { reason, .. }) => reason,
+        _ => String::new(),
+    };
+    let flat = of("<f8", &[1, 1], &number);
+    for (fault, expected) in [
+        (vector(&flat).err(), "has 2 dimensions, but 1 were expected"),
+        (
+            vector(&plain).err(),
+            "has 0 dimensions, but 1 were expected",
+        ),
+        (text(&single).err(), "has 1 dimensions, but 0 were expected"),
+        (
+            matrix(&single).err(),
+            "has 1 dimensions, but 2 were expected",
+        ),
+    ] {
+        let reason = reason(fault);
+        assert!(reason.ends_with(expected), "{reason}");
+    }
+    Ok(())
+}

@@ -10,8 +10,6 @@ mod correction;
 mod group;
 mod play;
 mod states;
-#[cfg(test)]
-mod tests;
 mod ties;
 mod watched;
 
@@ -332,3 +330,6 @@ impl Contradictions {
         self.tension.is_empty() && self.overlap.is_empty() && self.outside.is_empty()
     }
 }
+
+#[cfg(test)]
+mod tests;

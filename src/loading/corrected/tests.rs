@@ -144,6 +144,7 @@ fn a_kernel_that_is_not_positive_definite_names_the_node() -> Result<(), Error> 
         (approach / touches - 1.0).abs() < 1e-8,
         "{approach} {touches}"
     );
-    assert!((pivot / expected - 1.0).abs() < 1e-8, "{pivot} {expected}");
+    // Complements without a factor come in single precision: roundings of 6e-8, a sum of 1.2 and a condition of 9.
+    assert!((pivot - expected).abs() < 1e-6, "{pivot} {expected}");
     Ok(())
 }
