@@ -9,7 +9,7 @@ binary may as well be run by itself, with LLVM_PROFILE_FILE=DIR/NAME-%p.profraw.
 
 One report is made for each binary, and a line is reached if it is in one of them: small functions are compiled into
 the tests that call them, and a report over all binaries takes those counts for another function's. Tests themselves are left
-out: what stands behind `#[cfg(test)]`, and files named tests.
+out: what stands behind `#[cfg(test)]`, and files named after tests.
 """
 
 import argparse
@@ -57,7 +57,7 @@ def tests_in(file):
     text = (ROOT / file).read_text().splitlines()
     lines, files = set(), set()
     for start, line in enumerate(text):
-        if line.strip() != "#[cfg(test)]" or start in lines:
+        if not line.strip().startswith(("#[cfg(test)]", "#[cfg(all(test,")) or start in lines:
             continue
         indent = line[: len(line) - len(line.lstrip())]
         item = next(k for k in range(start + 1, len(text)) if text[k].rstrip().endswith((";", "{", "}")))
@@ -82,7 +82,8 @@ def main():
     parser.add_argument("--show", help="a file whose lines that are not reached are printed")
     arguments = parser.parse_args()
     reached = counts(arguments.target)
-    inside = {file: tests_in(file) for file in reached}
+    sources = [str(path.relative_to(ROOT)) for path in (ROOT / "src").rglob("*.rs")]
+    inside = {file: tests_in(file) for file in sources}
     only_tests = {file for _, files in inside.values() for file in files}
     table = []
     for file, lines in reached.items():
