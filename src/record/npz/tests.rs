@@ -70,13 +70,16 @@ fn archive(
     Ok(bytes)
 }
 
+/// What becomes of a column, by its name.
+type Change<'a> = &'a dyn Fn(&str, &mut Vec<f64>);
+
 /// Whole archives of something else: refused, and for their own reason.
 #[test]
 fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::Error>> {
     let record = record()?;
     let name = format!("asperity-other-{}.npz", std::process::id());
     let file = std::env::temp_dir().join(name);
-    let read = |parameters: &str, change: &dyn Fn(&str, &mut Vec<f64>)| {
+    let read = |parameters: &str, change: Change| {
         let written = archive(&record, parameters, change).and_then(|b| std::fs::write(&file, b));
         (written, LoadingRecord::read_npz(&file))
     };
@@ -98,7 +101,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
             values[1] = 3.0;
         }
     };
-    let cases: [(&str, &dyn Fn(&str, &mut Vec<f64>), &str); 5] = [
+    let cases: [(&str, Change, &str); 5] = [
         (
             &newer,
             &as_it_is,

@@ -2,9 +2,8 @@
 
 use super::table::{Table, case};
 use asperity::loading::{ContactEvent, History};
-use asperity::record::LoadingRecord;
 use asperity::updater::RecursiveCholesky;
-use asperity::{Error, LoadingSolver, LoadingState};
+use asperity::{LoadingSolver, LoadingState};
 
 /// The first cases on whose path a node leaves, and their paths.
 fn cases(count: usize) -> impl Iterator<Item = (Table, Vec<f64>, Vec<LoadingState>)> {
@@ -79,6 +78,8 @@ fn paths_with_releases_go_on_from_any_state() {
 #[cfg(feature = "io")]
 #[test]
 fn records_with_releases_are_read_back() {
+    use asperity::{Error, record::LoadingRecord};
+
     for (number, (kernel, gaps, all)) in cases(3).enumerate() {
         let mut path = kernel.path(&gaps);
         let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
