@@ -178,6 +178,36 @@ mod tests {
         Ok(())
     }
 
+    /// Text that has room for so many bytes.
+    struct Room(usize);
+
+    impl fmt::Write for Room {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            self.0 = self.0.checked_sub(text.len()).ok_or(fmt::Error)?;
+            Ok(())
+        }
+    }
+
+    /// Wherever its text ends too early, a doubt that does not fit says so.
+    #[test]
+    fn a_doubt_that_does_not_fit_is_an_error() {
+        use fmt::Write;
+        let (plane, left) = (1e-6, 1e-9);
+        let (pressure, e_star) = (60.0, 115.0);
+        for doubt in [
+            Doubt::Steep { rms_gradient: 40.0 },
+            Doubt::Steep { rms_gradient: 1e10 },
+            Doubt::Tilted { plane, left },
+            Doubt::HighPressure { pressure, e_star },
+        ] {
+            let length = doubt.to_string().len();
+            for room in 0..length {
+                assert!(write!(Room(room), "{doubt}").is_err(), "{room} of {length}");
+            }
+            assert!(write!(Room(length), "{doubt}").is_ok());
+        }
+    }
+
     #[test]
     fn pressures_that_no_body_bears_are_noticed() {
         assert_eq!(Doubt::of_pressure(1e9, 115e9), None);

@@ -180,8 +180,10 @@ mod tests {
     #[test]
     fn order_and_membership_go_together() -> Result<(), Error> {
         let mut contact = ContactSequence::new(Grid::new(3, 2, 1.0, 1.0)?);
+        assert!(contact.is_empty());
         for node in [4, 0, 5] {
             contact.push(node)?;
+            assert!(!contact.is_empty());
         }
         assert!(matches!(
             contact.push(0),
