@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use asperity::contact::ContactSequence;
 use asperity::updater::{
-    LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched, UpdaterProfile,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    UpdaterProfile,
 };
 use asperity::{Error, Grid, LoadingSolver, Problem};
 
@@ -148,4 +149,22 @@ fn the_ends_of_windows_are_mended() {
             assert!((1..exact.len()).contains(&count), "{name}: {timings:?}");
         }
     }
+}
+
+#[test]
+fn tolerances_that_make_no_sense_are_refused() {
+    for bad in [0.0, 1.0, -1e-10, f64::NAN, f64::INFINITY] {
+        let refused = ConjugateGradient::with_tolerance(bad);
+        let Err(Error::OutOfRange {
+            quantity: "tolerance",
+            value,
+            ..
+        }) = refused
+        else {
+            panic!("{bad}: {refused:?}");
+        };
+        assert_eq!(value.to_bits(), bad.to_bits());
+    }
+    let strict = ConjugateGradient::with_tolerance(1e-13).unwrap();
+    assert_eq!(strict.profile().tolerance, 1e-13);
 }

@@ -138,6 +138,28 @@ fn records_of_other_surfaces_and_kernels_are_refused() {
     assert!(matches!(replayed, Err(Error::WrongKernel { .. })));
 }
 
+/// A record ends where its path is, or before.
+#[test]
+fn states_that_are_not_reached_are_not_recorded() {
+    let kernel = Boussinesq::new(grid(), 1e9).unwrap();
+    let (_, all) = whole(&kernel, RecursiveCholesky::new());
+    let mut early = LoadingSolver::new(&rough(&grid(), 5), &kernel).unwrap();
+    early.by_ref().take(10).for_each(drop);
+    let record = |count: usize| LoadingRecord::new(&early, all[..count].iter().copied().collect());
+    assert_eq!(record(10).unwrap().states(), &all[..10]);
+    let beyond = record(11);
+    assert!(
+        matches!(
+            beyond,
+            Err(Error::StateNotReached {
+                step: 11,
+                present: 10
+            })
+        ),
+        "{beyond:?}"
+    );
+}
+
 /// A path that has not begun is resumed at its beginning.
 #[test]
 fn no_states_are_no_path_yet() {

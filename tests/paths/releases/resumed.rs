@@ -3,7 +3,7 @@
 use super::table::{Table, case};
 use asperity::loading::{ContactEvent, History};
 use asperity::updater::RecursiveCholesky;
-use asperity::{LoadingSolver, LoadingState};
+use asperity::{Error, LoadingSolver, LoadingState};
 
 /// The first cases on whose path a node leaves, and their paths.
 fn cases(count: usize) -> impl Iterator<Item = (Table, Vec<f64>, Vec<LoadingState>)> {
@@ -73,12 +73,52 @@ fn paths_with_releases_go_on_from_any_state() {
     }
 }
 
+/// A contact that nodes have left since is factored once more for its fields, beside the factor of the present one: where
+/// the budget has room for one of them only, the path goes to its end, and the question is refused.
+#[test]
+fn earlier_contacts_are_factored_within_the_budget() {
+    let (kernel, gaps, all) = cases(1).next().unwrap();
+    let surface = kernel.heights(&gaps);
+    let release = all
+        .iter()
+        .position(|state| state.event == ContactEvent::Release);
+    let before = all[release.unwrap() - 1];
+    let (mut ended, mut refused, mut answered) = (0, 0, 0);
+    for budget in (0..400_000).step_by(1000) {
+        let path = LoadingSolver::builder(&surface, &kernel)
+            .updater(RecursiveCholesky::new())
+            .memory_budget(budget)
+            .build();
+        let Ok(mut path) = path else { continue };
+        match path.by_ref().find_map(Result::err) {
+            Some(Error::MemoryBudget { .. }) => continue,
+            Some(error) => panic!("{error}"),
+            None => ended += 1,
+        }
+        match path.pressure_at(&before) {
+            Ok(_) => answered += 1,
+            Err(Error::MemoryBudget {
+                needed,
+                budget: given,
+                nodes_that_fit,
+            }) => {
+                assert!(needed > given && given == budget, "{needed} {given}");
+                assert_eq!(nodes_that_fit, path.contact_order().len());
+                assert_eq!(answered, 0, "more room is less");
+                refused += 1;
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+    assert!(refused > 0 && answered > 0 && ended == refused + answered);
+}
+
 /// A record of such a path keeps all of it but patches, which know no node that leaves. Its kernel cannot be made again, and
 /// its fields are computed on the kernel itself.
 #[cfg(feature = "io")]
 #[test]
 fn records_with_releases_are_read_back() {
-    use asperity::{Error, record::LoadingRecord};
+    use asperity::record::LoadingRecord;
 
     for (number, (kernel, gaps, all)) in cases(3).enumerate() {
         let mut path = kernel.path(&gaps);
