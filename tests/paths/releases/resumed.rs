@@ -84,7 +84,7 @@ fn earlier_contacts_are_factored_within_the_budget() {
         .position(|state| state.event == ContactEvent::Release);
     let before = all[release.unwrap() - 1];
     let (mut ended, mut refused, mut answered) = (0, 0, 0);
-    for budget in (0..400_000).step_by(1000) {
+    for budget in (0..3_000_000).step_by(20_000) {
         let path = LoadingSolver::builder(&surface, &kernel)
             .updater(RecursiveCholesky::new())
             .memory_budget(budget)
