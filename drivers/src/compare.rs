@@ -62,10 +62,13 @@ pub(crate) fn same_path(
         }
         // What the state itself says of its approach, and what follows from it.
         let error = SURE * state.approach_error + LOAD_AT_WORST * uniform(expected.load);
-        let rate = expected
-            .contact_stiffness
-            .or(expected.interfacial_stiffness);
-        let by_error = error * rate.filter(|rate| rate.is_finite()).unwrap_or(0.0);
+        let rate = |state: &LoadingState| {
+            let rate = state.contact_stiffness.or(state.interfacial_stiffness);
+            rate.filter(|rate| rate.is_finite())
+        };
+        // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
+        let before = k.checked_sub(1).and_then(|before| rate(&exact[before]));
+        let by_error = error * rate(expected).or(before).unwrap_or(0.0);
         let mut scalars = [
             (
                 "load",

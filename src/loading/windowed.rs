@@ -12,10 +12,10 @@ use super::window::Window;
 use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
 
-/// How far below zero a gap may lie at the end of a window, relative to the greatest initial gap and the approach, before
-/// events are taken back. Ten times the greatest error of a displacement: what is taken back without need costs time
-/// and changes nothing, so that it need not be as sure of an error as [`TOLERANCE`](super::run::TOLERANCE) is.
-const OVERLAP: f64 = 1e-12;
+/// How far below zero a gap may lie at the end of a window before events are taken back, as a multiple of the greatest gap that
+/// the solution there leaves in contact: of what rounds. What is taken back without need costs time and changes nothing, so
+/// that the bound need not be as wide as that of an error, [`TOLERANCE`](super::run::TOLERANCE).
+const ROUNDINGS: f64 = 8.0;
 
 /// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
 /// did is a lower bound, and only the nodes with the smallest ones need be watched until the *horizon*, the
@@ -205,7 +205,10 @@ fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option
     if run.negative_pressure(approach, 0.0).is_some() {
         return Some(f64::NEG_INFINITY);
     }
-    let overlap = -OVERLAP * (run.problem.greatest_gap() + approach);
+    let left = run.contact.order().iter();
+    let left = left.map(|&node| run.field.left_at(&run.problem, node)[0].abs());
+    let least = f64::EPSILON * (run.problem.greatest_gap() + approach);
+    let overlap = -ROUNDINGS * left.fold(least, f64::max);
     let lines = run.field.lines(&run.problem, &run.contact, approach);
     lines
         .filter(|line| line.gap < overlap)
