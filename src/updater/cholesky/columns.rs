@@ -332,3 +332,6 @@ struct Piece<'a> {
 
 /// Rows of the columns that are spread over the rows of the factor at a time.
 const CACHED_ROWS: usize = 16;
+
+#[cfg(test)]
+mod tests;

@@ -202,3 +202,6 @@ impl Axis {
         weights
     }
 }
+
+#[cfg(test)]
+mod tests;

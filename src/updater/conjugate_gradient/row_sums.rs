@@ -97,3 +97,34 @@ impl RowSums {
         self.count
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+
+    /// Row sums in a row of four are 5, 6, 6 and 5. Of node 1 an answer to two nodes takes 1/4 each of what is left there.
+    #[test]
+    fn what_is_left_of_row_sums() -> Result<(), Error> {
+        let problem = row::problem(&[0.0; 4])?;
+        let mut sums = RowSums::start(2, vec![1.0, 2.0, 3.0, 4.0]);
+        sums.field.displacement = vec![4.0, 1.5, 4.0, 0.0];
+        let local = Local {
+            node: 1,
+            contact: vec![0, 2],
+            weights: vec![0.25; 2],
+        };
+        // 6 − 1.5 − (5 − 4)/4 − (6 − 4)/4.
+        let left = sums.left_at(&problem, &local);
+        // Row sums are those of a transform.
+        assert!((left - 3.75).abs() < 1e-13, "{left}");
+        let contact = ContactSequence::with_order(problem.grid(), [3])?;
+        sums.keep(&contact);
+        assert_eq!(
+            (sums.count(), &sums.start[..]),
+            (1, &[0.0, 0.0, 0.0, 4.0][..])
+        );
+        assert!(!sums.field.is_known());
+        Ok(())
+    }
+}
