@@ -70,3 +70,40 @@ impl LinearUpdater for Given {
         }
     }
 }
+
+/// Dense solutions of an updater that says of itself that it leaves a millionth of the approach.
+pub(super) struct Inexact;
+
+impl LinearUpdater for Inexact {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        Dense.watch(problem, contact, nodes, schur)
+    }
+
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        request: SolveRequest,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        Dense.solve(problem, contact, request, solution)
+    }
+
+    fn profile(&self) -> UpdaterProfile {
+        UpdaterProfile {
+            exact: false,
+            tolerance: 1e-6,
+            ..Dense.profile()
+        }
+    }
+}

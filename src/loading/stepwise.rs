@@ -297,4 +297,42 @@ mod tests {
         assert_eq!(first(&[touch(1, f64::INFINITY)], [0.5; 2], [1.0; 2])?, None);
         Ok(())
     }
+
+    /// Node 0 touches at 0 and node 2 at the approach 1. Then node 1 between them, whose gap is 1.25 + 0.25 − 1 and closes at the
+    /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
+    #[test]
+    fn events_come_one_at_a_time() -> Result<(), Error> {
+        let mut run = row::run(&[0.0, 1.25, 1.0, 9.0], row::Inexact)?;
+        let mut stepwise = Stepwise::default();
+        for _ in 0..4 {
+            stepwise.produce(&mut run, 3)?;
+        }
+        let found: Vec<_> = run
+            .queue
+            .iter()
+            .map(|state| (state.step, state.contact_nodes, state.node))
+            .collect();
+        assert_eq!(found, [(1, 1, (0, 0)), (2, 2, (2, 0)), (3, 3, (1, 0))]);
+        for (state, (approach, error)) in
+            run.queue.iter().zip([(0.0, 0.0), (1.0, 0.0), (2.0, 2e-4)])
+        {
+            assert!(
+                (state.approach - approach).abs() < 1e-14,
+                "{}",
+                state.approach
+            );
+            // At first touch a part of 10⁻⁶ of the mean gap.
+            assert!(
+                (state.approach_error - error).abs() < 1e-9,
+                "{}",
+                state.approach_error
+            );
+        }
+        // 1/2 N for each metre, and after the second node twice as much.
+        let loads: Vec<f64> = run.queue.iter().map(|state| state.load).collect();
+        for (found, expected) in loads.into_iter().zip([0.0, 0.5, 1.5]) {
+            assert!((found - expected).abs() < 1e-14, "{found}");
+        }
+        Ok(())
+    }
 }

@@ -295,6 +295,7 @@ mod tests {
             assert_eq!(handover.factor_serves(&factor, 128 * 128, 300), fits);
         }
         handover.budget = usize::MAX;
+        assert_eq!(handover.bytes(300, 64), factor.bytes(300, 64));
         let last = Handover::last_factor(128 * 128);
         let serves =
             [last - 1, last].map(|contact| handover.factor_serves(&factor, 128 * 128, contact));

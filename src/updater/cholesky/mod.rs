@@ -2,6 +2,7 @@
 
 mod columns;
 mod factor;
+mod operations;
 mod panels;
 mod products;
 mod substitution;

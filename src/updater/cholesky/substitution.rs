@@ -5,6 +5,7 @@
 
 use std::ops::{Deref, Range};
 
+use super::operations;
 use super::panels::{Panels, ROWS};
 use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
@@ -62,10 +63,9 @@ impl Panels {
                 next();
                 continue;
             }
-            // A number that is read from memory takes as long as some operations.
-            let operations = 16 * (end - start) * near;
+            let work = operations::reading(known.len(), near);
             parallel::join(next, || {
-                parallel::for_each(operations, &mut far, |(first, x)| subtract(*first, x));
+                parallel::for_each(work, &mut far, |(first, x)| subtract(*first, x));
             });
         }
     }

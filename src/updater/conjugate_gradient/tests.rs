@@ -44,7 +44,8 @@ fn tolerances_lie_between_0_and_1() {
     }
 }
 
-fn problem() -> Result<Problem, Error> {
+/// A rough surface of 16 × 15 nodes.
+pub(super) fn problem() -> Result<Problem, Error> {
     let grid = Grid::new(16, 15, 1.0, 1.0)?;
     let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
     Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)

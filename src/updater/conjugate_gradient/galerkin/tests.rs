@@ -218,3 +218,28 @@ fn sources_near_each_other_are_exact() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Whatever the weights are, nodes that answer the other one feel nothing of it, but for that one itself: of the first these are
+/// nodes 4 and 6, of the second node 6.
+#[test]
+fn nodes_that_answer_feel_nothing() -> Result<(), Error> {
+    let problem = crate::row::problem(&[0.0; 9])?;
+    let local = |node: usize, contact: &[u32]| Local {
+        node,
+        contact: contact.to_vec(),
+        weights: vec![0.5; contact.len()],
+    };
+    let locals = [local(5, &[4, 6]), local(7, &[6, 5])];
+    let mut matrix = vec![0.0; 4];
+    schur(&problem, &locals, &mut matrix);
+    // Node 5 on itself: 4 − 1/2 − 1/2. Node 7: u = 4 − 1/2. Of the second on the first, only node 7 feels nothing of node 5 and
+    // −1/2 of node 6; node 5 is the first one itself and feels 4 − 1/2 − 1/2, times −1/2.
+    assert_eq!([matrix[0], matrix[1], matrix[3]], [3.0, -0.5 - 1.5, 3.5]);
+    Ok(())
+}
+
+/// 5 · 5 with itself, and 5 · 64 for each of three.
+#[test]
+fn products_of_a_column() {
+    assert_eq!(products(5, 3), 25 + 960);
+}
