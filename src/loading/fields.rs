@@ -267,4 +267,25 @@ mod tests {
         }
         Ok(())
     }
+
+    /// Where the mean displacement is arbitrary displacements are about their mean.
+    #[test]
+    fn displacements_are_about_their_mean() -> Result<(), Error> {
+        let kernel = crate::PeriodicBoussinesq::new(crate::Grid::new(6, 6, 1.0, 1.0)?, 1.0)?;
+        let surface = crate::HeightMap::new(DMatrix::from_fn(6, 6, |ix, iy| {
+            -(ix as f64 - 2.3).powi(2) - (iy as f64 - 3.1).powi(2)
+        }))?;
+        let mut path = LoadingSolver::builder(&surface, &kernel)
+            .max_nodes(5)
+            .build()?;
+        let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
+        let mut greatest = 0.0_f64;
+        for state in &states {
+            let displacement = path.displacement_at(state)?;
+            greatest = greatest.max(displacement.max());
+            assert!(displacement.mean().abs() < 1e-12 * greatest.max(1.0));
+        }
+        assert!(greatest > 0.1, "{greatest}");
+        Ok(())
+    }
 }

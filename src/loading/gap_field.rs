@@ -285,6 +285,8 @@ mod tests {
         let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0, 2.0], &[0, 2, 4], 3.0)?;
         assert!(run.field.belongs_to(&run.contact, 3.0));
         assert!(!run.field.belongs_to(&run.contact, 3.5));
+        // A convolution takes some time.
+        assert!(run.field.time() > Duration::ZERO);
         // 3/4, 1/2, 1/4, of which the last two change places.
         run.rearrange(1, &[4, 2])?;
         assert!(run.field.belongs_to(&run.contact, 3.0));

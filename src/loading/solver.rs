@@ -322,11 +322,11 @@ mod tests {
         Ok(())
     }
 
-    /// Those of the grid, and those of a factor of two nodes.
+    /// Those of the grid, and those of a factor of four nodes: all events of the window have joined.
     #[test]
     fn bytes_are_those_of_grid_and_updater() -> Result<(), Error> {
         let path = path()?;
-        let updater = path.updater().bytes(2, 0);
+        let updater = path.updater().bytes(4, 0);
         assert!(updater > 0);
         assert_eq!(path.bytes(), path.run.memory.fixed + updater);
         assert_eq!(

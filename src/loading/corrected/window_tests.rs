@@ -1,6 +1,8 @@
 use super::*;
+use crate::Problem;
+use crate::contact::ContactSequence;
 use crate::loading::row;
-use crate::updater::Dense;
+use crate::updater::{Dense, Solution, SolveRequest};
 
 fn scales(tolerance: f64) -> Scales {
     Scales {
@@ -140,5 +142,168 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
     corrected.rate_span = 0.5;
     corrected.begin(&mut run)?;
     assert_eq!((corrected.ranking.len(), corrected.rate_span), (3, 0.5));
+    Ok(())
+}
+
+/// A dense updater that may know displacements of watched nodes better: 1/2, and 1/4 of rates.
+struct Knowing(bool);
+
+impl LinearUpdater for Knowing {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        Dense.watch(problem, contact, nodes, schur)?;
+        if self.0 {
+            schur.set_displacements(vec![[0.5, 0.25]; nodes.len()]);
+        }
+        Ok(())
+    }
+
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        request: SolveRequest,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        Dense.solve(problem, contact, request, solution)
+    }
+}
+
+/// Nodes 1 and 3 beside node 0, which carries 1/4 at the approach 1: gaps of 5 + 1/4 − 1 and 7 − 1 that close at 3/4 and 1, unless
+/// the updater knows better. S = (4 − 1/4, 0; 0, 4), and row sums of 6 − 5/4 and 6.
+#[test]
+fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
+    for (knows, lines) in [
+        (false, [[4.25, 0.75], [6.0, 1.0]]),
+        (true, [[4.5, 0.75], [6.5, 0.75]]),
+    ] {
+        let mut run = row::run(&[0.0, 5.0, 9.0, 7.0, 9.0], Knowing(knows))?;
+        run.contact.push(0)?;
+        run.front.place_at(1.0);
+        run.solve_field(1.0, f64::INFINITY)?;
+        let choice = Choice {
+            watched: vec![(2.0, 1), (3.0, 3)],
+            horizon: 8.0,
+            group: None,
+        };
+        let found = Corrected::new(None, true).watch(&mut run, choice, 5.0)?;
+        assert_eq!((&found.nodes[..], found.horizon), (&[1, 3][..], 5.0));
+        let matrix = [3.75, 0.0, 0.0, 4.0];
+        let pairs = found.lines.iter().flatten().zip(lines.iter().flatten());
+        let pairs = pairs.chain(found.schur.iter().zip(&matrix));
+        for (found, expected) in pairs.chain(found.row_sums.iter().zip(&[4.75, 6.0])) {
+            // Roundings of a transform of numbers up to 9.
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+        assert_eq!(run.timings.windows, 1);
+    }
+    Ok(())
+}
+
+/// From the approach 1 on nodes 2 and 4 touch at 1.5 and 2.5; nothing else is near. The window ends behind the first of them, or
+/// behind both, and their states wait.
+#[test]
+fn windows_are_gone_through() -> Result<(), Error> {
+    for (most, nodes, end) in [(9, 2, 3.1), (1, 1, 2.0)] {
+        let mut run = row::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0], &[0], 1.0)?;
+        run.front.renew_load(&run.problem, &run.contact, &run.field);
+        let mut corrected = Corrected::new(None, true);
+        corrected.survey(&mut run)?;
+        let watched = Watched {
+            nodes: vec![4, 2],
+            lines: vec![[1.5, 1.0], [0.5, 1.0]],
+            schur: DMatrix::from_diagonal_element(2, 2, 4.0),
+            row_sums: vec![6.0; 2],
+            horizon: 2.7,
+        };
+        let advanced = corrected.advance(&mut run, &scales(1e-9), &watched, most)?;
+        assert!(advanced.is_ok());
+        let found: Vec<_> = run
+            .queue
+            .iter()
+            .map(|state| (state.step, state.node.0))
+            .collect();
+        assert_eq!(found, [(2, 2), (3, 4)][..nodes]);
+        // In the middle of 1.5 and 2.5, or of 2.5 and the horizon at 3.7.
+        assert!((run.front.approach() - end).abs() < 1e-12);
+        assert!((corrected.last_span - (end - 1.0)).abs() < 1e-12);
+        assert_eq!(run.contact.order(), &[0, 2, 4][..=nodes]);
+        assert_eq!(
+            corrected.ranked,
+            Some((run.contact.revision(), run.front.approach()))
+        );
+        for (state, approach) in run.queue.iter().zip([1.5, 2.5]) {
+            assert!((state.approach - approach).abs() < 1e-12);
+        }
+    }
+    Ok(())
+}
+
+/// Node 6, which is not watched, touches at 1.25: the window is not gone through, and says what overlapped
+/// and how long it was.
+#[test]
+fn windows_with_overlap_outside_are_taken_back() -> Result<(), Error> {
+    let mut run = row::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0, 1.25, 9.0], &[0], 1.0)?;
+    run.front.renew_load(&run.problem, &run.contact, &run.field);
+    let mut corrected = Corrected::new(None, true);
+    corrected.survey(&mut run)?;
+    let watched = Watched {
+        nodes: vec![2, 4],
+        lines: vec![[0.5, 1.0], [1.5, 1.0]],
+        schur: DMatrix::from_diagonal_element(2, 2, 4.0),
+        row_sums: vec![6.0; 2],
+        horizon: 1.0,
+    };
+    let advanced = corrected.advance(&mut run, &scales(1e-9), &watched, 9)?;
+    // From 1 to the middle of 1.5 and 2.
+    let Err((outside, time)) = advanced else {
+        unreachable!("node 6 overlaps");
+    };
+    assert!((time - 0.75).abs() < 1e-12);
+    assert!(outside.len() == 1 && outside[0].1 == 6 && (outside[0].0 + 0.5).abs() < 1e-12);
+    assert_eq!((run.contact.order(), run.front.approach()), (&[0][..], 1.0));
+    assert!(run.queue.is_empty());
+    Ok(())
+}
+
+/// Where nodes lift their neighbours towards the surface, a node between two in contact touches before the time at which it
+/// would alone: node 1, of 1 m, is the tenth and not watched; at the end of the window, near 0.75 m, it overlaps. Once.
+#[test]
+fn what_overlapped_is_watched_then() -> Result<(), Error> {
+    let coefficient =
+        |di: isize, _: isize| [4.0, -1.0].get(di.unsigned_abs()).copied().unwrap_or(0.0);
+    let kernel = crate::KernelTable::from_fn(
+        crate::row::grid(30)?,
+        crate::Boundary::Free,
+        crate::ContactGrowth::Monotone,
+        coefficient,
+    )?;
+    let mut gaps = [5.0; 30];
+    for k in 0..9 {
+        gaps[2 * k] = 0.0625 * k as f64;
+    }
+    gaps[1] = 1.0;
+    let surface = crate::row::surface(&gaps)?;
+    let builder = crate::LoadingSolver::builder(&surface, &kernel).updater(row::Inexact);
+    let mut run = builder.build()?.run;
+    let mut corrected = Corrected::new(Some(8), true);
+    assert!(corrected.produce(&mut run, 30)?.is_none());
+    assert_eq!((run.timings.taken_back, run.timings.windows), (1, 2));
+    // Then the window is shorter, and ends before it touches.
+    let found: Vec<_> = run.queue.iter().map(|state| state.node.0).collect();
+    assert!(
+        found.len() > 5 && found.iter().enumerate().all(|(k, node)| *node == 2 * k),
+        "{found:?}"
+    );
+    assert!(run.front.approach() < 0.7, "{}", run.front.approach());
     Ok(())
 }

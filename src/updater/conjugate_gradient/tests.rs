@@ -119,3 +119,67 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     assert_eq!(solution, end);
     Ok(())
 }
+
+/// Nodes that have not joined the contact have not touched: 60 and six, and only three of them are there.
+#[test]
+fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
+    let problem = problem()?;
+    let mut contact = ContactSequence::with_order(problem.grid(), 0..60)?;
+    let mut updater = ConjugateGradient::new();
+    let mut solution = Solution::default();
+    updater.solve(
+        &problem,
+        &contact,
+        SolveRequest::exact(60, 3.0),
+        &mut solution,
+    )?;
+    let mut schur = Schur::default();
+    updater.watch(&problem, &contact, &[70, 71, 72, 73, 74, 75], &mut schur)?;
+    let touched = Touched::of(schur, &[0, 1, 2, 3, 4, 5])?;
+    for node in 70..73 {
+        contact.push(node)?;
+    }
+    assert!(matches!(
+        updater.join(&problem, &contact, &touched),
+        Err(Error::LengthMismatch {
+            expected: 66,
+            found: 63
+        })
+    ));
+    for node in 73..77 {
+        contact.push(node)?;
+    }
+    // More may join.
+    updater.join(&problem, &contact, &touched)?;
+    assert!(matches!(
+        updater.solve(
+            &problem,
+            &contact,
+            SolveRequest::exact(68, 3.0),
+            &mut solution
+        ),
+        Err(Error::LengthMismatch {
+            expected: 67,
+            found: 68
+        })
+    ));
+    contact.truncate(59);
+    assert!(
+        updater
+            .join(&problem, &contact, &Touched::default())
+            .is_err()
+    );
+    Ok(())
+}
+
+/// A box passes on what it is told.
+#[test]
+fn boxes_pass_everything_on() -> Result<(), Error> {
+    let problem = problem()?;
+    let mut boxed: Box<dyn LinearUpdater> = Box::new(ConjugateGradient::with_tolerance(1e-6)?);
+    assert!(boxed.make_room(&problem, 240 * 480 - 1).is_err());
+    boxed.make_room(&problem, 240 * 480)?;
+    assert_eq!(boxed.bytes(1, 0), 240 * 480 + 1000);
+    assert!(!boxed.profile().exact && boxed.profile().tolerance == 1e-6);
+    Ok(())
+}

@@ -337,6 +337,9 @@ fn close_events_are_settled_by_their_gaps() -> Result<(), Error> {
     let (_, found) = settled([2.9375, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
     check_events(&found, &[(0, 1.875), (1, 2.0)]);
     close(&found.errors, &[0.022, 0.05 * 0.125 + 0.011]);
+    // Or a metre before.
+    let (_, found) = settled([2.5, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    check_events(&found, &[(0, 1.0), (1, 2.0)]);
     // 1/64 apart, which is within the errors left: a second solution in the new order, as exact as they go.
     let (run, found) = settled([3.007_812_5, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
     assert_eq!((run.timings.ties, run.contact.order()), (2, &[0, 4, 2][..]));
