@@ -99,6 +99,10 @@ impl LinearUpdater for Inexact {
         Dense.solve(problem, contact, request, solution)
     }
 
+    fn truncate(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
     fn profile(&self) -> UpdaterProfile {
         UpdaterProfile {
             exact: false,

@@ -304,6 +304,18 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_is_nothing_is_compared_with_1() {
+        assert_eq!(
+            [
+                greatest(&[]),
+                greatest(&[0.0, -0.0]),
+                greatest(&[2.0, -3.0])
+            ],
+            [1.0, 1.0, 3.0]
+        );
+    }
+
     /// An updater that takes the last nodes back, and no other.
     struct Truncating(RecursiveCholesky);
 

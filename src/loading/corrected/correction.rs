@@ -127,7 +127,7 @@ fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
     let (own, other) = if determinant > LEAST_DETERMINANT {
         (1.0 / determinant, -correlation / determinant)
     } else if determinant > -LEAST_DETERMINANT {
-        (0.25, 0.25 * correlation.signum())
+        (0.25, 0.25_f64.copysign(correlation))
     } else {
         return None;
     };

@@ -307,3 +307,29 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
     assert!(run.front.approach() < 0.7, "{}", run.front.approach());
     Ok(())
 }
+
+/// From the approach 1 on a watched node, 4, is thought to touch after 0.6 m, which it does after 1.6 m; or after 3 m, which it
+/// does after 0.8 m. At the window's end it is under tension, or overlaps: it leaves, or joins, and once that is done nothing is
+/// contradicted.
+#[test]
+fn contacts_at_the_end_are_mended() -> Result<(), Error> {
+    for (thought, gap, order) in [(0.6, 2.6, &[0, 2][..]), (3.0, 1.8, &[0, 2, 4])] {
+        let mut run = row::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], row::Inexact)?;
+        run.contact.push(0)?;
+        run.front.place_at(1.0);
+        let mut corrected = Corrected::new(None, true);
+        corrected.begin(&mut run)?;
+        let watched = Watched {
+            nodes: vec![2, 4],
+            lines: vec![[0.5, 1.0], [thought, 1.0]],
+            schur: DMatrix::from_diagonal_element(2, 2, 4.0),
+            row_sums: vec![6.0; 2],
+            horizon: 1.4,
+        };
+        let advanced = corrected.advance(&mut run, &scales(1e-9), &watched, 9)?;
+        assert!(advanced.is_ok());
+        assert_eq!((run.contact.order(), run.timings.taken_back), (order, 1));
+        assert_eq!(run.queue.len(), order.len() - 1);
+    }
+    Ok(())
+}
