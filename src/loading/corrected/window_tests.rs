@@ -93,6 +93,25 @@ fn contradictions_at_the_end_are_found() -> Result<(), Error> {
     Ok(())
 }
 
+/// A tension that is just what an overlap may go with is none: 100 · 2⁻¹² · 2, which is short in binary.
+#[test]
+fn what_is_allowed_is_no_contradiction() -> Result<(), Error> {
+    let allowed = 200.0 / 4096.0;
+    let mut run = row::solved(&[0.0, 9.0, 2.0 + allowed, 9.0], &[0], 1.0)?;
+    let watched = Watched {
+        nodes: vec![2],
+        lines: vec![[1.0; 2]],
+        schur: DMatrix::from_diagonal_element(1, 1, 4.0),
+        row_sums: vec![6.0],
+        horizon: 9.0,
+    };
+    let mut corrected = Corrected::new(None, true);
+    let tolerance = 1.0 / 4096.0;
+    let found = corrected.go_to_end(&mut run, &scales(tolerance), &watched, &[0], 1.0)?;
+    assert!(found.is_empty(), "{found:?}");
+    Ok(())
+}
+
 /// Rates to 10⁻⁵ serve a tenth of a metre here; twice as far they have to be twice as exact, and no less than that is worth a
 /// solution.
 #[test]

@@ -169,7 +169,15 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
             .join(&problem, &contact, &Touched::default())
             .is_err()
     );
-    Ok(())
+    let mut schur = Schur::default();
+    let refused = updater.watch(&problem, &contact, &[90], &mut schur);
+    assert!(refused.is_err());
+    // Told of the cut, and of a node that has left, it goes on from there.
+    updater.truncate(&problem, &contact)?;
+    updater.watch(&problem, &contact, &[90], &mut schur)?;
+    let position = contact.remove(7)?;
+    updater.release(&problem, &contact, 7, position)?;
+    updater.watch(&problem, &contact, &[90], &mut schur)
 }
 
 /// A box passes on what it is told.

@@ -115,6 +115,27 @@ fn windows_are_taken_back() -> Result<(), Error> {
     Ok(())
 }
 
+/// Row sums that were solved for at the end of a window go back with it.
+#[test]
+fn row_sums_are_taken_back() -> Result<(), Error> {
+    let mut window = Window::new()?;
+    let Window {
+        problem,
+        contact,
+        state,
+        ..
+    } = &mut window;
+    let watched = (0..240).find(|&node| !contact.contains(node));
+    let watched: Vec<usize> = watched.into_iter().collect();
+    state.watch(CRITERIA, problem, contact, &watched, &mut Schur::default())?;
+    assert_eq!(state.sums.count(), 66);
+    contact.truncate(60);
+    state.truncate(contact);
+    assert_eq!((state.count(), state.sums.count()), (60, 60));
+    assert!(state.now.load.is_known());
+    Ok(())
+}
+
 /// A solution of another updater is a start: pressures and rates of the nodes in contact, of which nothing else is known.
 #[test]
 fn solutions_are_taken_over() -> Result<(), Error> {
