@@ -87,6 +87,8 @@ pub mod patches;
 mod problem;
 pub mod record;
 pub mod reference;
+#[cfg(test)]
+mod row;
 mod scale;
 pub mod surface;
 pub mod updater;

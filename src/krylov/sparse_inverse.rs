@@ -372,3 +372,6 @@ impl<const K: usize> Pattern<K> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

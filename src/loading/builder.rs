@@ -272,3 +272,48 @@ fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, 
         nodes_that_fit: 0,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+    use crate::updater::{RecursiveCholesky, Touched};
+
+    /// What the grid leaves of a budget is the updater's: a factor needs room for one window.
+    #[test]
+    fn the_updater_has_what_the_grid_leaves() -> Result<(), Error> {
+        let (surface, kernel) = (row::surface(&[0.0; 9])?, row::kernel(9)?);
+        let fixed = LoadingRun::<Handover>::bytes_on(&row::grid(9)?, Boundary::Free);
+        let window = RecursiveCholesky::new().bytes(64, 64) + Touched::bytes(64);
+        for (budget, handed_over_at) in [(fixed + window, None), (fixed + window - 1, Some(0))] {
+            let builder = LoadingSolver::builder(&surface, &kernel).memory_budget(budget);
+            assert_eq!(builder.build()?.updater().handed_over_at(), handed_over_at);
+        }
+        for (budget, has_room) in [(fixed, true), (fixed - 1, false)] {
+            let found = LoadingSolver::check_room(&row::grid(9)?, Boundary::Free, Some(budget));
+            assert_eq!(found.is_ok(), has_room);
+        }
+        Ok(())
+    }
+
+    /// A mean pressure is a load: 3 Pa on nine cells of 2 m². The last limit of a kind counts.
+    #[test]
+    fn limits_of_a_path() -> Result<(), Error> {
+        use ContactTarget::{Approach, Load};
+        let (surface, kernel) = (row::surface(&[0.0; 9])?, row::kernel(9)?);
+        let path = LoadingSolver::builder(&surface, &kernel)
+            .max_load(9.0)
+            .max_approach(1.0)
+            .max_approach(2.0)
+            .max_mean_pressure(3.0)
+            .build()?;
+        assert_eq!(path.targets(), [Load(54.0), Approach(2.0)]);
+        for (window, is_one) in [(0, false), (1, true)] {
+            let built = LoadingSolver::builder(&surface, &kernel)
+                .window_size(window)
+                .build();
+            assert_eq!(built.is_ok(), is_one);
+        }
+        Ok(())
+    }
+}

@@ -179,3 +179,113 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(Conditions::new(sum, reported, scale).check(nodes))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ContactTarget, row};
+
+    /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.
+    fn path() -> Result<(LoadingSolver, Vec<LoadingState>), Error> {
+        let (surface, kernel) = (row::surface(&[0.0, 9.0, 1.0, 9.0])?, row::kernel(4)?);
+        let builder = LoadingSolver::builder(&surface, &kernel).until(ContactTarget::Approach(3.0));
+        let mut path = builder.build()?;
+        assert!(path.contact_order().is_empty() && !path.contact_map().iter().any(|is_in| *is_in));
+        assert_eq!(
+            (path.pressure()?, path.max_pressure()?),
+            (DMatrix::zeros(4, 1), 0.0)
+        );
+        let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
+        assert_eq!(states.len(), 3);
+        Ok((path, states))
+    }
+
+    fn near(found: &DMatrix<f64>, expected: [f64; 4]) {
+        assert_eq!(found.shape(), (4, 1));
+        for (found, expected) in found.iter().zip(expected) {
+            // Roundings of a transform of numbers up to 9.
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn fields_of_the_present_state() -> Result<(), Error> {
+        let (mut path, _) = path()?;
+        assert_eq!(path.contact_order(), [0, 2]);
+        assert_eq!(path.contact_map().as_slice(), [true, false, true, false]);
+        near(&path.pressure()?, [0.75, 0.0, 0.5, 0.0]);
+        near(&path.displacement()?, [3.0, 1.25, 2.0, 0.5]);
+        near(&path.gap()?, [0.0, 7.25, 0.0, 6.5]);
+        assert!((path.max_pressure()? - 0.75).abs() < 1e-15);
+        // The mean pressure in contact is 5/8; heights have the root mean square 4.26.
+        let found = path.certificate()?;
+        let squares: f64 = [4.75, 4.25, 3.75, 4.25].iter().map(|h: &f64| h * h).sum();
+        let length = (squares / 4.0).sqrt();
+        for (found, expected) in [
+            (found.length, length),
+            (found.least_pressure, 0.8),
+            (found.least_gap, 6.5 / length),
+            (found.greatest_contact_gap, 0.0),
+            (found.load_error, 0.0),
+        ] {
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn fields_of_earlier_states() -> Result<(), Error> {
+        let (mut path, states) = path()?;
+        let [first, second, _] = states[..] else {
+            unreachable!("three states");
+        };
+        assert_eq!(
+            path.contact_map_at(&first)?.as_slice(),
+            [true, false, false, false]
+        );
+        assert_eq!(
+            path.contact_map_at(&second)?.as_slice(),
+            [true, false, true, false]
+        );
+        near(&path.pressure_at(&first)?, [0.0; 4]);
+        near(&path.pressure_at(&second)?, [0.25, 0.0, 0.0, 0.0]);
+        near(&path.displacement_at(&second)?, [1.0, 0.25, 0.0, 0.0]);
+        near(&path.gap_at(&second)?, [0.0, 8.25, 0.0, 8.0]);
+        let mut beyond = second;
+        beyond.step = 3;
+        for refused in [
+            path.contact_map_at(&beyond).err(),
+            path.pressure_at(&beyond).err(),
+        ] {
+            assert!(matches!(
+                refused,
+                Some(Error::StateNotReached {
+                    step: 3,
+                    present: 2
+                })
+            ));
+        }
+        Ok(())
+    }
+
+    /// Where the mean displacement is arbitrary displacements are about their mean.
+    #[test]
+    fn displacements_are_about_their_mean() -> Result<(), Error> {
+        let kernel = crate::PeriodicBoussinesq::new(crate::Grid::new(6, 6, 1.0, 1.0)?, 1.0)?;
+        let surface = crate::HeightMap::new(DMatrix::from_fn(6, 6, |ix, iy| {
+            -(ix as f64 - 2.3).powi(2) - (iy as f64 - 3.1).powi(2)
+        }))?;
+        let mut path = LoadingSolver::builder(&surface, &kernel)
+            .max_nodes(5)
+            .build()?;
+        let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
+        let mut greatest = 0.0_f64;
+        for state in &states {
+            let displacement = path.displacement_at(state)?;
+            greatest = greatest.max(displacement.max());
+            assert!(displacement.mean().abs() < 1e-12 * greatest.max(1.0));
+        }
+        assert!(greatest > 0.1, "{greatest}");
+        Ok(())
+    }
+}

@@ -162,3 +162,149 @@ impl Front {
         self.gauge.displacement(load)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::row;
+    use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq};
+
+    fn sum(terms: &[f64]) -> Sum {
+        let mut sum = Sum::default();
+        terms.iter().for_each(|term| sum.add(*term));
+        sum
+    }
+
+    /// Four cells of 2 m² whose gaps of 8 m in all close as the approach grows; then one node touches that adds 1/4 to
+    /// `eᵀ C⁻¹ e`, and takes 1 off the closing rates.
+    fn touched() -> Result<Front, Error> {
+        let problem = crate::row::problem(&[0.0, 1.0, 2.0, 5.0])?;
+        let mut front = Front::new(&problem);
+        front.renew_gap(sum(&[0.0, 1.0, 2.0, 5.0]), sum(&[1.0; 4]));
+        front.touch(0.25, 1.0, 1);
+        Ok(front)
+    }
+
+    /// Load and energy are integrals of the stiffness 2/4 and of the load, mean gap of the rate 3/4.
+    #[test]
+    fn scalars_follow_the_approach() -> Result<(), Error> {
+        let mut front = touched()?;
+        assert_eq!(front.state(0).mean_gap, 2.0);
+        front.advance(2.0);
+        let state = front.state(1);
+        assert_eq!(
+            (state.approach, state.load, state.energy, state.mean_gap),
+            (2.0, 1.0, 1.0, 0.5)
+        );
+        assert_eq!(state.contact_stiffness, Some(0.5));
+        assert_eq!(state.interfacial_stiffness, Some(0.5 / 0.75));
+        front.advance(3.0);
+        let state = front.state(1);
+        // 1 + (1 + 1.5)/2.
+        assert_eq!(
+            (state.load, state.energy, state.mean_gap),
+            (1.5, 2.25, -0.25)
+        );
+        front.clamp_mean_gap();
+        assert_eq!(front.state(1).mean_gap, 0.0);
+        // Back again, as under the paper's rule.
+        front.advance(2.0);
+        assert_eq!((front.approach(), front.state(1).energy), (2.0, 1.0));
+        // Full contact by identity; before it by arithmetic.
+        for (nodes, closing) in [(3, true), (4, false)] {
+            let mut front = touched()?;
+            front.touch(0.25, 1.0, nodes);
+            assert_eq!(front.closing > 0.0, closing);
+            assert_eq!(front.state(nodes).mean_gap > 0.0, closing);
+        }
+        Ok(())
+    }
+
+    /// What a window lacks at its end comes in proportion to the way, of the energy to its square.
+    #[test]
+    fn windows_are_pinned_to_their_ends() -> Result<(), Error> {
+        let start = touched()?;
+        let mut walked = start;
+        walked.advance(2.0);
+        let mut end = walked;
+        end.touch(0.125, 0.5, 2);
+        assert_eq!(start.missing(&end), [0.125, 0.5]);
+        (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
+        let mut front = start;
+        front.pin(&walked, &end, 0.5);
+        // Half of 0.5 and of −0.25, a quarter of 2.
+        assert_eq!(
+            (front.load, front.mean_gap, front.energy),
+            (0.25, 1.875, 0.5)
+        );
+        Ok(())
+    }
+
+    #[test]
+    fn states_without_a_stiffness_are_none() -> Result<(), Error> {
+        let mut front = touched()?;
+        assert!(front.is_sound(&front.state(1)));
+        for stiffness in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            let state = front.state(1);
+            front.unit_stiffness = stiffness;
+            assert!(!front.is_sound(&state), "{stiffness}");
+        }
+        front = touched()?;
+        front.load = f64::NAN;
+        assert!(!front.is_sound(&front.state(1)));
+        Ok(())
+    }
+
+    /// Nodes 0 and 2 carry 3/4 and 1/2 at the approach 3: W = 2 (3/4 + 1/2), and U = (3/4 · 3 + 1/2 · 2) 2/2; half a
+    /// metre further an eighth more each.
+    #[test]
+    fn a_solution_renews_load_and_energy() -> Result<(), Error> {
+        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        for (approach, load, energy) in [(3.0, 2.5, 3.25), (3.5, 3.0, 0.875 * 3.5 + 0.625 * 2.5)] {
+            run.front.place_at(approach);
+            run.front.renew_load(&run.problem, &run.contact, &run.field);
+            let front = &run.front;
+            for (found, expected) in [
+                (front.load, load),
+                (front.energy, energy),
+                (front.unit_stiffness, 0.5),
+            ] {
+                // Roundings of numbers up to 5.
+                assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+            }
+        }
+        Ok(())
+    }
+
+    /// With a mean displacement of s W / ΔA the approach is that much more than that of the mean planes, and the energy
+    /// half of it times W.
+    #[test]
+    fn states_are_free_of_the_gauge() -> Result<(), Error> {
+        let grid = Grid::new(4, 4, 0.5, 0.5)?;
+        let surface = HeightMap::new(nalgebra::DMatrix::from_fn(4, 4, |ix, iy| (ix * iy) as f64))?;
+        let problem = Problem::new(&surface, &PeriodicBoussinesq::new(grid, 1.0)?)?;
+        let per_load = problem.table().gauge().unwrap_or_default() / 0.25;
+        assert!(per_load > 0.0);
+        let mut front = Front::new(&problem);
+        front.touch(1.0, 1.0, 1);
+        front.advance(8.0);
+        // W = 8/4, U = 8.
+        let state = front.state(1);
+        let expected = [
+            (state.approach, 8.0 - 2.0 * per_load),
+            (state.energy, 8.0 - 2.0 * per_load),
+            (front.own_approach(&state), 8.0),
+            (front.uniform_displacement(3.0), 3.0 * per_load),
+        ];
+        for (found, expected) in expected {
+            assert!(
+                (found - expected).abs() < 1e-13 * (8.0 + per_load),
+                "{found} {expected}"
+            );
+        }
+        assert_eq!(state.contact_stiffness, None);
+        let free = Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)?;
+        assert_eq!(Front::new(&free).uniform_displacement(3.0), 0.0);
+        Ok(())
+    }
+}

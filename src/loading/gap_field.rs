@@ -224,3 +224,167 @@ pub(super) fn solve<U: LinearUpdater>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::row;
+    use crate::updater::Dense;
+
+    fn near(found: &[f64], expected: &[f64]) {
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            // Roundings of a transform of numbers up to 8.
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+    }
+
+    /// Nodes 0 and 2 carry 3/4 and 1/2 at the approach 3, and 1/4 more for each metre: node 1 sinks by 5/4 and 1/2, node 3
+    /// by 1/2 and 1/4.
+    #[test]
+    fn gaps_are_lines() -> Result<(), Error> {
+        let run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
+        for (ahead, gaps) in [(0.0, [2.25, 5.5]), (2.0, [1.25, 4.0])] {
+            let lines: Vec<Line> = field.lines(problem, contact, 3.0 + ahead).collect();
+            assert_eq!([lines[0].node, lines[1].node], [1, 3]);
+            near(&[lines[0].gap, lines[1].gap], &gaps);
+            near(&[lines[0].closing, lines[1].closing], &[0.5, 0.75]);
+            let [one, three] = gaps;
+            near(
+                &[lines[0].touches(), lines[1].touches()],
+                &[one / 0.5, three / 0.75],
+            );
+            let pressures: Vec<(usize, f64)> = field.pressures(contact, 3.0 + ahead).collect();
+            assert_eq!([pressures[0].0, pressures[1].0], [0, 2]);
+            let more = 0.25 * ahead;
+            near(
+                &[pressures[0].1, pressures[1].1],
+                &[0.75 + more, 0.5 + more],
+            );
+        }
+        near(&field.left_at(problem, 2), &[0.0, 0.0]);
+        near(&field.left_at(problem, 3), &[5.5, -0.75]);
+        Ok(())
+    }
+
+    #[test]
+    fn gaps_that_do_not_close_never_touch() {
+        let touches = |gap, closing| {
+            let node = 0;
+            Line { node, gap, closing }.touches()
+        };
+        assert_eq!([touches(1.0, 0.0), touches(-1.0, -1.0)], [f64::INFINITY; 2]);
+        assert_eq!([touches(-1.0, 0.5), touches(3.0, 2.0)], [-2.0, 1.5]);
+    }
+
+    /// Solution and displacements belong to one contact at one approach; after a change of places to the new order, and
+    /// after another field to none.
+    #[test]
+    fn what_is_known_belongs_to_a_contact() -> Result<(), Error> {
+        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0, 2.0], &[0, 2, 4], 3.0)?;
+        assert!(run.field.belongs_to(&run.contact, 3.0));
+        assert!(!run.field.belongs_to(&run.contact, 3.5));
+        // A convolution takes some time.
+        assert!(run.field.time() > Duration::ZERO);
+        // 3/4, 1/2, 1/4, of which the last two change places.
+        run.rearrange(1, &[4, 2])?;
+        assert!(run.field.belongs_to(&run.contact, 3.0));
+        near(&run.field.solution().pressure, &[0.75, 0.25, 0.5]);
+        let mut pressure = vec![0.0; 5];
+        pressure[3] = 2.0;
+        near(run.field.displace(&pressure)?, &[0.0, 0.0, 2.0, 8.0, 2.0]);
+        assert!(!run.field.belongs_to(&run.contact, 3.0));
+        run.contact.truncate(2);
+        assert!(!run.field.belongs_to(&run.contact, 3.0));
+        Ok(())
+    }
+
+    /// Two fields of pressure and two of displacement of 15 nodes, and a convolution.
+    #[test]
+    fn bytes_are_those_of_four_fields() -> Result<(), Error> {
+        let grid = Grid::new(5, 3, 1.0, 1.0)?;
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let found = GapField::bytes_on(&grid, boundary);
+            assert_eq!(found - Convolution::bytes_on(&grid, boundary), 480);
+        }
+        Ok(())
+    }
+
+    /// Answers with vectors of these lengths: pressures, rates, displacements of both.
+    struct Lengths([usize; 4]);
+
+    impl LinearUpdater for Lengths {
+        fn watch(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+            schur: &mut crate::updater::Schur,
+        ) -> Result<(), Error> {
+            Dense.watch(problem, contact, nodes, schur)
+        }
+
+        fn join(
+            &mut self,
+            _: &Problem,
+            _: &ContactSequence,
+            _: &crate::updater::Touched,
+        ) -> Result<(), Error> {
+            Ok(())
+        }
+
+        fn solve(
+            &mut self,
+            _: &Problem,
+            _: &ContactSequence,
+            _: SolveRequest,
+            solution: &mut Solution,
+        ) -> Result<(), Error> {
+            let [pressure, rate, u, u_rate] = self.0.map(|length| vec![0.5; length]);
+            *solution = Solution {
+                pressure,
+                rate,
+                displacement: [u, u_rate],
+            };
+            Ok(())
+        }
+    }
+
+    /// A value for each node in contact, here two, and displacements of all four nodes or of none; rates only where they
+    /// are asked for.
+    #[test]
+    fn there_is_a_value_for_each_node() -> Result<(), Error> {
+        let problem = crate::row::problem(&[0.0; 4])?;
+        let contact = ContactSequence::with_order(problem.grid(), [0, 2])?;
+        for (lengths, with_rate, without) in [
+            ([2, 2, 0, 0], true, true),
+            ([2, 2, 4, 4], true, true),
+            ([2, 0, 0, 0], false, true),
+            ([2, 3, 4, 4], false, true),
+            ([2, 2, 4, 0], false, true),
+            ([2, 2, 0, 4], false, true),
+            ([1, 2, 0, 0], false, false),
+            ([3, 2, 4, 4], false, false),
+            ([2, 2, 3, 4], false, false),
+            ([2, 2, 3, 3], false, false),
+        ] {
+            for (span, accepted) in [(f64::INFINITY, with_rate), (0.0, without)] {
+                let request = SolveRequest {
+                    span,
+                    ..SolveRequest::exact(2, 1.0)
+                };
+                let mut solution = Solution::default();
+                let solved = solve(
+                    &problem,
+                    &contact,
+                    request,
+                    &mut Lengths(lengths),
+                    &mut solution,
+                );
+                assert_eq!(solved.is_ok(), accepted, "{lengths:?} {span}: {solved:?}");
+            }
+        }
+        Ok(())
+    }
+}

@@ -161,4 +161,91 @@ mod tests {
             assert_eq!(step_at(outside), None);
         }
     }
+
+    /// Three states of 1, 2 and 4 of ten nodes, at loads of 1, 2 and 4, from which approach and mean gap change by 1/2 and
+    /// 1/4 for each newton.
+    fn history() -> History {
+        let state = |nodes: usize| {
+            let load = nodes as f64;
+            let contact = ContactState {
+                contact_nodes: nodes,
+                approach: 0.5 * load,
+                load,
+                contact_area: load,
+                contact_area_fraction: load / 10.0,
+                mean_gap: 2.0 - 0.25 * load,
+                contact_stiffness: Some(2.0),
+                interfacial_stiffness: Some(4.0),
+                energy: 0.25 * load * load,
+            };
+            LoadingState::new(nodes, ContactEvent::Touch, (nodes, 0), contact)
+        };
+        [1, 2, 4].map(state).into_iter().collect()
+    }
+
+    #[test]
+    fn states_between_events_are_those_of_the_earlier_one() {
+        let history = history();
+        for (load, nodes) in [(1.0, 1), (1.5, 1), (2.0, 2), (3.0, 2), (4.0, 4)] {
+            let readings = [
+                history.at_load(load),
+                history.at_approach(0.5 * load),
+                history.at_mean_gap(2.0 - 0.25 * load),
+            ];
+            for reading in readings {
+                let found = reading.map(|state| (state.contact_nodes, state.load, state.energy));
+                assert_eq!(found, Some((nodes, load, 0.25 * load * load)));
+            }
+        }
+        for outside in [0.5, 4.5, f64::NAN, f64::INFINITY] {
+            assert_eq!(history.at_load(outside), None);
+            assert_eq!(history.at_approach(0.5 * outside), None);
+            assert_eq!(history.at_mean_gap(2.0 - 0.25 * outside), None);
+        }
+    }
+
+    /// Behind full contact everything is linear in the load.
+    #[test]
+    fn a_path_that_ends_in_full_contact_goes_on() {
+        let mut states = history().states().to_vec();
+        states[2].contact.contact_area_fraction = 1.0;
+        let history: History = states.into_iter().collect();
+        let found = history
+            .at_load(6.0)
+            .map(|state| (state.contact_nodes, state.approach));
+        assert_eq!(found, Some((4, 3.0)));
+    }
+
+    /// As many of ten nodes as fit; between 2 and 4 of them there are none but the 2.
+    #[test]
+    fn the_state_of_an_area_is_the_last_that_fits() {
+        let history = history();
+        let nodes = |fraction| {
+            history
+                .at_area_fraction(fraction)
+                .map(|state| state.contact_nodes)
+        };
+        for (fraction, expected) in [
+            (0.05, None),
+            (0.1, Some(1)),
+            (0.19, Some(1)),
+            (0.2, Some(2)),
+            (0.29, Some(2)),
+            (0.35, None),
+            (0.4, Some(4)),
+            (0.49, Some(4)),
+            (0.5, None),
+        ] {
+            assert_eq!(nodes(fraction), expected, "{fraction}");
+        }
+    }
+
+    #[test]
+    fn a_limit_is_no_event() {
+        let mut states = history().states().to_vec();
+        assert_eq!(history().events().len(), 3);
+        states[2].event = ContactEvent::Limit;
+        let history: History = states.into_iter().collect();
+        assert_eq!((history.events().len(), history.states().len()), (2, 3));
+    }
 }

@@ -166,3 +166,150 @@ impl Limits {
         end.map(|end| (end, None))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::state::ContactEvent;
+    use super::*;
+    use crate::contact::ContactState;
+
+    fn grid() -> Result<Grid, Error> {
+        Grid::new(5, 4, 1.0, 2.0)
+    }
+
+    /// Limits on surfaces that just touch with a mean gap of 3.
+    fn limits(targets: &[ContactTarget]) -> Result<Limits, Error> {
+        let mut limits = Limits::default();
+        for target in targets {
+            limits.set(*target, &grid()?, 3.0)?;
+        }
+        Ok(limits)
+    }
+
+    /// A state from which load, approach and mean gap change by 4, 1 and 2 each.
+    fn state(contact_nodes: usize, load: f64) -> Result<LoadingState, Error> {
+        let contact = ContactState {
+            contact_stiffness: Some(4.0),
+            interfacial_stiffness: Some(2.0),
+            ..ContactState::new(&grid()?, contact_nodes, load / 4.0, load, 3.0 - load / 2.0)
+        };
+        Ok(LoadingState::new(
+            contact_nodes,
+            ContactEvent::Touch,
+            (0, 0),
+            contact,
+        ))
+    }
+
+    #[test]
+    fn limits_that_make_no_sense_are_refused() {
+        let mean_gap = |gap| limits(&[ContactTarget::MeanGap(gap)]).is_ok();
+        assert_eq!(
+            [-0.1, 0.0, 2.9, 3.0, f64::NAN].map(mean_gap),
+            [false, true, true, false, false]
+        );
+        for value in [0.0, -1.0, f64::NAN] {
+            assert!(limits(&[ContactTarget::Load(value)]).is_err());
+            assert!(limits(&[ContactTarget::Approach(value)]).is_err());
+        }
+        let mut limits = Limits::default();
+        assert!(limits.set_nodes(0).is_err() && limits.set_nodes(1).is_ok());
+    }
+
+    #[test]
+    fn each_kind_of_limit_counts() -> Result<(), Error> {
+        use ContactTarget::{Approach, AreaFraction, Load, MeanGap};
+        for (target, is_before_full) in [
+            (Load(1.0), true),
+            (Approach(1.0), true),
+            (MeanGap(1.0), true),
+            // Full contact is where the mean gap is nothing.
+            (MeanGap(0.0), false),
+            (AreaFraction(0.5), false),
+        ] {
+            let limits = limits(&[target])?;
+            assert_eq!(
+                limits.ends_before_full_contact(),
+                is_before_full,
+                "{target:?}"
+            );
+            assert_eq!(limits.targets(&grid()?), [target]);
+        }
+        assert!(limits(&[])?.targets(&grid()?).is_empty());
+        Ok(())
+    }
+
+    /// 0.25 of 20 nodes, and 7 or 3 of them.
+    #[test]
+    fn the_fewest_nodes_count() -> Result<(), Error> {
+        let area = ContactTarget::AreaFraction(0.25);
+        for (nodes, most, end) in [
+            (7, 5, LoadingEnd::AreaFraction),
+            (5, 5, LoadingEnd::AreaFraction),
+            (3, 3, LoadingEnd::Nodes),
+        ] {
+            let mut limits = limits(&[area])?;
+            limits.set_nodes(nodes)?;
+            limits.set_nodes(9)?;
+            assert_eq!(limits.most_nodes(), most);
+            assert_eq!(
+                [most - 1, most].map(|nodes| limits.enough(nodes)),
+                [None, Some(end)]
+            );
+            let fraction = most as f64 / 20.0;
+            assert_eq!(
+                limits.targets(&grid()?),
+                [ContactTarget::AreaFraction(fraction)]
+            );
+            // Between two states only where one more node joins.
+            let between = |next| -> Result<_, Error> {
+                let (last, next) = (state(most, 4.0)?, state(next, 8.0)?);
+                Ok(limits.between(Some(last), &next))
+            };
+            assert_eq!(between(most + 1)?, Some((end, None)));
+            assert_eq!(between(most)?, None);
+        }
+        let mut whole = Limits::default();
+        whole.set_nodes(20)?;
+        assert_eq!(whole.targets(&grid()?), [ContactTarget::AreaFraction(1.0)]);
+        whole = Limits::default();
+        whole.set_nodes(21)?;
+        assert!(whole.targets(&grid()?).is_empty());
+        Ok(())
+    }
+
+    /// From a load of 4 to 8, an approach of 1 to 2 and a mean gap of 1 to −1: what is reached first, at its state.
+    #[test]
+    fn paths_end_between_two_states() -> Result<(), Error> {
+        use ContactTarget::{Approach, Load, MeanGap};
+        let (last, next) = (state(1, 4.0)?, state(2, 8.0)?);
+        for (targets, end, load) in [
+            (&[Load(5.0)][..], LoadingEnd::Load, 5.0),
+            (&[Approach(1.5)], LoadingEnd::Approach, 6.0),
+            (&[MeanGap(0.5)], LoadingEnd::MeanGap, 5.0),
+            (
+                &[Load(7.0), Approach(1.5), MeanGap(0.25)],
+                LoadingEnd::MeanGap,
+                5.5,
+            ),
+            (&[Load(7.0), Approach(1.5)], LoadingEnd::Approach, 6.0),
+        ] {
+            let (found, at_limit) = limits(targets)?.between(Some(last), &next).unzip();
+            assert_eq!(found, Some(end));
+            let at_limit = at_limit.flatten().map(|state| (state.event, state.load));
+            assert_eq!(at_limit, Some((ContactEvent::Limit, load)));
+        }
+        // At the limit already, and the next state at it: that one comes.
+        let at = limits(&[Load(4.0)])?.between(Some(last), &next);
+        assert_eq!(at, Some((LoadingEnd::Load, None)));
+        for target in [Load(8.0), Approach(2.0)] {
+            assert_eq!(limits(&[target])?.between(Some(last), &next), None);
+        }
+        assert_eq!(
+            limits(&[MeanGap(0.0)])?.between(Some(last), &state(2, 6.0)?),
+            None
+        );
+        assert_eq!(limits(&[Load(5.0)])?.between(None, &next), None);
+        Ok(())
+    }
+}

@@ -53,6 +53,8 @@ mod paper;
 mod ranking;
 mod releases;
 mod resume;
+#[cfg(test)]
+mod row;
 mod rule;
 mod run;
 mod scales;

@@ -87,5 +87,11 @@ mod tests {
         ];
         assert_eq!(contacts, expected);
         assert!(releases.is_prefix(6) && !releases.is_prefix(5));
+        // The last ones first: node 4 from the first place, node 5 from the second.
+        assert_eq!(
+            [0, 1, 2].map(|_| releases.pop()),
+            [Some((0, 4)), Some((1, 5)), None]
+        );
+        assert_eq!(releases.steps(3), 3);
     }
 }

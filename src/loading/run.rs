@@ -371,3 +371,6 @@ impl<U: LinearUpdater> LoadingRun<U> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

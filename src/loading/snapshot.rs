@@ -131,3 +131,180 @@ impl Snapshot {
         Ok(least.fold(f64::INFINITY, f64::min))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::ContactState;
+    use crate::loading::row;
+    use crate::loading::state::ContactEvent;
+    use crate::updater::Dense;
+
+    /// A snapshot of nodes in a row with these pressures, and whether it is that of a state under `load`; `contact` is what
+    /// the path has got to, which is at the first of its events or at the last.
+    struct Case<'a> {
+        gaps: &'a [f64],
+        contact: &'a [usize],
+        step: usize,
+        pressures: &'a [(usize, f64)],
+        approach: f64,
+        stiffness: f64,
+        load: f64,
+        error: f64,
+    }
+
+    impl Case<'_> {
+        /// What it is refused for.
+        fn refused(&self) -> Result<Option<&'static str>, Error> {
+            let mut run = row::run(self.gaps, Dense)?;
+            for &node in self.contact {
+                run.contact.push(node)?;
+            }
+            let mut pressure = DMatrix::zeros(self.gaps.len(), 1);
+            for &(node, value) in self.pressures {
+                pressure[node] = value;
+            }
+            let snapshot = Snapshot {
+                nodes: self.pressures.iter().map(|(node, _)| *node).collect(),
+                approach: self.approach,
+                stiffness: self.stiffness,
+                pressure,
+            };
+            let grid = run.problem.grid();
+            let contact =
+                ContactState::new(&grid, self.pressures.len(), self.approach, self.load, 0.0);
+            let mut state = LoadingState::new(self.step, ContactEvent::Touch, (0, 0), contact);
+            state.approach_error = self.error;
+            match snapshot.recognise(&mut run, &state, true) {
+                Err(Error::NotOnPath { quantity, .. }) => Ok(Some(quantity)),
+                done => done.map(|()| None),
+            }
+        }
+    }
+
+    /// Node 0 carries 1 at the approach 4, which is a load of 2 on its cell; no other node is near.
+    const ALONE: Case<'_> = Case {
+        gaps: &[0.0, 8.0, 8.0],
+        contact: &[0],
+        step: 1,
+        pressures: &[(0, 1.0)],
+        approach: 4.0,
+        stiffness: 0.5,
+        load: 2.0,
+        error: 0.0,
+    };
+
+    #[test]
+    fn loads_are_compared() -> Result<(), Error> {
+        for (error, stiffness, off, refused) in [
+            // A millionth of the load of 2, or of the stiffness times the approach if that is more.
+            (0.0, 0.5, 1.9e-6, false),
+            (0.0, 0.5, -1.9e-6, false),
+            (0.0, 0.5, 2.1e-6, true),
+            (0.0, 0.5, -2.1e-6, true),
+            (0.0, 1.0, 3.9e-6, false),
+            (0.0, 1.0, 4.1e-6, true),
+            // A hundred times as much where the approach is an estimate.
+            (1e-12, 0.5, 1.9e-4, false),
+            (1e-12, 0.5, 2.1e-4, true),
+            (0.0, 0.5, f64::NAN, true),
+        ] {
+            let case = Case {
+                load: 2.0 + off,
+                stiffness,
+                error,
+                ..ALONE
+            };
+            assert_eq!(case.refused()?, refused.then_some("load"), "{off}");
+        }
+        // At first touch half of the rounding of 8 m.
+        for (load, refused) in [(4.0, false), (-4.0, false), (4.5, true)] {
+            let case = Case {
+                pressures: &[(0, 0.0)],
+                approach: 0.0,
+                load: load * f64::EPSILON,
+                ..ALONE
+            };
+            assert_eq!(case.refused()?, refused.then_some("load"), "{load}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn tension_is_refused() -> Result<(), Error> {
+        let refused = Some("least pressure in contact");
+        for (least, refused) in [(0.9e-6, None), (1.1e-6, refused)] {
+            let case = Case {
+                gaps: &[0.0, 8.0, 4.0],
+                contact: &[0, 2],
+                step: 2,
+                pressures: &[(0, 1.0), (2, -least)],
+                load: 2.0 - 2.0 * least,
+                ..ALONE
+            };
+            assert_eq!(case.refused()?, refused, "{least:e}");
+        }
+        // At first touch the rounding of the load, 4 ε, over the cell area.
+        for (least, refused) in [(1.75, None), (2.25, refused)] {
+            let case = Case {
+                gaps: &[0.0, 8.0, 0.0],
+                contact: &[0, 2],
+                step: 2,
+                pressures: &[(0, least * f64::EPSILON), (2, -least * f64::EPSILON)],
+                approach: 0.0,
+                load: 0.0,
+                ..ALONE
+            };
+            assert_eq!(case.refused()?, refused, "{least}");
+        }
+        Ok(())
+    }
+
+    /// The neighbour of node 0 sinks by 1, and may overlap by a millionth of 8 + 4.
+    #[test]
+    fn overlap_is_refused() -> Result<(), Error> {
+        for (overlap, refused) in [(11e-6, None), (13e-6, Some("least gap out of contact"))] {
+            let neighbour = 3.0 - overlap;
+            // At the front of all nodes, behind it of the one that touches next alone.
+            for (contact, far, refused) in [
+                (&[0][..], 8.0, refused),
+                (&[0, 1], 8.0, refused),
+                (&[0, 2], 8.0, None),
+            ] {
+                let case = Case {
+                    gaps: &[0.0, neighbour, far],
+                    contact,
+                    ..ALONE
+                };
+                assert_eq!(case.refused()?, refused, "{overlap:e} {contact:?}");
+            }
+            // With no node out of contact there is no overlap: a fifth of 5 each.
+            let full = Case {
+                gaps: &[0.0, 0.0],
+                contact: &[0, 1],
+                step: 2,
+                pressures: &[(0, 1.0), (1, 1.0)],
+                approach: 5.0,
+                load: 4.0,
+                ..ALONE
+            };
+            assert_eq!(full.refused()?, None);
+        }
+        Ok(())
+    }
+
+    /// Pressures by node, the approach, and the stiffness 2 · (1/4 + 1/4).
+    #[test]
+    fn snapshots_are_solutions() -> Result<(), Error> {
+        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let contact = ContactState::new(&run.problem.grid(), 2, 3.0, 2.5, 0.0);
+        let state = LoadingState::new(2, ContactEvent::Touch, (2, 0), contact);
+        let found = Snapshot::of(&mut run, &state)?;
+        assert_eq!((&found.nodes[..], found.approach), (&[0, 2][..], 3.0));
+        for (found, expected) in found.pressure.iter().zip([0.75, 0.0, 0.5, 0.0]) {
+            assert!((found - expected).abs() < 1e-15);
+        }
+        assert!((found.stiffness - 1.0).abs() < 1e-15);
+        Ok(())
+    }
+}

@@ -251,3 +251,88 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             .saturating_add(run.updater.bytes(run.contact.len(), 0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+
+    /// Two of four nodes are in contact at the approach 2, under 2 (1/2 + 1/4) N.
+    fn path() -> Result<LoadingSolver, Error> {
+        let (surface, kernel) = (row::surface(&[0.0, 9.0, 1.0, 9.0])?, row::kernel(4)?);
+        let mut path = LoadingSolver::builder(&surface, &kernel)
+            .max_approach(2.0)
+            .build()?;
+        assert_eq!(path.size_hint(), (0, Some(5)));
+        assert_eq!((path.state(), path.end()), (None, None));
+        path.by_ref().try_for_each(|state| state.map(drop))?;
+        assert_eq!(
+            (path.size_hint(), path.end()),
+            ((0, Some(0)), Some(LoadingEnd::Approach))
+        );
+        Ok(path)
+    }
+
+    #[test]
+    fn paths_go_on_to_what_lies_beyond() -> Result<(), Error> {
+        use ContactTarget::{Approach, AreaFraction, Load, MeanGap};
+        let state = path()?.state();
+        let mean_gap = state.map_or(0.0, |state| state.mean_gap);
+        assert!(state.is_some_and(|state| state.contact_nodes == 2 && state.approach == 2.0));
+        let load = state.map_or(0.0, |state| state.load);
+        for (target, is_beyond) in [
+            (Load(load), false),
+            (Load(1.25), false),
+            (Load(1.75), true),
+            (Approach(2.0), false),
+            (Approach(1.5), false),
+            (Approach(2.5), true),
+            // Two of four nodes, one, and three.
+            (AreaFraction(0.5), false),
+            (AreaFraction(0.25), false),
+            (AreaFraction(0.75), true),
+            (MeanGap(mean_gap), false),
+            (MeanGap(mean_gap + 0.25), false),
+            (MeanGap(mean_gap - 0.25), true),
+        ] {
+            let mut path = path()?;
+            let refused = path.continue_to(target).err();
+            assert_eq!(refused.is_none(), is_beyond, "{target:?}");
+            if is_beyond {
+                assert_eq!((path.end(), path.targets()), (None, vec![target]));
+                let most = if target == AreaFraction(0.75) { 1 } else { 2 };
+                assert_eq!(path.size_hint(), (0, Some(most + 1)));
+                assert!(path.next().is_some_and(|state| state.is_ok()));
+            } else {
+                assert!(matches!(refused, Some(Error::OutOfRange { .. })));
+                assert_eq!(path.end(), Some(LoadingEnd::Approach));
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn nothing_goes_on_after_an_error() -> Result<(), Error> {
+        for end in [LoadingEnd::Failed, LoadingEnd::Memory] {
+            let mut path = path()?;
+            path.end = Some(end);
+            let refused = path.continue_to(ContactTarget::Load(9.0));
+            assert!(matches!(refused, Err(Error::CannotContinue { steps: 2 })));
+        }
+        Ok(())
+    }
+
+    /// Those of the grid, and those of a factor of four nodes: all events of the window have joined.
+    #[test]
+    fn bytes_are_those_of_grid_and_updater() -> Result<(), Error> {
+        let path = path()?;
+        let updater = path.updater().bytes(4, 0);
+        assert!(updater > 0);
+        assert_eq!(path.bytes(), path.run.memory.fixed + updater);
+        assert_eq!(
+            (path.grid(), path.rule()),
+            (row::grid(4)?, ContactRule::FirstContact)
+        );
+        Ok(())
+    }
+}

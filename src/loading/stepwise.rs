@@ -194,3 +194,145 @@ impl Stepwise {
             .min_by_key(|event| event.node)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::row;
+    use crate::updater::Dense;
+
+    /// Twenty events for each of five nodes and one more, all at one approach.
+    #[test]
+    fn events_at_one_approach_come_to_an_end() -> Result<(), Error> {
+        let mut run = row::run(&[0.0; 5], Dense)?;
+        run.front.place_at(1.0);
+        let mut stepwise = Stepwise::default();
+        for _ in 0..120 {
+            stepwise.count_tie(&run, 1.0)?;
+        }
+        // One further on, and all begins anew.
+        stepwise.count_tie(&run, 1.5)?;
+        for _ in 0..119 {
+            stepwise.count_tie(&run, 1.0)?;
+        }
+        let refused = stepwise.count_tie(&run, 1.0);
+        assert!(
+            matches!(
+                refused,
+                Err(Error::Cycling {
+                    approach: 1.0,
+                    events: 121
+                })
+            ),
+            "{refused:?}"
+        );
+        Ok(())
+    }
+
+    fn touch(node: usize, approach: f64) -> Upcoming {
+        Upcoming {
+            approach,
+            error: 0.0,
+            node,
+            event: ContactEvent::Touch,
+        }
+    }
+
+    /// What comes first at the approach 2 of these touches and of two nodes in contact, 3 and 5, with pressures and rates.
+    fn first(
+        touches: &[Upcoming],
+        pressure: [f64; 2],
+        rate: [f64; 2],
+    ) -> Result<Option<(ContactEvent, usize, f64, f64)>, Error> {
+        let (pressure, rate) = (pressure.to_vec(), rate.to_vec());
+        let mut run = row::run(&[0.0; 6], row::Given { pressure, rate })?;
+        run.contact.push(3)?;
+        run.contact.push(5)?;
+        run.solve_field(2.0, 1.0)?;
+        run.front.place_at(2.0);
+        let stepwise = Stepwise {
+            touches: touches.to_vec(),
+            ..Stepwise::default()
+        };
+        let first = stepwise.first_event(&run, 0.25);
+        Ok(first.map(|next| (next.event, next.node, next.approach, next.error)))
+    }
+
+    #[test]
+    fn what_comes_first_happens() -> Result<(), Error> {
+        use ContactEvent::{Release, Touch};
+        // 1/2 falls to nothing within 2 m at a rate of −1/4; an overlap of 1/4 is a tension of 1/16, and that 1/4 m.
+        let releasing = ([0.5, 1.0], [-0.25, 0.5]);
+        let found = |touches: &[Upcoming]| first(touches, releasing.0, releasing.1);
+        assert_eq!(found(&[])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[touch(1, 5.0)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(
+            found(&[touch(4, 3.5), touch(1, 5.0)])?,
+            Some((Touch, 4, 3.5, 0.0))
+        );
+        // What should have happened already happens now.
+        assert_eq!(found(&[touch(1, 1.0)])?, Some((Touch, 1, 2.0, 0.0)));
+        // Of events within rounding, 10⁻¹³ of 4 m, that of the lowest node.
+        assert_eq!(
+            found(&[touch(4, 4.0 - 3e-13)])?,
+            Some((Release, 3, 4.0, 0.25))
+        );
+        assert_eq!(
+            found(&[touch(1, 4.0 + 3e-13)])?,
+            Some((Touch, 1, 4.0 + 3e-13, 0.0))
+        );
+        assert_eq!(
+            found(&[touch(1, 4.0 + 5e-13)])?,
+            Some((Release, 3, 4.0, 0.25))
+        );
+        assert_eq!(
+            found(&[touch(4, 4.0 - 5e-13)])?,
+            Some((Touch, 4, 4.0 - 5e-13, 0.0))
+        );
+        // A rate within rounding of none, 10⁻¹² of the greatest, releases nothing; nor does one that grows.
+        for (rate, release) in [(-0.9e-12, false), (-1.1e-12, true), (0.25, false)] {
+            let found = first(&[], [0.5, 1.0], [rate, 1.0])?;
+            assert_eq!(found.is_some(), release, "{rate:e}");
+        }
+        assert_eq!(first(&[touch(1, f64::INFINITY)], [0.5; 2], [1.0; 2])?, None);
+        Ok(())
+    }
+
+    /// Node 0 touches at 0 and node 2 at the approach 1. Then node 1 between them, whose gap is 1.25 + 0.25 − 1 and closes at the
+    /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
+    #[test]
+    fn events_come_one_at_a_time() -> Result<(), Error> {
+        let mut run = row::run(&[0.0, 1.25, 1.0, 9.0], row::Inexact)?;
+        let mut stepwise = Stepwise::default();
+        for _ in 0..4 {
+            stepwise.produce(&mut run, 3)?;
+        }
+        let found: Vec<_> = run
+            .queue
+            .iter()
+            .map(|state| (state.step, state.contact_nodes, state.node))
+            .collect();
+        assert_eq!(found, [(1, 1, (0, 0)), (2, 2, (2, 0)), (3, 3, (1, 0))]);
+        for (state, (approach, error)) in
+            run.queue.iter().zip([(0.0, 0.0), (1.0, 0.0), (2.0, 2e-4)])
+        {
+            assert!(
+                (state.approach - approach).abs() < 1e-14,
+                "{}",
+                state.approach
+            );
+            // At first touch a part of 10⁻⁶ of the mean gap.
+            assert!(
+                (state.approach_error - error).abs() < 1e-9,
+                "{}",
+                state.approach_error
+            );
+        }
+        // 1/2 N for each metre, and after the second node twice as much.
+        let loads: Vec<f64> = run.queue.iter().map(|state| state.load).collect();
+        for (found, expected) in loads.into_iter().zip([0.0, 0.5, 1.5]) {
+            assert!((found - expected).abs() < 1e-14, "{found}");
+        }
+        Ok(())
+    }
+}

@@ -24,3 +24,25 @@ impl Sum {
         self.sum + self.lost
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whichever of sum and term is greater, what is lost of the other is kept.
+    #[test]
+    fn nothing_is_lost() {
+        for terms in [
+            &[1.0, 1e100, 1.0, -1e100][..],
+            &[1e100, 2.0, -1e100],
+            &[2.0, -1e100, 1e100],
+            &[1e100, 1.0, -1e100, -1e-100, 1.0],
+            &[0.5, 1.5],
+            &[-3.0, -3.0, 8.0],
+        ] {
+            let mut sum = Sum::default();
+            terms.iter().for_each(|term| sum.add(*term));
+            assert_eq!(sum.total(), 2.0, "{terms:?}");
+        }
+    }
+}

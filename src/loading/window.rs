@@ -239,6 +239,16 @@ mod tests {
         Ok(())
     }
 
+    /// A gap that is nothing and does not close is no contact, and keeps no other one from being found.
+    #[test]
+    fn gaps_that_do_not_close_never_touch() -> Result<(), crate::Error> {
+        let mut window = window(C, [(0.0, 0.0), (1.0, 1.0), (5.0, -1.0)], 100.0)?;
+        assert_eq!(window.play(3), None);
+        let found: Vec<_> = window.events().iter().map(|e| (e.node, e.time)).collect();
+        assert_eq!(found, [(8, 1.0)]);
+        Ok(())
+    }
+
     #[test]
     fn ties_go_to_the_lowest_index_and_times_never_fall() -> Result<(), crate::Error> {
         let mut window = window(C, [(1.0, 1.0), (0.0, 1.0), (0.0, 1.0)], 100.0)?;

@@ -221,3 +221,6 @@ fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option
         })
         .reduce(f64::min)
 }
+
+#[cfg(test)]
+mod tests;

@@ -305,6 +305,63 @@ mod tests {
     }
 
     #[test]
+    fn what_is_nothing_is_compared_with_1() {
+        assert_eq!(
+            [
+                greatest(&[]),
+                greatest(&[0.0, -0.0]),
+                greatest(&[2.0, -3.0])
+            ],
+            [1.0, 1.0, 3.0]
+        );
+    }
+
+    /// An updater that takes the last nodes back, and no other.
+    struct Truncating(RecursiveCholesky);
+
+    impl LinearUpdater for Truncating {
+        fn watch(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+            schur: &mut Schur,
+        ) -> Result<(), Error> {
+            self.0.watch(problem, contact, nodes, schur)
+        }
+
+        fn join(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            touched: &Touched,
+        ) -> Result<(), Error> {
+            self.0.join(problem, contact, touched)
+        }
+
+        fn solve(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            request: SolveRequest,
+            solution: &mut Solution,
+        ) -> Result<(), Error> {
+            self.0.solve(problem, contact, request, solution)
+        }
+
+        fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+            self.0.truncate(problem, contact)
+        }
+    }
+
+    #[test]
+    fn what_an_updater_cannot_do_is_told() -> Result<(), Error> {
+        let report = check(&mut Truncating(RecursiveCholesky::new()), &problem()?)?;
+        assert!(report.truncates && !report.releases, "{report:?}");
+        Ok(())
+    }
+
+    #[test]
     fn lies_are_found() -> Result<(), Error> {
         let problem = problem()?;
         let checked = |lie| {

@@ -116,3 +116,59 @@ impl LinearUpdater for Dense {
             .saturating_mul(2 * size_of::<f64>())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+
+    /// With node 0 in contact, C = 4 and 1 beside it: nodes 1 and 3 have the Schur complement (4 − 1/4, 0; 0, 4), and the row
+    /// sums 6 − 5/4 and 5.
+    #[test]
+    fn complements_of_nodes_in_a_row() -> Result<(), Error> {
+        let problem = row::problem(&[0.0, 1.0, 2.0, 3.0])?;
+        let contact = ContactSequence::with_order(problem.grid(), [0])?;
+        let mut schur = Schur::default();
+        Dense.watch(&problem, &contact, &[1, 3], &mut schur)?;
+        let matrix = schur.matrix();
+        let found = matrix.iter().chain(schur.row_sums());
+        for (found, expected) in found.zip([3.75, 0.0, 0.0, 4.0, 4.75, 5.0]) {
+            // Row sums are those of a transform.
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+        let mut solution = Solution::default();
+        Dense.solve(
+            &problem,
+            &contact,
+            SolveRequest::exact(1, 3.0),
+            &mut solution,
+        )?;
+        assert_eq!(
+            (&solution.pressure[..], &solution.rate[..]),
+            (&[0.75][..], &[0.25][..])
+        );
+        assert!(matches!(
+            Dense.solve(
+                &problem,
+                &contact,
+                SolveRequest::exact(2, 3.0),
+                &mut solution
+            ),
+            Err(Error::LengthMismatch {
+                expected: 1,
+                found: 2
+            })
+        ));
+        assert!(Dense.watch(&problem, &contact, &[4], &mut schur).is_err());
+        Ok(())
+    }
+
+    /// A matrix of 5 × 5 and its factor.
+    #[test]
+    fn bytes_are_those_of_two_matrices() {
+        assert_eq!(
+            (Dense.bytes(3, 2), Dense.bytes(usize::MAX, 1)),
+            (400, usize::MAX)
+        );
+    }
+}

@@ -249,3 +249,66 @@ impl LinearUpdater for Handover {
         self.updater_mut().make_room(problem, bytes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 ps · n², and 0.3 ms, 4 ns a node and 6 ns a node in contact.
+    #[test]
+    fn costs_of_an_event() {
+        for (nodes, contact, cost) in [
+            (0, 1000, 1e-5),
+            (1_000_000, 10_000, 1e-3),
+            (10_000, 10_000, 3e-4 + 4e-5 + 6e-5),
+            (1_000_000, 100_000, 3e-4 + 4e-3 + 6e-4),
+        ] {
+            let found = Handover::event_cost(nodes, contact);
+            assert!(
+                (found / cost - 1.0).abs() < 1e-14,
+                "{nodes} {contact}: {found:e}"
+            );
+        }
+    }
+
+    /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 4·10⁻⁹ N + 6·10⁻⁹ n`, rounded up; all nodes if there is none among them.
+    #[test]
+    fn a_factor_is_given_up_where_costs_meet() {
+        for nodes in [128 * 128, 256 * 256, 512 * 512] {
+            let fixed = 3e-4 + 4e-9 * nodes as f64;
+            let root = (6e-9 + (36e-18 + 4e-11 * fixed).sqrt()) / 2e-11;
+            assert_eq!(Handover::last_factor(nodes), root.ceil() as usize);
+        }
+        assert_eq!([100, 1000].map(Handover::last_factor), [100, 1000]);
+    }
+
+    /// The factor and one more window: bytes of 64 nodes more in contact and 64 watched, and of their Schur complement and
+    /// its factor, 1024 · 64.
+    #[test]
+    fn a_factor_fits_with_one_more_window() -> Result<(), Error> {
+        let factor = RecursiveCholesky::new();
+        let needed = factor.bytes(364, 64) + 1024 * 64;
+        let mut handover = Handover::new();
+        for (budget, fits) in [(needed, true), (needed - 1, false)] {
+            handover.budget = budget;
+            assert_eq!(handover.factor_fits(&factor, 300), fits);
+            assert_eq!(handover.factor_serves(&factor, 128 * 128, 300), fits);
+        }
+        handover.budget = usize::MAX;
+        assert_eq!(handover.bytes(300, 64), factor.bytes(300, 64));
+        let last = Handover::last_factor(128 * 128);
+        let serves =
+            [last - 1, last].map(|contact| handover.factor_serves(&factor, 128 * 128, contact));
+        assert_eq!(serves, [true, false]);
+        // Told of less than one window, it begins without a factor.
+        let problem = crate::row::problem(&[0.0; 4])?;
+        let first = factor.bytes(64, 64) + 1024 * 64;
+        for (bytes, handed_over_at) in [(first, None), (first - 1, Some(0))] {
+            let mut handover = Handover::new();
+            handover.make_room(&problem, bytes)?;
+            assert_eq!(handover.handed_over_at(), handed_over_at);
+            assert_eq!(handover.profile().exact, handed_over_at.is_none());
+        }
+        Ok(())
+    }
+}

@@ -44,3 +44,33 @@ pub(crate) fn join_all(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row;
+    use crate::updater::Dense;
+
+    /// 300 nodes join in blocks of 256 and 44: of a dense updater 16 (256 + 256)² bytes and then 16 (300 + 44)², with 16 · 256²
+    /// and 16 · 44² for the window.
+    #[test]
+    fn contacts_join_within_a_budget() -> Result<(), Error> {
+        let problem = row::problem(&[0.0; 300])?;
+        let nodes: Vec<usize> = (0..300).rev().collect();
+        let joined = |budget| {
+            let mut contact = ContactSequence::new(problem.grid());
+            let done = join_all(&mut Dense, &problem, &mut contact, &nodes, budget);
+            (done, contact)
+        };
+        let most = 16 * (512 * 512 + 256 * 256);
+        let (done, contact) = joined(most);
+        assert!(done.is_ok() && contact.order() == nodes);
+        let (done, contact) = joined(most - 1);
+        assert!(contact.is_empty());
+        assert!(
+            matches!(done, Err(Error::MemoryBudget { needed, nodes_that_fit: 0, .. }) if needed == most),
+            "{done:?}"
+        );
+        Ok(())
+    }
+}

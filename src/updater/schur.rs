@@ -144,4 +144,69 @@ mod tests {
         }
         Ok(())
     }
+
+    /// Sums of products of small integers are exact. Sizes are those of a part of a tile, of several, and of so many that
+    /// threads share them.
+    #[test]
+    fn products_of_columns_are_added() -> Result<(), Error> {
+        for size in [0, 1, 5, TILE, 2 * TILE + 12, PARALLEL + 1] {
+            let mut schur = Schur::default();
+            schur.resize(size)?;
+            let own = |i: usize, j: usize| (3 * i + 5 * j) as f64;
+            for j in 0..size {
+                for i in j..size {
+                    schur.matrix_mut()[(i, j)] = own(i, j);
+                }
+            }
+            let entry = |i: usize, t: usize| ((i * (t + 2) + t) % 7) as f64 - 3.0;
+            let columns: Vec<f64> = (0..3)
+                .flat_map(|t| (0..size).map(move |i| entry(i, t)))
+                .collect();
+            schur.add_gram(-2.0, &columns);
+            for j in 0..size {
+                for i in j..size {
+                    let products: f64 = (0..3).map(|t| entry(i, t) * entry(j, t)).sum();
+                    assert_eq!(
+                        schur.matrix()[(i, j)],
+                        own(i, j) - 2.0 * products,
+                        "{size}: {i} {j}"
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Left of the diagonal a column is a row.
+    #[test]
+    fn columns_are_made_whole() -> Result<(), Error> {
+        let mut schur = Schur::default();
+        schur.resize(3)?;
+        let above = f64::NAN;
+        schur
+            .as_mut_slice()
+            .copy_from_slice(&[1.0, 2.0, 3.0, above, 4.0, 5.0, above, above, 6.0]);
+        for (j, expected) in [[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]
+            .into_iter()
+            .enumerate()
+        {
+            let mut column = [0.0; 3];
+            schur.copy_column(j, &mut column);
+            assert_eq!(column, expected);
+        }
+        Ok(())
+    }
+
+    /// Displacements are those of one set of watched nodes.
+    #[test]
+    fn displacements_are_told_and_forgotten() -> Result<(), Error> {
+        let mut schur = Schur::default();
+        schur.resize(1)?;
+        assert_eq!(schur.displacements(), None);
+        schur.set_displacements(vec![[1.0, 2.0]]);
+        assert_eq!(schur.displacements(), Some(&[[1.0, 2.0]][..]));
+        schur.resize(1)?;
+        assert_eq!(schur.displacements(), None);
+        Ok(())
+    }
 }

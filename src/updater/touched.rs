@@ -241,4 +241,101 @@ mod tests {
             assert!(Touched::of(schur(), &positions).is_err());
         }
     }
+
+    /// `(4, 2; 2, 5)`, of which (2, 1) and (·, 2) are the columns of the factor.
+    fn two_by_two() -> Schur {
+        let mut schur = Schur::default();
+        schur.resize(2).unwrap();
+        schur
+            .as_mut_slice()
+            .copy_from_slice(&[4.0, 2.0, f64::NAN, 5.0]);
+        schur
+    }
+
+    #[test]
+    fn factors_solve() {
+        let touched = Touched::of(two_by_two(), &[0, 1]).unwrap();
+        assert_eq!(
+            [
+                touched.factor(0, 0),
+                touched.factor(1, 0),
+                touched.factor(1, 1)
+            ],
+            [2.0, 1.0, 2.0]
+        );
+        let mut x = [[2.0, 4.0], [5.0, 6.0]];
+        touched.solve(&mut x);
+        // 2/2 and (5 − 1)/2; 4/2 and (6 − 2)/2.
+        assert_eq!(x, [[1.0, 2.0], [2.0, 2.0]]);
+        let mut first = [[8.0]];
+        touched.solve(&mut first);
+        assert_eq!(first, [[4.0]]);
+        // No such node, no such event.
+        assert_eq!(
+            [
+                touched.factor(2, 0),
+                touched.factor(0, 2),
+                touched.factor(1, usize::MAX)
+            ],
+            [0.0; 3]
+        );
+        assert_eq!(
+            (touched.len(), touched.watched(), touched.is_empty()),
+            (2, 2, false)
+        );
+    }
+
+    #[test]
+    fn events_that_are_forgotten_can_be_others() {
+        let mut schur = two_by_two();
+        let mut touched = Touched::default();
+        touched.reset(2, 2);
+        assert!(touched.is_empty() && !touched.has_touched(1));
+        touched.push(&mut schur, 1).unwrap();
+        touched.push(&mut schur, 0).unwrap();
+        assert!(touched.has_touched(0) && touched.has_touched(1));
+        touched.truncate(1);
+        assert_eq!(touched.positions(), [1]);
+        assert!(!touched.has_touched(0));
+        assert_eq!(
+            [touched.factor(1, 0), touched.factor(0, 1)],
+            [5.0_f64.sqrt(), 0.0]
+        );
+        touched.push(&mut schur, 0).unwrap();
+        // 4 − 2²/5.
+        assert!((touched.factor(0, 1) - 3.2_f64.sqrt()).abs() < 1e-15);
+        touched.reset(3, 3);
+        assert_eq!((touched.watched(), touched.len()), (3, 0));
+    }
+
+    /// What is left of a pivot is 1 − 1, 1/2 − 1, or no number at all. Then the node has not touched.
+    #[test]
+    fn pivots_are_positive() {
+        for (own, pivot) in [(1.0, 0.0), (0.5, -0.5), (f64::NAN, f64::NAN)] {
+            let mut schur = two_by_two();
+            schur.as_mut_slice()[3] = own;
+            let mut touched = Touched::default();
+            touched.reset(2, 2);
+            touched.push(&mut schur, 0).unwrap();
+            let refused = touched.push(&mut schur, 1).unwrap_err();
+            assert!(
+                refused == pivot || refused.is_nan() && pivot.is_nan(),
+                "{refused}"
+            );
+            assert_eq!((touched.len(), touched.factor(1, 1)), (1, 0.0));
+        }
+    }
+
+    /// Two matrices of 7 × 7 numbers.
+    #[test]
+    fn bytes_are_those_of_matrix_and_factor() {
+        assert_eq!(
+            [
+                Touched::bytes(0),
+                Touched::bytes(7),
+                Touched::bytes(usize::MAX)
+            ],
+            [0, 784, usize::MAX]
+        );
+    }
 }

@@ -114,6 +114,16 @@ def spans_of(message):
     return spans + [span for child in message["children"] for span in child["spans"]]
 
 
+def lacking(message, written, by_number):
+    """The deleted arm without which a match is not complete: rustc points to what is matched, the arm comes next."""
+    span = message["spans"][0] if message["spans"] else None
+    if span is None or (message["code"] or {}).get("code") != "E0004":
+        return None
+    marks = rewrite.MARK.finditer(written.get(span["file_name"], b""))
+    behind = (int(mark.group(1)) for mark in marks if mark.start() >= span["byte_end"])
+    return next((number for number in behind if by_number[number].genre == "MatchArm"), None)
+
+
 def compile_switched(copy, mutants, tests, outcomes):
     """Compiles the switched crate without the mutants that rustc refuses; returns the test binaries."""
     by_number = {mutant.id: mutant for mutant in mutants}
@@ -129,6 +139,7 @@ def compile_switched(copy, mutants, tests, outcomes):
                 for span in spans_of(message)
             )
             number = next((number for number in found if number), None)
+            number = number or lacking(message, written, by_number)
             if number:
                 refused.setdefault(number, message["message"])
         if not refused:

@@ -164,3 +164,51 @@ fn small_grids_have_no_hats() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Sixteen nodes for each hat are enough, and one less is not.
+#[test]
+fn few_nodes_need_no_hats() -> Result<(), Error> {
+    for table in tables()? {
+        let mut space = space(&table)?;
+        let least = SPARSE * space.hats.len();
+        let mut contact = NodeSet::new(table.grid().nodes());
+        for (nodes, is_useful) in [(least, true), (least - 1, false)] {
+            contact.assign(|node| node < nodes);
+            space.update(&contact);
+            assert_eq!(space.is_useful(), is_useful);
+        }
+        // Too few hats.
+        let small = KernelTable::new(&Boussinesq::new(Grid::square(8, 8.0)?, 1.0)?)?;
+        assert!(CoarseSpace::new(&small).is_none());
+    }
+    Ok(())
+}
+
+/// The inverse is made anew when more than a tenth of the contact has changed. What it stands for then is counted.
+#[test]
+fn the_inverse_is_kept_until_the_contact_has_changed() -> Result<(), Error> {
+    let table = KernelTable::new(&Boussinesq::new(Grid::square(100, 100.0)?, 1.0)?)?;
+    let mut space = space(&table)?;
+    let mut contact = NodeSet::new(10_000);
+    contact.assign(|_| true);
+    space.update(&contact);
+    let counted = |space: &CoarseSpace| space.inverse_masses.iter().sum::<f64>();
+    // Of 9200 nodes 800 have left since, of 9000 a thousand, more than a tenth.
+    for (nodes, known) in [
+        (9200, 10_000.0),
+        (9000, 9000.0),
+        (8500, 9000.0),
+        (8000, 8000.0),
+    ] {
+        contact.assign(|node| node < nodes);
+        space.update(&contact);
+        assert!(
+            (counted(&space) - known).abs() < 1e-6,
+            "{nodes}: {}",
+            counted(&space)
+        );
+        let now: f64 = space.masses.iter().sum();
+        assert!((now - nodes as f64).abs() < 1e-6);
+    }
+    Ok(())
+}

@@ -82,3 +82,120 @@ impl Corrected {
         choice
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+    use crate::loading::row;
+
+    /// Lengths of which ties alone matter: with no node in contact all gaps close at the rate 1.
+    fn scales(tie: f64) -> Scales {
+        Scales {
+            length: 1.0,
+            tolerance: 0.0,
+            tie,
+        }
+    }
+
+    /// What is chosen of nodes that touch at `times`, the last node first, with `contact` nodes in contact.
+    fn choose(
+        (size, contact): (usize, usize),
+        times: &[f64],
+        tie: f64,
+        extra: &[usize],
+    ) -> Result<Choice, Error> {
+        let mut run = row::run(&[0.0; 100], crate::updater::Dense)?;
+        for node in 60..60 + contact {
+            run.contact.push(node)?;
+        }
+        let mut corrected = Corrected::new(Some(size), true);
+        corrected.ranking = times.iter().copied().zip(0..).collect();
+        corrected.ranking.reverse();
+        Ok(corrected.choose(&run, &scales(tie), extra))
+    }
+
+    fn nodes(choice: &Choice) -> Vec<usize> {
+        choice.watched.iter().map(|&(_, node)| node).collect()
+    }
+
+    /// One time a metre: node k touches at k.
+    fn times(count: usize) -> Vec<f64> {
+        (0..count).map(|k| k as f64).collect()
+    }
+
+    #[test]
+    fn the_next_nodes_are_watched() -> Result<(), Error> {
+        // Eight at least and all there are, without a horizon then; with more the next one as well, and no
+        // other node touches before the one behind it.
+        for (count, watched, horizon) in [
+            (7, 7, f64::INFINITY),
+            (8, 8, f64::INFINITY),
+            (9, 9, f64::INFINITY),
+            (12, 9, 9.0),
+        ] {
+            let choice = choose((60, 0), &times(count), 1e-9, &[])?;
+            assert_eq!(nodes(&choice), (0..watched).collect::<Vec<_>>());
+            assert_eq!((choice.horizon, choice.group), (horizon, None), "{count}");
+        }
+        // A quarter of 40 nodes in contact, and of 38, but no more than the size.
+        for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
+            let choice = choose((size, contact), &times(30), 1e-9, &[])?;
+            assert_eq!(nodes(&choice).len(), watched, "{contact}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn ties_with_the_last_are_watched_too() -> Result<(), Error> {
+        // At 8.5, as far as a tie behind the next one, which is at 8; not at 8.75.
+        let mut near = times(9);
+        near.extend([8.75, 8.5, 20.0, 8.25]);
+        let choice = choose((8, 0), &near, 0.5, &[])?;
+        assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 10]);
+        assert_eq!((choice.horizon, choice.group), (8.75, None));
+        // Up to three times the window: 23 of them, not 24.
+        for (ties, watched, horizon) in [(23, 32, 20.0), (24, 8, 8.0)] {
+            let mut tied = times(9);
+            tied.extend(vec![8.0; ties]);
+            tied.push(20.0);
+            let choice = choose((8, 0), &tied, 1e-9, &[])?;
+            assert_eq!((nodes(&choice).len(), choice.horizon), (watched, horizon));
+            assert_eq!(choice.group, None);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn too_many_at_once_are_a_group() -> Result<(), Error> {
+        for (first, others, tie, group) in [
+            (5.0, 5.0, 1e-9, Some(5.0)),
+            // As far as a tie behind the first, that included.
+            (5.0, 5.5, 0.5, Some(5.0)),
+            (5.0, 5.75, 0.5, None),
+            // What should have touched already touches now.
+            (-1.0, -1.0, 1e-9, Some(0.0)),
+            (-1.0, 0.25, 0.5, Some(0.0)),
+        ] {
+            let mut times = vec![others; 40];
+            times[0] = first;
+            let choice = choose((8, 0), &times, tie, &[])?;
+            assert_eq!(choice.group, group, "{first} {others}");
+            assert_eq!((nodes(&choice).len(), choice.horizon), (8, others));
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn nodes_that_are_asked_for_are_watched_once() -> Result<(), Error> {
+        // 3 is watched anyway, 9 is the next one behind, 11 is further away.
+        let choice = choose((8, 0), &times(20), 1e-9, &[11, 3, 9])?;
+        assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11]);
+        assert_eq!(choice.horizon, 10.0);
+        let all: Vec<usize> = (9..20).collect();
+        let choice = choose((8, 0), &times(20), 1e-9, &all)?;
+        assert_eq!(nodes(&choice), (0..20).collect::<Vec<_>>());
+        assert_eq!(choice.horizon, f64::INFINITY);
+        Ok(())
+    }
+}

@@ -119,18 +119,15 @@ fn nystrom(
 /// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;
 /// `None` if it is not positive semidefinite.
 fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
-    let [first, second] = [products[(0, 0)], products[(1, 1)]];
-    if !(first > 0.0 && second > 0.0) {
-        return None;
-    }
-    let roots = [first.sqrt(), second.sqrt()];
+    // Where one of the diagonal is not positive, neither this nor the determinant is a number.
+    let roots = [products[(0, 0)].sqrt(), products[(1, 1)].sqrt()];
     let correlation = products[(0, 1)] / (roots[0] * roots[1]);
     let determinant = 1.0 - correlation * correlation;
     // With unit diagonal.
     let (own, other) = if determinant > LEAST_DETERMINANT {
         (1.0 / determinant, -correlation / determinant)
     } else if determinant > -LEAST_DETERMINANT {
-        (0.25, 0.25 * correlation.signum())
+        (0.25, 0.25_f64.copysign(correlation))
     } else {
         return None;
     };
@@ -141,4 +138,150 @@ fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
         scaled(other, 1, 0),
         scaled(own, 1, 1),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIME: f64 = 2.0;
+    /// Pressures and rates at the end of two nodes that have joined, and of one that has not.
+    const PRESSURES: [[f64; 2]; 3] = [[2.0, 1.0], [1.0, 1.0], [0.0, 0.0]];
+    /// a, b of lines that end so under S, and the gap of the third node and its slope there: with
+    /// S p = (7, 5, 1) and S q = (4, 4, 1) it is b = S q and a = 2 b − S p in contact, and 10 − 2 · 2 + 1 = 7 and 1 − 2 beside.
+    const LINES: [[f64; 2]; 3] = [[1.0, 4.0], [3.0, 4.0], [10.0, 2.0]];
+    const LAST: [f64; 2] = [7.0, -1.0];
+
+    fn exact() -> DMatrix<f64> {
+        DMatrix::from_row_slice(3, 3, &[3.0, 1.0, 0.0, 1.0, 3.0, 1.0, 0.0, 1.0, 3.0])
+    }
+
+    /// S and an error of some rank.
+    fn with_error(parts: &[(f64, [f64; 3])]) -> DMatrix<f64> {
+        let mut schur = exact();
+        for (factor, u) in parts {
+            for i in 0..3 {
+                for j in 0..3 {
+                    schur[(i, j)] += factor * u[i] * u[j];
+                }
+            }
+        }
+        schur
+    }
+
+    fn corrected(schur: &DMatrix<f64>) -> Correction {
+        let ends = PRESSURES.map(|pressure| AtEnd {
+            pressure,
+            gap: if pressure == [0.0; 2] { LAST } else { [0.0; 2] },
+        });
+        correct(schur, &LINES, &ends, TIME)
+    }
+
+    /// An error of rank two, or one, is seen whole at the end. With E = S̃ − S of (1, 0, 1/2) and (0, 1, 1) the end
+    /// lacks E p = (2, 1, 2) and E q = (1, 1, 3/2), and the cubics that add −E p and −E q at t = 2 are
+    /// `((−3 E p + 2 E q)/4, (−2 E q + 2 E p)/8)`.
+    #[test]
+    fn what_the_end_shows_of_an_error_is_taken_off() {
+        let two = corrected(&with_error(&[
+            (1.0, [1.0, 0.0, 0.5]),
+            (1.0, [0.0, 1.0, 1.0]),
+        ]));
+        let cubics = [[-1.0, 0.25], [-0.25, 0.0], [-0.75, 0.125]];
+        for ((course, [a, b]), [c2, c3]) in two.hermite.iter().zip(LINES).zip(cubics) {
+            assert_eq!(*course, Course([a, b, c2, c3]));
+        }
+        // The same and the opposite sign of what p and q see of the error.
+        let one = corrected(&with_error(&[(1.0, [1.0, 1.0, 0.5])]));
+        let opposite = corrected(&with_error(&[(1.0, [1.0, -1.5, 0.5])]));
+        for correction in [two, one, opposite] {
+            assert!(correction.updated);
+            // Roundings of numbers up to 5, times a condition number of 40.
+            let error = (&correction.schur - exact()).abs().max();
+            assert!(error < 1e-12, "{error:e}");
+            for (Course([a, b, c2, c3]), line) in correction.courses.iter().zip(LINES) {
+                assert_eq!([*a, *b], line);
+                assert!(c2.abs() < 1e-12 && c3.abs() < 1e-12, "{c2:e} {c3:e}");
+            }
+        }
+    }
+
+    /// An error that is no error of a Galerkin solution leaves S̃ as it is, and cubics make the end right.
+    #[test]
+    fn an_error_of_the_wrong_sign_is_no_error() {
+        for parts in [
+            &[(-1.0, [1.0, 0.0, 0.5])][..],
+            &[(1.0, [1.0, 0.0, 0.0]), (-1.5, [0.0, 1.0, 0.0])],
+        ] {
+            let schur = with_error(parts);
+            let correction = corrected(&schur);
+            assert!(!correction.updated);
+            assert_eq!(correction.schur, schur);
+            assert_eq!(correction.courses, correction.hermite);
+        }
+        // One node of which less than nothing, or nothing, would be left: 1 − 2 and 1 − 1.
+        for (a, left) in [(1.0, -1.0), (1.0, 0.0), (1.0, 0.5)] {
+            let end = AtEnd {
+                pressure: [1.0, 1.0],
+                gap: [0.0; 2],
+            };
+            // With t = 1: b = S q = left, and a = b − S p = 0.
+            let line = [0.0, left];
+            let schur = DMatrix::from_element(1, 1, a);
+            let correction = correct(&schur, &[line], &[end], 1.0);
+            assert_eq!(correction.updated, left > 0.0, "{left}");
+        }
+    }
+
+    /// (4, 1; 1, 1) has the determinant 3. Correlations near 1 are those of an error in one direction, and beyond it
+    /// of none.
+    #[test]
+    fn inverses_of_two_by_two() {
+        let inverse_of = |a: f64, b: f64, c: f64| {
+            let inverse = inverse(Matrix2::new(a, b, b, c))?;
+            Some([
+                inverse[(0, 0)],
+                inverse[(0, 1)],
+                inverse[(1, 0)],
+                inverse[(1, 1)],
+            ])
+        };
+        let close = |found: Option<[f64; 4]>, expected: [f64; 4], error: f64| {
+            let found = found.unwrap_or([f64::NAN; 4]);
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found / expected - 1.0).abs() < error, "{found} {expected}");
+            }
+        };
+        let third = 1.0 / 3.0;
+        close(
+            inverse_of(4.0, 1.0, 1.0),
+            [third, -third, -third, 4.0 * third],
+            1e-15,
+        );
+        // Determinants of 2·10⁻⁶, which cancellation leaves ten digits of, and of half a millionth on either side of 0.
+        let correlation = |determinant: f64| (1.0 - determinant).sqrt();
+        let regular = correlation(2e-6);
+        let [own, other] = [5e5, -5e5 * regular];
+        close(
+            inverse_of(1.0, regular, 1.0),
+            [own, other, other, own],
+            1e-9,
+        );
+        for determinant in [5e-7, -5e-7] {
+            let c = correlation(determinant);
+            assert_eq!(inverse_of(1.0, c, 1.0), Some([0.25; 4]));
+            assert_eq!(inverse_of(1.0, -c, 1.0), Some([0.25, -0.25, -0.25, 0.25]));
+        }
+        assert_eq!(inverse_of(1.0, correlation(-2e-6), 1.0), None);
+        for (a, c) in [
+            (0.0, 1.0),
+            (1.0, 0.0),
+            (0.0, 0.0),
+            (-1.0, 1.0),
+            (1.0, -1.0),
+            (f64::NAN, 1.0),
+        ] {
+            assert_eq!(inverse_of(a, 0.5, c), None, "{a} {c}");
+            assert_eq!(inverse_of(a, 0.0, c), None, "{a} {c}");
+        }
+    }
 }

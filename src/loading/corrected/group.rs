@@ -63,3 +63,69 @@ impl Corrected {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::row;
+    use crate::updater::Dense;
+
+    /// Node 0 is in contact at the approach 1, and nodes 2, 4 and 6 touch after one metre, nearly; node 8 after three.
+    fn entered(
+        times: [f64; 3],
+        tie: f64,
+        most: usize,
+    ) -> Result<(LoadingRun<Dense>, Corrected), Error> {
+        let mut gaps = [9.0; 9];
+        (gaps[0], gaps[2], gaps[4], gaps[6], gaps[8]) = (0.0, 2.0, 2.0, 2.0, 4.0);
+        let mut run = row::solved(&gaps, &[0], 1.0)?;
+        run.front.renew_load(&run.problem, &run.contact, &run.field);
+        run.survey(false, |_| ())?;
+        let mut corrected = Corrected::new(None, true);
+        corrected.ranking = vec![(3.0, 8), (times[2], 6), (times[0], 2), (times[1], 4)];
+        corrected.last_span = 0.5;
+        let scales = Scales {
+            length: 1.0,
+            tolerance: 0.0,
+            tie,
+        };
+        corrected.enter(&mut run, &scales, 1.0, most)?;
+        Ok((run, corrected))
+    }
+
+    /// All that touch within a tie, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
+    /// the stiffness of 1/2.
+    #[test]
+    fn nodes_that_touch_together_join_together() -> Result<(), Error> {
+        for (times, tie, most, order) in [
+            ([1.0; 3], 1e-3, 9, &[0, 2, 4, 6][..]),
+            ([1.0, 1.25, 1.3], 0.25, 9, &[0, 2, 4]),
+            ([1.3, 1.0, 0.5], 0.25, 9, &[0, 4, 6]),
+            ([1.0; 3], 1e-3, 2, &[0, 2, 4]),
+        ] {
+            let (run, corrected) = entered(times, tie, most)?;
+            assert_eq!(run.contact.order(), order);
+            assert_eq!(run.front.approach(), 2.0);
+            assert_eq!(
+                (corrected.last_span, corrected.rate_span),
+                (1.0, f64::INFINITY)
+            );
+            assert_eq!(run.queue.len(), order.len() - 1);
+            for (k, state) in run.queue.iter().enumerate() {
+                assert_eq!((state.step, state.contact_nodes), (k + 2, k + 2));
+                assert_eq!(state.node, (order[k + 1], 0));
+                // 1/2 N and 1/2 N more on the way.
+                assert_eq!(
+                    (state.approach, state.load, state.approach_error),
+                    (2.0, 1.0, tie)
+                );
+                let stiffness = state.contact_stiffness.unwrap_or_default();
+                assert!(
+                    (stiffness - (1.0 + 0.5 * k as f64)).abs() < 1e-14,
+                    "{stiffness}"
+                );
+            }
+        }
+        Ok(())
+    }
+}

@@ -12,6 +12,8 @@ mod play;
 mod states;
 mod ties;
 mod watched;
+#[cfg(test)]
+mod window_tests;
 
 use nalgebra::DMatrix;
 

@@ -171,6 +171,12 @@ mod tests {
         let cubic = Course([1.0, 1.0, 0.1, -0.1]);
         assert!((cubic.closes(0.0) - 1.0).abs() < 1e-15);
         assert_eq!(cubic.closes(1.25), 1.25);
+        // `1.1 − t − t³/10`, and `(1 − t)(1 − t/4)`: one of both powers alone.
+        let of_one_power = [[1.1, 1.0, 0.0, -0.1], [1.0, 1.25, 0.25, 0.0]];
+        for course in of_one_power {
+            assert!((Course(course).closes(0.0) - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(Course([f64::NAN, 1.0, 0.1, 0.0]).closes(0.0), f64::INFINITY);
         assert_eq!(Course([3.0, 2.0, 0.0, 0.0]).closes(0.0), 1.5);
         assert_eq!(Course([3.0, 2.0, 0.0, 0.0]).closes(2.0), 2.0);
         for opening in [
@@ -217,5 +223,23 @@ mod tests {
         assert_eq!(events.len(), 1);
         let bad = bad.map(|bad| (bad.node, bad.time, bad.pivot));
         assert_eq!(bad, Some((1, 2.0, -3.0)));
+        // 4 − 2 t and what the first one carries, t − 1, closes at t = 3: with nothing left of its pivot, or NaN.
+        for own in [1.0, f64::NAN] {
+            let schur = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, own]);
+            let courses = [[1.0, 1.0], [4.0, 2.0]].map(|[a, b]| Course([a, b, 0.0, 0.0]));
+            let (events, bad) = play(&schur, &courses, f64::INFINITY, 9);
+            assert_eq!(events.len(), 1);
+            assert!(bad.is_some_and(|bad| (bad.node, bad.time) == (1, 3.0)));
+            assert!(bad.is_some_and(|bad| bad.pivot == own - 1.0 || bad.pivot.is_nan()));
+        }
+    }
+
+    /// Of nodes that touch at once the first of the watched ones comes first.
+    #[test]
+    fn ties_go_to_the_first() {
+        let courses = [[2.0, 1.0], [1.0, 1.0], [1.0, 1.0]].map(|[a, b]| Course([a, b, 0.0, 0.0]));
+        let (events, _) = play(&DMatrix::identity(3, 3), &courses, f64::INFINITY, 9);
+        let order: Vec<usize> = events.iter().map(|event| event.position).collect();
+        assert_eq!(order, [1, 2, 0]);
     }
 }

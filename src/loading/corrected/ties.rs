@@ -335,3 +335,6 @@ impl Ties<'_> {
         Some((eliminated, rates))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
+use super::operations;
 use super::panels::{Panels, ROWS};
 use super::products::subtract_transposed;
 use crate::parallel;
@@ -130,8 +131,9 @@ impl Columns {
             position += starts.last().map_or(0, |(_, block)| block.width);
         }
         let new = starts.partition_point(|(start, _)| *start < first);
-        let operations = (position - first) * factor.rows() * factor.rows() / 2;
-        parallel::for_each(operations, &mut starts[new..], |(start, block)| {
+        let columns = starts[new..].iter().map(|(_, block)| block.width).sum();
+        let work = operations::forward(factor.rows(), columns);
+        parallel::for_each(work, &mut starts[new..], |(start, block)| {
             let width = block.width;
             for p in 0..factor.len() {
                 let (first, count) = (p * ROWS, factor.rows_in(p));
@@ -161,7 +163,8 @@ impl Columns {
             matrix = rest;
             tasks.push((&tiles[first..], s));
         }
-        parallel::for_each(self.rows * size * size / 2, &mut tasks, |(tiles, s)| {
+        let work = operations::gram(self.rows, size);
+        parallel::for_each(work, &mut tasks, |(tiles, s)| {
             let (_, block, columns) = &tiles[0];
             let here = block.view(self.rows, columns.clone());
             for (start, block, rows) in *tiles {
@@ -177,15 +180,14 @@ impl Columns {
     /// R −= Fᵀ X for X given row by row.
     pub(super) fn subtract_products<const N: usize>(&self, x: &[[f64; N]], mut r: &mut [[f64; N]]) {
         let tiles = self.tiles();
-        // As long as a number of F takes to be read.
-        let operations = 16 * self.rows * r.len();
+        let work = operations::reading(self.rows, r.len());
         let mut tasks = Vec::with_capacity(tiles.len());
         for (_, block, columns) in &tiles {
             let (here, rest) = r.split_at_mut(columns.len());
             r = rest;
             tasks.push((block, columns.start, here));
         }
-        parallel::for_each(operations, &mut tasks, |(block, column, r)| {
+        parallel::for_each(work, &mut tasks, |(block, column, r)| {
             let mut sums = [[0.0; WIDTH]; N];
             let values = block.values.get(*column..).unwrap_or_default();
             let targets = sums.each_mut().map(|sums| &mut sums[..r.len()]);
@@ -264,9 +266,8 @@ impl Columns {
                 piece.rows.push(target);
             }
         }
-        // A number on its way to memory that is new takes as long as so many operations.
-        let operations = 64 * before * (columns.len() + width);
-        parallel::for_each(operations, &mut pieces, |Piece { first, rows, kept }| {
+        let work = operations::moving(before, touched.watched());
+        parallel::for_each(work, &mut pieces, |Piece { first, rows, kept }| {
             let first = *first;
             let count = ROWS.min(before - first);
             // So few rows of F at a time stay in cache while all rows of L take from them.
@@ -332,3 +333,6 @@ struct Piece<'a> {
 
 /// Rows of the columns that are spread over the rows of the factor at a time.
 const CACHED_ROWS: usize = 16;
+
+#[cfg(test)]
+mod tests;

@@ -2,6 +2,7 @@
 
 mod columns;
 mod factor;
+mod operations;
 mod panels;
 mod products;
 mod substitution;
@@ -166,5 +167,21 @@ impl LinearUpdater for RecursiveCholesky {
         let rows = contact.saturating_add(watched);
         Factor::bytes(contact, watched)
             .saturating_add(rows.saturating_mul(size_of::<[f64; Problem::RHS]>()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One block of 256 × 256 numbers, columns of 256 rows for two watched nodes, and three right-hand sides of five nodes.
+    #[test]
+    fn bytes_are_those_of_factor_columns_and_right_hand_sides() {
+        let bytes = 8 * (256 * 256 + 256 * 2 + 3 * 5);
+        assert_eq!(RecursiveCholesky::new().bytes(3, 2), bytes);
+        assert_eq!(RecursiveCholesky::new().bytes(usize::MAX, 2), usize::MAX);
+        // Joined in blocks of 256, whose Schur complement and factor come to it.
+        let joined = 8 * (256 * 256 + 256 * 256 + 3 * 356 + 2 * 256 * 256);
+        assert_eq!(RecursiveCholesky::bytes_of(100), joined);
     }
 }

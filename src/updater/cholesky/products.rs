@@ -65,3 +65,39 @@ fn subtract_rows<const N: usize>(a: &[f64], width: usize, y: &[[f64; N]], x: [&m
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products of small integers are exact. Parts of a chunk of 32 columns, several and none; blocks of four rows, and some
+    /// more; rows that are wider than what is wanted.
+    #[test]
+    fn products_are_subtracted() {
+        for columns in [0, 1, 31, 32, 33, 64, 100] {
+            for rows in 0..10 {
+                for width in [columns, columns + 3] {
+                    let entry = |r: usize, c: usize| ((5 * r + 3 * c) % 11) as f64 - 4.0;
+                    let a: Vec<f64> = (0..rows * width)
+                        .map(|k| entry(k / width, k % width))
+                        .collect();
+                    let y: Vec<[f64; 2]> = (0..rows)
+                        .map(|r| [r as f64 - 2.0, 3.0 - r as f64])
+                        .collect();
+                    let start = |c: usize| [c as f64, 7.0];
+                    let mut x: [Vec<f64>; 2] =
+                        [0, 1].map(|k| (0..columns).map(|c| start(c)[k]).collect());
+                    let [x0, x1] = &mut x;
+                    subtract_transposed(&a, width, &y, [x0, x1]);
+                    for (k, x) in x.iter().enumerate() {
+                        for (c, found) in x.iter().enumerate() {
+                            let products: f64 = (0..rows).map(|r| entry(r, c) * y[r][k]).sum();
+                            let expected = start(c)[k] - products;
+                            assert_eq!(*found, expected, "{columns} {rows} {width}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -199,4 +199,87 @@ mod tests {
             assert!(!ahead.is_known());
         }
     }
+
+    /// Nodes 0 and 2 of four in a row are solved at the approach 3, and node 1 not: what is left is 3 − 0 − 2.5, 3 − 1 − 1.5 and
+    /// 3 − 2 − 1.125, and of rates 1/2, 3/4 and 0.
+    fn solved() -> Result<(Problem, ContactSequence, Equilibrium), crate::Error> {
+        let problem = crate::row::problem(&[0.0, 1.0, 2.0, 9.0])?;
+        let contact = ContactSequence::with_order(problem.grid(), [0, 2, 1])?;
+        let of = |pressure: [f64; 4], displacement: [f64; 4]| Field {
+            pressure: pressure.to_vec(),
+            displacement: displacement.to_vec(),
+            drift: 0.0,
+        };
+        let solved = Equilibrium {
+            count: 2,
+            approach: 3.0,
+            span: 1.0,
+            load: of([0.5, 7.0, 0.25, 0.0], [2.5, 1.5, 1.125, 0.0]),
+            rate: of([0.25, 7.0, 0.5, 0.0], [0.5, 0.25, 1.0, 0.0]),
+        };
+        Ok((problem, contact, solved))
+    }
+
+    #[test]
+    fn what_a_solution_leaves() -> Result<(), crate::Error> {
+        let (problem, _, mut solved) = solved()?;
+        let left = [0, 1, 2].map(|node| solved.left(&problem, node));
+        assert_eq!(left, [[0.5, 0.5], [0.5, 0.75], [-0.125, 0.0]]);
+        let local = Local {
+            node: 3,
+            contact: vec![1, 2],
+            weights: vec![0.5, 2.0],
+        };
+        // 0.5 · 0.5 − 2 · 0.125, and 0.5 · 0.75.
+        assert_eq!(solved.left_near(&problem, &local), [0.0, 0.375]);
+        // Of a rate that was not asked for nothing is left.
+        solved.rate.displacement.clear();
+        assert_eq!(solved.left(&problem, 1), [0.5, 0.0]);
+        Ok(())
+    }
+
+    /// Rates of 1/4 and 1/2 times what is left: 1/8 − 1/16 for the load, 1/8 for the rate, over sums of 3/4 each.
+    #[test]
+    fn sums_are_right_to_second_order() -> Result<(), crate::Error> {
+        let (problem, contact, mut solved) = solved()?;
+        let scaled = |solved: &Equilibrium| {
+            let mut solution = Solution {
+                pressure: vec![0.5, 0.25],
+                rate: vec![0.25, 0.5],
+                ..Solution::default()
+            };
+            solved.scale(&problem, &contact, &mut solution);
+            [solution.pressure, solution.rate].concat()
+        };
+        let [load, rate] = [1.0 + 0.0625 / 0.75, 1.0 + 0.125 / 0.75];
+        assert_eq!(
+            scaled(&solved),
+            [0.5 * load, 0.25 * load, 0.25 * rate, 0.5 * rate]
+        );
+        // Sums of nothing scale nothing, and without a rate there is nothing to scale by.
+        solved.load.pressure.fill(0.0);
+        assert_eq!(scaled(&solved), [0.5, 0.25, 0.25 * rate, 0.5 * rate]);
+        solved.rate.displacement.clear();
+        assert_eq!(scaled(&solved), [0.5, 0.25, 0.25, 0.5]);
+        Ok(())
+    }
+
+    #[test]
+    fn pressures_out_of_contact_are_dropped() -> Result<(), crate::Error> {
+        let (_, mut contact, mut solved) = solved()?;
+        contact.truncate(2);
+        solved.load.keep(&contact);
+        assert_eq!(solved.load.pressure, [0.5, 0.0, 0.25, 0.0]);
+        assert!(!solved.load.is_known());
+        let zero = Equilibrium::zero(3);
+        assert_eq!(
+            (
+                zero.count,
+                zero.rate.pressure.len(),
+                zero.load.displacement.len()
+            ),
+            (0, 3, 3)
+        );
+        Ok(())
+    }
 }

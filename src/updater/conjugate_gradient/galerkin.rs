@@ -37,8 +37,8 @@ pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     let size = locals.len();
     let products = sources
         .iter()
-        .map(|source| source.near.len() * (source.near.len() + size * 64));
-    let products = products.sum();
+        .map(|source| products(source.near.len(), size))
+        .sum();
     let mut columns: Vec<(usize, &mut [f64])> =
         matrix.chunks_mut(size.max(1)).enumerate().collect();
     parallel::for_each(products, &mut columns, |(j, column)| {
@@ -46,6 +46,12 @@ pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
             column[i] = source.energy(&sources[*j], table);
         }
     });
+}
+
+/// Products, and look-ups that take as long, of a column: those of a source of `nodes` with itself, and with its neighbours among
+/// the `size` sources, of which each has some 64.
+fn products(nodes: usize, size: usize) -> usize {
+    nodes * (nodes + size * 64)
 }
 
 impl Source {
@@ -202,3 +208,6 @@ impl Axis {
         weights
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -33,6 +33,12 @@ impl Instant {
 const MOST: usize = 3;
 
 impl Instants {
+    /// How many there are.
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.known.len()
+    }
+
     /// No window.
     pub(super) fn clear(&mut self) {
         self.known.clear();
@@ -111,6 +117,17 @@ mod tests {
             assert_eq!(pressure, [0.5 * unit, unit]);
             instants.clear();
         }
+    }
+
+    /// Of two instants with the same sum the later one counts.
+    #[test]
+    fn the_later_of_two_solutions_counts() {
+        let mut instants = Instants::default();
+        instants.add(2.0, &[1.0], &[0.0]);
+        instants.add(2.0, &[3.0], &[0.0]);
+        let mut pressure = vec![0.0];
+        instants.complete(2.0, &mut pressure);
+        assert_eq!((instants.len(), pressure), (2, vec![3.0]));
     }
 
     #[test]

@@ -203,3 +203,147 @@ fn product(a: &[f32], b: &[f32]) -> f32 {
     let rest: f32 = rest.iter().zip(others_rest).map(|(a, b)| a * b).sum();
     sums.iter().sum::<f32>() + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq, row};
+
+    fn flat(grid: Grid, periodic: bool) -> Result<Problem, Error> {
+        let surface = HeightMap::new(nalgebra::DMatrix::zeros(grid.nx(), grid.ny()))?;
+        if periodic {
+            Problem::new(&surface, &PeriodicBoussinesq::new(grid, 1.0)?)
+        } else {
+            Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)
+        }
+    }
+
+    fn set(nodes: usize, is_in: impl Fn(usize) -> bool) -> NodeSet {
+        let mut set = NodeSet::new(nodes);
+        set.assign(is_in);
+        set
+    }
+
+    /// The nearest 144 in whole shells, by distances to all nodes, the shorter way round where they repeat.
+    #[test]
+    fn the_nearest_nodes_are_found() -> Result<(), Error> {
+        for (grid, periodic) in [
+            (Grid::new(14, 13, 1.0, 1.5)?, false),
+            (Grid::new(13, 15, 1.5, 1.0)?, true),
+        ] {
+            let problem = flat(grid, periodic)?;
+            let neighbourhood = Neighbourhood::new(&problem);
+            for watched in [0, 70, grid.nodes() - 1] {
+                let set = set(grid.nodes(), |node| node != watched && node % 11 != 5);
+                assert!(set.len() > NEAREST);
+                let squared = |node: u32| {
+                    let (a, b) = (grid.coordinates(node as usize), grid.coordinates(watched));
+                    let along = |a: usize, b: usize, n: usize, d: f64| {
+                        let cells = a.abs_diff(b);
+                        d * (if periodic {
+                            cells.min(n - cells)
+                        } else {
+                            cells
+                        }) as f64
+                    };
+                    along(a.0, b.0, grid.nx(), grid.dx()).powi(2)
+                        + along(a.1, b.1, grid.ny(), grid.dy()).powi(2)
+                };
+                let mut by_distance = set.nodes().to_vec();
+                by_distance.sort_by(|a, b| squared(*a).total_cmp(&squared(*b)));
+                let last = squared(by_distance[NEAREST - 1]) * (1.0 + 1e-6);
+                let mut expected: Vec<u32> = by_distance
+                    .into_iter()
+                    .filter(|node| squared(*node) <= last)
+                    .collect();
+                let mut found = neighbourhood.nearest(&set, watched);
+                assert!(found.is_sorted_by(|a, b| squared(*a) <= squared(*b) * (1.0 + 1e-9)));
+                found.sort_unstable();
+                expected.sort_unstable();
+                assert_eq!(found, expected, "{watched}");
+            }
+        }
+        Ok(())
+    }
+
+    /// 32 cells of the shorter side: 32 in the row itself and 32 in the one beside it, and half as many of cells that are
+    /// twice as long.
+    #[test]
+    fn nodes_far_away_are_out_of_reach() -> Result<(), Error> {
+        for (dx, count) in [(1.0, 64), (2.0, 32)] {
+            let problem = flat(Grid::new(80, 2, dx, 1.0)?, false)?;
+            let found = Neighbourhood::new(&problem).nearest(&set(160, |node| node > 0), 0);
+            assert_eq!(found.len(), count);
+        }
+        // Of few nodes all are taken into account.
+        let problem = flat(Grid::new(80, 2, 1.0, 1.0)?, false)?;
+        let found = Neighbourhood::new(&problem).nearest(&set(160, |node| node > 80), 0);
+        assert_eq!(found, (81..160).collect::<Vec<u32>>());
+        Ok(())
+    }
+
+    /// Beside a node alone x = 1/4. Of the neighbours 0 and 1 it is (−1, 4)/15 for node 2.
+    #[test]
+    fn local_solutions_of_nodes_in_a_row() -> Result<(), Error> {
+        let problem = row::problem(&[0.0; 5])?;
+        let neighbourhood = Neighbourhood::new(&problem);
+        let cases = [
+            (1, vec![0, 2], vec![0.25, 0.25]),
+            (3, vec![0, 2], vec![0.0, 0.25]),
+            (2, vec![0, 1], vec![-1.0 / 15.0, 4.0 / 15.0]),
+            (4, vec![], vec![]),
+        ];
+        for (node, contact, weights) in cases {
+            let set = set(5, |node| contact.contains(&(node as u32)));
+            let local = neighbourhood.solve(problem.table(), &set, node);
+            assert_eq!((local.node, &local.contact), (node, &contact));
+            assert_eq!(local.weights.len(), weights.len());
+            for (found, expected) in local.weights.iter().zip(&weights) {
+                // Roundings in single precision.
+                assert!((found - expected).abs() < 1e-7, "{found} {expected}");
+            }
+        }
+        Ok(())
+    }
+
+    /// Small integers come back from a matrix that is dominated by its diagonal, of sizes up to and beyond blocks of four
+    /// columns and of 16 numbers.
+    #[test]
+    fn equations_are_solved_in_place() {
+        for size in [1, 2, 4, 5, 16, 18, 37] {
+            let entry = |i: usize, j: usize| {
+                let (i, j) = (i.min(j), i.max(j));
+                if i == j {
+                    64.0
+                } else {
+                    ((3 * i + 5 * j) % 7) as f32 / 8.0
+                }
+            };
+            let expected = |i: usize| (i % 5) as f32 - 2.0;
+            let mut matrix: Vec<f32> = (0..size * size)
+                .map(|k| (k % size, k / size))
+                // Nothing above the diagonal is read.
+                .map(|(i, j)| if i < j { f32::NAN } else { entry(i, j) })
+                .collect();
+            let mut x: Vec<f32> = (0..size)
+                .map(|i| (0..size).map(|j| entry(i, j) * expected(j)).sum())
+                .collect();
+            solve_in_place(&mut matrix, size, &mut x);
+            for (i, found) in x.iter().enumerate() {
+                // The condition number is near 1: some ten roundings of 6·10⁻⁸ of numbers up to 2.
+                assert!((found - expected(i)).abs() < 2e-6, "{size} {i}: {found}");
+            }
+        }
+    }
+
+    /// Sums of products of small integers are exact.
+    #[test]
+    fn products_have_all_their_terms() {
+        for length in [0, 1, 15, 16, 17, 32, 45] {
+            let a: Vec<f32> = (0..length).map(|k| (k % 7) as f32 - 2.0).collect();
+            let b: Vec<f32> = (0..length).map(|k| (k % 5) as f32 + 1.0).collect();
+            let sum: f32 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+            assert_eq!(product(&a, &b), sum);
+        }
+    }
+}

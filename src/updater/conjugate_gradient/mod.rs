@@ -7,6 +7,8 @@ mod local;
 mod row_sums;
 mod solver;
 mod state;
+#[cfg(test)]
+mod tests;
 mod tolerances;
 mod watched;
 

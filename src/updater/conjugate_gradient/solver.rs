@@ -154,3 +154,6 @@ impl Solver {
 fn worst(residual: &[f64]) -> f64 {
     greatest(residual.len(), 0.0, |i| residual[i].abs())
 }
+
+#[cfg(test)]
+mod tests;

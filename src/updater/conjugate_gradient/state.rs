@@ -314,3 +314,6 @@ impl State {
         self.sums.keep(left);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -188,3 +188,6 @@ impl Watched {
         (pressure, solved.sum())
     }
 }
+
+#[cfg(test)]
+mod tests;

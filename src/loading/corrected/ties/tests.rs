@@ -1,0 +1,291 @@
+mod settling;
+
+use super::*;
+
+/// (position, time) of events.
+fn played(events: &[(usize, f64)]) -> Vec<Played> {
+    let events = events.iter();
+    events
+        .map(|&(position, time)| Played { position, time })
+        .collect()
+}
+
+fn pairs(events: &[Played]) -> Vec<(usize, f64)> {
+    events
+        .iter()
+        .map(|event| (event.position, event.time))
+        .collect()
+}
+
+fn lines(lines: &[[f64; 2]]) -> Vec<Course> {
+    lines
+        .iter()
+        .map(|&[a, b]| Course([a, b, 0.0, 0.0]))
+        .collect()
+}
+
+/// Nodes that do not act on each other.
+fn alone(nodes: &[usize], lines: &[[f64; 2]]) -> Watched {
+    Watched {
+        nodes: nodes.to_vec(),
+        lines: lines.to_vec(),
+        schur: DMatrix::identity(nodes.len(), nodes.len()),
+        row_sums: vec![0.0; nodes.len()],
+        horizon: f64::INFINITY,
+    }
+}
+
+fn correction(schur: DMatrix<f64>, courses: Vec<Course>) -> Correction {
+    Correction {
+        hermite: courses.clone(),
+        schur,
+        courses,
+        updated: true,
+    }
+}
+
+fn scales(length: f64, tolerance: f64, tie: f64) -> Scales {
+    Scales {
+        length,
+        tolerance,
+        tie,
+    }
+}
+
+fn close(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        // Roundings of a few operations, and of a transform where gaps come from one.
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+}
+
+/// Five nodes in a window that ends at 4: two that the corrections and the first pass know at other times, one at the very
+/// end, one behind it, and one that did not join.
+#[test]
+fn errors_are_what_the_passes_differ_by() {
+    let closing = [[9.0, 0.5], [9.0, 0.25], [9.0, 1.0], [9.0, 1.0], [9.0, 1.0]];
+    let watched = alone(&[10, 11, 12, 13, 14], &closing);
+    let of = |times: [f64; 5]| lines(&times.map(|time| [time, 1.0]));
+    let first = played(&[(0, 1.0), (1, 2.0), (2, 4.0), (3, 4.5)]);
+    let mut correction = correction(DMatrix::identity(5, 5), of([1.25, 3.5, 4.0, 4.5, 3.0]));
+    correction.hermite = of([1.25, 3.0, 4.0, 4.5, 3.0]);
+    let settled = second_pass(&watched, &correction, (&first, &[0, 1, 2, 3], 4.0));
+    // What has not touched by the end is put there.
+    let expected = [(0, 1.25), (1, 3.5), (2, 4.0), (3, 4.0)];
+    assert_eq!(pairs(&settled.events), expected);
+    // Changes of 0.25, 1.5, 0 and 0.5: a tenth of that and of their mean of 0.5625. Corrections differ by 0, 0.5 and 0,
+    // which counts twice, and of the last the other knows nothing: twice the window. To that 5e-7 of time over rate.
+    let rates = [1.25 / 0.5, 3.5 / 0.25, 4.0, 4.0].map(|time| 5e-7 * time);
+    let of_rates = |errors: [f64; 4]| [0, 1, 2, 3].map(|k| errors[k] + rates[k]);
+    close(&settled.errors, &of_rates([0.081_25, 1.0, 0.056_25, 8.0]));
+    // Half of the changes.
+    correction.updated = false;
+    let settled = second_pass(&watched, &correction, (&first, &[0, 1, 2, 3], 4.0));
+    close(
+        &settled.errors,
+        &of_rates([0.406_25, 1.031_25, 0.281_25, 8.0]),
+    );
+    // Where all agree, a thousandth of the mean spacing: 4 over 2.
+    let same = played(&[(0, 1.25), (1, 3.0)]);
+    correction.courses = correction.hermite.clone();
+    let settled = second_pass(&watched, &correction, (&same, &[0, 1], 4.0));
+    let rates = [1.25 / 0.5, 3.0 / 0.25].map(|time| 5e-7 * time);
+    close(&settled.errors, &[0.002 + rates[0], 0.002 + rates[1]]);
+}
+
+/// Hands `check` events of nodes 9, 8, 7 … with errors, in a window that begins at the approach 1 with one node in contact.
+fn with_ties(
+    events: &[(usize, f64)],
+    errors: &[f64],
+    lines: &[[f64; 2]],
+    scales: Scales,
+    check: impl FnOnce(Ties<'_>),
+) {
+    let nodes: Vec<usize> = (0..lines.len()).map(|k| 9 - k).collect();
+    let watched = alone(&nodes, lines);
+    let correction = correction(watched.schur.clone(), watched.courses());
+    check(Ties {
+        watched: &watched,
+        correction: &correction,
+        scales: &scales,
+        count: 1,
+        approach: 1.0,
+        settled: Settled {
+            events: played(events),
+            errors: errors.to_vec(),
+        },
+        asked: None,
+    });
+}
+
+#[test]
+fn neighbours_are_close_within_their_errors() {
+    let events = [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0), (4, 6.0)];
+    // 1 is no less than 0.5 + 0.5, but less than 0.5 + 0.75 and 0.75 + 0.5; 2 is not.
+    let errors = [0.5, 0.5, 0.75, 0.5, 0.5];
+    // A poor error would be one above a thousandth of 1 + t: make all of them poor but the first two.
+    with_ties(
+        &events,
+        &errors,
+        &[[1.0; 2]; 5],
+        scales(1.0, 0.0, 1e-9),
+        |mut ties| {
+            let found = [0, 1, 2, 3, 4].map(|event| ties.is_close(event));
+            assert_eq!(found, [false, true, true, false, false]);
+            let runs = [0, 1, 2, 3, 4].map(|event| ties.run_from(event));
+            assert_eq!(runs, [Some(0), Some(3), Some(3), Some(3), Some(4)]);
+            assert_eq!([ties.node(0), ties.node(3)], [9, 6]);
+            // 2 mm are a thousandth of 1 + 1 m.
+            for (error, poor) in [(1.9e-3, false), (POOR * 2.0, false), (2.1e-3, true)] {
+                ties.settled.errors[0] = error;
+                assert_eq!(ties.is_poor(0), poor, "{error}");
+                assert_eq!(ties.run_from(0), poor.then_some(0));
+            }
+        },
+    );
+}
+
+/// The same gap, closing rate and time: within 10 · 10⁻¹⁰ · 2, within 10 · 5·10⁻⁷ of the rate, and within a tie.
+#[test]
+fn nodes_that_symmetry_maps_are_told_by_their_lines() {
+    let good = [1e-4; 3];
+    let found = |second: [f64; 2], time: f64, errors: [f64; 3], last: usize| {
+        let mut orbit = false;
+        let lines = [[1.0, 1.0], second, second];
+        let events = [(0, 1.0), (1, time), (2, time)];
+        with_ties(&events, &errors, &lines, scales(2.0, 1e-10, 0.25), |ties| {
+            orbit = ties.is_orbit(0, last);
+        });
+        orbit
+    };
+    assert!(found([1.0, 1.0], 1.0, good, 1) && found([1.0, 1.0], 1.25, good, 2));
+    // One event is no orbit.
+    assert!(!found([1.0, 1.0], 1.0, good, 0));
+    for (a, b, orbit) in [
+        (1.9e-9, 0.0, true),
+        (-1.9e-9, 0.0, true),
+        (2.1e-9, 0.0, false),
+        (-2.1e-9, 0.0, false),
+        (0.0, 4.9e-6, true),
+        (0.0, -4.9e-6, true),
+        (0.0, 5.1e-6, false),
+        (0.0, -5.1e-6, false),
+    ] {
+        assert_eq!(found([1.0 + a, 1.0 + b], 1.0, good, 1), orbit, "{a} {b}");
+    }
+    assert!(!found([1.0, 1.0], 1.3, good, 1));
+    // Errors too great in themselves: above a thousandth of 2.
+    for poor in 0..3 {
+        let mut errors = good;
+        errors[poor] = 3e-3;
+        assert!(!found([1.0, 1.0], 1.0, errors, 2), "{poor}");
+    }
+}
+
+#[test]
+fn rates_of_gaps_that_hardly_close_are_compared_with_a_thousandth() {
+    for (other, orbit) in [(1e-6 + 4.9e-9, true), (1e-6 + 5.1e-9, false)] {
+        let lines = [[1.0, 1e-6], [1.0, other]];
+        let events = [(0, 1.0), (1, 1.0)];
+        with_ties(
+            &events,
+            &[0.0; 2],
+            &lines,
+            scales(2.0, 1e-10, 0.25),
+            |ties| {
+                assert_eq!(ties.is_orbit(0, 1), orbit, "{other:e}");
+            },
+        );
+    }
+}
+
+#[test]
+fn orbits_touch_at_their_mean_time() {
+    let events = [(4, 0.5), (0, 1.0), (2, 2.0), (1, 4.5), (3, 9.0)];
+    with_ties(
+        &events,
+        &[0.0; 5],
+        &[[1.0; 2]; 5],
+        scales(1.0, 0.0, 1e-9),
+        |mut ties| {
+            // Nodes 9, 7 and 8, at 7.5 / 3.
+            ties.make_equal(1, 3);
+            let expected = [(4, 0.5), (2, 2.5), (1, 2.5), (0, 2.5), (3, 9.0)];
+            assert_eq!(pairs(&ties.settled.events), expected);
+        },
+    );
+}
+
+#[test]
+fn ties_come_in_the_order_of_their_nodes() {
+    // 0.2 apart one after the other, then by a tie, which is none.
+    let mut events = played(&[(0, 1.0), (2, 1.2), (1, 1.4), (4, 2.0), (3, 2.25)]);
+    with_ties(&[], &[], &[[1.0; 2]; 5], scales(1.0, 0.0, 0.25), |ties| {
+        ties.order_ties(&mut events);
+    });
+    let expected = [(2, 1.0), (1, 1.0), (0, 1.0), (4, 2.0), (3, 2.25)];
+    assert_eq!(pairs(&events), expected);
+}
+
+/// A twenty-fifth of the least error, 0.125, times the least rate, 0.5; none if that was not enough.
+#[test]
+fn solutions_are_as_exact_as_errors_ask() {
+    let events = [(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)];
+    let errors = [0.01, 0.25, 0.125, 0.01];
+    let lines = [[1.0, 0.1], [1.0, 0.75], [1.0, 0.5], [1.0, 0.1]];
+    with_ties(
+        &events,
+        &errors,
+        &lines,
+        scales(1.0, 0.0, 1e-9),
+        |mut ties| {
+            close(&[ties.sufficient_error(1, 2)], &[0.0025]);
+            ties.asked = Some(2);
+            close(&[ties.sufficient_error(1, 2)], &[0.0025]);
+            ties.asked = Some(1);
+            assert_eq!(ties.sufficient_error(1, 2), 0.0);
+        },
+    );
+}
+
+/// `(4, 2, 1; 2, 4, 1; 1, 1, 4)` without its first node: 4 − 1, 1 − 1/2, 4 − 1/4; and at the time 2, at which the first closes at
+/// the rate 1 − 2 · 2/8, the others at 1 − 1/2 · 1/2 and 2 − 1/4 · 1/2.
+#[test]
+fn events_before_are_eliminated() {
+    let watched = alone(&[7, 8, 9], &[[1.0; 2]; 3]);
+    let schur = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 1.0, 2.0, 4.0, 1.0, 1.0, 1.0, 4.0]);
+    let mut courses = lines(&[[1.0, 1.0], [1.0, 1.0], [1.0, 2.0]]);
+    courses[0].0[2] = 0.125;
+    let found = correction(schur.clone(), courses.clone());
+    let mut without = correction(schur, courses);
+    without.schur[(0, 0)] = -1.0;
+    let scales = scales(1.0, 0.0, 1e-9);
+    let ties = |correction| Ties {
+        watched: &watched,
+        correction,
+        scales: &scales,
+        count: 1,
+        approach: 1.0,
+        settled: Settled {
+            events: played(&[(0, 1.0), (1, 2.0), (2, 2.5)]),
+            errors: vec![0.0; 3],
+        },
+        asked: None,
+    };
+    let flat = |found: Option<(DMatrix<f64>, DVector<f64>)>| {
+        let (schur, rates) = found.unwrap_or_default();
+        [schur.as_slice(), rates.as_slice()].concat()
+    };
+    close(
+        &flat(ties(&found).eliminated(1, 2)),
+        &[3.0, 0.5, 0.5, 3.75, 0.75, 1.875],
+    );
+    // With no event before nothing is: at the time 1 the first closes at 1 − 2/8.
+    close(
+        &flat(ties(&found).eliminated(0, 1)),
+        &[4.0, 2.0, 2.0, 4.0, 0.75, 1.0],
+    );
+    // No factor.
+    assert!(ties(&without).eliminated(1, 2).is_none());
+}

@@ -1,0 +1,145 @@
+//! Events that are settled by solutions.
+
+use super::*;
+use crate::loading::row;
+use crate::updater::Dense;
+
+/// The gap of node 2, or of node 4, closes at the approach 3, and the other one's later. Node 0 is in contact and reaches
+/// neither of them. The window, from the approach 1, says that node 2 is first; it closes at half the rate there.
+fn settled(
+    gaps: [f64; 2],
+    times: [f64; 2],
+    (errors, tolerance): ([f64; 2], f64),
+) -> Result<(LoadingRun<Dense>, Settled), Error> {
+    let initial = [0.0, 9.0, gaps[0], 9.0, gaps[1], 9.0];
+    // At an approach at which the solution of the joined contact has been found.
+    let mut run = row::solved(&initial, &[0, 4, 2], 3.5)?;
+    let watched = alone(&[2, 4], &[[9.0, 0.5], [9.0, 1.0]]);
+    let correction = correction(4.0 * &watched.schur, watched.courses());
+    let mut start = run.front;
+    start.place_at(1.0);
+    let before = Settled {
+        events: played(&[(0, times[0]), (1, times[1])]),
+        errors: errors.to_vec(),
+    };
+    let scales = scales(1.0, tolerance, 1e-9);
+    let settled = settle(&mut run, &scales, &watched, &correction, before, &start)?;
+    Ok((run, settled))
+}
+
+/// Positions and times.
+fn check_events(settled: &Settled, expected: &[(usize, f64)]) {
+    let (positions, times): (Vec<_>, Vec<_>) = pairs(&settled.events).into_iter().unzip();
+    let (expected_positions, expected_times): (Vec<_>, Vec<_>) = expected.iter().copied().unzip();
+    assert_eq!(positions, expected_positions);
+    close(&times, &expected_times);
+}
+
+#[test]
+fn close_events_are_settled_by_their_gaps() -> Result<(), Error> {
+    // At the approach 3 node 4 touches, and the gap of node 2, 1/16, closes after 1/8. Gaps may be off by 0.04 · 0.25 · 0.5
+    // and 2 · 10⁻³ · 3, that is by 0.011; over the rates, and with 0.05 of 1/8 for the second.
+    let (run, found) = settled([3.0625, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    assert_eq!((run.timings.ties, run.contact.order()), (1, &[0, 2, 4][..]));
+    check_events(&found, &[(1, 2.0), (0, 2.125)]);
+    close(&found.errors, &[0.011, 0.028_25]);
+    // A gap that has closed a sixteenth before.
+    let (_, found) = settled([3.0625, 2.9375], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    check_events(&found, &[(1, 1.9375), (0, 2.125)]);
+    close(&found.errors, &[0.011, 0.05 * 0.1875 + 0.022]);
+    // The gap of node 2, which closes at half the rate, has closed 1/8 before.
+    let (_, found) = settled([2.9375, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    check_events(&found, &[(0, 1.875), (1, 2.0)]);
+    close(&found.errors, &[0.022, 0.05 * 0.125 + 0.011]);
+    // Or a metre before.
+    let (_, found) = settled([2.5, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    check_events(&found, &[(0, 1.0), (1, 2.0)]);
+    // 1/64 apart, which is within the errors left: a second solution in the new order, as exact as they go.
+    let (run, found) = settled([3.007_812_5, 3.0], [2.0, 2.03125], ([0.25; 2], 1e-3))?;
+    assert_eq!((run.timings.ties, run.contact.order()), (2, &[0, 4, 2][..]));
+    check_events(&found, &[(1, 2.0), (0, 2.015_625)]);
+    close(&found.errors, &[0.006, 0.05 / 64.0 + 0.012]);
+    // Far from each other beside their errors: nothing is asked.
+    let (run, found) = settled([3.0, 3.5], [2.0, 2.5], ([2e-3; 2], 1e-3))?;
+    assert_eq!((run.timings.ties, run.contact.order()), (0, &[0, 4, 2][..]));
+    check_events(&found, &[(0, 2.0), (1, 2.5)]);
+    assert_eq!(found.errors, [2e-3; 2]);
+    Ok(())
+}
+
+/// What cannot be settled stays as it is: a gap that does not close, and no factor of the events before.
+#[test]
+fn what_cannot_be_settled_stays() -> Result<(), Error> {
+    let mut run = row::solved(&[0.0, 9.0, 3.0, 9.0, 3.0], &[0, 2, 4], 3.5)?;
+    let watched = alone(&[2, 4], &[[9.0, 1.0]; 2]);
+    let mut start = run.front;
+    start.place_at(1.0);
+    let scales = scales(1.0, 1e-3, 1e-9);
+    for (closing, own) in [(0.0, 4.0), (1.0, -4.0)] {
+        let courses = lines(&[[9.0, 1.0], [9.0, closing]]);
+        let mut correction = correction(4.0 * &watched.schur, courses);
+        correction.schur[(0, 0)] = own;
+        let before = Settled {
+            events: played(&[(0, 2.0), (1, 2.25)]),
+            errors: vec![0.25; 2],
+        };
+        let found = settle(&mut run, &scales, &watched, &correction, before, &start)?;
+        check_events(&found, &[(0, 2.0), (1, 2.25)]);
+        assert_eq!(found.errors, [0.25; 2]);
+    }
+    // Once each.
+    assert_eq!(run.timings.ties, 2);
+    Ok(())
+}
+
+/// Three events a thirty-second apart, whose gaps may be off by more than that whatever is done: the first solution is not
+/// exact, the second is, for the first event; the third is for the second event.
+#[test]
+fn solutions_go_on_while_neighbours_are_close() -> Result<(), Error> {
+    let initial = [0.0, 9.0, 3.0, 9.0, 3.03125, 9.0, 3.0625];
+    let mut run = row::solved(&initial, &[0, 2, 4, 6], 3.5)?;
+    let watched = alone(&[2, 4, 6], &[[9.0, 1.0]; 3]);
+    let correction = correction(4.0 * &watched.schur, watched.courses());
+    let mut start = run.front;
+    start.place_at(1.0);
+    let before = Settled {
+        events: played(&[(0, 2.0), (1, 2.03125), (2, 2.0625)]),
+        errors: vec![0.5; 3],
+    };
+    let found = settle(
+        &mut run,
+        &scales(1.0, 1e-2, 1e-9),
+        &watched,
+        &correction,
+        before,
+        &start,
+    )?;
+    check_events(&found, &[(0, 2.0), (1, 2.03125), (2, 2.0625)]);
+    assert_eq!(run.timings.ties, 3);
+    Ok(())
+}
+
+/// Node 1 sinks by 3/4 and 1/4 at the approach 3 if nodes 0 and 2, at 2 m, carry before it.
+#[test]
+fn gaps_are_those_with_all_events_before() -> Result<(), Error> {
+    let mut run = row::solved(&[0.0, 2.5, 2.0, 9.0], &[0, 2, 1], 3.5)?;
+    let watched = alone(&[2, 1], &[[9.0, 1.0]; 2]);
+    let correction = correction(4.0 * &watched.schur, watched.courses());
+    let scales = scales(1.0, 0.0, 1e-9);
+    let ties = Ties {
+        watched: &watched,
+        correction: &correction,
+        scales: &scales,
+        count: 1,
+        approach: 1.0,
+        settled: Settled {
+            events: played(&[(0, 1.0), (1, 2.0)]),
+            errors: vec![0.0; 2],
+        },
+        asked: None,
+    };
+    close(&ties.exact_gaps(&mut run, 1, 1, 0.0)?, &[0.5]);
+    // At the approach 2 node 0 carries alone.
+    close(&ties.exact_gaps(&mut run, 0, 1, 0.0)?, &[0.0, 1.0]);
+    Ok(())
+}

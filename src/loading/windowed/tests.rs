@@ -1,0 +1,200 @@
+use super::*;
+use crate::loading::row;
+use crate::updater::{Dense, Schur};
+
+fn windowed(size: Option<usize>) -> Windowed {
+    Windowed::new(ContactGrowth::Monotone, size, true)
+}
+
+/// A window whose nodes have not touched, each with its gap, and all with the closing rate 1 and S = 4 I.
+fn open(windowed: &mut Windowed, nodes: &[(usize, f64)]) -> Result<(), Error> {
+    let lines = nodes.iter().map(|&(node, gap)| Line {
+        node,
+        gap,
+        closing: 1.0,
+    });
+    let (nodes, schur): (&[usize], &mut Schur) = windowed.window.open(lines, f64::INFINITY);
+    schur.resize(nodes.len())?;
+    schur.matrix_mut().fill_with_identity();
+    schur.matrix_mut().scale_mut(4.0);
+    schur.row_sums_mut().fill(1.0);
+    Ok(())
+}
+
+/// What is chosen of ten nodes, of which node k touches at 10 − k.
+fn chosen(open_nodes: &[usize], size: usize, multiple: usize) -> Result<(Vec<usize>, f64), Error> {
+    let mut windowed = windowed(None);
+    let nodes: Vec<(usize, f64)> = open_nodes.iter().map(|&node| (node, 1.0)).collect();
+    open(&mut windowed, &nodes)?;
+    windowed.ranking = (0..10).map(|node| (10.0 - node as f64, node)).collect();
+    let (size, horizon) = windowed.choose(size, multiple);
+    let nodes = windowed.ranking[..size].iter().map(|(_, node)| *node);
+    Ok((nodes.collect(), horizon))
+}
+
+#[test]
+fn the_next_nodes_are_chosen() -> Result<(), Error> {
+    // The last three by index, up to the time of the fourth from behind.
+    assert_eq!(chosen(&[], 3, 1)?, (vec![7, 8, 9], 4.0));
+    assert_eq!(chosen(&[], 10, 1)?, ((0..10).collect(), f64::INFINITY));
+    // In multiples of four, unless there are no more.
+    for (size, count) in [(3, 3), (4, 4), (5, 4), (7, 4), (8, 8), (9, 8)] {
+        let (nodes, horizon) = chosen(&[], size, 4)?;
+        assert_eq!(nodes, (10 - count..10).collect::<Vec<_>>(), "{size}");
+        assert_eq!(horizon, 1.0 + count as f64);
+    }
+    // Two that were watched before come first, in the order in which they were, and count for nothing new: six are two
+    // and four, seven one more, which is left out. Node 0 is far away.
+    for (size, multiple, expected) in [
+        (6, 4, vec![8, 5, 4, 6, 7, 9]),
+        (7, 4, vec![8, 5, 4, 6, 7, 9]),
+        (7, 1, vec![8, 5, 3, 4, 6, 7, 9]),
+        (3, 4, vec![8, 7, 9]),
+    ] {
+        let (nodes, horizon) = chosen(&[8, 0, 5], size, multiple)?;
+        assert_eq!(nodes, expected);
+        assert_eq!(horizon, 1.0 + expected.len() as f64);
+    }
+    Ok(())
+}
+
+#[test]
+fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
+    let mut run = row::run(&[0.0; 100], Dense)?;
+    assert_eq!(windowed(Some(7)).next_size(&run, 100), 7);
+    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 100);
+    // Four to have three of them touch.
+    assert_eq!(windowed(None).next_size(&run, 3), 4);
+    for node in 0..90 {
+        run.contact.push(node)?;
+    }
+    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 10);
+    assert_eq!(windowed(None).next_size(&run, 93), 4);
+    assert_eq!(windowed(Some(7)).multiple(&run), 1);
+    assert_eq!(windowed(None).multiple(&run), 96);
+    Ok(())
+}
+
+/// Node 0 carries a quarter of the approach: 0.15 m of overlap beside it, where gaps close at 3/4, began a fifth of a metre
+/// ago, and half a metre far from it half a metre ago.
+#[test]
+fn the_first_contradiction_is_found() -> Result<(), Error> {
+    let near = |found: Option<f64>, expected: f64| {
+        assert!(
+            found.is_some_and(|found| (found - expected).abs() < 1e-14),
+            "{found:?}"
+        );
+    };
+    near(
+        contradiction(&row::solved(&[0.0, 0.6, 9.0, 9.0], &[0], 1.0)?, 1.0),
+        0.8,
+    );
+    near(
+        contradiction(&row::solved(&[0.0, 0.6, 9.0, 0.5], &[0], 1.0)?, 1.0),
+        0.5,
+    );
+    // From a solution at the approach 1 to one at 1.5.
+    near(
+        contradiction(&row::solved(&[0.0, 9.0, 9.0, 1.25], &[0], 1.0)?, 1.5),
+        1.25,
+    );
+    assert_eq!(
+        contradiction(&row::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0),
+        None
+    );
+    // An overlap of 10⁻¹⁰ (9 + 1) m is rounding.
+    for (overlap, is_one) in [(0.9e-9, false), (1.1e-9, true)] {
+        let run = row::solved(&[0.0, 9.0, 1.0 - overlap], &[0], 1.0)?;
+        assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
+    }
+    // When tension began is not known, nor when a gap overlapped that does not close: between two nodes that push it down
+    // by 3/4 m each for each metre.
+    let tension = row::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
+    assert_eq!(contradiction(&tension, 1.0), Some(f64::NEG_INFINITY));
+    let given = row::Given {
+        pressure: vec![1.0; 2],
+        rate: vec![0.75; 2],
+    };
+    let mut run = row::run(&[0.0, 2.5, 0.0, 9.0], given)?;
+    run.contact.push(0)?;
+    run.contact.push(2)?;
+    run.solve_field(5.0, 1.0)?;
+    assert_eq!(contradiction(&run, 5.0), Some(f64::NEG_INFINITY));
+    Ok(())
+}
+
+/// A path with nodes 0, 2, 4, 6 and 8 in contact, the last four of a window that began at the approach 1/2; node 10 closes at
+/// `watcher`.
+fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun<Dense>, usize), Error> {
+    let far = 20.0;
+    let gaps = [
+        0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher,
+    ];
+    let mut run = row::run(&gaps, Dense)?;
+    run.contact.push(0)?;
+    run.front.place_at(0.5);
+    let mut windowed = windowed(Some(8));
+    open(&mut windowed, &[(2, 0.5), (4, 0.75), (6, 1.25), (8, 1.5)])?;
+    assert_eq!(windowed.window.play(4), None);
+    run.join(&windowed.window)?;
+    windowed.verify(&mut run)?;
+    Ok((run, windowed.window.events().len()))
+}
+
+#[test]
+fn events_behind_a_contradiction_are_taken_back() -> Result<(), Error> {
+    // Events at 1, 1.25, 1.75 and 2. None, the last one, the last two.
+    for (watcher, left) in [(3.0, 4), (1.9, 3), (1.5, 2), (1.1, 1)] {
+        let (run, events) = verified(2.0, watcher)?;
+        assert_eq!(events, left, "{watcher}");
+        assert_eq!(run.contact.order(), &[0, 2, 4, 6, 8][..=left]);
+        assert_eq!(run.timings.taken_back, 4 - left);
+    }
+    // Tension says nothing of when, and the first event follows from a solution.
+    let (run, events) = verified(3.0, 9.0)?;
+    assert_eq!((events, run.timings.taken_back), (1, 3));
+    Ok(())
+}
+
+/// Events of a window become states: at 1/2 + 1/2 and 1/2 + 3/4 two nodes touch, and each adds 1/4 to the stiffness over the
+/// cell area of 2 m².
+#[test]
+fn events_become_states() -> Result<(), Error> {
+    let mut run = row::run(&[0.0, 20.0, 1.0, 20.0, 1.25], Dense)?;
+    run.front.place_at(0.5);
+    let mut windowed = windowed(Some(8));
+    open(&mut windowed, &[(2, 0.5), (4, 0.75)])?;
+    windowed.window.play(2);
+    windowed.enqueue(&mut run, 0)?;
+    let found: Vec<_> = run
+        .queue
+        .iter()
+        .map(|state| (state.step, state.contact_nodes, state.node, state.approach))
+        .collect();
+    assert_eq!(found, [(1, 1, (2, 0), 1.0), (2, 2, (4, 0), 1.25)]);
+    let found: Vec<_> = run
+        .queue
+        .iter()
+        .map(|state| (state.load, state.contact_stiffness))
+        .collect();
+    // 1/4 m with one node.
+    assert_eq!(found, [(0.0, Some(0.5)), (0.125, Some(1.0))]);
+    Ok(())
+}
+
+#[test]
+fn the_first_node_that_is_left_is_named() -> Result<(), Error> {
+    let run = row::run(&[0.0; 9], Dense)?;
+    let mut windowed = windowed(None);
+    windowed.ranking = vec![(1.0, 5), (3.0, 3), (2.0, 8)];
+    assert!(matches!(
+        windowed.growth_stopped(&run),
+        Error::NotMonotone {
+            ix: 3,
+            iy: 0,
+            value: 0.0,
+            ..
+        }
+    ));
+    Ok(())
+}
