@@ -227,6 +227,26 @@ mod tests {
         Ok([level(&free)?, level(&periodic)?])
     }
 
+    /// A quarter more, or as much less, is too far; 1.25 and 5/4 of 8 are exact.
+    #[test]
+    fn a_state_reaches_loads_near_its_own() -> Result<(), Error> {
+        let [mut level, _] = levels()?;
+        level.iterate.pressure.fill(0.0);
+        level.iterate.pressure[3] = 8.0;
+        for (target, is_near) in [
+            (10.0_f64.next_up(), false),
+            (10.0, false),
+            (10.0_f64.next_down(), true),
+            (8.0, true),
+            (6.5, true),
+            (6.4, false),
+            (6.3, false),
+        ] {
+            assert_eq!(Continuation::reaches(&level, target), is_near, "{target}");
+        }
+        Ok(())
+    }
+
     /// Without tangents the line through two states, or through one and no contact if the other is too close
     /// to it for so long a step.
     #[test]

@@ -126,6 +126,14 @@ impl Sought {
     }
 }
 
+/// The next step where nothing has happened on the way between two places, as close to full contact: twice as far as that
+/// way, and no less than `change`, whose absolute value is at most the longest step.
+fn further(change: f64, [from, to]: [f64; 2]) -> f64 {
+    (2.0 * (to - from).abs())
+        .clamp(change.abs(), LONGEST)
+        .copysign(change)
+}
+
 /// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
 /// a bracket once there is one.
 fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution, Error> {
@@ -160,10 +168,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
             if secant > 0.0 && secant.is_finite() {
                 change = step(beyond, secant);
             } else if beyond == then {
-                // Nothing has happened on the way: twice as far, as close to full contact.
-                change = (2.0 * (x - earlier).abs())
-                    .clamp(change.abs(), LONGEST)
-                    .copysign(change);
+                change = further(change, [earlier, x]);
             }
         }
         previous = Some((x, beyond));
@@ -200,6 +205,21 @@ mod tests {
     use super::*;
     use crate::surface::{Amplitude, SelfAffine};
     use crate::{Boussinesq, FixedLoadSolver, Grid};
+
+    #[test]
+    fn where_nothing_happens_steps_double() {
+        for (change, way, expected) in [
+            (0.125, [2.0, 2.25], 0.5),
+            (-0.125, [2.0, 2.25], -0.5),
+            (0.125, [2.25, 2.0], 0.5),
+            // No less than what the slope says, and no more than the longest step.
+            (1.0, [2.0, 2.25], 1.0),
+            (0.125, [2.0, 4.0], LONGEST),
+            (-LONGEST, [2.0, 2.0], -LONGEST),
+        ] {
+            assert_eq!(further(change, way), expected, "{change} {way:?}");
+        }
+    }
 
     /// The load to begin with is of the right order: within a step of that of the solution, which is a factor
     /// of 4.5, in whatever units and for few nodes or many.

@@ -242,7 +242,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.state
     }
 
-    /// Bytes held at present, with `contact_nodes` of the present state in contact.
+    /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the
+    /// present state.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let run = &self.run;
