@@ -102,8 +102,19 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
         contradiction(&row::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0),
         None
     );
-    // An overlap of 10⁻¹⁰ (9 + 1) m is rounding.
-    for (overlap, is_one) in [(0.9e-9, false), (1.1e-9, true)] {
+    // A millionth of a metre is left at node 0, so that eight of them are what rounds.
+    for (overlap, is_one) in [(7.99e-6, false), (8.01e-6, true)] {
+        let given = row::Given {
+            pressure: vec![0.25 * (1.0 - 1e-6)],
+            rate: vec![0.25],
+        };
+        let mut run = row::run(&[0.0, 9.0, 1.0 - overlap], given)?;
+        run.contact.push(0)?;
+        run.solve_field(1.0, 1.0)?;
+        assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
+    }
+    // Where next to nothing is left it is eight times 2⁻⁵² of 9 + 1 m, 1.8·10⁻¹⁴ m.
+    for (overlap, is_one) in [(1e-14, false), (3e-14, true)] {
         let run = row::solved(&[0.0, 9.0, 1.0 - overlap], &[0], 1.0)?;
         assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
     }
@@ -115,11 +126,11 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
         pressure: vec![1.0; 2],
         rate: vec![0.75; 2],
     };
-    let mut run = row::run(&[0.0, 2.5, 0.0, 9.0], given)?;
+    let mut run = row::run(&[0.0, 1.5, 0.0, 9.0], given)?;
     run.contact.push(0)?;
     run.contact.push(2)?;
-    run.solve_field(5.0, 1.0)?;
-    assert_eq!(contradiction(&run, 5.0), Some(f64::NEG_INFINITY));
+    run.solve_field(4.0, 1.0)?;
+    assert_eq!(contradiction(&run, 4.0), Some(f64::NEG_INFINITY));
     Ok(())
 }
 
