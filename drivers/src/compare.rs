@@ -40,7 +40,9 @@ pub(crate) fn same_path(
     };
     let initial = first.mean_gap;
     let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
-    let tie = |k: usize| (TIE * exact[k].approach).max(FIRST_TIE * initial);
+    // Of the approach that is computed with, in which the load is contained.
+    let computed = |state: &LoadingState| state.approach + uniform(state.load);
+    let tie = |k: usize| (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
         let context = || format!("{state:?} in place of {expected:?}");
         ensure!(

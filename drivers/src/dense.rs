@@ -11,7 +11,7 @@
 //! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
 //! the very set.
 
-use asperity::{Boundary, InfluenceKernel, LoadingState, MeanDisplacement};
+use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Roundings of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
@@ -110,11 +110,15 @@ impl Dense {
     /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far above a good one or
     /// lets a coefficient be negative. An approach that is reported for mean planes goes with the load by that gauge,
     /// and by another one only as well as the load is known.
-    pub(crate) fn in_gauge_of_paths(self) -> Self {
+    pub(crate) fn in_gauge_of_paths(self, growth: ContactGrowth) -> Self {
         let least = self.influence.column(0).min();
+        let greatest = match growth {
+            ContactGrowth::Convex => 1e3,
+            _ => 10.0,
+        };
         self.in_gauge(|own, good| match own / good {
             _ if least < 0.0 => good,
-            part if part > 1e3 => 10.0 * good,
+            part if part > greatest => 10.0 * good,
             _ => own,
         })
     }

@@ -47,7 +47,8 @@ struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     fn new(sample: &'a Sample) -> Self {
-        let dense = Dense::new(&sample.kernel, sample.surface.matrix()).in_gauge_of_paths();
+        let dense = Dense::new(&sample.kernel, sample.surface.matrix())
+            .in_gauge_of_paths(sample.kernel.contact_growth());
         Self {
             sample,
             grid: sample.kernel.grid(),

@@ -10,10 +10,11 @@ use super::gauge::of_coefficients;
 use super::{Boundary, ContactGrowth, Gauge, InfluenceKernel, KernelOrigin, MeanDisplacement};
 use crate::{Error, Grid, KernelError};
 
-/// Beyond so many times a good one, digits of everything else are lost beside it.
-const GREATEST_GAUGE: f64 = 1e3;
-/// What stands in for such a gauge, as a multiple of a good one: above the least gauge of any kernel of this
-/// crate, so that promises of growth that held still hold.
+/// Beyond so many times a good one, digits of everything else are lost beside a gauge: a convex promise holds from a least
+/// gauge on, which may be as far above a good one on long cells.
+const GREATEST_CONVEX_GAUGE: f64 = 1e3;
+/// The same for other kernels, whose contact is the same in every gauge; and what stands in for a gauge that is greater, as a
+/// multiple of a good one.
 const LARGE_GAUGE: f64 = 10.0;
 
 /// The coefficients C(di, dj) for all offsets |di| < nx, |dj| < ny of a kernel.
@@ -269,10 +270,18 @@ impl KernelTable {
     pub(crate) fn regular(self) -> Self {
         match (self.gauge(), self.computing_gauge()) {
             (Some(_), Some(good)) if self.least() < 0.0 => self.in_gauge(good),
-            (Some(gauge), Some(good)) if gauge > GREATEST_GAUGE * good => {
+            (Some(gauge), Some(good)) if gauge > self.greatest_gauge() * good => {
                 self.in_gauge(LARGE_GAUGE * good)
             }
             _ => self,
+        }
+    }
+
+    /// The greatest gauge to follow paths in, as a multiple of a good one.
+    fn greatest_gauge(&self) -> f64 {
+        match self.growth {
+            ContactGrowth::Convex => GREATEST_CONVEX_GAUGE,
+            _ => LARGE_GAUGE,
         }
     }
 
