@@ -46,10 +46,7 @@ mod tests {
 
     /// Nodes 0 and 2 are in contact, with rates of 1/2 and another one.
     fn ranked(rate: f64) -> Result<Ranking, Error> {
-        let given = row::Given {
-            pressure: vec![1.0; 2],
-            rate: vec![0.5, rate],
-        };
+        let given = row::Altered::given(vec![1.0; 2], vec![0.5, rate]);
         let mut run = row::run(&[0.0, 4.0, 0.0, 9.0, 3.0], given)?;
         run.contact.push(0)?;
         run.contact.push(2)?;

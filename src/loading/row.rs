@@ -30,51 +30,58 @@ pub(super) fn solved(
     Ok(run)
 }
 
-/// An updater that gives one answer to all questions, and says of itself that it is not exact.
-pub(super) struct Given {
-    pub(super) pressure: Vec<f64>,
-    pub(super) rate: Vec<f64>,
+/// A dense updater whose answers are changed on their way.
+pub(super) struct Altered {
+    complement: Box<dyn Fn(&mut Schur)>,
+    solution: Box<dyn Fn(&mut Solution)>,
+    profile: UpdaterProfile,
 }
 
-impl LinearUpdater for Given {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        Dense.watch(problem, contact, nodes, schur)
+impl Altered {
+    /// Nothing is changed; it is not exact, and leaves `tolerance`.
+    pub(super) fn inexact(tolerance: f64) -> Self {
+        Self {
+            complement: Box::new(|_| {}),
+            solution: Box::new(|_| {}),
+            profile: UpdaterProfile {
+                exact: false,
+                tolerance,
+                ..Dense.profile()
+            },
+        }
     }
 
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
-        Ok(())
+    /// One answer to all questions, which says of itself that it is not exact.
+    pub(super) fn given(pressure: Vec<f64>, rate: Vec<f64>) -> Self {
+        Self {
+            solution: Box::new(move |solution| {
+                solution.pressure.clone_from(&pressure);
+                solution.rate.clone_from(&rate);
+            }),
+            ..Self::inexact(Dense.profile().tolerance)
+        }
     }
 
-    fn solve(
-        &mut self,
-        _: &Problem,
-        _: &ContactSequence,
-        _: SolveRequest,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        solution.pressure.clone_from(&self.pressure);
-        solution.rate.clone_from(&self.rate);
-        Ok(())
+    /// Other solutions, which claim to be exact.
+    pub(super) fn solutions(solution: impl Fn(&mut Solution) + 'static) -> Self {
+        Self {
+            solution: Box::new(solution),
+            profile: Dense.profile(),
+            ..Self::inexact(0.0)
+        }
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        UpdaterProfile {
-            exact: false,
-            ..Dense.profile()
+    /// Other Schur complements, which claim to be exact.
+    pub(super) fn complements(complement: impl Fn(&mut Schur) + 'static) -> Self {
+        Self {
+            complement: Box::new(complement),
+            profile: Dense.profile(),
+            ..Self::inexact(0.0)
         }
     }
 }
 
-/// Dense solutions of an updater that says of itself that it leaves a millionth of the approach.
-pub(super) struct Inexact;
-
-impl LinearUpdater for Inexact {
+impl LinearUpdater for Altered {
     fn watch(
         &mut self,
         problem: &Problem,
@@ -82,7 +89,9 @@ impl LinearUpdater for Inexact {
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        Dense.watch(problem, contact, nodes, schur)
+        Dense.watch(problem, contact, nodes, schur)?;
+        (self.complement)(schur);
+        Ok(())
     }
 
     fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
@@ -96,7 +105,9 @@ impl LinearUpdater for Inexact {
         request: SolveRequest,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        Dense.solve(problem, contact, request, solution)
+        Dense.solve(problem, contact, request, solution)?;
+        (self.solution)(solution);
+        Ok(())
     }
 
     fn truncate(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
@@ -104,10 +115,6 @@ impl LinearUpdater for Inexact {
     }
 
     fn profile(&self) -> UpdaterProfile {
-        UpdaterProfile {
-            exact: false,
-            tolerance: 1e-6,
-            ..Dense.profile()
-        }
+        self.profile
     }
 }

@@ -245,7 +245,7 @@ mod tests {
         rate: [f64; 2],
     ) -> Result<Option<(ContactEvent, usize, f64, f64)>, Error> {
         let (pressure, rate) = (pressure.to_vec(), rate.to_vec());
-        let mut run = row::run(&[0.0; 6], row::Given { pressure, rate })?;
+        let mut run = row::run(&[0.0; 6], row::Altered::given(pressure, rate))?;
         run.contact.push(3)?;
         run.contact.push(5)?;
         run.solve_field(2.0, 1.0)?;
@@ -302,7 +302,7 @@ mod tests {
     /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
     #[test]
     fn events_come_one_at_a_time() -> Result<(), Error> {
-        let mut run = row::run(&[0.0, 1.25, 1.0, 9.0], row::Inexact)?;
+        let mut run = row::run(&[0.0, 1.25, 1.0, 9.0], row::Altered::inexact(1e-6))?;
         let mut stepwise = Stepwise::default();
         for _ in 0..4 {
             stepwise.produce(&mut run, 3)?;

@@ -1,8 +1,6 @@
 use super::*;
-use crate::Problem;
-use crate::contact::ContactSequence;
 use crate::loading::row;
-use crate::updater::{Dense, Solution, SolveRequest};
+use crate::updater::Dense;
 
 fn scales(tolerance: f64) -> Scales {
     Scales {
@@ -165,36 +163,12 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
 }
 
 /// A dense updater that may know displacements of watched nodes better: 1/2, and 1/4 of rates.
-struct Knowing(bool);
-
-impl LinearUpdater for Knowing {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        Dense.watch(problem, contact, nodes, schur)?;
-        if self.0 {
-            schur.set_displacements(vec![[0.5, 0.25]; nodes.len()]);
+fn knowing(knows: bool) -> row::Altered {
+    row::Altered::complements(move |schur| {
+        if knows {
+            schur.set_displacements(vec![[0.5, 0.25]; schur.size()]);
         }
-        Ok(())
-    }
-
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        request: SolveRequest,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        Dense.solve(problem, contact, request, solution)
-    }
+    })
 }
 
 /// Nodes 1 and 3 beside node 0, which carries 1/4 at the approach 1: gaps of 5 + 1/4 − 1 and 7 − 1 that close at 3/4 and 1, unless
@@ -205,7 +179,7 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
         (false, [[4.25, 0.75], [6.0, 1.0]]),
         (true, [[4.5, 0.75], [6.5, 0.75]]),
     ] {
-        let mut run = row::run(&[0.0, 5.0, 9.0, 7.0, 9.0], Knowing(knows))?;
+        let mut run = row::run(&[0.0, 5.0, 9.0, 7.0, 9.0], knowing(knows))?;
         run.contact.push(0)?;
         run.front.place_at(1.0);
         run.solve_field(1.0, f64::INFINITY)?;
@@ -312,7 +286,8 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
     }
     gaps[1] = 1.0;
     let surface = crate::row::surface(&gaps)?;
-    let builder = crate::LoadingSolver::builder(&surface, &kernel).updater(row::Inexact);
+    let builder =
+        crate::LoadingSolver::builder(&surface, &kernel).updater(row::Altered::inexact(1e-6));
     let mut run = builder.build()?.run;
     let mut corrected = Corrected::new(Some(8), true);
     assert!(corrected.produce(&mut run, 30)?.is_none());
@@ -333,7 +308,7 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
 #[test]
 fn contacts_at_the_end_are_mended() -> Result<(), Error> {
     for (thought, gap, order) in [(0.6, 2.6, &[0, 2][..]), (3.0, 1.8, &[0, 2, 4])] {
-        let mut run = row::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], row::Inexact)?;
+        let mut run = row::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], row::Altered::inexact(1e-6))?;
         run.contact.push(0)?;
         run.front.place_at(1.0);
         let mut corrected = Corrected::new(None, true);

@@ -128,13 +128,7 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
         // A hundredth further it is pressure.
         assert!(run.negative_pressure(4.01, overlap).is_none());
     }
-    let mut run = row::run(
-        &[0.0, 8.0],
-        row::Given {
-            pressure: vec![f64::NAN],
-            rate: vec![1.0],
-        },
-    )?;
+    let mut run = row::run(&[0.0, 8.0], row::Altered::given(vec![f64::NAN], vec![1.0]))?;
     run.contact.push(0)?;
     run.solve_field(1.0, 1.0)?;
     assert!(run.negative_pressure(1.0, 0.0).is_some());
@@ -151,45 +145,17 @@ fn the_greatest_rate_is_found() -> Result<(), Error> {
     Ok(())
 }
 
-/// A dense solution whose pressures and rates are too large by a part.
-struct Off {
-    pressure: f64,
-    rate: f64,
-}
-
-impl LinearUpdater for Off {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        Dense.watch(problem, contact, nodes, schur)
-    }
-
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        request: SolveRequest,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        Dense.solve(problem, contact, request, solution)?;
-        solution
-            .pressure
-            .iter_mut()
-            .for_each(|p| *p *= 1.0 + self.pressure);
-        solution
-            .rate
-            .iter_mut()
-            .for_each(|rate| *rate *= 1.0 + self.rate);
-        Ok(())
-    }
+/// Dense solutions whose pressures and rates are too large by a part.
+fn off(pressure: f64, rate: f64) -> row::Altered {
+    row::Altered::solutions(move |solution| {
+        let parts = [pressure, rate];
+        for (values, part) in [&mut solution.pressure, &mut solution.rate]
+            .into_iter()
+            .zip(parts)
+        {
+            values.iter_mut().for_each(|value| *value *= 1.0 + part);
+        }
+    })
 }
 
 /// Node 0 carries 1/2 at the approach 2: 10⁻¹⁰ (4 + 2 + 4/2) m may be left of its gap, and 10⁻¹⁰ (1 + 4/4) of the rate.
@@ -204,7 +170,7 @@ fn solutions_close_the_contact() -> Result<(), Error> {
         (0.0, -2.1e-10, Some("rate of the gap")),
         (f64::NAN, 0.0, Some("gap")),
     ] {
-        let mut run = row::run(&[0.0, 4.0, 4.0], Off { pressure, rate })?;
+        let mut run = row::run(&[0.0, 4.0, 4.0], off(pressure, rate))?;
         run.contact.push(0)?;
         match (run.solve_field(2.0, f64::INFINITY), refused) {
             (Ok(()), None) => {}

@@ -104,10 +104,7 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
     );
     // A millionth of a metre is left at node 0, so that eight of them are what rounds.
     for (overlap, is_one) in [(7.99e-6, false), (8.01e-6, true)] {
-        let given = row::Given {
-            pressure: vec![0.25 * (1.0 - 1e-6)],
-            rate: vec![0.25],
-        };
+        let given = row::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
         let mut run = row::run(&[0.0, 9.0, 1.0 - overlap], given)?;
         run.contact.push(0)?;
         run.solve_field(1.0, 1.0)?;
@@ -122,10 +119,7 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
     // by 3/4 m each for each metre.
     let tension = row::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
     assert_eq!(contradiction(&tension, 1.0), Some(f64::NEG_INFINITY));
-    let given = row::Given {
-        pressure: vec![1.0; 2],
-        rate: vec![0.75; 2],
-    };
+    let given = row::Altered::given(vec![1.0; 2], vec![0.75; 2]);
     let mut run = row::run(&[0.0, 1.5, 0.0, 9.0], given)?;
     run.contact.push(0)?;
     run.contact.push(2)?;
