@@ -19,6 +19,10 @@ pub enum ContactTarget {
     /// [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number.
     AreaFraction(f64),
     /// This mean gap \[m\], below that of surfaces that just touch.
+    ///
+    /// The solver for one load finds it as exactly as the gaps of its solutions are: to its tolerance times the approach,
+    /// or times C(0, 0) p̄ on a body whose mean displacement is
+    /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more.
     MeanGap(f64),
 }
 

@@ -33,7 +33,7 @@ pub(super) fn solve_target(
             search(stepper, Sought::Nodes(nodes))
         }
         ContactTarget::MeanGap(mean_gap) => {
-            let sought = Sought::mean_gap(mean_gap, stepper.finest(), stepper.tolerance())?;
+            let sought = Sought::mean_gap(mean_gap, stepper.finest())?;
             search(stepper, sought)
         }
     }
@@ -44,17 +44,12 @@ pub(super) fn solve_target(
 enum Sought {
     /// So many nodes. Area grows in proportion to the load over decades.
     Nodes(usize),
-    /// A mean gap, given the one without load and the greatest error relative to the approach. It
-    /// falls with the logarithm of the load over decades.
-    MeanGap {
-        target: f64,
-        unloaded: f64,
-        tolerance: f64,
-    },
+    /// A mean gap, given the one without load. It falls with the logarithm of the load over decades.
+    MeanGap { target: f64, unloaded: f64 },
 }
 
 impl Sought {
-    fn mean_gap(target: f64, level: &Level, tolerance: f64) -> Result<Self, Error> {
+    fn mean_gap(target: f64, level: &Level) -> Result<Self, Error> {
         let unloaded = level.mean_initial_gap();
         if !(target > 0.0 && target < unloaded) {
             return Err(Error::OutOfRange {
@@ -63,11 +58,7 @@ impl Sought {
                 expected: "above 0 and below that of surfaces that just touch",
             });
         }
-        Ok(Self::MeanGap {
-            target,
-            unloaded,
-            tolerance,
-        })
+        Ok(Self::MeanGap { target, unloaded })
     }
 
     /// How far a state lies beyond, in a measure that is close to a line over the logarithm of the
@@ -82,18 +73,15 @@ impl Sought {
                 };
                 ((carrying as f64 + touching) / nodes as f64).ln()
             }
-            Self::MeanGap {
-                target, unloaded, ..
-            } => (target - state.mean_gap) / unloaded,
+            Self::MeanGap { target, unloaded } => (target - state.mean_gap) / unloaded,
         }
     }
 
-    fn is_found(self, state: &ContactState, carrying: usize) -> bool {
+    /// Whether a state, whose gaps are exact to `error`, is the one sought.
+    fn is_found(self, state: &ContactState, carrying: usize, error: f64) -> bool {
         match self {
             Self::Nodes(nodes) => state.contact_nodes == nodes && carrying == nodes,
-            Self::MeanGap {
-                target, tolerance, ..
-            } => (state.mean_gap - target).abs() <= tolerance * state.approach,
+            Self::MeanGap { target, .. } => (state.mean_gap - target).abs() <= error,
         }
     }
 
@@ -153,7 +141,8 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         let solution = stepper.step_to_load(x.exp())?;
         let state = &solution.state;
         let carrying = solution.carrying_nodes();
-        if sought.is_found(state, carrying) {
+        let error = stepper.tolerance() * stepper.finest().error_unit(state);
+        if sought.is_found(state, carrying, error) {
             return Ok(solution);
         }
         let beyond = sought.beyond(state, carrying);
@@ -238,7 +227,7 @@ mod tests {
                 let typical = Sought::Nodes(nodes).typical_load(&level);
                 let off = (typical / solution.state.load).ln();
                 assert!(off.abs() < LONGEST, "{nodes} nodes: a factor of e^{off}");
-                let sought = Sought::mean_gap(solution.state.mean_gap, &level, 1e-8)?;
+                let sought = Sought::mean_gap(solution.state.mean_gap, &level)?;
                 assert!(
                     (sought.typical_load(&level) / solution.state.load)
                         .ln()

@@ -1,7 +1,11 @@
 //! States of which something else than the load is known.
 
+use std::f64::consts::TAU;
+
+use asperity::kernel::{KernelTable, MeanDisplacement};
+use asperity::nalgebra::DMatrix;
 use asperity::surface::{HeightMap, Paraboloid};
-use asperity::{ContactTarget, Error, FixedLoadSolver, Grid};
+use asperity::{ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, rough, solver};
@@ -56,6 +60,42 @@ fn mean_gaps() {
                 assert!(relative(found.load, load) < 1e-8, "{found:?}");
             }
         }
+    }
+}
+
+/// Close to full contact a plate is stiff for the short waves that are left: its approach of mean planes is far less than
+/// C(0, 0) p̄, to which its solutions are exact, and a mean gap is found to the same.
+#[test]
+fn mean_gaps_where_little_is_left_to_approach() {
+    let nodes = 32;
+    let grid = Grid::new(nodes, 1, 1.0, 1.0).unwrap();
+    let (arbitrary, growth) = (MeanDisplacement::Arbitrary, ContactGrowth::Unknown);
+    // Waves as many to the period as the first one answer with the fourth power of their length.
+    let bending = |q: f64, _| (TAU / nodes as f64 / q).powi(4);
+    let plate = KernelTable::from_symbol(grid, arbitrary, growth, bending).unwrap();
+    // Every other node stands out, and one a little more than another.
+    let heights = DMatrix::from_fn(nodes, 1, |i, _| (i % 2) as f64 + 1e-5 * (7 * i % 32) as f64);
+    let unloaded = heights.max() - heights.mean();
+    let map = HeightMap::new(heights).unwrap();
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        let mut solver = solver(&map, &plate, tolerance);
+        let mut least = f64::INFINITY;
+        for digits in 1..=5 {
+            let mean_gap = 0.1_f64.powi(digits) * unloaded;
+            let solution = solver
+                .solve_target(ContactTarget::MeanGap(mean_gap))
+                .unwrap();
+            check(&solver, &solution, tolerance);
+            let state = &solution.state;
+            // In the gauge that a kernel gets from its symbol, which is the one that is computed with.
+            let own = plate.coefficient(0, 0).unwrap() * state.load / nodes as f64;
+            assert!(
+                (state.mean_gap - mean_gap).abs() <= tolerance * own,
+                "{state:?}"
+            );
+            least = least.min(state.approach / own);
+        }
+        assert!(least < 0.05, "{least}");
     }
 }
 
