@@ -65,6 +65,7 @@ impl ContactState {
             self.approach,
             self.load,
             self.contact_area,
+            self.contact_area_fraction,
             self.mean_gap,
             self.energy,
         ];
@@ -204,6 +205,38 @@ mod tests {
         }
         let pressed = full.at_load(14.0);
         assert_eq!(pressed.map(|s| (s.approach, s.mean_gap)), Some((3.0, 7.0)));
+        Ok(())
+    }
+
+    /// No quantity may be no number or infinite, but the interfacial stiffness of full contact.
+    #[test]
+    fn states_are_finite_in_every_quantity() -> Result<(), crate::Error> {
+        let state = state()?;
+        assert!(state.is_finite());
+        let quantities: [fn(&mut ContactState, f64); 8] = [
+            |state, x| state.approach = x,
+            |state, x| state.load = x,
+            |state, x| state.contact_area = x,
+            |state, x| state.contact_area_fraction = x,
+            |state, x| state.mean_gap = x,
+            |state, x| state.contact_stiffness = Some(x),
+            |state, x| state.interfacial_stiffness = Some(x),
+            |state, x| state.energy = x,
+        ];
+        for (k, set) in quantities.into_iter().enumerate() {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut state = state;
+                set(&mut state, bad);
+                assert!(!state.is_finite(), "quantity {k} is {bad}");
+            }
+        }
+        let full = |stiffness| ContactState {
+            contact_area_fraction: 1.0,
+            interfacial_stiffness: Some(stiffness),
+            ..state
+        };
+        assert!(full(f64::INFINITY).is_finite());
+        assert!(!full(f64::NAN).is_finite());
         Ok(())
     }
 }

@@ -4,10 +4,46 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::Error;
+use crate::error::FileError;
+
 /// Lets `work` write a file under another name beside its place, and then gives it its own, in place of what may be there:
 /// a full disk or a killed process leaves no part of it that looks like the whole. What is no regular file, a device, is
 /// written to as it is.
-pub(crate) fn write(
+///
+/// All writers of this crate write so. It is there for tables and pictures that go with their files:
+///
+/// ```
+/// # fn main() -> Result<(), asperity::Error> {
+/// use std::io::Write;
+///
+/// # let directory = std::env::temp_dir();
+/// asperity::io::write_whole(directory.join("loads.csv"), |output| {
+///     writeln!(output, "load,contact_area_fraction")?;
+///     writeln!(output, "1e-3,0.017")
+/// })?;
+/// # std::fs::remove_file(directory.join("loads.csv")).unwrap();
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`FileError::Io`] if `work` fails, or the file cannot be written; what was there before is there still.
+pub fn write_whole(
+    path: impl AsRef<Path>,
+    work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> Result<(), Error> {
+    let path = path.as_ref();
+    write(path, work).map_err(|source| {
+        Error::File(FileError::Io {
+            path: path.to_path_buf(),
+            source,
+        })
+    })
+}
+
+fn write(
     path: &Path,
     work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
