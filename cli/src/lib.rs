@@ -11,7 +11,6 @@ pub mod outcome;
 pub mod panel;
 pub mod picture;
 pub mod speech;
-pub mod whole_file;
 
 /// Prints a line, see [`speech`].
 #[macro_export]

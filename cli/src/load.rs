@@ -106,9 +106,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         if let Some(directory) = &options.save {
             for (name, field) in [("pressure", &solution.pressure), ("gap", &solution.gap)] {
                 let file = directory.join(format!("{name}_{k}.npy"));
-                write_npy(&file, field).map_err(|error| {
-                    Failure::new(format!("cannot write {}", file.display()), error)
-                })?;
+                write_npy(&file, field).map_err(|error| Failure::writing(&file, error))?;
             }
         }
     }

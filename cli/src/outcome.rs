@@ -1,8 +1,12 @@
 //! What went wrong, and what was written nevertheless.
 
-use crate::say;
 use std::error::Error;
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use asperity::io::write_whole;
+
+use crate::say;
 
 /// An error with what could not be done because of it.
 pub struct Failure {
@@ -17,6 +21,11 @@ impl Failure {
             what: what.into(),
             source: Some(source.into()),
         }
+    }
+
+    /// That a file cannot be written.
+    pub fn writing(name: &Path, source: impl Into<Box<dyn Error>>) -> Self {
+        Self::new(format!("cannot write {}", name.display()), source)
     }
 
     /// A request that cannot be met.
@@ -42,6 +51,17 @@ impl Failure {
             cause = error.source();
         }
     }
+}
+
+/// Writes a file that is whole once it has its name.
+///
+/// # Errors
+///
+/// If it cannot be written.
+pub fn write(name: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
+    write_whole(name, |output| output.write_all(bytes.as_ref()))
+        .map(|()| name.to_path_buf())
+        .map_err(|error| Failure::writing(name, error))
 }
 
 /// Collects failures and the names of the files that were written.

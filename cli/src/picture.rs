@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use plotters::prelude::*;
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
-use crate::outcome::Failure;
+use crate::outcome::{self, Failure};
 use crate::panel::{Area, Drawn};
-use crate::whole_file;
 
 /// Pixels of a fine drawing for one of its picture: what makes lines smooth.
 pub const FINE: i32 = 3;
@@ -19,7 +18,7 @@ pub fn draw(
     drawing: impl for<'a> FnOnce(&Area<BitMapBackend<'a>>) -> Drawn<BitMapBackend<'a>>,
 ) -> Result<PathBuf, Failure> {
     let encoded = pixels(size, drawing).and_then(|pixels| encode(size, &pixels));
-    write(name, encoded)
+    keep(name, encoded)
 }
 
 /// Draws something [`FINE`] times as large as the picture, and writes the picture.
@@ -30,7 +29,7 @@ pub fn draw_fine(
 ) -> Result<PathBuf, Failure> {
     let encoded = pixels((FINE * width, FINE * height), drawing)
         .and_then(|fine| encode((width, height), &averages(&fine, width as usize)));
-    write(name, encoded)
+    keep(name, encoded)
 }
 
 /// Three bytes for each pixel of a drawing on white.
@@ -82,12 +81,9 @@ fn encode((width, height): (i32, i32), pixels: &[u8]) -> Result<Vec<u8>, String>
     Ok(bytes)
 }
 
-fn write(name: &Path, encoded: Result<Vec<u8>, String>) -> Result<PathBuf, Failure> {
+fn keep(name: &Path, encoded: Result<Vec<u8>, String>) -> Result<PathBuf, Failure> {
     match encoded {
-        Ok(bytes) => whole_file::write(name, bytes),
-        Err(error) => Err(Failure::new(
-            format!("cannot write {}", name.display()),
-            error,
-        )),
+        Ok(bytes) => outcome::write(name, bytes),
+        Err(error) => Err(Failure::writing(name, error)),
     }
 }

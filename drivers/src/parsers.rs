@@ -113,7 +113,8 @@ fn read(file: &[u8], options: &ReadOptions, scratch: &Scratch) -> Verdict {
     let names = channels(&path);
     match outcome {
         Some(Ok(surface)) => {
-            ensure!(names.is_ok(), "a map was read, but no names of maps");
+            let known = names.is_ok_and(|names| names == surface.channels);
+            ensure!(known, "a map was read, but not the names of all maps");
             look_at(&surface)?;
             write_again(&surface, scratch)?;
             Ok(Tally {

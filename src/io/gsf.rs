@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use super::bytes::{Bytes, shape};
 use super::fault::Fault;
 use super::raw::{Channel, Parsed, decode};
-use super::whole_file;
+use super::whole_file::write_whole;
 use crate::{Error, Grid};
 
 const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
@@ -125,9 +125,7 @@ pub fn write_gsf(
             expected: "0",
         });
     }
-    let path = path.as_ref();
-    whole_file::write(path, |output| write(output, grid, values, unit))
-        .map_err(|error| Fault::Io(error).in_file(path, "Gwyddion Simple Field"))
+    write_whole(path, |output| write(output, grid, values, unit))
 }
 
 pub(super) fn write(

@@ -28,6 +28,8 @@ pub struct MeasuredSurface {
     pub cell: Option<(f64, f64)>,
     /// Name of the map in the file, empty if it has none.
     pub title: String,
+    /// Names of all maps in the file, its own among them.
+    pub channels: Vec<String>,
     /// Format of the file.
     pub format: Format,
     /// What was noticed in reading: a checksum that does not match, a mask taken for missing nodes.
@@ -104,6 +106,7 @@ mod tests {
             missing: 1,
             cell,
             title: "Topography".to_string(),
+            channels: vec!["Topography".to_string()],
             format: Format::GwyddionSimpleField,
             notes: vec!["a note".to_string()],
         }

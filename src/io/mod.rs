@@ -2,7 +2,7 @@
 //!
 //! [`read_surface`] reads what instruments write, [`ReadOptions`] says what a file leaves open (its side, its unit,
 //! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`], [`write_x3p`] and
-//! [`write_vti`] pass fields on.
+//! [`write_vti`] pass fields on, and [`write_whole`] takes care of files that a program writes itself.
 //!
 //! | format | extension | read | written |
 //! |---|---|---|---|
@@ -55,7 +55,7 @@ mod fault;
 mod npy;
 mod number;
 mod vti;
-pub(crate) mod whole_file;
+mod whole_file;
 
 #[cfg(feature = "io")]
 mod al3d;
@@ -94,6 +94,7 @@ mod x3p;
 
 pub use npy::{read_npy, write_npy};
 pub use vti::write_vti;
+pub use whole_file::write_whole;
 
 #[cfg(feature = "io")]
 pub use self::{

@@ -130,6 +130,8 @@ impl ReadOptions {
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();
         let (format, channels) = parse(path)?;
+        let names = channels.iter().map(|channel| channel.name.clone());
+        let names = names.collect();
         let mut channel = self.choose(channels, path)?;
         let height = self.height_factor(&channel, path)?;
         let cell = self.cell(&channel, path)?;
@@ -151,6 +153,7 @@ impl ReadOptions {
             missing,
             cell,
             title: channel.name,
+            channels: names,
             format,
             notes,
         })

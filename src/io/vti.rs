@@ -7,12 +7,8 @@ use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use super::fault::Fault;
-use super::whole_file;
+use super::whole_file::write_whole;
 use crate::{Error, Grid};
-
-/// What errors call the format.
-const NAME: &str = "VTK image";
 
 /// Writes fields on a grid as an image of VTK, which ParaView opens: one array for each field, on the cells of the grid, in
 /// the plane z = 0, lengths in metres.
@@ -30,9 +26,7 @@ pub fn write_vti(
     for (_, field) in fields {
         grid.check_shape(field.shape())?;
     }
-    let path = path.as_ref();
-    whole_file::write(path, |output| write(output, grid, fields))
-        .map_err(|error| Fault::Io(error).in_file(path, NAME))
+    write_whole(path, |output| write(output, grid, fields))
 }
 
 pub(super) fn write(

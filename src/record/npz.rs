@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{KernelRecord, LoadingRecord, Settings};
 use crate::contact::ContactState;
 use crate::io::archive::{Archive, ArchiveWriter};
-use crate::io::whole_file;
+use crate::io::write_whole;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
 use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, contact_sequence};
 use crate::surface::HeightMap;
@@ -112,17 +112,10 @@ impl LoadingRecord {
         path: impl AsRef<Path>,
         fields: &[(&str, &DMatrix<f64>)],
     ) -> Result<(), Error> {
-        let path = path.as_ref();
         for (_, field) in fields {
             self.grid.check_shape(field.shape())?;
         }
-        let failed = |source| {
-            Error::File(FileError::Io {
-                path: path.to_path_buf(),
-                source,
-            })
-        };
-        whole_file::write(path, |output| self.write(output, fields)).map_err(failed)
+        write_whole(path, |output| self.write(output, fields))
     }
 
     fn write(

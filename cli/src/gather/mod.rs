@@ -6,10 +6,9 @@ mod table;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::say;
-use asperity_cli::whole_file;
 use clap::Args;
 
 use table::Table;
@@ -129,5 +128,5 @@ fn write(rows: &[Row], name: &Path) -> Result<PathBuf, Failure> {
         let columns = columns.map(|(mean, spread)| format!(",{mean:e},{spread:e}"));
         text += &format!("{:e}{}\n", row.load, columns.collect::<String>());
     }
-    whole_file::write(name, text)
+    outcome::write(name, text)
 }

@@ -8,7 +8,7 @@ mod summary;
 use std::path::PathBuf;
 
 use asperity::Doubt;
-use asperity::io::{MeasuredSurface, channels};
+use asperity::io::MeasuredSurface;
 use asperity::surface::{Estimate, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
@@ -112,10 +112,8 @@ fn print(
     let length = |value: f64| quantity(value, "m", 5);
     say!("file          {}", options.file.display());
     say!("found         {measured}");
-    let maps = channels(&options.file)
-        .map_err(|error| Failure::new(format!("cannot read {}", options.file.display()), error))?;
-    if maps.len() > 1 {
-        say!("maps          {}", maps.join(", "));
+    if measured.channels.len() > 1 {
+        say!("maps          {}", measured.channels.join(", "));
     }
     if !measured.title.is_empty() {
         say!("title         {}", measured.title);

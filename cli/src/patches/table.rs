@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use asperity::ContactEvent;
 use asperity::patches::PatchEvent;
 use asperity::record::LoadingRecord;
-use asperity_cli::outcome::Failure;
-use asperity_cli::whole_file;
+use asperity_cli::outcome::{self, Failure};
 
 use super::followed::Followed;
 
@@ -17,9 +16,8 @@ pub(super) fn write(
     followed: &Followed,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
-    let text = lines(record, followed)
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
-    whole_file::write(name, text)
+    let text = lines(record, followed).map_err(|error| Failure::writing(name, error))?;
+    outcome::write(name, text)
 }
 
 fn lines(record: &LoadingRecord, followed: &Followed) -> Result<String, fmt::Error> {

@@ -10,9 +10,8 @@ use super::job::Job;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
 use asperity_cli::number::quantity;
-use asperity_cli::outcome::Failure;
+use asperity_cli::outcome::{self, Failure};
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
-use asperity_cli::whole_file;
 
 /// Width and height of the picture.
 const SIZE: (i32, i32) = (1240, 980);
@@ -35,15 +34,10 @@ pub(super) fn draw(
     let mut text = String::new();
     let backend = SVGBackend::with_string(&mut text, (width as u32, height as u32));
     let drawn = panels(&backend.into_drawing_area(), job, states);
-    drawn.map_err(|error| {
-        Failure::new(
-            format!("cannot write {}", name.display()),
-            error.to_string(),
-        )
-    })?;
+    drawn.map_err(|error| Failure::writing(&name, error.to_string()))?;
     let fine = format!("width=\"{width}\" height=\"{height}\"");
     let size = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
-    whole_file::write(&name, text.replacen(&fine, &size, 1))
+    outcome::write(&name, text.replacen(&fine, &size, 1))
 }
 
 fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState]) -> Drawn<DB> {

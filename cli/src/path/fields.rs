@@ -43,7 +43,7 @@ pub(super) fn write(
     let named = |name: PathBuf, written: Result<(), asperity::Error>| {
         written
             .map(|()| name.clone())
-            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+            .map_err(|error| Failure::writing(&name, error))
     };
     if let Format::Vti = format {
         let name = directory.join("fields.vti");

@@ -14,7 +14,6 @@ use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
-use asperity_cli::whole_file::failed;
 
 /// States between two looks at the progress bar and two visits to the disk.
 const STRIDE: usize = 64;
@@ -120,7 +119,7 @@ impl PathFile {
             }
             File::create(&part)
         };
-        let output = begin().map_err(|error| failed(&part, error))?;
+        let output = begin().map_err(|error| Failure::writing(&part, error))?;
         Ok(Self {
             name,
             part,
@@ -154,7 +153,8 @@ impl PathFile {
         );
         self.waiting += 1;
         if self.waiting == STRIDE {
-            self.flush().map_err(|error| failed(&self.part, error))?;
+            self.flush()
+                .map_err(|error| Failure::writing(&self.part, error))?;
         }
         Ok(())
     }
@@ -170,7 +170,7 @@ impl PathFile {
     pub(super) fn finish(mut self) -> Result<PathBuf, Failure> {
         self.flush()
             .and_then(|()| fs::rename(&self.part, &self.name))
-            .map_err(|error| failed(&self.part, error))?;
+            .map_err(|error| Failure::writing(&self.part, error))?;
         Ok(self.name)
     }
 }

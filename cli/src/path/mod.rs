@@ -104,5 +104,5 @@ fn save(
     LoadingRecord::new(solver, states.iter().copied().collect())
         .and_then(|record| record.write_npz(name, &fields))
         .map(|()| name.to_path_buf())
-        .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))
+        .map_err(|error| Failure::writing(name, error))
 }

@@ -88,7 +88,9 @@ fn every_map_can_be_chosen() -> TestResult {
     let any = ReadOptions::new().read(&temporary);
     std::fs::remove_file(&temporary)?;
     assert_eq!(listed?, names);
-    assert_eq!(first?.heights.as_slice(), [1.0, 2.0]);
+    let first = first?;
+    assert_eq!(first.channels, names);
+    assert_eq!(first.heights.as_slice(), [1.0, 2.0]);
     assert!(
         matches!(volts, Err(Error::File(FileError::NoUnit { found: Some(unit), .. })) if unit == "V")
     );

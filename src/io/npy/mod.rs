@@ -13,7 +13,7 @@ use super::bytes::{Bytes, read_file, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
 use super::raw::{Channel, decode};
-use super::whole_file;
+use super::whole_file::write_whole;
 use crate::Error;
 
 /// Reads a two-dimensional array of `float64`, `float32` or integers from a NumPy `.npy` file.
@@ -49,9 +49,7 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
 ///
 /// [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_npy(path: impl AsRef<Path>, matrix: &DMatrix<f64>) -> Result<(), Error> {
-    let path = path.as_ref();
-    whole_file::write(path, |output| write(output, matrix))
-        .map_err(|error| Fault::Io(error).in_file(path, NAME))
+    write_whole(path, |output| write(output, matrix))
 }
 
 /// What errors call the format.

@@ -9,9 +9,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use super::archive::{DESCRIPTION, hex, md5_of};
-use crate::io::fault::Fault;
 use crate::io::output::Output;
-use crate::io::whole_file;
+use crate::io::whole_file::write_whole;
 use crate::{Error, Grid};
 
 /// What the member with the checksum of the description is called.
@@ -31,9 +30,7 @@ const DATA: &str = "bindata/data.bin";
 /// [`Error::GridMismatch`] if the grid has another shape, and [`FileError::Io`](crate::FileError::Io) if the file cannot be written.
 pub fn write_x3p(path: impl AsRef<Path>, grid: &Grid, heights: &DMatrix<f64>) -> Result<(), Error> {
     grid.check_shape(heights.shape())?;
-    let path = path.as_ref();
-    whole_file::write(path, |output| write(output, grid, heights))
-        .map_err(|error| Fault::Io(error).in_file(path, "X3P"))
+    write_whole(path, |output| write(output, grid, heights))
 }
 
 pub(in crate::io) fn write(

@@ -268,11 +268,13 @@ impl KernelTable {
     /// others nearer, so that they touch before the approach that bounds a window; and in the zero gauge
     /// the matrix of full contact is singular.
     pub(crate) fn regular(self) -> Self {
-        match (self.gauge(), self.computing_gauge()) {
-            (Some(_), Some(good)) if self.least() < 0.0 => self.in_gauge(good),
-            (Some(gauge), Some(good)) if gauge > self.greatest_gauge() * good => {
-                self.in_gauge(LARGE_GAUGE * good)
-            }
+        let Some(gauge) = self.gauge() else {
+            return self;
+        };
+        let least = self.least();
+        match of_coefficients(gauge, least) {
+            good if least < 0.0 => self.in_gauge(good),
+            good if gauge > self.greatest_gauge() * good => self.in_gauge(LARGE_GAUGE * good),
             _ => self,
         }
     }
