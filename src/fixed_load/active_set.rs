@@ -108,7 +108,14 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    fn no_convergence(&self) -> Error {
+    /// That no iterate was good enough; if all ended with tension, the last one tells how far it was.
+    fn no_convergence(&mut self) -> Error {
+        if self.best == f64::INFINITY
+            && let Ok(errors) = self.verify()
+        {
+            let worst = errors.worst() / self.criteria.scale(self.level.iterate.approach);
+            self.best = self.best.min(worst);
+        }
         Error::NoConvergence {
             residual: self.best,
             tolerance: self.criteria.tolerance,

@@ -238,4 +238,35 @@ mod tests {
         }
         Ok(())
     }
+
+    /// The slope of a mean gap is that of states close to each other, exactly where there is a stiffness; without one,
+    /// and of a number of nodes, what is typical.
+    #[test]
+    fn slopes_are_those_between_states() -> Result<(), Error> {
+        let grid = Grid::square(24, 1.0)?;
+        let surface = SelfAffine::new(0.8, 0.5, 0.2, Amplitude::RmsHeight(0.01), 4)?;
+        let kernel = Boussinesq::new(grid, 1.0)?;
+        let builder = FixedLoadSolver::builder(&surface, &kernel);
+        let mut solver = builder.tolerance(1e-11).stiffness(true).build()?;
+        let load = 0.01;
+        let state = solver.solve(load)?.state;
+        // Of the same contact, on which mean gap and load go in proportion.
+        let near = solver.solve(load * (1.0 + 1e-6))?.state;
+        assert_eq!(near.contact_nodes, state.contact_nodes);
+        let level = solver.into_finest();
+        let sought = Sought::mean_gap(0.5 * state.mean_gap, &level)?;
+        let (slope, is_exact) = sought.slope(&state);
+        let between = (sought.beyond(&near, near.contact_nodes)
+            - sought.beyond(&state, state.contact_nodes))
+            / (near.load / state.load).ln();
+        // Half of 1e-6 by the logarithm, and errors of 1e-11 over 1e-6 of the load.
+        assert!(is_exact && (slope / between - 1.0).abs() < 1e-4);
+        let unknown = ContactState {
+            interfacial_stiffness: None,
+            ..state
+        };
+        assert!(matches!(sought.slope(&unknown), (typical, false) if typical > 0.0));
+        assert_eq!(Sought::Nodes(7).slope(&state), (1.0, false));
+        Ok(())
+    }
 }

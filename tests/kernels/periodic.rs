@@ -129,6 +129,7 @@ fn spectral_symbol_is_the_formula() -> Result<(), Error> {
         (4, 1, 1.0, 7.0),
     ] {
         let kernel = Spectral::new(Grid::new(nx, ny, dx, dy)?, 2.5)?;
+        assert_eq!(kernel.e_star(), 2.5);
         // As numpy.fft.fftfreq: from 0 up, then the negative ones up to -1.
         let signed = |k: usize, n: usize| {
             if 2 * k < n {

@@ -137,4 +137,25 @@ mod tests {
         }
         Ok(())
     }
+    /// Sets with holes are made of the patch before, from an eighth of it to seven.
+    #[test]
+    fn holes_are_few_or_many() -> Result<(), Error> {
+        let sets = contact_sets(&Grid::new(40, 30, 1.0, 1.0)?);
+        assert!(!sets.exhaustive);
+        let shares = sets.list.windows(2).filter_map(|pair| {
+            let (whole, part) = (&pair[0], &pair[1]);
+            let is_part = part.len() < whole.len() && part.iter().all(|node| whole.contains(node));
+            (whole.len() >= 16 && is_part).then(|| part.len() as f64 / whole.len() as f64)
+        });
+        let shares: Vec<f64> = shares.collect();
+        let few = shares.iter().filter(|share| **share < 0.3).count();
+        let many = shares.iter().filter(|share| **share > 0.7).count();
+        // Two sevenths each are expected of some fifty.
+        assert!(
+            few >= 5 && many >= 5,
+            "{few} and {many} of {}",
+            shares.len()
+        );
+        Ok(())
+    }
 }

@@ -138,6 +138,11 @@ mod tests {
             // One rounding of the argument and one of the result.
             assert!((cosine_of_turn(j, n) - cosine).abs() <= f64::EPSILON);
         }
+        // Right angles have no rounding at all.
+        for n in [4, 12, 100] {
+            let right = [0, 1, 2, 3].map(|quarters| cosine_of_turn(quarters * n / 4, n));
+            assert_eq!(right, [1.0, 0.0, -1.0, 0.0], "{n}");
+        }
         for j in 0..17 {
             let cosine = (std::f64::consts::TAU * j as f64 / 17.0).cos();
             // The argument here is rounded by up to 4 × 2⁻⁵³.
