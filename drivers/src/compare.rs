@@ -42,7 +42,25 @@ pub(crate) fn same_path(
     let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
     // Of the approach that is computed with, in which the load is contained.
     let computed = |state: &LoadingState| state.approach + uniform(state.load);
-    let tie = |k: usize| (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
+    // States at one approach joined together, as a window began: they are ties as far as they say themselves.
+    let is_together = |k: usize| {
+        let neighbours = [k.checked_sub(1), Some(k + 1)];
+        let mut neighbours = neighbours
+            .into_iter()
+            .flatten()
+            .filter_map(|k| found.get(k));
+        let own = found[k].approach;
+        neighbours.any(|other| (other.approach - own).abs() <= FIRST_TIE * computed(&found[k]))
+    };
+    let tie = |k: usize| {
+        let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
+        let together = if is_together(k) {
+            found[k].approach_error
+        } else {
+            0.0
+        };
+        tie.max(together)
+    };
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
         let context = || format!("{state:?} in place of {expected:?}");
         ensure!(

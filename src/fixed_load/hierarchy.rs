@@ -132,12 +132,16 @@ fn start_uniformly(level: &mut Level, prescribed: Prescribed) {
     scale(&mut level.iterate.pressure, prescribed);
 }
 
-/// Gives pressures the sum that is prescribed.
+/// Gives pressures the sum that is prescribed. What cannot have it, from a solution that failed, becomes uniform.
 fn scale(pressure: &mut [f64], prescribed: Prescribed) {
     if let Prescribed::Sum(target) = prescribed {
         let factor = target / sum(pressure);
-        for value in pressure {
-            *value *= factor;
+        if factor > 0.0 && factor.is_finite() {
+            for value in pressure {
+                *value *= factor;
+            }
+        } else {
+            pressure.fill(target / pressure.len() as f64);
         }
     }
 }
@@ -169,5 +173,29 @@ fn solve_roughly(
             Ok(())
         }
         Err(error) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever a solution on a coarser grid has come to, the start on the finer one has the sum.
+    #[test]
+    fn starts_have_the_sum() {
+        let prescribed = Prescribed::Sum(6.0);
+        for (mut pressure, expected) in [
+            ([1.0, 2.0, 0.0], [2.0, 4.0, 0.0]),
+            ([0.0; 3], [2.0; 3]),
+            ([f64::NAN, 1.0, 1.0], [2.0; 3]),
+            // The sum is infinite.
+            ([1e308; 3], [2.0; 3]),
+        ] {
+            scale(&mut pressure, prescribed);
+            assert_eq!(pressure, expected);
+        }
+        let mut pressure = [1.0, 2.0, 0.0];
+        scale(&mut pressure, Prescribed::Approach(1.0));
+        assert_eq!(pressure, [1.0, 2.0, 0.0]);
     }
 }

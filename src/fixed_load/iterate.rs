@@ -12,10 +12,13 @@ pub(super) struct Iterate {
     pub(super) contact: NodeSet,
 }
 
+/// Least unit of length of a tolerance, relative to the approach: a hundredth of it is still above rounding.
+const FINEST: f64 = 1e-12;
+
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
-    /// Relative to the approach, at least `floor`, or to `length` if that is smaller.
+    /// Relative to the approach, at least `floor`, or to `length` if that is smaller, though not than rounding.
     pub(super) tolerance: f64,
     pub(super) floor: f64,
     pub(super) length: f64,
@@ -34,7 +37,7 @@ impl Criteria {
             approach
         };
         if self.length < approach {
-            self.length
+            self.length.max(FINEST * approach)
         } else {
             approach
         }
@@ -105,5 +108,28 @@ mod tests {
         let iterate = Iterate::new(100);
         let fields = size_of_val(&iterate.pressure[..]) + size_of_val(&iterate.closure[..]);
         assert_eq!(iterate.bytes(), fields + 100 * size_of::<u32>());
+    }
+    /// The approach, no less than the floor, or a smaller length that rounding does not reach; NaN stays.
+    #[test]
+    fn errors_are_relative_to_a_length_above_rounding() {
+        let criteria = |floor, length| Criteria {
+            tolerance: 1e-2,
+            floor,
+            length,
+            max_iterations: 1,
+            verify: false,
+        };
+        for (floor, length, approach, expected) in [
+            (0.0, f64::INFINITY, 2.0, 2.0),
+            (3.0, f64::INFINITY, 2.0, 3.0),
+            (0.0, 0.5, 2.0, 0.5),
+            (3.0, 0.5, 2.0, 0.5),
+            // A surface that is flat but for rounding.
+            (0.0, 1e-40, 2.0, 2e-12),
+            (3.0, 1e-40, 2.0, 3e-12),
+        ] {
+            assert_eq!(criteria(floor, length).scale(approach), expected);
+        }
+        assert!(criteria(1.0, 0.5).scale(f64::NAN).is_nan());
     }
 }

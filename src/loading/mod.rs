@@ -33,7 +33,9 @@
 //!
 //! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach, of
 //!   which the lowest index comes first. On a periodic half-space it is the approach in the gauge that is computed with,
-//!   which contains the mean displacement under the load.
+//!   which contains the mean displacement under the load. Nodes that touch together as a window begins join in the order of
+//!   their indices at one approach, and are ties as far as their [`LoadingState::approach_error`] says: 10⁻⁸ of the
+//!   approach over the rate at which their gaps close.
 //! * *Certified* are the ends of windows, some fifty events apart: solutions of the contact problem, checked for
 //!   tension and overlap.
 //! * *Estimated* is what lies between: [`LoadingState::approach_error`] says how far the approach of an event may be

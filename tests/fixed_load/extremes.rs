@@ -165,3 +165,32 @@ fn threads_do_not_change_a_bit() {
         }
     }
 }
+
+/// Heights that differ by rounding alone are not worth an iteration, on coarser grids neither.
+#[test]
+fn flat_but_for_rounding() {
+    for (nx, ny) in [(57, 1), (48, 40)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.0).unwrap();
+        for least in [1e-17, 1e-30, 1e-43] {
+            let heights = DMatrix::from_fn(
+                nx,
+                ny,
+                |ix, iy| {
+                    if (ix + iy) % 3 == 0 { least } else { 0.0 }
+                },
+            );
+            let map = HeightMap::new(heights).unwrap();
+            for kernel in Kernel::periodic(grid, 1.0) {
+                let mut solver = solver(&map, &kernel, 1e-8);
+                let solution = solver.solve((nx * ny) as f64).unwrap();
+                check(&solver, &solution, 1e-8);
+                assert_eq!(solution.state.contact_nodes, nx * ny);
+                let effort = solution.effort;
+                assert!(
+                    effort.iterations < 3 && effort.coarse_convolutions < 20.0,
+                    "{effort:?}"
+                );
+            }
+        }
+    }
+}
