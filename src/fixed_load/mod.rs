@@ -20,7 +20,8 @@
 //! * **Preconditioner** of two levels: a sparse inverse Cholesky factor of `C_II`, and bilinear hats for
 //!   the long waves, which are what it misses.
 //! * **Release**: nodes with tension are set free, their neighbours corrected by the
-//!   preconditioner alone, and the step is accepted only if the energy falls.
+//!   preconditioner alone, and the step goes only as far as the energy falls, unless there was tension
+//!   at its start already.
 //! * **Precision**: search directions go through a convolution in single precision, residuals are
 //!   computed afresh in double precision before the errors of these steps matter.
 //! * **Nested grids**: the start comes from a grid of half as many nodes a side, recursively, with
