@@ -124,9 +124,7 @@ impl Judge {
         tally.close("sum of pressures", found.sum, sum, rounding * sum)?;
         let (displacement, lengths) = dense.displace(&pressure);
         let rounding = rounding * (lengths + found.own_approach.abs() + dense.gap().max());
-        let own = dense.own_displacement(sum);
-        let allowed =
-            self.settings.tolerance * dense.own_length(state.approach).max(own) + rounding;
+        let allowed = self.gap_error(state) + rounding;
         let gap = dense.gap() + displacement.add_scalar(-found.own_approach);
         let mut mean_gap = 0.0;
         let mut contact = Vec::new();
@@ -209,6 +207,12 @@ impl Judge {
         Ok(())
     }
 
+    /// What the gaps of a solution may be off by.
+    fn gap_error(&self, state: &ContactState) -> f64 {
+        let own = self.dense.own_displacement(self.dense.scalars(state).sum);
+        self.settings.tolerance * self.dense.own_length(state.approach).max(own)
+    }
+
     fn check_target(
         &self,
         solution: &FixedLoadSolution,
@@ -222,10 +226,8 @@ impl Judge {
                 (state.approach - approach).abs() <= tolerance * approach
             }
             ContactTarget::MeanGap(mean_gap) => {
-                // To which the gaps of a solution under a load are exact.
-                let own = self.dense.own_displacement(self.dense.scalars(state).sum);
-                let off = self.dense.own_length((state.mean_gap - mean_gap).abs());
-                off <= tolerance * self.dense.own_length(state.approach).max(own)
+                let off = (state.mean_gap - mean_gap).abs();
+                self.dense.own_length(off) <= self.gap_error(state)
             }
             ContactTarget::AreaFraction(fraction) => {
                 self.grid.nodes_in(fraction).ok() == Some(state.contact_nodes)

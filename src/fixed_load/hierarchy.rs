@@ -124,12 +124,12 @@ impl Hierarchy {
 
 /// Uniform pressure of the sum that is prescribed, none if it is an approach.
 fn start_uniformly(level: &mut Level, prescribed: Prescribed) {
+    let pressure = &mut level.iterate.pressure;
     let value = match prescribed {
-        Prescribed::Sum(_) => 1.0,
+        Prescribed::Sum(target) => target / pressure.len() as f64,
         Prescribed::Approach(_) => 0.0,
     };
-    level.iterate.pressure.fill(value);
-    scale(&mut level.iterate.pressure, prescribed);
+    pressure.fill(value);
 }
 
 /// Gives pressures the sum that is prescribed. What cannot have it, from a solution that failed, becomes uniform.

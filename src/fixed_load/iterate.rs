@@ -109,6 +109,7 @@ mod tests {
         let fields = size_of_val(&iterate.pressure[..]) + size_of_val(&iterate.closure[..]);
         assert_eq!(iterate.bytes(), fields + 100 * size_of::<u32>());
     }
+
     /// The approach, no less than the floor, or a smaller length that rounding does not reach; NaN stays.
     #[test]
     fn errors_are_relative_to_a_length_above_rounding() {

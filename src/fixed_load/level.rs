@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::budget::MemoryBudget;
 use super::iterate::Iterate;
-use crate::contact::{ContactState, LengthScale};
+use crate::contact::LengthScale;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::{Operator, Preconditioner, sum};
@@ -153,12 +153,6 @@ impl Level {
             Prescribed::Sum(sum) => self.scale.own_displacement(sum),
             Prescribed::Approach(_) => 0.0,
         }
-    }
-
-    /// The length that errors of gaps of a state under a given load are relative to.
-    pub(super) fn error_unit(&self, state: &ContactState) -> f64 {
-        let sum = state.load / self.grid.cell_area();
-        state.approach.max(self.least_length(Prescribed::Sum(sum)))
     }
 
     /// Bytes held.

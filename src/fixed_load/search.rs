@@ -141,8 +141,7 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         let solution = stepper.step_to_load(x.exp())?;
         let state = &solution.state;
         let carrying = solution.carrying_nodes();
-        let error = stepper.tolerance() * stepper.finest().error_unit(state);
-        if sought.is_found(state, carrying, error) {
+        if sought.is_found(state, carrying, stepper.gap_error(state)) {
             return Ok(solution);
         }
         let beyond = sought.beyond(state, carrying);

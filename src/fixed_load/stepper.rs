@@ -103,16 +103,28 @@ impl<'a> Stepper<'a> {
         self.to(Prescribed::Approach(approach), sum, None)
     }
 
-    /// Solves on the finest grid from its iterate, and returns the number of iterations: see [`ActiveSet::solve`].
-    fn solve(&mut self, prescribed: Prescribed, prediction: bool) -> Result<usize, Error> {
-        let finest = &mut self.hierarchy.finest;
-        let criteria = Criteria {
+    /// Greatest error of the gaps of a state that was found under its load.
+    pub(super) fn gap_error(&self, state: &ContactState) -> f64 {
+        let sum = state.load / self.finest().grid.cell_area();
+        let criteria = self.criteria(Prescribed::Sum(sum));
+        criteria.tolerance * criteria.scale(state.approach)
+    }
+
+    /// When a solution on the finest grid is good enough.
+    fn criteria(&self, prescribed: Prescribed) -> Criteria {
+        Criteria {
             tolerance: self.settings.tolerance,
-            floor: finest.least_length(prescribed),
+            floor: self.finest().least_length(prescribed),
             length: f64::INFINITY,
             max_iterations: self.settings.max_iterations,
             verify: true,
-        };
+        }
+    }
+
+    /// Solves on the finest grid from its iterate, and returns the number of iterations: see [`ActiveSet::solve`].
+    fn solve(&mut self, prescribed: Prescribed, prediction: bool) -> Result<usize, Error> {
+        let criteria = self.criteria(prescribed);
+        let finest = &mut self.hierarchy.finest;
         inside(|| ActiveSet::new(finest, prescribed, criteria).solve(prediction))
     }
 
