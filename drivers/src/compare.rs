@@ -10,6 +10,8 @@ use crate::verdict::{Tally, Violation, ensure};
 const TIE: f64 = 1e-9;
 /// The same relative to the mean initial gap, where there is no approach yet.
 const FIRST_TIE: f64 = 1e-13;
+/// Approaches closer than this, relative to the one that is computed with, are one.
+const ROUNDING: f64 = 1e-13;
 
 /// How far states between the ends of windows may be off: `asperity::loading` speaks of 1e-5 at worst on large grids, and a
 /// window is a large part of so short a path as these.
@@ -50,7 +52,7 @@ pub(crate) fn same_path(
             .flatten()
             .filter_map(|k| found.get(k));
         let own = found[k].approach;
-        neighbours.any(|other| (other.approach - own).abs() <= FIRST_TIE * computed(&found[k]))
+        neighbours.any(|other| (other.approach - own).abs() <= ROUNDING * computed(&found[k]))
     };
     let tie = |k: usize| {
         let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);

@@ -81,9 +81,8 @@ impl<'a> ActiveSet<'a> {
             if previous < self.least {
                 (self.least, self.stalled) = (previous, 0);
             }
-            let approach = self.level.iterate.approach;
-            let worst = errors.worst() / criteria.scale(approach);
-            if worst.is_nan() || !approach.is_finite() {
+            let worst = self.relative(&errors);
+            if worst.is_nan() || !self.level.iterate.approach.is_finite() {
                 return Err(self.no_convergence());
             }
             if worst > working.tolerance {
@@ -92,7 +91,7 @@ impl<'a> ActiveSet<'a> {
                 return Ok(self.progress.iterations);
             } else {
                 let errors = self.verify()?;
-                let verified = errors.worst() / criteria.scale(self.level.iterate.approach);
+                let verified = self.relative(&errors);
                 if verified <= criteria.tolerance {
                     return Ok(self.progress.iterations);
                 }
@@ -108,13 +107,17 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
+    /// The worst of the errors, in units of the tolerance's length.
+    fn relative(&self, errors: &Errors) -> f64 {
+        errors.worst() / self.criteria.scale(self.level.iterate.approach)
+    }
+
     /// That no iterate was good enough; if all ended with tension, the last one tells how far it was.
     fn no_convergence(&mut self) -> Error {
         if self.best == f64::INFINITY
             && let Ok(errors) = self.verify()
         {
-            let worst = errors.worst() / self.criteria.scale(self.level.iterate.approach);
-            self.best = self.best.min(worst);
+            self.best = self.best.min(self.relative(&errors));
         }
         Error::NoConvergence {
             residual: self.best,

@@ -41,7 +41,7 @@ pub fn read_surface(path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
 /// As [`ReadOptions::read`], but for units, which are not looked at.
 pub fn channels(path: impl AsRef<Path>) -> Result<Vec<String>, Error> {
     let (_, channels) = parse(path.as_ref())?;
-    Ok(channels.into_iter().map(|channel| channel.name).collect())
+    Ok(names(&channels))
 }
 
 /// What to read from a file, and what it does not say of itself.
@@ -130,8 +130,7 @@ impl ReadOptions {
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();
         let (format, channels) = parse(path)?;
-        let names = channels.iter().map(|channel| channel.name.clone());
-        let names = names.collect();
+        let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
         let height = self.height_factor(&channel, path)?;
         let cell = self.cell(&channel, path)?;
@@ -173,7 +172,7 @@ impl ReadOptions {
         Err(Error::File(FileError::WhichChannel {
             path: path.to_path_buf(),
             wanted: self.channel.clone(),
-            channels: channels.into_iter().map(|channel| channel.name).collect(),
+            channels: names(&channels),
         }))
     }
 
@@ -243,6 +242,13 @@ impl ReadOptions {
             ));
         }
     }
+}
+
+fn names(channels: &[Channel]) -> Vec<String> {
+    channels
+        .iter()
+        .map(|channel| channel.name.clone())
+        .collect()
 }
 
 /// Metres for a unit: the one given, otherwise that of the file.
