@@ -68,13 +68,8 @@ impl Judge {
                     && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
                     && value < unloaded
             }
-            // A number of nodes that no load has, since others touch together with them, or that a load beyond which there
-            // are fewer has.
             (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
-                let pairs = states.iter().zip(states.iter().skip(1));
-                let mut falls = pairs.map(|(one, next)| next.contact_nodes < one.contact_nodes);
-                self.is_unreachable(fraction)
-                    || (self.circumstances.growth == ContactGrowth::Unknown && falls.any(|it| it))
+                self.may_be_missed(fraction)
             }
             _ => false,
         };
@@ -88,6 +83,16 @@ impl Judge {
     fn is_hopeless(&self, error: &Error) -> bool {
         matches!(error, Error::NoConvergence { .. })
             && self.settings.tolerance < SURE * self.circumstances.error
+    }
+
+    /// A number of nodes that no load has, since others touch together with them, or on a body whose contact shrinks, where a
+    /// search may come to a load at which the number is jumped over once more.
+    fn may_be_missed(&self, fraction: f64) -> bool {
+        let states = self.history.states();
+        let pairs = states.iter().zip(states.iter().skip(1));
+        let mut falls = pairs.map(|(one, next)| next.contact_nodes < one.contact_nodes);
+        self.is_unreachable(fraction)
+            || (self.circumstances.growth == ContactGrowth::Unknown && falls.any(|it| it))
     }
 
     /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions are
@@ -231,7 +236,7 @@ impl Judge {
             }
             ContactTarget::AreaFraction(fraction) => {
                 self.grid.nodes_in(fraction).ok() == Some(state.contact_nodes)
-                    || self.is_unreachable(fraction)
+                    || self.may_be_missed(fraction)
             }
             _ => true,
         };

@@ -15,8 +15,8 @@ pub enum ContactTarget {
     /// Nodes that touch at the same load, as on symmetric shapes, make some numbers unreachable: a path
     /// then takes them one after the other, and the solver for one load the nearest number there is.
     /// On a body whose contact shrinks again ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) more load need
-    /// not mean more nodes: there the solver for one load may end in
-    /// [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number.
+    /// not mean more nodes: there the solver for one load may take the nearest number at another load, where this one is jumped
+    /// over, or end in [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number.
     AreaFraction(f64),
     /// This mean gap \[m\], below that of surfaces that just touch.
     ///
