@@ -157,6 +157,7 @@ impl Convolution {
         SingleConvolution {
             engine: self.engine.to_single(unit),
             unit,
+            noise: self.engine.norm_of_symbol(),
         }
     }
 
@@ -226,6 +227,7 @@ pub(crate) struct SingleConvolution {
     engine: Engine<f32>,
     /// Displacements are in units of this under pressures of 1: the greatest value of the symbol.
     unit: f64,
+    noise: f64,
 }
 
 impl SingleConvolution {
@@ -237,6 +239,15 @@ impl SingleConvolution {
     /// What displacements are in units of.
     pub(crate) fn unit(&self) -> f64 {
         self.unit
+    }
+
+    /// What the roundings of a spectrum come to: the root mean square error of displacements \[m\] under pressures of
+    /// which the sum of squares is 1, over that of a rounding.
+    ///
+    /// Roundings spread over all waves alike, and the symbol makes the more of them the longer the wave. Pressures of short
+    /// waves displace little, and yet what they spoil is this.
+    pub(crate) fn noise(&self) -> f64 {
+        self.noise
     }
 
     /// Writes the displacement under `pressure`, whose values should be of the order of 1, into `displacement`.

@@ -24,10 +24,12 @@ struct Direction {
     everywhere: Vec<f32>,
     unit: f64,
     curvature: f64,
+    /// Root of the sum of squares of the values.
+    norm: f64,
 }
 
 /// A step of conjugate gradients on a contact set: by `length` along `values`, which changes displacements by `reach` times
-/// `image` in contact, and times `everywhere` on the whole grid.
+/// `image` in contact, and times `everywhere` on the whole grid. The sum of squares of what is added has the root `norm`.
 #[derive(Debug)]
 pub(crate) struct Step<'a> {
     pub(crate) length: f64,
@@ -35,6 +37,7 @@ pub(crate) struct Step<'a> {
     pub(crate) reach: f64,
     pub(crate) image: &'a [f32],
     pub(crate) everywhere: &'a [f32],
+    pub(crate) norm: f64,
 }
 
 /// Search directions, oldest first: the first ones, if they are to serve other right-hand sides, and the
@@ -69,21 +72,23 @@ impl Directions {
 
     /// Takes the parts along all kept directions out of the residual of x, whose displacements of the whole
     /// grid are u: the directions are conjugate, so that each is a step of its own (Chan and Wan, SIAM J.
-    /// Sci. Comput. 18 (1997) 1698).
-    pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64], u: &mut [f64]) {
-        let mut reaches = Vec::new();
+    /// Sci. Comput. 18 (1997) 1698). Returns the root of the sum of squares of all norms of these steps.
+    pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64], u: &mut [f64]) -> f64 {
+        let (mut reaches, mut norm) = (Vec::new(), 0.0_f64);
         let kept = &self.list[..self.kept.min(self.list.len())];
         for direction in kept {
             let step = direction.step(residual);
             add_scaled(x, step.length, step.values);
             add_scaled(residual, -step.reach, step.image);
             reaches.push(step.reach);
+            norm = norm.hypot(step.norm);
         }
         for_each_chunk(u, CHUNK, |chunk, u| {
             for (direction, reach) in kept.iter().zip(&reaches) {
                 add_scaled(u, *reach, &direction.everywhere[chunk * CHUNK..]);
             }
         });
+        norm
     }
 
     /// The step that takes most of the energy out of `residual`, along the preconditioned residual
@@ -147,7 +152,8 @@ impl Directions {
         let unit = operator.unit();
         let curvature = unit * dot(&values, &image);
         let usable = curvature > 0.0 && curvature.is_finite();
-        Ok(usable.then_some(Direction {
+        Ok(usable.then(|| Direction {
+            norm: dot(&values, &values).sqrt(),
             values,
             image,
             everywhere,
@@ -167,6 +173,7 @@ impl Direction {
             reach: length * self.unit,
             image: &self.image,
             everywhere: &self.everywhere,
+            norm: length.abs() * self.norm,
         }
     }
 }

@@ -57,6 +57,11 @@ impl Operator {
         self.single.unit()
     }
 
+    /// What single precision makes of displacements: see [`SingleConvolution::noise`].
+    pub(crate) fn noise(&self) -> f64 {
+        self.single.noise()
+    }
+
     /// Displacement of every node under the pressures of a contact set, which should be of the order of 1, in single
     /// precision and in units of [`Self::unit`].
     pub(crate) fn step(

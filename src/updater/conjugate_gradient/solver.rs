@@ -2,11 +2,11 @@
 
 use super::equilibrium::Field;
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, NodeSet, Operator, Preconditioner, add_scaled, greatest};
+use crate::krylov::{Directions, NodeSet, Operator, Preconditioner, add_scaled, dot, greatest};
 use crate::{Error, Problem};
 
-/// Error of a displacement in single precision, relative to the greatest. Those of several steps are independent of
-/// each other, and add up in the square.
+/// Error of a displacement in single precision, relative to the greatest, and to the noise that roundings of the spectrum
+/// come to. Those of several steps are independent of each other, and add up in the square.
 const SINGLE: f64 = 2e-7;
 /// Iterations go on to this part of the tolerance, and displacements are computed afresh once single precision
 /// may have spoilt as much of them: together they stay within it.
@@ -78,6 +78,7 @@ impl Solver {
         let (mut b, mut x) = (Vec::new(), Vec::new());
         self.set.fill(&mut b, |_, node| (equation.rhs)(node));
         self.set.gather(&start, &mut x);
+        let noise = SINGLE * self.operator.noise();
         let (mut u, mut drift);
         if base.is_known() {
             let mut change = Vec::new();
@@ -86,14 +87,15 @@ impl Solver {
             u = base.displacement.clone();
             let added = self.operator.add(&self.set, &change, &mut u)?;
             drift = base.drift.hypot(SINGLE * added);
+            drift = drift.hypot(noise * dot(&change, &change).sqrt());
         } else {
             u = self.operator.apply(&self.set, &x)?.to_vec();
             drift = 0.0;
         }
         let mut residual = self.residual(&b, &u);
         let before = worst(&residual);
-        directions.project(&mut x, &mut residual, &mut u);
-        drift = drift.hypot(SINGLE * before);
+        let projected = directions.project(&mut x, &mut residual, &mut u);
+        drift = drift.hypot(SINGLE * before).hypot(noise * projected);
         let (mut iterations, mut last) = (0, f64::INFINITY);
         let (mut z, enough) = (Vec::new(), MARGIN * equation.tolerance);
         let most_drift = enough.min(equation.most_drift);
@@ -115,7 +117,7 @@ impl Solver {
                 add_scaled(&mut residual, -step.reach, step.image);
                 add_scaled(&mut u, step.reach, step.everywhere);
                 let next = worst(&residual);
-                drift = drift.hypot(SINGLE * (now + next));
+                drift = drift.hypot(SINGLE * (now + next)).hypot(noise * step.norm);
                 (now, iterations) = (next, iterations + 1);
             }
             if drift <= most_drift {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::updater::{Dense, LinearUpdater, Solution, SolveRequest};
-use crate::{Boussinesq, Grid, HeightMap};
+use crate::{Boussinesq, Grid, HeightMap, Spectral};
 
 /// 16 × 15 nodes, every third of them in contact.
 fn problem() -> Result<(Problem, ContactSequence), Error> {
@@ -85,6 +85,38 @@ fn what_single_precision_spoils_is_known() -> Result<(), Error> {
     base.drift = 1e-7;
     let (field, _, _) = solved(1e-5, f64::INFINITY, &base)?;
     assert!(distance(&field.pressure, &base.pressure) == 0.0 && (field.drift - 1e-7).abs() < 1e-15);
+    Ok(())
+}
+
+/// On cells 10⁴ times as long as wide short waves displace by 10⁻⁴ of what long ones do: pressures that take out what is left of
+/// them are large, and what they spoil of long waves is far more than what they displace. Computed afresh, no residual is above
+/// the tolerance; 31 of these 40 were, by a factor of up to 4.3, where only what is displaced was counted.
+#[test]
+fn noise_of_long_cells_is_counted() -> Result<(), Error> {
+    let grid = Grid::new(7, 7, 1.0, 1e-4)?;
+    let surface = HeightMap::new(nalgebra::DMatrix::zeros(7, 7))?;
+    let problem = Problem::new(&surface, &Spectral::new(grid, 1.0)?)?;
+    for k in 1..=40 {
+        let nodes = (0..49).filter(|node| (node * node * 7 + node * k) % 41 < 26);
+        let contact = ContactSequence::with_order(grid, nodes)?;
+        let mut solver = Solver::new(&problem);
+        solver.choose(&contact, contact.len());
+        let equation = Equation {
+            rhs: |_| 1.0,
+            tolerance: 1e-11,
+            most_drift: f64::INFINITY,
+            max_iterations: 1000,
+        };
+        let start = vec![0.0; 49];
+        let base = Field::default();
+        let field = solver.solve(&equation, start, &base, &mut Directions::default())?;
+        let mut fresh = Field::of(field.pressure);
+        solver.complete(&mut fresh)?;
+        let left = contact.order().iter();
+        let left = left.map(|&node| (1.0 - fresh.displacement[node]).abs());
+        let left = left.fold(0.0, f64::max);
+        assert!(left <= 1e-11, "{k}: {left:e}");
+    }
     Ok(())
 }
 
