@@ -78,7 +78,9 @@ impl Solver {
         let (mut b, mut x) = (Vec::new(), Vec::new());
         self.set.fill(&mut b, |_, node| (equation.rhs)(node));
         self.set.gather(&start, &mut x);
-        let noise = SINGLE * self.operator.noise();
+        let noise = self.operator.noise();
+        // What a step spoils that displaces by so much, of pressures of that norm.
+        let spoilt = |most: f64, norm: f64| (SINGLE * most).hypot(SINGLE * noise * norm);
         let (mut u, mut drift);
         if base.is_known() {
             let mut change = Vec::new();
@@ -86,8 +88,9 @@ impl Solver {
                 .fill(&mut change, |place, node| x[place] - base.pressure[node]);
             u = base.displacement.clone();
             let added = self.operator.add(&self.set, &change, &mut u)?;
-            drift = base.drift.hypot(SINGLE * added);
-            drift = drift.hypot(noise * dot(&change, &change).sqrt());
+            drift = base
+                .drift
+                .hypot(spoilt(added, dot(&change, &change).sqrt()));
         } else {
             u = self.operator.apply(&self.set, &x)?.to_vec();
             drift = 0.0;
@@ -95,7 +98,7 @@ impl Solver {
         let mut residual = self.residual(&b, &u);
         let before = worst(&residual);
         let projected = directions.project(&mut x, &mut residual, &mut u);
-        drift = drift.hypot(SINGLE * before).hypot(noise * projected);
+        drift = drift.hypot(spoilt(before, projected));
         let (mut iterations, mut last) = (0, f64::INFINITY);
         let (mut z, enough) = (Vec::new(), MARGIN * equation.tolerance);
         let most_drift = enough.min(equation.most_drift);
@@ -117,7 +120,7 @@ impl Solver {
                 add_scaled(&mut residual, -step.reach, step.image);
                 add_scaled(&mut u, step.reach, step.everywhere);
                 let next = worst(&residual);
-                drift = drift.hypot(SINGLE * (now + next)).hypot(noise * step.norm);
+                drift = drift.hypot(spoilt(now + next, step.norm));
                 (now, iterations) = (next, iterations + 1);
             }
             if drift <= most_drift {
