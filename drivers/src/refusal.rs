@@ -1,5 +1,6 @@
 //! Which errors an input deserves.
 
+use asperity::updater::ConjugateGradient;
 use asperity::{ContactGrowth, Error};
 
 use crate::dense::Dense;
@@ -48,6 +49,10 @@ impl Circumstances {
             Error::NoConvergence { .. } => self
                 .tolerance
                 .is_some_and(|tolerance| self.error > tolerance),
+            // Cells so long that paths need a factor.
+            Error::OutOfRange { value, .. } => {
+                self.tolerance.is_some() && *value > ConjugateGradient::MAX_ASPECT
+            }
             Error::Cycling { .. } => self.growth == ContactGrowth::Unknown && self.on_the_edge > 1,
             _ => false,
         }

@@ -4,7 +4,14 @@ use super::budget::MemoryBudget;
 use super::hierarchy::Hierarchy;
 use super::settings::Settings;
 use super::solver::FixedLoadSolver;
-use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
+use crate::krylov::check_cells;
+use crate::{Error, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
+
+/// Greatest ratio of the sides of periodic cells, and what is expected of it.
+const LONGEST_CELLS: (f64, &str) = (
+    PeriodicBoussinesq::MAX_ASPECT,
+    "at most 1000 for a single load; a path with a factor takes any",
+);
 
 /// Sets up a [`FixedLoadSolver`].
 #[derive(Clone, Copy)]
@@ -68,7 +75,7 @@ impl FixedLoadBuilder<'_> {
             .unwrap_or_else(memory::default_budget);
         let grid = self.kernel.grid();
         let boundary = self.kernel.boundary();
-        check_cells(&grid, boundary)?;
+        check_cells(&grid, boundary, LONGEST_CELLS)?;
         let memory = MemoryBudget::new(budget, &grid, boundary, settings.nested)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         // A kernel of one's own may say something else when it is asked again.
@@ -76,20 +83,6 @@ impl FixedLoadBuilder<'_> {
         let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
         Ok(FixedLoadSolver::with(settings, hierarchy))
     }
-}
-
-/// `Ok` if iterations come to an answer on these cells.
-fn check_cells(grid: &Grid, boundary: Boundary) -> Result<(), Error> {
-    let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
-    let is_strip = grid.nx() == 1 || grid.ny() == 1;
-    if boundary == Boundary::Free || is_strip || aspect <= PeriodicBoussinesq::MAX_ASPECT {
-        return Ok(());
-    }
-    Err(Error::OutOfRange {
-        quantity: "ratio of the sides of a periodic cell",
-        value: aspect,
-        expected: "at most 1000 for a single load; a path with a factor takes any",
-    })
 }
 
 impl std::fmt::Debug for FixedLoadBuilder<'_> {
@@ -127,8 +120,8 @@ impl FixedLoadSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Boussinesq;
     use crate::surface::Paraboloid;
+    use crate::{Boussinesq, Grid};
 
     #[test]
     fn a_builder_shows_its_grid_and_settings() -> Result<(), Error> {

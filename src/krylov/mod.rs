@@ -1,6 +1,7 @@
 //! What iterations need: the influence operator on a contact set, a preconditioner of two levels, one
 //! of them a sparse approximation of the inverse, and conjugate gradients, all in O(grid) memory.
 
+mod cells;
 mod coarse;
 mod directions;
 mod lattice;
@@ -11,6 +12,7 @@ mod preconditioner;
 mod sparse_inverse;
 mod vector;
 
+pub(crate) use cells::check_cells;
 pub(crate) use directions::Directions;
 pub(crate) use node_set::{Change, NodeSet};
 pub(crate) use operator::Operator;

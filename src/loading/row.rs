@@ -71,6 +71,14 @@ impl Altered {
         }
     }
 
+    /// Other Schur complements, which do not claim to be exact.
+    pub(super) fn estimates(tolerance: f64, complement: impl Fn(&mut Schur) + 'static) -> Self {
+        Self {
+            complement: Box::new(complement),
+            ..Self::inexact(tolerance)
+        }
+    }
+
     /// Other Schur complements, which claim to be exact.
     pub(super) fn complements(complement: impl Fn(&mut Schur) + 'static) -> Self {
         Self {

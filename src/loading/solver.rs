@@ -147,8 +147,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             Procedure::Windowed(windowed) => {
                 let failure = windowed.produce(run, most_nodes)?;
                 if run.queue.is_empty() {
-                    // Nothing came before it.
-                    return failure.map_or(Ok(()), Err);
+                    // Nothing came before it, and contact that only grows has events up to the last node.
+                    return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));
                 }
                 self.failure = failure;
                 Ok(())

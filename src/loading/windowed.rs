@@ -193,7 +193,7 @@ impl Windowed {
     }
 
     /// The path cannot go on although nodes are left: none of their gaps closes.
-    fn growth_stopped<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Error {
+    pub(super) fn growth_stopped<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Error {
         let node = self.ranking.iter().map(|&(_, node)| node).min();
         run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
     }

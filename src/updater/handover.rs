@@ -29,6 +29,8 @@ const WINDOW: f64 = 3.0e-4;
 /// same on every run. The budget is that of
 /// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
+/// On periodic cells that are [too long](ConjugateGradient::MAX_ASPECT) for iterations the factor stays as long as it fits the budget.
+///
 /// Events are the same on both sides of the seam; before it states are exact to rounding, behind it as
 /// [`loading`](crate::loading) says. A message of the level `info` goes to the crate `log`, and
 /// [`handed_over_at`](Self::handed_over_at) says where it was. For a path exact to rounding whatever it
@@ -138,10 +140,12 @@ impl Handover {
         WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
     }
 
-    /// Whether a factor of `contact` nodes pays on a grid, and leaves room for one more window.
-    fn factor_serves(&self, factor: &RecursiveCholesky, nodes: usize, contact: usize) -> bool {
+    /// Whether a factor of `contact` nodes pays, or there is nothing else, and leaves room for one more window.
+    fn factor_serves(&self, factor: &RecursiveCholesky, problem: &Problem, contact: usize) -> bool {
+        let nodes = problem.grid().nodes();
+        let pays = Self::factor_cost(contact) <= Self::iteration_cost(nodes, contact);
         self.factor_fits(factor, contact)
-            && Self::factor_cost(contact) <= Self::iteration_cost(nodes, contact)
+            && (pays || ConjugateGradient::check_cells(problem).is_err())
     }
 
     /// Whether a factor of `contact` nodes leaves room for one more window.
@@ -194,7 +198,7 @@ impl LinearUpdater for Handover {
         let Stage::Factor(factor) = &self.stage else {
             return Ok(());
         };
-        if self.factor_serves(factor, problem.grid().nodes(), contact.len()) {
+        if self.factor_serves(factor, problem, contact.len()) {
             return Ok(());
         }
         let fits = self.factor_fits(factor, contact.len());
@@ -253,6 +257,13 @@ impl LinearUpdater for Handover {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, Spectral};
+
+    /// Flat, on 128 × 128 nodes.
+    fn flat(kernel: &dyn InfluenceKernel) -> Result<Problem, Error> {
+        let surface = HeightMap::new(nalgebra::DMatrix::zeros(128, 128))?;
+        Problem::new(&surface, kernel)
+    }
 
     /// 10 ps · n², and 0.3 ms, 4 ns a node and 6 ns a node in contact.
     #[test]
@@ -287,19 +298,24 @@ mod tests {
     #[test]
     fn a_factor_fits_with_one_more_window() -> Result<(), Error> {
         let factor = RecursiveCholesky::new();
+        let square = flat(&Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?)?;
         let needed = factor.bytes(364, 64) + 1024 * 64;
         let mut handover = Handover::new();
         for (budget, fits) in [(needed, true), (needed - 1, false)] {
             handover.budget = budget;
             assert_eq!(handover.factor_fits(&factor, 300), fits);
-            assert_eq!(handover.factor_serves(&factor, 128 * 128, 300), fits);
+            assert_eq!(handover.factor_serves(&factor, &square, 300), fits);
         }
         handover.budget = usize::MAX;
         assert_eq!(handover.bytes(300, 64), factor.bytes(300, 64));
         let last = Handover::last_factor(128 * 128);
-        let serves =
-            [last - 1, last].map(|contact| handover.factor_serves(&factor, 128 * 128, contact));
-        assert_eq!(serves, [true, false]);
+        let serves = |problem: &Problem| {
+            [last - 1, last].map(|contact| handover.factor_serves(&factor, problem, contact))
+        };
+        assert_eq!(serves(&square), [true, false]);
+        // There is no other way on cells that iterations are not made for.
+        let long = flat(&Spectral::new(Grid::new(128, 128, 1.0, 1e4)?, 1.0)?)?;
+        assert_eq!(serves(&long), [true, true]);
         // Told of less than one window, it begins without a factor.
         let problem = crate::row::problem(&[0.0; 4])?;
         let first = factor.bytes(64, 64) + 1024 * 64;

@@ -12,6 +12,7 @@ mod ends;
 mod foreign_states;
 mod handover;
 mod inexact_updaters;
+mod long_cells;
 mod path_properties;
 mod periodic_paths;
 mod physical_mean;

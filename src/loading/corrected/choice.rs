@@ -58,7 +58,8 @@ impl Corrected {
         let mut choice = Choice {
             watched: Vec::new(),
             horizon: next.0,
-            group: (next.0 <= first.max(0.0) + tie_of(next.1)).then_some(first.max(0.0)),
+            group: (first.is_finite() && next.0 <= first.max(0.0) + tie_of(next.1))
+                .then_some(first.max(0.0)),
         };
         let tied = others.iter().filter(|(time, _)| *time <= limit);
         if tied.clone().count() < MOST_TIES * self.size {
@@ -176,6 +177,8 @@ mod tests {
             // What should have touched already touches now.
             (-1.0, -1.0, 1e-9, Some(0.0)),
             (-1.0, 0.25, 0.5, Some(0.0)),
+            // What does not touch at all is none.
+            (f64::INFINITY, f64::INFINITY, 1e-9, None),
         ] {
             let mut times = vec![others; 40];
             times[0] = first;

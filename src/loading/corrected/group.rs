@@ -8,20 +8,20 @@ use crate::loading::state::ContactEvent;
 use crate::updater::{LinearUpdater, Touched};
 
 impl Corrected {
-    /// Lets all nodes that touch at a time join, up to `most`, in the order of their indices. Between them
-    /// stiffness and closing rate change in equal steps.
+    /// Lets all nodes that touch at a time join, and those that are known to, up to `most`, in the order of their indices.
+    /// Between them stiffness and closing rate change in equal steps.
     pub(super) fn enter<U: LinearUpdater>(
         &mut self,
         run: &mut LoadingRun<U>,
         scales: &Scales,
-        time: f64,
+        (time, known): (f64, &[usize]),
         most: usize,
     ) -> Result<(), Error> {
         let mut start = run.front;
         let approach = start.approach();
         let together = |&&(other, node): &&(f64, usize)| {
             let line = run.field.line(&run.problem, node, approach);
-            other <= time + scales.tie_of(line.closing)
+            other <= time + scales.tie_of(line.closing) || known.contains(&node)
         };
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
@@ -74,6 +74,7 @@ mod tests {
     fn entered(
         times: [f64; 3],
         tie: f64,
+        known: &[usize],
         most: usize,
     ) -> Result<(LoadingRun<Dense>, Corrected), Error> {
         let mut gaps = [9.0; 9];
@@ -89,21 +90,24 @@ mod tests {
             tolerance: 0.0,
             tie,
         };
-        corrected.enter(&mut run, &scales, 1.0, most)?;
+        corrected.enter(&mut run, &scales, (1.0, known), most)?;
         Ok((run, corrected))
     }
 
-    /// All that touch within a tie, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
+    /// All that touch within a tie or are known to, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
     /// the stiffness of 1/2.
     #[test]
     fn nodes_that_touch_together_join_together() -> Result<(), Error> {
-        for (times, tie, most, order) in [
-            ([1.0; 3], 1e-3, 9, &[0, 2, 4, 6][..]),
-            ([1.0, 1.25, 1.3], 0.25, 9, &[0, 2, 4]),
-            ([1.3, 1.0, 0.5], 0.25, 9, &[0, 4, 6]),
-            ([1.0; 3], 1e-3, 2, &[0, 2, 4]),
+        for (times, tie, known, most, order) in [
+            ([1.0; 3], 1e-3, &[][..], 9, &[0, 2, 4, 6][..]),
+            ([1.0, 1.25, 1.3], 0.25, &[], 9, &[0, 2, 4]),
+            ([1.3, 1.0, 0.5], 0.25, &[], 9, &[0, 4, 6]),
+            ([1.0; 3], 1e-3, &[4], 2, &[0, 2, 4]),
+            // Known to touch, although their times seem to be later.
+            ([1.3, 1.0, f64::INFINITY], 0.25, &[6], 9, &[0, 4, 6]),
+            ([1.3, 1.3, f64::INFINITY], 0.25, &[2], 9, &[0, 2]),
         ] {
-            let (run, corrected) = entered(times, tie, most)?;
+            let (run, corrected) = entered(times, tie, known, most)?;
             assert_eq!(run.contact.order(), order);
             assert_eq!(run.front.approach(), 2.0);
             assert_eq!(

@@ -83,20 +83,28 @@ impl Corrected {
         run: &mut LoadingRun<U>,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
-        let scales = Scales::of(run);
-        self.begin(run)?;
         let most = most_nodes - run.contact.len();
         let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
+        let mut without_events = 0;
         loop {
+            let scales = Scales::of(run);
+            self.begin(run)?;
             let mut choice = self.choose(run, &scales, &extra);
             self.refine(run, &scales, &mut choice, &extra)?;
             if let Some(time) = choice.group {
-                self.enter(run, &scales, time, most)?;
+                self.enter(run, &scales, (time, &[]), most)?;
                 return Ok(None);
             }
             let watched = self.watch(run, choice, longest)?;
             match self.advance(run, &scales, &watched, most)? {
-                Ok(()) => return Ok(None),
+                Ok(()) if !run.queue.is_empty() => return Ok(None),
+                // Its nodes touch later than they seemed to: the next window begins where this one ends.
+                Ok(()) if without_events < MOST_TRIES => {
+                    without_events += 1;
+                    longest = f64::INFINITY;
+                    extra.clear();
+                }
+                Ok(()) => return Err(run.not_monotone("gap or pressure", watched.nodes[0], 0.0)),
                 // The horizon was wrong: watch what overlapped as well, and not so far.
                 Err((outside, time)) => {
                     longest = SHORTER * time;
@@ -217,8 +225,12 @@ impl Corrected {
         }
         let (cut, time) = cut(&events, watched.horizon, most, scales);
         if time <= scales.tie {
-            // All of them touch at once.
-            return self.enter(run, scales, time, most).map(Ok);
+            // All of them touch at once. Their gaps are better known than those of the ranking.
+            let known: Vec<usize> = events[..cut]
+                .iter()
+                .map(|event| watched.nodes[event.position])
+                .collect();
+            return self.enter(run, scales, (time, &known), most).map(Ok);
         }
         let start = run.front;
         let (first, count) = (&events[..cut], run.contact.len());
@@ -233,6 +245,10 @@ impl Corrected {
                     return Err(error);
                 }
             };
+            if found.is_empty() && joined.is_empty() {
+                self.last_span = time;
+                return Ok(Ok(()));
+            }
             if found.is_empty() {
                 let ends = watched.at_end(run);
                 let correction = correct(&watched.schur, &watched.lines, &ends, time);

@@ -327,3 +327,41 @@ fn contacts_at_the_end_are_mended() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Node 1 touches at 10/3 beside node 0: its 2.5 m close at the rate 3/4. In some windows it seems to be 0.1 m away, and the window
+/// ends a little further, without an event. Ten of them in a row are gone through; an eleventh is an error, and no end of the path.
+#[test]
+fn windows_without_events_are_gone_through() -> Result<(), Error> {
+    for (wrong, fails) in [(0, false), (1, false), (10, false), (11, true)] {
+        let windows = std::cell::Cell::new(0);
+        let updater = row::Altered::estimates(1e-6, move |schur| {
+            let window = windows.replace(windows.get() + 1);
+            if window < wrong {
+                // From the middle of 0.1 and 0.105 to the next one.
+                let approach = 0.1025 * f64::from(window);
+                schur.set_displacements(vec![[approach - 2.4, 0.0]; schur.size()]);
+            }
+        });
+        let mut run = row::run(&[0.0, 2.5], updater)?;
+        run.contact.push(0)?;
+        let found = Corrected::new(None, true).produce(&mut run, 2);
+        if fails {
+            assert!(
+                matches!(found, Err(Error::NotMonotone { ix: 1, iy: 0, .. })),
+                "{found:?}"
+            );
+            continue;
+        }
+        assert!(found?.is_none());
+        let states: Vec<_> = run.queue.iter().collect();
+        assert_eq!(
+            (states.len(), states[0].node, states[0].step),
+            (1, (1, 0), 2)
+        );
+        let approach = states[0].approach;
+        assert!((approach - 10.0 / 3.0).abs() < 1e-6, "{wrong}: {approach}");
+        // Node 0 bears a quarter of the approach on 2 m², and the work is half of their product.
+        assert!((states[0].energy - approach * approach / 4.0).abs() < 1e-5);
+    }
+    Ok(())
+}

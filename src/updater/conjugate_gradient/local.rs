@@ -8,8 +8,11 @@ use crate::{Boundary, Grid};
 
 /// Nodes in contact that a local solution takes into account at least, if there are so many in reach.
 const NEAREST: usize = 144;
-/// So far away they may be, in cells of the shorter side.
+/// Nodes among which they are looked for: those of a circle of 32 square cells, the centre left out.
+const CANDIDATES: usize = 3208;
 const REACH: f64 = 32.0;
+/// Squared distances that differ by less, relatively, are those of one shell.
+const SAME: f64 = 1e-9;
 /// Products, and look-ups that take as long, of a local solution.
 pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
 /// Lanes of the sums in single precision.
@@ -38,29 +41,35 @@ pub(super) struct Neighbourhood {
 impl Neighbourhood {
     pub(super) fn new(problem: &Problem) -> Self {
         let (grid, boundary) = (problem.grid(), problem.boundary());
-        let shorter = grid.dx().min(grid.dy());
-        let [reach_x, reach_y] = [(grid.nx(), grid.dx()), (grid.ny(), grid.dy())].map(|(n, d)| {
-            let most = match boundary {
-                Boundary::Free => n - 1,
-                // So that no node is met twice.
-                Boundary::Periodic => (n - 1) / 2,
-            };
-            ((REACH * shorter / d) as usize).max(1).min(most) as i32
+        // Sides of a cell relative to those of a square one of the same area.
+        let side_x = (grid.dx() / grid.dy()).sqrt();
+        let side_y = (grid.dy() / grid.dx()).sqrt();
+        let [most_x, most_y] = [grid.nx(), grid.ny()].map(|n| match boundary {
+            Boundary::Free => n - 1,
+            // So that no node is met twice.
+            Boundary::Periodic => (n - 1) / 2,
         });
-        let mut offsets = Vec::new();
-        for dy in -reach_y..=reach_y {
-            for dx in -reach_x..=reach_x {
-                let (x, y) = (
-                    f64::from(dx) * grid.dx() / shorter,
-                    f64::from(dy) * grid.dy() / shorter,
-                );
-                let squared = x * x + y * y;
-                if (dx, dy) != (0, 0) && squared <= REACH * REACH {
-                    offsets.push((squared, dy, dx));
+        let all = (2 * most_x + 1) * (2 * most_y + 1) - 1;
+        let (mut reach, mut offsets) = (REACH, Vec::new());
+        while offsets.len() < all.min(CANDIDATES) {
+            offsets.clear();
+            let [end_x, end_y] = [(most_x, side_x), (most_y, side_y)]
+                .map(|(most, side)| ((reach / side) as usize).min(most) as i32);
+            for dy in -end_y..=end_y {
+                for dx in -end_x..=end_x {
+                    let (x, y) = (f64::from(dx) * side_x, f64::from(dy) * side_y);
+                    let squared = x * x + y * y;
+                    if (dx, dy) != (0, 0) && squared <= reach * reach {
+                        offsets.push((squared, dy, dx));
+                    }
                 }
             }
+            reach *= 2.0;
         }
         offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        if let Some(&(last, _, _)) = offsets.get(CANDIDATES) {
+            offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
+        }
         Self {
             grid,
             boundary,
@@ -85,7 +94,7 @@ impl Neighbourhood {
         let mut found = Vec::with_capacity(NEAREST + LANES);
         let mut last = 0.0;
         for &(squared, dy, dx) in &self.offsets {
-            if found.len() >= NEAREST && squared > last * (1.0 + 1e-9) {
+            if found.len() >= NEAREST && squared > last * (1.0 + SAME) {
                 break;
             }
             let (mut x, mut y) = (ix + dx, iy + dy);
@@ -266,19 +275,56 @@ mod tests {
         Ok(())
     }
 
-    /// 32 cells of the shorter side: 32 in the row itself and 32 in the one beside it, and half as many of cells that are
-    /// twice as long.
+    /// Two rows of 80 have 159 candidates each way, fewer than are looked at. Of the 101 × 101 nodes of a free grid within 50 cells,
+    /// those within 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
     #[test]
     fn nodes_far_away_are_out_of_reach() -> Result<(), Error> {
-        for (dx, count) in [(1.0, 64), (2.0, 32)] {
+        for dx in [1.0, 2.0, 1e-3] {
             let problem = flat(Grid::new(80, 2, dx, 1.0)?, false)?;
             let found = Neighbourhood::new(&problem).nearest(&set(160, |node| node > 0), 0);
-            assert_eq!(found.len(), count);
+            assert!(found.len() >= NEAREST, "{}", found.len());
         }
+        let wide = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, false)?);
+        let farthest = |beside: &Neighbourhood| beside.offsets.last().map(|last| last.0);
+        assert_eq!(
+            (wide.offsets.len(), farthest(&wide)),
+            (CANDIDATES, Some(1024.0))
+        );
+        let corner = set(51 * 51, |node| node < 20 * 51);
+        // 20 of 51 rows, seen from the middle of the last one: those of 26 rows and more below are not.
+        assert!(
+            wide.nearest(&corner, 50 * 51 + 25)
+                .iter()
+                .all(|&node| node >= 18 * 51)
+        );
+        let around = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, true)?);
+        assert_eq!(
+            (around.offsets.len(), farthest(&around)),
+            (51 * 51 - 1, Some(1250.0))
+        );
         // Of few nodes all are taken into account.
         let problem = flat(Grid::new(80, 2, 1.0, 1.0)?, false)?;
         let found = Neighbourhood::new(&problem).nearest(&set(160, |node| node > 80), 0);
         assert_eq!(found, (81..160).collect::<Vec<u32>>());
+        Ok(())
+    }
+
+    /// On cells sixteen times as long as wide candidates lie within an ellipse, so many times as long in cells across as along.
+    #[test]
+    fn as_many_nodes_are_in_reach_on_long_cells() -> Result<(), Error> {
+        let grid = Grid::new(20, 300, 16.0, 1.0)?;
+        let offsets = Neighbourhood::new(&flat(grid, false)?).offsets;
+        assert!(
+            (CANDIDATES..CANDIDATES + 8).contains(&offsets.len()),
+            "{}",
+            offsets.len()
+        );
+        let [most_x, most_y] = [
+            |o: &(f64, i32, i32)| o.2.abs(),
+            |o: &(f64, i32, i32)| o.1.abs(),
+        ]
+        .map(|along| offsets.iter().map(along).max());
+        assert_eq!((most_x, most_y), (Some(8), Some(128)));
         Ok(())
     }
 

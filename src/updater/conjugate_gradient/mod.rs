@@ -16,6 +16,7 @@ use super::{
     LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile, WindowCost, check_count,
 };
 use crate::contact::ContactSequence;
+use crate::krylov::check_cells;
 use crate::parallel::inside;
 use crate::{Error, Problem};
 use state::State;
@@ -45,6 +46,9 @@ const BYTES_A_CONTACT_NODE: usize = 1000;
 ///   exceeds S by the square of the error of x. The path corrects it by what the next solution shows; see
 ///   [`loading`](crate::loading).
 ///
+/// Cells of a periodic half-space may be [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as wide: on longer ones
+/// [`watch`](LinearUpdater::watch) is an [`Error::OutOfRange`], but a solution on a known contact is not.
+///
 /// Memory: some twenty fields of the grid.
 #[derive(Debug, Clone)]
 pub struct ConjugateGradient {
@@ -68,6 +72,10 @@ impl Default for ConjugateGradient {
 }
 
 impl ConjugateGradient {
+    /// Greatest ratio of the sides of a periodic cell on a path. Beyond it loads come out a part in a thousand off, and
+    /// nodes of one height in another order.
+    pub const MAX_ASPECT: f64 = 100.0;
+
     /// No node in contact, and a tolerance of 10⁻¹⁰.
     #[must_use]
     pub fn new() -> Self {
@@ -104,6 +112,20 @@ impl ConjugateGradient {
         let state = self.state.get_or_insert_with(|| State::new(problem));
         state.grid().check_shape(problem.grid().shape())?;
         Ok(state)
+    }
+
+    /// `Ok` if a path on these cells needs no factor.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] otherwise.
+    pub(super) fn check_cells(problem: &Problem) -> Result<(), Error> {
+        let expected = "at most 100 without a factor; a path with one takes any";
+        check_cells(
+            &problem.grid(),
+            problem.boundary(),
+            (Self::MAX_ASPECT, expected),
+        )
     }
 
     /// `Ok` if a budget in bytes is enough for a grid with so many nodes in contact.
@@ -149,8 +171,8 @@ impl ConjugateGradient {
 impl LinearUpdater for ConjugateGradient {
     /// # Errors
     ///
-    /// [`Error::NoConvergence`], and [`Error::FactorizationFailed`] if the kernel is not positive
-    /// definite.
+    /// [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is not positive
+    /// definite, and [`Error::OutOfRange`] for periodic cells that are too long.
     fn watch(
         &mut self,
         problem: &Problem,
@@ -159,6 +181,7 @@ impl LinearUpdater for ConjugateGradient {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
+        Self::check_cells(problem)?;
         let criteria = self.criteria;
         let state = self.state(problem, contact)?;
         check_count(state.count(), contact.len())?;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
 use crate::updater::Dense;
-use crate::{Boussinesq, Grid};
+use crate::{Boussinesq, Grid, HeightMap, Spectral};
 
 /// 480 bytes for each of 240 nodes, and 1000 for each one in contact.
 #[test]
@@ -178,6 +178,28 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     let position = contact.remove(7)?;
     updater.release(&problem, &contact, 7, position)?;
     updater.watch(&problem, &contact, &[90], &mut schur)
+}
+
+/// On periodic cells that are too long nothing is watched; pressures on a known contact are those of a dense solution.
+#[test]
+fn long_periodic_cells_are_not_watched() -> Result<(), Error> {
+    let grid = Grid::new(6, 5, 1.0, 1e4)?;
+    let heights = nalgebra::DMatrix::from_fn(6, 5, |ix, iy| ((ix * ix + 3 * iy) as f64).sin());
+    let problem = Problem::new(&HeightMap::new(heights)?, &Spectral::new(grid, 1.0)?)?;
+    let contact = ContactSequence::with_order(grid, (0..30).step_by(3))?;
+    let mut updater = ConjugateGradient::new();
+    let refused = updater.watch(&problem, &contact, &[1], &mut Schur::default());
+    assert!(
+        matches!(refused, Err(Error::OutOfRange { value: 1e4, .. })),
+        "{refused:?}"
+    );
+    let request = SolveRequest::exact(10, 3.0);
+    let (mut found, mut expected) = (Solution::default(), Solution::default());
+    updater.solve(&problem, &contact, request, &mut found)?;
+    Dense.solve(&problem, &contact, request, &mut expected)?;
+    // Gaps are exact to 1e-10, and the condition number of the matrix is some 1e5.
+    assert!(error(&found.pressure, &expected.pressure) < 1e-5);
+    Ok(())
 }
 
 /// A box passes on what it is told.

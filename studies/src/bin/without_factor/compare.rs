@@ -4,18 +4,21 @@ use std::collections::HashMap;
 
 use asperity::loading::LoadingState;
 
-/// Events closer than this, relative to their approach, are ties.
+/// Events closer than this, relative to the approach that is computed with, are ties.
 const TIE: f64 = 1e-9;
 /// The same over the mean gap.
 const ROUNDING: f64 = 1e-14;
+/// Approaches closer than this, relative to the one that is computed with, are one.
+const SAME: f64 = 1e-13;
 /// Events on either side over which spacings are averaged.
 const AROUND: usize = 32;
 
 /// How far two states are from each other.
 type Difference<'a> = &'a dyn Fn(&LoadingState, &LoadingState) -> f64;
 
-/// Prints how a path differs from an exact one.
-pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
+/// Prints how a path differs from an exact one. The approach that is computed with contains the displacement `uniform` for each
+/// unit of load.
+pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64) {
     let place: HashMap<(usize, usize), usize> = exact
         .iter()
         .enumerate()
@@ -24,7 +27,22 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState]) {
     let count = found.len().min(exact.len());
     let approach = |k: usize| exact[k].approach;
     // Heights are rounded.
-    let tie = |k: usize| (TIE * approach(k)).max(ROUNDING * exact[0].mean_gap);
+    let computed = |state: &LoadingState| state.approach + uniform * state.load;
+    // Nodes that join at one approach are ties as far as they say themselves.
+    let together = |k: usize| {
+        let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+        let same = |other: &LoadingState| {
+            (other.approach - found[k].approach).abs() <= SAME * computed(&found[k])
+        };
+        match beside.filter_map(|k| found.get(k)).any(same) {
+            true => found[k].approach_error,
+            false => 0.0,
+        }
+    };
+    let tie = |k: usize| {
+        let rounding = ROUNDING * exact[0].mean_gap;
+        (TIE * computed(&exact[k])).max(rounding).max(together(k))
+    };
     let (mut places, mut events) = (0, 0);
     let (mut errors, mut exceeded, mut worst) = (Vec::new(), 0, 0.0_f64);
     for (k, state) in found[..count].iter().enumerate() {

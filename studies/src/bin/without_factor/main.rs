@@ -119,6 +119,9 @@ fn run<U: LinearUpdater>(
         }
     }
     bar.finish_and_clear();
+    if states.len() < most {
+        println!("  ended by: {:?}", path.end());
+    }
     Ok((states, path.timings(), start.elapsed().as_secs_f64()))
 }
 
@@ -170,6 +173,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let (exact, _, seconds) = run(&options, &surface, &kernel, RecursiveCholesky::new())?;
     println!("with a factor: {} events in {seconds:.2} s", exact.len());
-    compare::print(&states, &exact);
+    let uniform = kernel.gauge().unwrap_or(0.0) / grid.cell_area();
+    compare::print(&states, &exact, uniform);
     Ok(())
 }
