@@ -42,8 +42,8 @@ impl Neighbourhood {
     pub(super) fn new(problem: &Problem) -> Self {
         let (grid, boundary) = (problem.grid(), problem.boundary());
         // Sides of a cell relative to those of a square one of the same area.
-        let side_x = (grid.dx() / grid.dy()).sqrt();
-        let side_y = (grid.dy() / grid.dx()).sqrt();
+        let side_x = grid.dx().sqrt() / grid.dy().sqrt();
+        let side_y = grid.dy().sqrt() / grid.dx().sqrt();
         let [most_x, most_y] = [grid.nx(), grid.ny()].map(|n| match boundary {
             Boundary::Free => n - 1,
             // So that no node is met twice.
@@ -325,6 +325,10 @@ mod tests {
         ]
         .map(|along| offsets.iter().map(along).max());
         assert_eq!((most_x, most_y), (Some(8), Some(128)));
+        // However long they are, the search comes to an end.
+        let longest = Grid::new(3, 60, 1e-45, 1e45)?;
+        let offsets = Neighbourhood::new(&flat(longest, false)?).offsets;
+        assert_eq!(offsets.len(), 5 * 119 - 1);
         Ok(())
     }
 
