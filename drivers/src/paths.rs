@@ -3,7 +3,7 @@
 use asperity::loading::{History, LoadingEnd};
 use asperity::{ContactGrowth, ContactRule, Error, Grid, InfluenceKernel, LoadingState};
 
-use crate::compare::same_path;
+use crate::compare::{Bounds, same_path};
 use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::limits::Limit;
@@ -171,8 +171,8 @@ impl<'a> Trial<'a> {
         let whole: Vec<LoadingState> = earlier.iter().chain(events.events()).copied().collect();
         if variant.rule == ContactRule::FirstContact {
             same_path(
-                &whole,
-                expected,
+                (&whole, expected),
+                &Bounds::SMALL,
                 |load| self.dense.uniform_displacement(load),
                 &mut tally,
             )?;

@@ -97,6 +97,16 @@ fn paths_are_right() -> Result<(), Violation> {
 }
 
 #[test]
+fn large_contacts_are_right() -> Result<(), Violation> {
+    compared(drive(
+        "large_contacts_are_right",
+        asperity_drivers::large_contacts,
+        40,
+        400,
+    )?)
+}
+
+#[test]
 fn fixed_loads_are_right() -> Result<(), Violation> {
     compared(drive(
         "fixed_loads_are_right",
@@ -137,6 +147,7 @@ fn earlier_failures_are_mended() -> Result<(), Violation> {
         let driver = match name {
             "paths" => asperity_drivers::paths,
             "fixed_loads" => asperity_drivers::fixed_loads,
+            "large_contacts" => asperity_drivers::large_contacts,
             "parsers" => asperity_drivers::parsers,
             "records" => asperity_drivers::records,
             _ => return Err(Violation::new(format!("there is no driver '{name}'"))),

@@ -1,0 +1,114 @@
+//! Contacts of more nodes than an updater without a factor looks at together.
+
+use asperity::loading::{History, LoadingEnd};
+use asperity::{
+    Boussinesq, ContactRule, Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral,
+};
+
+use crate::compare::{Bounds, same_path};
+use crate::dense::Dense;
+use crate::draw::Draw;
+use crate::kernels::Class;
+use crate::limits::Limit;
+use crate::problem::Sample;
+use crate::surfaces;
+use crate::variant::{Run, Solver, Variant};
+use crate::verdict::{Tally, Verdict, Violation, ensure};
+
+/// Nodes of a side: more than 144 nodes in all, which
+/// [`ConjugateGradient`](asperity::updater::ConjugateGradient) takes in as a whole.
+const SIDES: (usize, usize) = (13, 24);
+
+/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, and follows its path to full contact with a
+/// factor and without. The path without has the same events and is as exact as it says.
+///
+/// # Errors
+///
+/// What is wrong.
+pub fn large_contacts(bytes: &[u8]) -> Verdict {
+    let mut draw = Draw::new(bytes);
+    let sample = sample(&mut draw)
+        .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))?;
+    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+}
+
+fn sample(draw: &mut Draw<'_>) -> Result<Sample, Error> {
+    let (nx, ny) = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
+    let aspect = match draw.whole(0, 2) {
+        0 => 1.0,
+        1 => draw.decades(-1.0, 1.0),
+        _ => draw.decades(-2.0, 2.0),
+    };
+    let dx = draw.decades(-8.0, 0.0);
+    let grid = Grid::new(nx, ny, dx, dx * aspect)?;
+    let (height, modulus) = (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0));
+    let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)) * height)?;
+    let class = draw.one_of(Class::Free, &[Class::Periodic, Class::Spectral]);
+    let kernel: Box<dyn InfluenceKernel + Send + Sync> = match class {
+        Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, modulus)?),
+        Class::Spectral => Box::new(Spectral::new(grid, modulus)?),
+        _ => Box::new(Boussinesq::new(grid, modulus)?),
+    };
+    Ok(Sample {
+        surface,
+        kernel,
+        class,
+    })
+}
+
+fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
+    let grid = sample.kernel.grid();
+    // Enough for iterations on the whole grid, and for the factor of a part of it.
+    let seam = Some(draw.whole(450, 900) * 2048);
+    let variant = Variant {
+        solver: draw.one_of(Solver::Iterations, &[Solver::Handover(seam)]),
+        window: match draw.whole(0, 1) {
+            0 => None,
+            _ => Some(draw.whole(1, 100)),
+        },
+        rule: ContactRule::FirstContact,
+        limit: Limit::None,
+        threads: (draw.whole(1, 3), 1),
+    };
+    let exact = follow(sample, &Variant::REFERENCE)?;
+    let found =
+        follow(sample, &variant).map_err(|violation| violation.during(format!("{variant:?}")))?;
+    ensure!(
+        found.events().len() == grid.nodes(),
+        "{variant:?}: a path of {} events, and not to full contact",
+        found.events().len()
+    );
+    let dense = Dense::new(&sample.kernel, sample.surface.matrix())
+        .in_gauge_of_paths(sample.kernel.contact_growth());
+    let mut tally = Tally::default();
+    same_path(
+        (found.events(), exact.events()),
+        &Bounds::LARGE,
+        |load| dense.uniform_displacement(load),
+        &mut tally,
+    )
+    .map_err(|violation| violation.during(format!("{variant:?}")))?;
+    Ok(tally)
+}
+
+/// A path to full contact.
+fn follow(sample: &Sample, variant: &Variant) -> Result<History, Violation> {
+    match variant.run(sample, &[], |_, _| Ok(()))? {
+        Run::Refused(error) => Err(Violation::new(format!("it was refused: {error}"))),
+        Run::Followed {
+            states,
+            failure: None,
+            end: Some(LoadingEnd::FullContact),
+            ..
+        } => Ok(History::from_iter(states)),
+        Run::Followed {
+            states,
+            failure,
+            end,
+            ..
+        } => Err(Violation::new(format!(
+            "it ended after {} states, {end:?}: {failure:?}",
+            states.len()
+        ))),
+    }
+}
