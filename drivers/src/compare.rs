@@ -101,8 +101,8 @@ pub(crate) fn same_path(
             return Err(Violation::new(context()));
         };
         let apart = (exact[own].approach - expected.approach).abs();
-        // Between its place and the one where it was found.
-        let uncertain = found[own.min(k)..=own.max(k)].iter();
+        // Between its place and the one where it was found, as far as the path goes.
+        let uncertain = found.iter().take(own.max(k) + 1).skip(own.min(k));
         let uncertain = uncertain.fold(0.0, |most: f64, state| most.max(state.approach_error));
         if state.node != expected.node && apart > tie(k).max(bounds.order * uncertain) {
             return Err(Violation::new(format!("{}: {apart:e} apart", context())));
