@@ -19,7 +19,7 @@ use crate::verdict::{Tally, Verdict, Violation, ensure};
 /// [`ConjugateGradient`](asperity::updater::ConjugateGradient) takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
-/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, and follows its path to full contact with a
+/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows its path to full contact with a
 /// factor and without. The path without has the same events and is as exact as it says.
 ///
 /// # Errors
@@ -40,10 +40,14 @@ fn sample(draw: &mut Draw<'_>) -> Result<Sample, Error> {
         _ => draw.decades(-2.0, 2.0),
     };
     let dx = draw.decades(-8.0, 0.0);
-    let grid = Grid::new(nx, ny, dx, dx * aspect)?;
     let (height, modulus) = (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0));
     let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)) * height)?;
     let class = draw.one_of(Class::Free, &[Class::Periodic, Class::Spectral]);
+    let aspect = match class {
+        Class::Free => aspect,
+        _ => aspect.clamp(0.1, 10.0),
+    };
+    let grid = Grid::new(nx, ny, dx, dx * aspect)?;
     let kernel: Box<dyn InfluenceKernel + Send + Sync> = match class {
         Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, modulus)?),
         Class::Spectral => Box::new(Spectral::new(grid, modulus)?),

@@ -73,7 +73,8 @@ impl Default for ConjugateGradient {
 
 impl ConjugateGradient {
     /// Greatest ratio of the sides of a periodic cell on a path. Beyond it loads come out a part in a thousand off, and
-    /// nodes of one height in another order.
+    /// nodes of one height in another order. From 10 on the order of events may be wrong already, if seldom; see
+    /// [`loading`](crate::loading).
     pub const MAX_ASPECT: f64 = 100.0;
 
     /// No node in contact, and a tolerance of 10⁻¹⁰.
