@@ -52,8 +52,8 @@ impl Bounds {
         stiffness: 1e-3,
         interfacial: 1e-2,
         mean_gap: 1e-4,
-        excess: 10.0,
-        order: 10.0,
+        excess: FAR_OFF,
+        order: FAR_OFF,
     };
 }
 

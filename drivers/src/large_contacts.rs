@@ -19,8 +19,8 @@ use crate::verdict::{Tally, Verdict, Violation, ensure};
 /// [`ConjugateGradient`](asperity::updater::ConjugateGradient) takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
-/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows its path to full contact with a
-/// factor and without. The path without has the same events and is as exact as it says.
+/// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows
+/// its path to full contact with a factor and without. The path without has the same events and is as exact as it says.
 ///
 /// # Errors
 ///

@@ -26,7 +26,6 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
         .collect();
     let count = found.len().min(exact.len());
     let approach = |k: usize| exact[k].approach;
-    // Heights are rounded.
     let computed = |state: &LoadingState| state.approach + uniform * state.load;
     // Nodes that join at one approach are ties as far as they say themselves.
     let together = |k: usize| {
@@ -40,6 +39,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
         }
     };
     let tie = |k: usize| {
+        // Heights are rounded.
         let rounding = ROUNDING * exact[0].mean_gap;
         (TIE * computed(&exact[k])).max(rounding).max(together(k))
     };
