@@ -127,6 +127,12 @@ impl Grid {
         (self.nx as f64 * self.dx, self.ny as f64 * self.dy)
     }
 
+    /// Longer side of a cell over the shorter one.
+    #[must_use]
+    pub fn cell_aspect(&self) -> f64 {
+        (self.dx / self.dy).max(self.dy / self.dx)
+    }
+
     /// Area of a cell, ΔA = dx dy \[m²\].
     #[must_use]
     pub fn cell_area(&self) -> f64 {
@@ -225,6 +231,28 @@ impl Grid {
                 found,
             })
         }
+    }
+
+    /// `Ok` for cells of a periodic half-space that are at most so many times as long as wide, up to the rounding of sides that
+    /// are decimal numbers: cells of 10 µm and 1 µm are 10.000000000000002 : 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] otherwise, with `expected` in words.
+    pub(crate) fn check_periodic_cells(
+        &self,
+        most: f64,
+        expected: &'static str,
+    ) -> Result<(), Error> {
+        let value = self.cell_aspect();
+        if value <= most * (1.0 + 4.0 * f64::EPSILON) {
+            return Ok(());
+        }
+        Err(Error::OutOfRange {
+            quantity: "ratio of the sides of a periodic cell",
+            value,
+            expected,
+        })
     }
 
     /// `Ok` if a field, which the error calls `field`, lives on this grid and is finite.

@@ -1,22 +1,18 @@
 //! Contacts of more nodes than an updater without a factor looks at together.
 
 use asperity::loading::{History, LoadingEnd};
-use asperity::{
-    Boussinesq, ContactRule, Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral,
-};
+use asperity::updater::ConjugateGradient;
+use asperity::{ContactRule, InfluenceKernel};
 
 use crate::compare::{Bounds, same_path};
 use crate::dense::Dense;
 use crate::draw::Draw;
-use crate::kernels::Class;
 use crate::limits::Limit;
 use crate::problem::Sample;
-use crate::surfaces;
 use crate::variant::{Run, Solver, Variant};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 
-/// Nodes of a side: more than 144 nodes in all, which
-/// [`ConjugateGradient`](asperity::updater::ConjugateGradient) takes in as a whole.
+/// Nodes of a side: more than 144 nodes in all, which [`ConjugateGradient`] takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
 /// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows
@@ -27,37 +23,9 @@ const SIDES: (usize, usize) = (13, 24);
 /// What is wrong.
 pub fn large_contacts(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = sample(&mut draw)
-        .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))?;
+    let shape = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
+    let sample = Sample::half_space(&mut draw, shape, ConjugateGradient::MAX_ASPECT)?;
     run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
-}
-
-fn sample(draw: &mut Draw<'_>) -> Result<Sample, Error> {
-    let (nx, ny) = (draw.whole(SIDES.0, SIDES.1), draw.whole(SIDES.0, SIDES.1));
-    let aspect = match draw.whole(0, 2) {
-        0 => 1.0,
-        1 => draw.decades(-1.0, 1.0),
-        _ => draw.decades(-2.0, 2.0),
-    };
-    let dx = draw.decades(-8.0, 0.0);
-    let (height, modulus) = (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0));
-    let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)) * height)?;
-    let class = draw.one_of(Class::Free, &[Class::Periodic, Class::Spectral]);
-    let aspect = match class {
-        Class::Free => aspect,
-        _ => aspect.clamp(0.1, 10.0),
-    };
-    let grid = Grid::new(nx, ny, dx, dx * aspect)?;
-    let kernel: Box<dyn InfluenceKernel + Send + Sync> = match class {
-        Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, modulus)?),
-        Class::Spectral => Box::new(Spectral::new(grid, modulus)?),
-        _ => Box::new(Boussinesq::new(grid, modulus)?),
-    };
-    Ok(Sample {
-        surface,
-        kernel,
-        class,
-    })
 }
 
 fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {

@@ -1,6 +1,6 @@
 //! Whole contact problems.
 
-use asperity::{Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq};
+use asperity::{Boussinesq, Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
 use crate::draw::Draw;
 use crate::kernels::{self, Class, Made};
@@ -46,6 +46,17 @@ impl Sample {
         }
     }
 
+    /// Draws cells from square to 100 times as long as wide, heights and a half-space, in ordinary units; periodic cells are
+    /// `longest` times as long as wide at most.
+    pub(crate) fn half_space(
+        draw: &mut Draw<'_>,
+        shape: (usize, usize),
+        longest: f64,
+    ) -> Result<Self, Violation> {
+        half_space(draw, shape, longest)
+            .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))
+    }
+
     /// For messages.
     pub(crate) fn context(&self) -> String {
         let grid = self.kernel.grid();
@@ -62,6 +73,37 @@ impl Sample {
             grid.dy()
         )
     }
+}
+
+fn half_space(
+    draw: &mut Draw<'_>,
+    (nx, ny): (usize, usize),
+    longest: f64,
+) -> Result<Sample, Error> {
+    let aspect = match draw.whole(0, 2) {
+        0 => 1.0,
+        1 => draw.decades(-1.0, 1.0),
+        _ => draw.decades(-2.0, 2.0),
+    };
+    let dx = draw.decades(-8.0, 0.0);
+    let (height, modulus) = (draw.decades(-10.0, -2.0), draw.decades(0.0, 12.0));
+    let surface = HeightMap::new(surfaces::heights(draw, (nx, ny)) * height)?;
+    let class = draw.one_of(Class::Free, &[Class::Periodic, Class::Spectral]);
+    let aspect = match class {
+        Class::Free => aspect,
+        _ => aspect.clamp(1.0 / longest, longest),
+    };
+    let grid = Grid::new(nx, ny, dx, dx * aspect)?;
+    let kernel: Box<dyn InfluenceKernel + Send + Sync> = match class {
+        Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, modulus)?),
+        Class::Spectral => Box::new(Spectral::new(grid, modulus)?),
+        _ => Box::new(Boussinesq::new(grid, modulus)?),
+    };
+    Ok(Sample {
+        surface,
+        kernel,
+        class,
+    })
 }
 
 /// A grid: small squares, strips and whatever lies between, with cells from square to 10⁴ times as long as wide.
@@ -87,7 +129,7 @@ fn grid(draw: &mut Draw<'_>) -> Result<Grid, Violation> {
 
 /// Whether a kernel could only be refused.
 fn judge(error: &Error, grid: &Grid, class: Class) -> Verdict {
-    let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
+    let aspect = grid.cell_aspect();
     let deserved = match (error, class) {
         (Error::OutOfRange { .. }, Class::Periodic | Class::PeriodicInGauge) => {
             aspect > PeriodicBoussinesq::MAX_ASPECT

@@ -13,16 +13,11 @@ pub(crate) fn check_cells(
     boundary: Boundary,
     (most, expected): (f64, &'static str),
 ) -> Result<(), Error> {
-    let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
     let is_strip = grid.nx() == 1 || grid.ny() == 1;
-    if boundary == Boundary::Free || is_strip || aspect <= most {
+    if boundary == Boundary::Free || is_strip {
         return Ok(());
     }
-    Err(Error::OutOfRange {
-        quantity: "ratio of the sides of a periodic cell",
-        value: aspect,
-        expected,
-    })
+    grid.check_periodic_cells(most, expected)
 }
 
 #[cfg(test)]
@@ -37,6 +32,14 @@ mod tests {
             (4, 3, 1.0 / 64.0, Boundary::Periodic, None),
             (4, 3, 65.0, Boundary::Periodic, Some(65.0)),
             (4, 3, 1.0 / 128.0, Boundary::Periodic, Some(128.0)),
+            (4, 3, 64.0 * (1.0 + 1e-15), Boundary::Periodic, None),
+            (
+                4,
+                3,
+                65.0 * (1.0 + 1e-15),
+                Boundary::Periodic,
+                Some(65.0 * (1.0 + 1e-15)),
+            ),
             (4, 3, 1e6, Boundary::Free, None),
             (4, 1, 1e6, Boundary::Periodic, None),
             (1, 3, 1e6, Boundary::Periodic, None),

@@ -41,9 +41,8 @@
 //! * *Estimated* is what lies between: [`LoadingState::approach_error`] says how far the approach of an event may be
 //!   off. Measured, up to 0.3 % of the errors exceed their estimate, by a factor of two. On square cells some 10⁻⁷ of loads and
 //!   stiffnesses is wrong as a rule, and 10⁻⁵ at worst (loads on uncorrelated heights 3·10⁻⁵); of mean gaps 10⁻⁶ of the
-//!   initial one. On cells 10 and 100 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴ and 10⁻³,
-//!   those of a free one by no more than on square cells; beyond 10 times order and estimate of a periodic one are seldom, but then
-//!   grossly, wrong.
+//!   initial one. On cells 10 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴, and longer ones
+//!   [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space cells may be of any shape.
 //!
 //! [`ContactRule::ApproximateOrder`] leaves the last step out, for speed.
 

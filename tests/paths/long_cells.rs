@@ -42,10 +42,10 @@ fn long_cells_have_the_events_of_the_factor() {
     }
 }
 
-/// Periodic cells beyond 100 : 1 need a factor: iterations do not begin, and the default ends as soon as no factor fits.
+/// Periodic cells beyond 10 : 1 need a factor: iterations do not begin, and the default ends as soon as no factor fits.
 #[test]
 fn long_periodic_cells_need_a_factor() {
-    let grid = Grid::new(40, 20, 1.0, 101.0).unwrap();
+    let grid = Grid::new(40, 20, 1.0, 11.0).unwrap();
     let surface = uncorrelated(40, 20);
     let kernel = Spectral::new(grid, 1.0).unwrap();
     let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
@@ -62,7 +62,7 @@ fn long_periodic_cells_need_a_factor() {
             }
         };
         assert!(
-            matches!(error, Error::OutOfRange { value: 101.0, .. }),
+            matches!(error, Error::OutOfRange { value: 11.0, .. }),
             "{error}"
         );
         assert!(path.next().is_none());

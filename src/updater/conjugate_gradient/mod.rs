@@ -72,10 +72,9 @@ impl Default for ConjugateGradient {
 }
 
 impl ConjugateGradient {
-    /// Greatest ratio of the sides of a periodic cell on a path. Beyond it loads come out a part in a thousand off, and
-    /// nodes of one height in another order. From 10 on the order of events may be wrong already, if seldom; see
-    /// [`loading`](crate::loading).
-    pub const MAX_ASPECT: f64 = 100.0;
+    /// Greatest ratio of the sides of a periodic cell on a path. Long waves along longer cells are so soft that the nearest
+    /// nodes do not say enough of a distant one: errors exceed their estimates, and events change places.
+    pub const MAX_ASPECT: f64 = 10.0;
 
     /// No node in contact, and a tolerance of 10⁻¹⁰.
     #[must_use]
@@ -121,7 +120,7 @@ impl ConjugateGradient {
     ///
     /// [`Error::OutOfRange`] otherwise.
     pub(super) fn check_cells(problem: &Problem) -> Result<(), Error> {
-        let expected = "at most 100 without a factor; a path with one takes any";
+        let expected = "at most 10 without a factor; a path with one takes any";
         check_cells(
             &problem.grid(),
             problem.boundary(),

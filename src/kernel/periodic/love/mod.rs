@@ -118,14 +118,7 @@ impl PeriodicBoussinesq {
     /// [`Error::OutOfRange`] for cells more than [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as
     /// wide.
     pub fn new(grid: Grid, e_star: f64) -> Result<Self, Error> {
-        let aspect = (grid.dx() / grid.dy()).max(grid.dy() / grid.dx());
-        if aspect > Self::MAX_ASPECT {
-            return Err(Error::OutOfRange {
-                quantity: "ratio of the sides of a periodic cell",
-                value: aspect,
-                expected: "at most 1000",
-            });
-        }
+        grid.check_periodic_cells(Self::MAX_ASPECT, "at most 1000")?;
         let cells = in_long_sides(&grid)?;
         let symbol = symbol(&cells)?;
         let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));

@@ -248,6 +248,8 @@ fn refuses_what_makes_no_sense() -> Result<(), Error> {
         PeriodicBoussinesq::new(Grid::new(4, 4, 1.0, 1001.0)?, 1.0),
         Err(Error::OutOfRange { .. })
     ));
+    // 1000.0000000000001 : 1.
+    PeriodicBoussinesq::new(Grid::new(4, 4, 1e-3, 1e-6)?, 1.0)?;
     for gauge in [-1e-3, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             PeriodicBoussinesq::new(grid, 1.0)?.with_gauge(gauge),
