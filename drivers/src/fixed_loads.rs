@@ -15,6 +15,10 @@ use crate::verdict::{Tally, Verdict, Violation};
 /// More than the default: where nodes have to join one by one on bodies that promise nothing, some ten thousand are needed.
 const MOST_ITERATIONS: usize = 50_000;
 
+/// Nodes of a side and of a grid. Two coarser grids are made of a side above 32, one above 16.
+const LONGEST_SIDE: usize = 48;
+const MOST_NODES: usize = 600;
+
 /// Draws a contact problem and solves it for several loads, approaches, areas and mean gaps, from nothing, from other
 /// solutions and in sweeps. Every solution is checked densely against the tolerance and compared with the path.
 ///
@@ -27,6 +31,19 @@ pub fn fixed_loads(bytes: &[u8]) -> Verdict {
         Drawn::Sample(sample) => sample,
         Drawn::Refused(verdict) => return verdict,
     };
+    run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
+}
+
+/// The same on more nodes of a half-space, so that solutions start on coarser grids.
+///
+/// # Errors
+///
+/// What is wrong.
+pub fn large_loads(bytes: &[u8]) -> Verdict {
+    let mut draw = Draw::new(bytes);
+    let nx = draw.whole(2, LONGEST_SIDE);
+    let ny = draw.whole(2, LONGEST_SIDE.min(MOST_NODES / nx));
+    let sample = Sample::half_space(&mut draw, (nx, ny), PeriodicBoussinesq::MAX_ASPECT)?;
     run(&sample, &mut draw).map_err(|violation| violation.during(sample.context()))
 }
 

@@ -9,6 +9,7 @@
 //! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
 //! | [`large_contacts()`] | a surface on a half-space, on more nodes | without a factor: the path with one |
 //! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
+//! | [`large_loads()`] | the same on more nodes of a half-space | the same |
 //! | [`parsers()`] | files of heights, hostile ones most of all | what is read after it was written again |
 //! | [`records()`] | paths on disk, tampered with | the record before it was written, and dense fields |
 
@@ -33,7 +34,7 @@ mod variant;
 mod verdict;
 mod walk;
 
-pub use fixed_loads::fixed_loads;
+pub use fixed_loads::{fixed_loads, large_loads};
 pub use large_contacts::large_contacts;
 pub use parsers::parsers;
 pub use paths::paths;

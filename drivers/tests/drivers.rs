@@ -117,6 +117,16 @@ fn fixed_loads_are_right() -> Result<(), Violation> {
 }
 
 #[test]
+fn large_loads_are_right() -> Result<(), Violation> {
+    compared(drive(
+        "large_loads_are_right",
+        asperity_drivers::large_loads,
+        30,
+        400,
+    )?)
+}
+
+#[test]
 fn parsers_are_right() -> Result<(), Violation> {
     compared(drive(
         "parsers_are_right",
@@ -147,6 +157,7 @@ fn earlier_failures_are_mended() -> Result<(), Violation> {
         let driver = match name {
             "paths" => asperity_drivers::paths,
             "fixed_loads" => asperity_drivers::fixed_loads,
+            "large_loads" => asperity_drivers::large_loads,
             "large_contacts" => asperity_drivers::large_contacts,
             "parsers" => asperity_drivers::parsers,
             "records" => asperity_drivers::records,
