@@ -11,12 +11,14 @@ use crate::limits::Limit;
 use crate::problem::Sample;
 use crate::variant::{Run, Solver, Variant};
 use crate::verdict::{Tally, Verdict, Violation, ensure};
+use crate::walk::{Demands, Walk};
 
 /// Nodes of a side: more than 144 nodes in all, which [`ConjugateGradient`] takes in as a whole.
 const SIDES: (usize, usize) = (13, 24);
 
 /// Draws a surface on a half-space, on cells from square to 100 times as long as wide, periodic ones to 10 times, and follows
-/// its path to full contact with a factor and without. The path without has the same events and is as exact as it says.
+/// its path to full contact with a factor and without. The path without has the same events and is as exact as it says, and
+/// some state of that with a factor is looked at densely.
 ///
 /// # Errors
 ///
@@ -32,7 +34,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let grid = sample.kernel.grid();
     // Enough for iterations on the whole grid, and for the factor of a part of it.
     let seam = Some(draw.whole(450, 900) * 2048);
-    let variant = Variant {
+    let mut variant = Variant {
         solver: draw.one_of(Solver::Iterations, &[Solver::Handover(seam)]),
         window: match draw.whole(0, 1) {
             0 => None,
@@ -42,14 +44,24 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         limit: Limit::None,
         threads: (draw.whole(1, 3), 1),
     };
-    let exact = follow(sample, &Variant::REFERENCE)?;
+    variant.threads.1 = variant.threads.0;
+    let mut factor = Variant::REFERENCE;
+    // Each path once more, on another number of threads.
+    if draw.once_in(3) {
+        factor.window = variant.window;
+        factor.threads.1 = draw.whole(1, 3);
+        variant.threads.1 = draw.whole(1, 3);
+    }
+    let exact = follow(sample, &factor)?;
     let found =
         follow(sample, &variant).map_err(|violation| violation.during(format!("{variant:?}")))?;
-    ensure!(
-        found.events().len() == grid.nodes(),
-        "{variant:?}: a path of {} events, and not to full contact",
-        found.events().len()
-    );
+    for path in [&exact, &found] {
+        ensure!(
+            path.events().len() == grid.nodes(),
+            "{variant:?}: a path of {} events, and not to full contact",
+            path.events().len()
+        );
+    }
     let dense = Dense::new(&sample.kernel, sample.surface.matrix())
         .in_gauge_of_paths(sample.kernel.contact_growth());
     let mut tally = Tally::default();
@@ -60,10 +72,18 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         &mut tally,
     )
     .map_err(|violation| violation.during(format!("{variant:?}")))?;
+    // One state of the factor beside a dense solution of its contact, which takes longer than the path.
+    if draw.once_in(2) {
+        let (before, next) = exact.events().split_at(draw.whole(0, grid.nodes() - 1));
+        let mut walk = Walk::new(&dense, grid, Demands::EXACT);
+        walk.skip(before)?;
+        walk.follow(&next[..1])?;
+        tally += walk.tally();
+    }
     Ok(tally)
 }
 
-/// A path to full contact.
+/// A path to full contact, with the same bits on any number of threads.
 fn follow(sample: &Sample, variant: &Variant) -> Result<History, Violation> {
     match variant.run(sample, &[], |_, _| Ok(()))? {
         Run::Refused(error) => Err(Violation::new(format!("it was refused: {error}"))),
@@ -72,7 +92,10 @@ fn follow(sample: &Sample, variant: &Variant) -> Result<History, Violation> {
             failure: None,
             end: Some(LoadingEnd::FullContact),
             ..
-        } => Ok(History::from_iter(states)),
+        } => {
+            variant.check_threads(sample, &[], &states)?;
+            Ok(History::from_iter(states))
+        }
         Run::Followed {
             states,
             failure,

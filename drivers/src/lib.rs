@@ -7,7 +7,7 @@
 //! | driver | input | compared with |
 //! |---|---|---|
 //! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
-//! | [`large_contacts()`] | a surface on a half-space, on more nodes | without a factor: the path with one |
+//! | [`large_contacts()`] | a surface on a half-space, on more nodes | without a factor: the path with one; with one: a dense solution |
 //! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
 //! | [`large_loads()`] | the same on more nodes of a half-space | the same |
 //! | [`parsers()`] | files of heights, hostile ones most of all | what is read after it was written again |

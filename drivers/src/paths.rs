@@ -10,7 +10,7 @@ use crate::limits::Limit;
 use crate::problem::{Drawn, Sample};
 use crate::refusal::Circumstances;
 use crate::variant::{Path, Run, Solver, Variant};
-use crate::verdict::{Tally, Verdict, Violation, ensure};
+use crate::verdict::{Tally, Verdict, Violation};
 use crate::walk::{Demands, Walk};
 
 /// Gaps in contact that solutions by iteration leave, relative to the approach:
@@ -145,7 +145,7 @@ impl<'a> Trial<'a> {
         } else if earlier.is_empty() || !states.is_empty() {
             variant.limit.check_end(end, &states, &self.grid)?;
         }
-        self.check_threads(variant, earlier, &states)?;
+        variant.check_threads(self.sample, earlier, &states)?;
         Ok((tally, states))
     }
 
@@ -182,7 +182,7 @@ impl<'a> Trial<'a> {
         } else if earlier.is_empty() || !states.is_empty() {
             variant.limit.check_end(end, &states, &self.grid)?;
         }
-        self.check_threads(variant, earlier, &states)?;
+        variant.check_threads(self.sample, earlier, &states)?;
         Ok(tally)
     }
 
@@ -232,28 +232,5 @@ impl<'a> Trial<'a> {
             }
         }
         Ok(tally)
-    }
-
-    /// The same bits with another number of threads.
-    fn check_threads(
-        &self,
-        variant: &Variant,
-        earlier: &[LoadingState],
-        states: &[LoadingState],
-    ) -> Result<(), Violation> {
-        if variant.threads.0 == variant.threads.1 {
-            return Ok(());
-        }
-        let other = Variant {
-            threads: (variant.threads.1, variant.threads.0),
-            ..*variant
-        };
-        let run = other.run(self.sample, earlier, |_, _| Ok(()))?;
-        let same = match &run {
-            Run::Refused(_) => states.is_empty(),
-            Run::Followed { states: others, .. } => others == states,
-        };
-        ensure!(same, "another number of threads gives other states");
-        Ok(())
     }
 }

@@ -10,7 +10,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::draw::Draw;
 use crate::limits::Limit;
 use crate::problem::Sample;
-use crate::verdict::Violation;
+use crate::verdict::{Violation, ensure};
 
 /// Who solves the linear systems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,6 +120,29 @@ impl Variant {
         look: impl FnOnce(&mut Path, &[LoadingState]) -> Result<T, Violation> + Send,
     ) -> Result<Run<T>, Violation> {
         pool(self.threads.0)?.install(|| self.run_here(sample, earlier, look))
+    }
+
+    /// The same bits with another number of threads.
+    pub(crate) fn check_threads(
+        &self,
+        sample: &Sample,
+        earlier: &[LoadingState],
+        states: &[LoadingState],
+    ) -> Result<(), Violation> {
+        if self.threads.0 == self.threads.1 {
+            return Ok(());
+        }
+        let other = Self {
+            threads: (self.threads.1, self.threads.0),
+            ..*self
+        };
+        let run = other.run(sample, earlier, |_, _| Ok(()))?;
+        let same = match &run {
+            Run::Refused(_) => states.is_empty(),
+            Run::Followed { states: others, .. } => others == states,
+        };
+        ensure!(same, "another number of threads gives other states");
+        Ok(())
     }
 
     fn run_here<T>(
