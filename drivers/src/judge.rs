@@ -68,9 +68,7 @@ impl Judge {
                     && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
                     && value < unloaded
             }
-            (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
-                self.may_be_missed(fraction)
-            }
+            (ContactTarget::AreaFraction(_), Error::NoConvergence { .. }) => self.contact_shrinks(),
             _ => false,
         };
         if deserved || self.is_hopeless(error) {
@@ -88,11 +86,15 @@ impl Judge {
     /// A number of nodes that no load has, since others touch together with them, or on a body whose contact shrinks, where a
     /// search may come to a load at which the number is jumped over once more.
     fn may_be_missed(&self, fraction: f64) -> bool {
+        self.is_unreachable(fraction) || self.contact_shrinks()
+    }
+
+    /// Whether more load may mean fewer nodes.
+    fn contact_shrinks(&self) -> bool {
         let states = self.history.states();
-        let pairs = states.iter().zip(states.iter().skip(1));
-        let mut falls = pairs.map(|(one, next)| next.contact_nodes < one.contact_nodes);
-        self.is_unreachable(fraction)
-            || (self.circumstances.growth == ContactGrowth::Unknown && falls.any(|it| it))
+        let mut pairs = states.iter().zip(states.iter().skip(1));
+        self.circumstances.growth == ContactGrowth::Unknown
+            && pairs.any(|(one, next)| next.contact_nodes < one.contact_nodes)
     }
 
     /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions are

@@ -13,7 +13,8 @@ pub enum ContactTarget {
     /// [`Grid::nodes_in`](crate::Grid::nodes_in).
     ///
     /// Nodes that touch at the same load, as on symmetric shapes, make some numbers unreachable: a path
-    /// then takes them one after the other, and the solver for one load the nearest number there is.
+    /// then takes them one after the other, and the solver for one load the nearest number there is; of fewer nodes than touch
+    /// first that is theirs, under some load that is too small for others to touch.
     /// On a body whose contact shrinks again ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) more load need
     /// not mean more nodes: there the solver for one load may take the nearest number at another load, where this one is jumped
     /// over, or end in [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number.

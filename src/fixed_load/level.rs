@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use nalgebra::DMatrix;
+
 use super::budget::MemoryBudget;
 use super::iterate::Iterate;
 use crate::contact::LengthScale;
@@ -84,6 +86,12 @@ impl Level {
     /// What turns lengths into pressures and loads of a single cell.
     pub(super) fn unit(&self) -> Scale {
         Scale::new(self.self_influence, self.grid.cell_area())
+    }
+
+    /// Whether all nodes in contact are among those that touch first.
+    pub(super) fn touch_first(&self, contact_map: &DMatrix<bool>) -> bool {
+        let mut nodes = contact_map.iter().zip(&self.gap);
+        nodes.all(|(in_contact, gap)| !in_contact || *gap <= 0.0)
     }
 
     /// Mean initial gap.

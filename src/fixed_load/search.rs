@@ -124,6 +124,9 @@ fn further(change: f64, [from, to]: [f64; 2]) -> f64 {
 
 /// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
 /// a bracket once there is one.
+///
+/// Fewer nodes than touch first cannot be had: as long as no other node is in contact, pressures are proportional to the
+/// load, and the contact is the same under any smaller one.
 fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution, Error> {
     let step = |beyond: f64, slope: f64| (-beyond / slope).clamp(-LONGEST, LONGEST);
     let (mut low, mut high): (Option<f64>, Option<f64>) = (None, None);
@@ -145,6 +148,12 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
             return Ok(solution);
         }
         let beyond = sought.beyond(state, carrying);
+        if beyond > 0.0
+            && matches!(sought, Sought::Nodes(_))
+            && stepper.finest().touch_first(&solution.contact_map)
+        {
+            return Ok(solution);
+        }
         let side = if beyond > 0.0 { &mut high } else { &mut low };
         *side = Some(x);
         let (slope, is_exact) = sought.slope(state);

@@ -131,3 +131,25 @@ fn unreachable_areas() {
         assert_eq!(nodes, nearest);
     }
 }
+
+/// On a worn surface the plateau touches at once, and fewer nodes are not to be had: the answer is the plateau, which was
+/// looked for in vain under ever smaller loads before.
+#[test]
+fn fewer_nodes_than_touch_first() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let worn = rough(&grid, 5).matrix().map(|height| height.min(0.0));
+    let plateau = worn.iter().filter(|height| **height == 0.0).count();
+    assert!((60..200).contains(&plateau), "{plateau}");
+    let map = HeightMap::new(worn).unwrap();
+    for kernel in Kernel::all(grid, 1.0) {
+        let mut worn = solver(&map, &kernel, 1e-8);
+        let asked = [1, plateau - 1, plateau, plateau + 1, 5];
+        let targets = asked.map(|nodes| ContactTarget::AreaFraction(nodes as f64 / 256.0));
+        for (solution, asked) in worn.sweep(targets).zip(asked) {
+            let solution = solution.unwrap();
+            assert_eq!(solution.state.contact_nodes, plateau.max(asked));
+            let steps = solution.effort.convolutions;
+            assert!(steps < 1000, "{steps} convolutions for {asked} nodes");
+        }
+    }
+}
