@@ -68,7 +68,9 @@ impl Judge {
                     && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
                     && value < unloaded
             }
-            (ContactTarget::AreaFraction(_), Error::NoConvergence { .. }) => self.contact_shrinks(),
+            (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
+                self.contact_shrinks() || self.is_never_reached(fraction)
+            }
             _ => false,
         };
         if deserved || self.is_hopeless(error) {
@@ -95,6 +97,14 @@ impl Judge {
         let mut pairs = states.iter().zip(states.iter().skip(1));
         self.circumstances.growth == ContactGrowth::Unknown
             && pairs.any(|(one, next)| next.contact_nodes < one.contact_nodes)
+    }
+
+    /// More nodes than are ever in contact: on a body that promises nothing others may stay away under any load.
+    fn is_never_reached(&self, fraction: f64) -> bool {
+        let most = self.history.states().iter();
+        let most = most.map(|state| state.contact_nodes).max();
+        self.circumstances.growth == ContactGrowth::Unknown
+            && self.grid.nodes_in(fraction).ok() > most
     }
 
     /// The interval of loads with as many nodes in contact as fit into a fraction is nothing, or as narrow as solutions are
