@@ -17,7 +17,8 @@ pub enum ContactTarget {
     /// first that is theirs, under some load that is too small for others to touch.
     /// On a body whose contact shrinks again ([`ContactGrowth::Unknown`](crate::ContactGrowth::Unknown)) more load need
     /// not mean more nodes: there the solver for one load may take the nearest number at another load, where this one is jumped
-    /// over, or end in [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number.
+    /// over, or end in [`Error::NoConvergence`](crate::Error::NoConvergence), and a path finds the number. For more nodes than
+    /// are ever in contact it ends so, too.
     AreaFraction(f64),
     /// This mean gap \[m\], below that of surfaces that just touch.
     ///

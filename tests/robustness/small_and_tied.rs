@@ -8,8 +8,8 @@ use asperity::updater::{
     SolveRequest, Touched, UpdaterProfile,
 };
 use asperity::{
-    Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
-    Problem, Spectral,
+    Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    PeriodicBoussinesq, Problem, Spectral,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -260,7 +260,13 @@ fn catalogue(grids: &[(usize, usize, f64, f64)]) {
                         whole_path(&map, kernel, Handover::new(), None, exact),
                     ),
                 ];
+                let long = kernel.boundary() == Boundary::Periodic
+                    && grid.cell_aspect() > ConjugateGradient::MAX_ASPECT;
                 for (updater, result) in results {
+                    let with_factor = ["dense", "factor", "factor, one by one", "default"];
+                    if long && !with_factor.contains(&updater) {
+                        continue;
+                    }
                     paths += 1;
                     if let Err(what) = result {
                         wrong.push(format!(
@@ -301,6 +307,7 @@ fn other_rectangles() {
     catalogue(&[
         (3, 5, 1.0, 1.0),
         (7, 7, 1.0, 1.0),
+        (10, 3, 1.0, 10.0),
         (10, 3, 1.0, 100.0),
         (12, 11, 1.0, 0.5),
     ]);
