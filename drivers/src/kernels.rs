@@ -65,7 +65,8 @@ pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, definite: boo
     }
 }
 
-fn make(
+/// A kernel of this class.
+pub(crate) fn make(
     draw: &mut Draw<'_>,
     grid: Grid,
     e_star: f64,

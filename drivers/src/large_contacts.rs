@@ -42,9 +42,8 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
         },
         rule: ContactRule::FirstContact,
         limit: Limit::None,
-        threads: (draw.whole(1, 3), 1),
+        threads: [draw.whole(1, 3); 2].into(),
     };
-    variant.threads.1 = variant.threads.0;
     let mut factor = Variant::REFERENCE;
     // Each path once more, on another number of threads.
     if draw.once_in(3) {

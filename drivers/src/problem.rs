@@ -1,6 +1,6 @@
 //! Whole contact problems.
 
-use asperity::{Boussinesq, Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use asperity::{Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq};
 
 use crate::draw::Draw;
 use crate::kernels::{self, Class, Made};
@@ -94,14 +94,9 @@ fn half_space(
         _ => aspect.clamp(1.0 / longest, longest),
     };
     let grid = Grid::new(nx, ny, dx, dx * aspect)?;
-    let kernel: Box<dyn InfluenceKernel + Send + Sync> = match class {
-        Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, modulus)?),
-        Class::Spectral => Box::new(Spectral::new(grid, modulus)?),
-        _ => Box::new(Boussinesq::new(grid, modulus)?),
-    };
     Ok(Sample {
         surface,
-        kernel,
+        kernel: kernels::make(draw, grid, modulus, class)?,
         class,
     })
 }

@@ -94,7 +94,7 @@ impl Boussinesq {
         let e_star = Error::require_positive("composite modulus", e_star)?;
         let (dx, dy) = (grid.dx(), grid.dy());
         let (long, short) = (dx.max(dy), dx.min(dy));
-        let aspect = long / short;
+        let aspect = grid.cell_aspect();
         if aspect > Self::MAX_ASPECT {
             return Err(Error::OutOfRange {
                 quantity: "ratio of the sides of a cell",
