@@ -14,6 +14,9 @@ use crate::walk::{Demands, Walk};
 /// How often the roundings of a solution a tolerance has to be for a solver to be sure of it.
 const SURE: f64 = 100.0;
 
+/// What a mean gap may be off by that was looked for, relative to the one without load.
+const MEAN_GAP_ROUNDING: f64 = 1e-14;
+
 /// Least displacement and pressure of a cell that are computed with, by `asperity::Problem::new`.
 const LEAST: f64 = 1e-140;
 
@@ -38,7 +41,7 @@ impl Judge {
     /// Whether an error could not be helped.
     pub(crate) fn refusal(&self, error: &Error, target: ContactTarget) -> Verdict {
         let states = self.history.states();
-        let unloaded = states.first().map_or(0.0, |state| state.mean_gap);
+        let unloaded = self.unloaded();
         let deserved = match (target, error) {
             // A search may come to loads with pressures beyond what is computed with.
             (
@@ -77,6 +80,12 @@ impl Judge {
             return Ok(Tally::refusal());
         }
         self.circumstances.judge(error)
+    }
+
+    /// The mean gap of surfaces that just touch.
+    fn unloaded(&self) -> f64 {
+        let states = self.history.states();
+        states.first().map_or(0.0, |state| state.mean_gap)
     }
 
     /// Whether the tolerance lies below the roundings of a solution.
@@ -244,7 +253,8 @@ impl Judge {
             }
             ContactTarget::MeanGap(mean_gap) => {
                 let off = (state.mean_gap - mean_gap).abs();
-                self.dense.own_length(off) <= self.gap_error(state)
+                let rounding = MEAN_GAP_ROUNDING * self.unloaded();
+                self.dense.own_length(off) <= self.gap_error(state) || off <= rounding
             }
             ContactTarget::AreaFraction(fraction) => {
                 self.grid.nodes_in(fraction).ok() == Some(state.contact_nodes)

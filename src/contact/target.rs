@@ -24,7 +24,8 @@ pub enum ContactTarget {
     ///
     /// The solver for one load finds it as exactly as the gaps of its solutions are: to its tolerance times the approach,
     /// or times C(0, 0) p̄ on a body whose mean displacement is
-    /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more.
+    /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more; but to no less than 10⁻¹⁴ of the mean gap
+    /// without load, which is rounding.
     MeanGap(f64),
 }
 

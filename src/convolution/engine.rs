@@ -162,6 +162,13 @@ impl Engine<f64> {
         values.fold(0.0, f64::max) * (px as f64 * py as f64)
     }
 
+    /// Least value of the symbol, without its normalisation.
+    pub(super) fn least_symbol(&self) -> f64 {
+        let (px, py) = self.padded();
+        let least = self.filter.symbol.iter().copied();
+        least.fold(f64::INFINITY, f64::min) * (px as f64 * py as f64)
+    }
+
     /// Root of the sum of squares of the symbol over all waves, as it is stored: divided by their number.
     pub(super) fn norm_of_symbol(&self) -> f64 {
         let (px, py) = self.padded();

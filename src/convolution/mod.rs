@@ -149,6 +149,12 @@ impl Convolution {
         }
     }
 
+    /// A lower bound \[m/Pa\] of the eigenvalues of the influence matrix of any nodes, which is a part of a circulant one with
+    /// the values of the symbol as eigenvalues; says nothing unless it is positive.
+    pub(crate) fn least_eigenvalue(&self) -> f64 {
+        self.engine.least_symbol()
+    }
+
     /// The same in single precision: half the memory, about half the time, and displacements with
     /// an error of some 10⁻⁷ of the greatest.
     pub(crate) fn to_single(&self) -> SingleConvolution {

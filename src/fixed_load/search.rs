@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 100;
 const LONGEST: f64 = 1.5;
 /// A bracket of loads that is narrower, relative to the load, holds nothing more.
 const NARROWEST: f64 = 1e-13;
+/// Rounding of a mean gap, relative to the one without load: of gaps, displacements and their sum.
+const ROUNDING: f64 = 1e-14;
 /// Contact area fraction from which to look for a mean gap.
 const TYPICAL: f64 = 0.05;
 
@@ -81,7 +83,9 @@ impl Sought {
     fn is_found(self, state: &ContactState, carrying: usize, error: f64) -> bool {
         match self {
             Self::Nodes(nodes) => state.contact_nodes == nodes && carrying == nodes,
-            Self::MeanGap { target, .. } => (state.mean_gap - target).abs() <= error,
+            Self::MeanGap { target, unloaded } => {
+                (state.mean_gap - target).abs() <= error.max(ROUNDING * unloaded)
+            }
         }
     }
 

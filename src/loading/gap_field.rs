@@ -172,6 +172,11 @@ impl GapField {
         self.revision = Some(contact.revision());
     }
 
+    /// A lower bound of the eigenvalues of the influence matrix: see [`Convolution::least_eigenvalue`].
+    pub(super) fn least_eigenvalue(&self) -> f64 {
+        self.convolution.least_eigenvalue()
+    }
+
     /// The displacement that a pressure field causes.
     pub(super) fn displace(&mut self, pressure: &[f64]) -> Result<&[f64], Error> {
         self.revision = None;

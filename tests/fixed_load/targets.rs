@@ -63,6 +63,27 @@ fn mean_gaps() {
     }
 }
 
+/// Just behind first touch the tolerance of gaps lies below the rounding of their mean, which is met as far as that goes.
+#[test]
+fn mean_gaps_of_surfaces_that_barely_touch() {
+    let grid = Grid::square(48, 1.0).unwrap();
+    let map = rough(&grid, 5);
+    let unloaded = map.matrix().max() - map.matrix().mean();
+    for kernel in Kernel::all(grid, 1.0) {
+        for stiffness in [true, false] {
+            let builder = FixedLoadSolver::builder(&map, &kernel).tolerance(1e-12);
+            let mut solver = builder.stiffness(stiffness).build().unwrap();
+            for digits in 3..=10 {
+                let mean_gap = unloaded * (1.0 - 0.1_f64.powi(digits));
+                let target = ContactTarget::MeanGap(mean_gap);
+                let state = solver.solve_target(target).unwrap().state;
+                let allowed = (1e-12 * state.approach).max(1e-14 * unloaded);
+                assert!((state.mean_gap - mean_gap).abs() <= allowed, "{state:?}");
+            }
+        }
+    }
+}
+
 /// Close to full contact a plate is stiff for the short waves that are left: its approach of mean planes is far less than
 /// C(0, 0) p̄, to which its solutions are exact, and a mean gap is found to the same.
 #[test]
