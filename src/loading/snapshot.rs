@@ -86,7 +86,7 @@ impl Snapshot {
         let least = least.fold(f64::INFINITY, f64::min);
         let allowed_tension = (allowed * self.pressure.max())
             .max(rounding / cell_area)
-            .max(self.open_pressure(run));
+            .max(self.pressure_error(run));
         if least < -allowed_tension {
             return refused("least pressure in contact", least, "no tension");
         }
@@ -101,7 +101,7 @@ impl Snapshot {
     /// What pressures may be off by where gaps in contact are closed to a tolerance τ of the approach only:
     /// `|C⁻¹r| ≤ √n τ δ / λ`, with the least eigenvalue λ. On long cells in a large gauge that is far more than τ of the
     /// pressure. 0 with an exact updater, and where λ is not known.
-    fn open_pressure<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> f64 {
+    fn pressure_error<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> f64 {
         let profile = run.updater.profile();
         let least = run.field.least_eigenvalue();
         if profile.exact || least <= 0.0 {
