@@ -13,10 +13,6 @@ const FIRST_TIE: f64 = 1e-13;
 /// Approaches closer than this, relative to the one that is computed with, are one.
 const ROUNDING: f64 = 1e-13;
 
-/// The part of a load that `asperity::loading` says may be wrong: in a gauge s a length s Σp is taken off an approach to
-/// report that of the mean planes, and what is wrong of it stays.
-const LOAD_AT_WORST: f64 = 1e-5;
-
 /// By how much errors of the approach may exceed their estimate at worst.
 const FAR_OFF: f64 = 10.0;
 
@@ -113,7 +109,7 @@ pub(crate) fn same_path(
             continue;
         }
         // What the state itself says of its approach, and what follows from it.
-        let error = bounds.excess * state.approach_error + LOAD_AT_WORST * uniform(expected.load);
+        let error = bounds.excess * state.approach_error;
         let rate = |state: &LoadingState| {
             let rate = state.contact_stiffness.or(state.interfacial_stiffness);
             rate.filter(|rate| rate.is_finite())
@@ -126,7 +122,7 @@ pub(crate) fn same_path(
                 "approach",
                 state.approach,
                 expected.approach,
-                FAR_OFF * state.approach_error + LOAD_AT_WORST * uniform(expected.load) + tie(k),
+                FAR_OFF * state.approach_error + tie(k),
             ),
             (
                 "load",

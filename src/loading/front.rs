@@ -58,6 +58,16 @@ impl Front {
         self.mean_gap -= self.closing * change;
     }
 
+    /// By how much the load is greater than that of another front.
+    pub(super) fn load_beyond(&self, other: &Self) -> f64 {
+        self.load - other.load
+    }
+
+    /// The load that a part of the stiffness takes over a change of the approach.
+    pub(super) fn load_of(&self, unit_stiffness: f64, approach: f64) -> f64 {
+        self.grid.cell_area() * unit_stiffness * approach
+    }
+
     /// Goes to another approach, with scalars that are yet to be renewed.
     pub(super) fn place_at(&mut self, approach: f64) {
         self.approach = approach;
@@ -75,6 +85,14 @@ impl Front {
         self.load += way * (end.load - walked.load);
         self.mean_gap += way * (end.mean_gap - walked.mean_gap);
         self.energy += way * way * (end.energy - walked.energy);
+    }
+
+    /// What the reported approach may be off by, if the one in the gauge of the kernel is by `approach`, and the load at a
+    /// given one by `load`.
+    pub(super) fn reported_error(&self, approach: f64, load: f64) -> f64 {
+        let stiffness = self.grid.cell_area() * self.unit_stiffness;
+        let open = 1.0 - self.gauge.displacement(stiffness);
+        open.abs() * approach + self.gauge.displacement(load)
     }
 
     /// Lets a node join that adds to stiffness and closing rate; `contact_nodes` are in contact then.
@@ -303,8 +321,15 @@ mod tests {
             );
         }
         assert_eq!(state.contact_stiffness, None);
+        // K = 1/4 N/m: of an approach 1 − s K / ΔA is that of the mean planes, and all of what a load is off by.
+        let of_approach = (1.0 - 0.25 * per_load).abs() * 1e-3;
+        for (load, expected) in [(0.0, of_approach), (2e-3, of_approach + 2e-3 * per_load)] {
+            let found = front.reported_error(1e-3, load);
+            assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
+        }
         let free = Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)?;
         assert_eq!(Front::new(&free).uniform_displacement(3.0), 0.0);
+        assert_eq!(Front::new(&free).reported_error(1e-3, 1.0), 1e-3);
         Ok(())
     }
 }

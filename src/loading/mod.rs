@@ -31,20 +31,29 @@
 //! solution of their own (`docs/theory.md`, section 11). Any updater is served alike that says of itself that it is
 //! not [exact](crate::updater::UpdaterProfile::exact).
 //!
-//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach, of
-//!   which the lowest index comes first. On a periodic half-space it is the approach in the gauge that is computed with,
+//! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a periodic
+//!   half-space it is the approach in the gauge that is computed with,
 //!   which contains the mean displacement under the load. Nodes that touch together as a window begins join in the order of
-//!   their indices at one approach, and are ties as far as their [`LoadingState::approach_error`] says: 10⁻⁸ of the
+//!   their indices at one approach, and are ties as far as the solutions there tell them apart: 10⁻⁸ of that
 //!   approach over the rate at which their gaps close.
 //! * *Certified* are the ends of windows, some fifty events apart: solutions of the contact problem, checked for
-//!   tension and overlap.
+//!   tension and overlap. The end of a window also shows how far its Schur complement was from exact. Where the nearest contact
+//!   does not say what a distant one does, as on a periodic strip of a few rows, windows become shorter, down to one event; a
+//!   window whose end, or a solution in it, contradicts what was expected is taken back.
 //! * *Estimated* is what lies between: [`LoadingState::approach_error`] says how far the approach of an event may be
-//!   off. Measured, up to 0.3 % of the errors exceed their estimate, by a factor of two. On square cells some 10⁻⁷ of loads and
+//!   off; on a periodic half-space this is the approach of the mean planes, as it is reported. Measured, up to 0.3 % of the errors
+//!   exceed their estimate, by a factor of two or three. On square cells some 10⁻⁷ of loads and
 //!   stiffnesses is wrong as a rule, and 10⁻⁵ at worst (loads on uncorrelated heights 3·10⁻⁵); of mean gaps 10⁻⁶ of the
 //!   initial one. On cells 10 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴, and longer ones
 //!   [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space cells may be of any shape.
 //!
-//! [`ContactRule::ApproximateOrder`] leaves the last step out, for speed.
+//! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
+//!
+//! # Ties
+//!
+//! Nodes that touch at once join one by one, in the order of their indices, with a factor and without: so do the nodes that symmetry
+//! maps to each other. At once is within 10⁻¹³ of the approach (or 10⁻¹⁴ of the greatest initial gap) with an exact updater, and
+//! within 10⁻⁹ of the approach with another one.
 
 mod builder;
 mod corrected;

@@ -49,6 +49,11 @@ impl Paper {
         }
         let (front, event) = (run.front, (run.steps(), ContactEvent::Touch, line.node));
         let error = Scales::of(run).overlap(front.approach()) / line.closing.abs();
-        run.enqueue_at(&front, event, contact_nodes, error)
+        run.enqueue_at(
+            &front,
+            event,
+            contact_nodes,
+            front.reported_error(error, 0.0),
+        )
     }
 }

@@ -149,7 +149,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         lines: impl Iterator<Item = Line>,
         horizon: f64,
     ) -> Result<(), Error> {
-        let (nodes, schur) = window.open(lines, horizon);
+        let (nodes, schur) = window.open(lines, (horizon, self.front.approach()));
         self.watch_nodes(nodes, schur)
     }
 
@@ -236,7 +236,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         self.enqueue_at(&front, (step, event, node), contact_nodes, 0.0)
     }
 
-    /// Puts a state into the queue, after something happened to a node there; its approach may be off by
+    /// Puts a state into the queue, after something happened to a node there; the approach that it reports may be off by
     /// `error`.
     pub(super) fn enqueue_at(
         &mut self,

@@ -32,7 +32,7 @@ pub struct LoadingState {
     pub event: ContactEvent,
     /// The node to which it happens, (ix, iy); at a limit the node of the last event.
     pub node: (usize, usize),
-    /// Estimated error of the approach \[m\]: 0 where events are exact to rounding. See
+    /// Estimated error of the approach \[m\], as the state has it: 0 where events are exact to rounding. See
     /// [`loading`](crate::loading) for what it covers.
     pub approach_error: f64,
     /// The scalars of the contact.

@@ -3,15 +3,12 @@
 use std::time::Instant;
 
 use super::run::LoadingRun;
-use super::scales::Scales;
+use super::scales::{Scales, ties_until};
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
 use crate::updater::{LinearUpdater, Solution};
 
-/// Events closer than this in approach, relative to it, are taken to be simultaneous: well above the
-/// rounding errors of a ratio of two solutions, and below what a state may be off.
-const TIE: f64 = 1e-13;
 /// Events at a single approach, for each node of the grid, after which no end of them is expected.
 /// Nodes that touch and leave together are sorted out by the least index among them, which comes to
 /// an end (Murty, Opsearch 11 (1974) 123–130), in practice after one or two events a node.
@@ -74,7 +71,8 @@ impl Stepwise {
         let event = (step, next.event, next.node);
         let checked = self.survey(run).and_then(|()| {
             let front = run.front;
-            run.enqueue_at(&front, event, contact_nodes, next.error)
+            let error = front.reported_error(next.error, 0.0);
+            run.enqueue_at(&front, event, contact_nodes, error)
         });
         // The order of contact must be that of the states before; the updater stays without the node. One
         // that touched may stay where it is: behind all others.
@@ -188,7 +186,7 @@ impl Stepwise {
             .clone()
             .map(|event| event.approach)
             .fold(f64::INFINITY, f64::min);
-        let tied = first + TIE * first;
+        let tied = ties_until(first);
         events
             .filter(|event| event.approach <= tied && event.approach < f64::INFINITY)
             .min_by_key(|event| event.node)

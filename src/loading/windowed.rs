@@ -8,7 +8,7 @@ use super::gap_field::Line;
 use super::ranking::rank;
 use super::run::LoadingRun;
 use super::state::ContactEvent;
-use super::window::Window;
+use super::window::{Window, time_of_ties};
 use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
 
@@ -63,7 +63,7 @@ impl Windowed {
         }
         rank(run, &mut self.ranking)?;
         let start = Instant::now();
-        let (size, horizon) = self.choose(size, self.multiple(run));
+        let (size, horizon) = self.choose(size, self.multiple(run), run.front.approach());
         run.timings.choice += start.elapsed();
         let (problem, approach) = (&run.problem, run.front.approach());
         let chosen: Vec<Line> = self.ranking[..size]
@@ -112,8 +112,18 @@ impl Windowed {
     }
 
     /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
-    /// number, `size` or a little less, and the horizon, the smallest time among the others.
-    fn choose(&mut self, mut size: usize, multiple: usize) -> (usize, f64) {
+    /// number, `size` or a little less, and the horizon: until then none of the others touches, nor one of a lower index at
+    /// once with one that is watched.
+    fn choose(&mut self, mut size: usize, multiple: usize, approach: f64) -> (usize, f64) {
+        let first = self.ranking.iter().map(|(time, _)| *time);
+        let first = first.fold(f64::INFINITY, f64::min);
+        let tied = time_of_ties(approach, first);
+        // So that of more nodes that touch at once than can be watched those of the lowest indices are.
+        for (time, _) in &mut self.ranking {
+            if *time <= tied {
+                *time = first;
+            }
+        }
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let mut horizon = f64::INFINITY;
         let mut among = self.ranking.len();
@@ -141,7 +151,13 @@ impl Windowed {
                 front += 1;
             }
         }
-        (size, horizon)
+        let until = if horizon > first {
+            // What ties with another node waits for it.
+            2.0 * horizon - time_of_ties(approach, horizon)
+        } else {
+            tied
+        };
+        (size, if until.is_nan() { horizon } else { until })
     }
 
     /// Checks the contact after the window from a solution there, and takes back its last events as long as

@@ -24,6 +24,7 @@ mod reference_paths;
 mod releases;
 mod small_without_factor;
 mod smallest_gap;
+mod strips;
 mod ties;
 mod undisturbed;
 mod without_factor;

@@ -8,6 +8,8 @@ use crate::updater::LinearUpdater;
 
 /// A window watches this part of the contact at most, as long as that is small.
 const PART: usize = 4;
+/// Where windows have few events, so many nodes are watched for each of them.
+const AHEAD: usize = 2;
 /// And so many nodes always: what ties with them is watched too, and told apart.
 pub(super) const FEWEST: usize = 8;
 /// Ties with the last watched node are watched too, up to so many times the window.
@@ -32,8 +34,10 @@ impl Corrected {
         extra: &[usize],
     ) -> Choice {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let wanted = self.most_events().saturating_mul(AHEAD);
+        let wanted = wanted.min(run.contact.len() / PART);
         let ranking = &mut self.ranking;
-        let size = self.size.min((run.contact.len() / PART).max(FEWEST));
+        let size = self.size.min(wanted.max(FEWEST));
         if ranking.len() <= size {
             let mut watched = ranking.clone();
             watched.sort_by(order);

@@ -27,6 +27,14 @@ pub(super) struct Correction {
     pub(super) updated: bool,
 }
 
+impl Correction {
+    /// The greatest part of a pivot that was taken off a Schur complement.
+    pub(super) fn left_out(&self, schur: &DMatrix<f64>) -> f64 {
+        let left = self.schur.diagonal().component_div(&schur.diagonal());
+        left.iter().fold(0.0, |most, left| (1.0 - left).max(most))
+    }
+}
+
 /// Corrects a Schur complement S̃ of lines `a − t b` by a window's end at `time`.
 ///
 /// With the pressures at the end in the columns of W, the end shows `V = (S̃ − S) W`, and

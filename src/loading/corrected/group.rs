@@ -51,6 +51,7 @@ impl Corrected {
         run.front = start;
         self.survey(run)?;
         let [stiffness, closing] = start.missing(&run.front);
+        let error = start.reported_error(error, start.load_of(stiffness, error));
         let share = (group.len() as f64).recip();
         for (k, node) in group.into_iter().enumerate() {
             let contact_nodes = count + k + 1;

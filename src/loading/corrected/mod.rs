@@ -25,7 +25,7 @@ use crate::Error;
 use crate::updater::{LinearUpdater, Schur, Touched};
 use choice::{Choice, FEWEST};
 use correction::{Correction, correct};
-use play::{Course, play};
+use play::{Course, Played, play};
 use ties::Settled;
 use watched::{Watched, cut};
 
@@ -37,6 +37,17 @@ const WATCHED_UNSETTLED: usize = 128;
 const MOST_TRIES: usize = 10;
 /// What is left of a window that let a node overlap that was not watched.
 const SHORTER: f64 = 0.7;
+/// Events of a window times the part of a pivot that its Schur complement leaves out: windows have no more. Schur complements of
+/// square domains leave out 10⁻³, so that nothing is limited; those of a periodic strip of two rows 0.5, and each event has a
+/// solution of its own.
+const LEFT_OUT: f64 = 0.2;
+/// What was left out counts for the next windows too, each time by this part.
+const REMEMBERED: f64 = 0.8;
+/// What the end of a window may change of the times in it on average, over the mean spacing of events: 0.1 at worst on square domains.
+/// A window whose end changes more is taken back.
+const MOST_CHANGE: f64 = 0.3;
+/// Events that the solution at a window's end determines, whatever its Schur complement is.
+const CERTAIN: usize = 2;
 
 /// Finds events in windows that are corrected at their end.
 #[derive(Debug)]
@@ -51,6 +62,8 @@ pub(super) struct Corrected {
     /// How far the last window went, and the span that the rates at hand serve.
     last_span: f64,
     rate_span: f64,
+    /// The part of a pivot that Schur complements were off by lately, at worst.
+    left_out: f64,
 }
 
 /// What a contact at a window's end contradicts.
@@ -74,6 +87,7 @@ impl Corrected {
             ranked: None,
             last_span: 0.0,
             rate_span: 0.0,
+            left_out: 0.0,
         }
     }
 
@@ -223,7 +237,8 @@ impl Corrected {
                 }
             });
         }
-        let (cut, time) = cut(&events, watched.horizon, most, scales);
+        let kept = most.min(with_ties(&events, self.most_events(), scales));
+        let (cut, time) = cut(&events, watched.horizon, kept, scales);
         if time <= scales.tie {
             // All of them touch at once. Their gaps are better known than those of the ranking.
             let known: Vec<usize> = events[..cut]
@@ -253,10 +268,31 @@ impl Corrected {
                 let ends = watched.at_end(run);
                 let correction = correct(&watched.schur, &watched.lines, &ends, time);
                 let played = (first, &joined[..], time);
-                let mut settled = ties::second_pass(watched, &correction, played);
-                if self.settles {
-                    settled = ties::settle(run, scales, watched, &correction, settled, &start)?;
-                }
+                let settled = ties::second_pass(watched, &correction, played);
+                let left_out = correction.left_out(&watched.schur);
+                self.left_out = left_out.max(REMEMBERED * self.left_out);
+                let change = ties::mean_change(first, &settled.events, time);
+                let most_change = MOST_CHANGE * time / joined.len() as f64;
+                // Half of it, which may be all of it where events tie.
+                let half = joined.len() / 2;
+                let certain = joined.len() <= CERTAIN || with_ties(&events, half, scales) >= cut;
+                let is_poor =
+                    !certain && (change > most_change || joined.len() > 2 * self.most_events());
+                let settled = match is_poor {
+                    true => None,
+                    false if self.settles => {
+                        let end = (&start, certain);
+                        ties::settle(run, scales, watched, &correction, settled, end)?
+                    }
+                    false => Some(settled),
+                };
+                let Some(settled) = settled else {
+                    run.truncate(count)?;
+                    run.front = start;
+                    self.left_out = self.left_out.max(LEFT_OUT / half as f64);
+                    run.timings.taken_back += 1;
+                    return Ok(Err((Ranking::new(), f64::INFINITY)));
+                };
                 return self
                     .finish(run, watched, &correction, &settled, (&start, time))
                     .map(Ok);
@@ -273,6 +309,12 @@ impl Corrected {
         }
         let node = watched.nodes[first[0].position];
         Err(run.not_monotone("gap or pressure", node, 0.0))
+    }
+
+    /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with
+    /// their number.
+    fn most_events(&self) -> usize {
+        ((LEFT_OUT / self.left_out) as usize).max(1)
     }
 
     /// Lets nodes join, solves at the window's end, and looks for what contradicts them there.
@@ -341,6 +383,15 @@ impl Corrected {
         self.ranked = Some((run.contact.revision(), run.front.approach()));
         states::enqueue(run, watched, correction, settled, (start, time))
     }
+}
+
+/// So many events, and what ties with the last of them.
+fn with_ties(events: &[Played], most: usize, scales: &Scales) -> usize {
+    let few = most.clamp(1, events.len());
+    let tied = events[few - 1..].windows(2);
+    few + tied
+        .take_while(|pair| pair[1].time - pair[0].time <= scales.tie)
+        .count()
 }
 
 impl Contradictions {

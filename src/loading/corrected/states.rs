@@ -10,6 +10,13 @@ use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
 use crate::updater::LinearUpdater;
 
+/// What near ties take for the error of a time is exceeded by up to a hundredth of the events, by a factor of two: states say so many
+/// times as much.
+const OF_TIME: f64 = 2.0;
+/// The error of a load at a given approach is estimated as so many times what its window lacks at the end, and what the errors of
+/// events so far make of it.
+const OF_LOAD: f64 = 3.0;
+
 /// Queues the states of the events of a window from `start` to the front.
 ///
 /// Stiffness and closing rate grow as the pivots say, all of them scaled so that they end where they should;
@@ -43,6 +50,8 @@ pub(super) fn enqueue<U: LinearUpdater>(
         fronts.push(walked);
     }
     walked.advance(run.front.approach());
+    // What the load may be off by: what is spread, and what the events so far would change of it.
+    let mut load_error = run.front.load_beyond(&walked).abs();
     for (k, (mut front, event)) in fronts.into_iter().zip(&settled.events).enumerate() {
         let contact_nodes = count + k + 1;
         front.pin(&walked, &run.front, event.time / time);
@@ -53,6 +62,8 @@ pub(super) fn enqueue<U: LinearUpdater>(
         let step = run.releases.steps(contact_nodes);
         let node = watched.nodes[event.position];
         let error = settled.errors[k];
+        load_error += front.load_of(scaled[0] * steps[k][0], error);
+        let error = front.reported_error(OF_TIME * error, OF_LOAD * load_error);
         run.enqueue_at(
             &front,
             (step, ContactEvent::Touch, node),
@@ -122,7 +133,7 @@ mod tests {
             for (k, state) in found.iter().enumerate() {
                 assert_eq!((state.step, state.contact_nodes), (k + 2, k + 2));
                 assert_eq!(state.node, ([2, 4][k], 0));
-                assert_eq!(state.approach_error, [1e-3, 2e-3][k]);
+                assert_eq!(state.approach_error, [2e-3, 4e-3][k]);
                 let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.front.state(k + 2);
                 let pairs = [
                     (state.approach, expected.approach),

@@ -1,5 +1,7 @@
 //! Events that are too close to each other to be told apart without a solution of their own.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::correction::Correction;
@@ -29,24 +31,32 @@ const POOR: f64 = 1e-3;
 const OF_ERROR: f64 = 0.04;
 /// After a solution, errors grow with the way from it by this part.
 const OF_WAY: f64 = 0.05;
+/// Closing rates and pivots of nodes that symmetry maps to each other differ by less, relatively, and their gaps and the
+/// ways to their contact by so many times the tolerance; so do no others that touch at nearly the same time.
+const SAME_RATE: f64 = 2e-5;
+const SAME_PIVOT: f64 = 1e-4;
+const SAME_GAP: f64 = 20.0;
+/// A solution that finds an event so many times its estimated error away contradicts the whole window.
+const CONTRADICTED: f64 = 10.0;
 
 /// The events of a window in their final order.
 #[derive(Debug)]
 pub(super) struct Settled {
     pub(super) events: Vec<Played>,
-    /// Estimated error of each time.
+    /// Estimated error of each time, in the gauge of the kernel.
     pub(super) errors: Vec<f64>,
 }
 
-/// Settles what is too close to be told apart in a window, which began at the front `start`.
+/// Settles what is too close to be told apart in a window, which began at the front `start`. `None` if a solution is far from
+/// what was expected there, unless the window is `certain`.
 pub(super) fn settle<U: LinearUpdater>(
     run: &mut LoadingRun<U>,
     scales: &Scales,
     watched: &Watched,
     correction: &Correction,
     settled: Settled,
-    start: &Front,
-) -> Result<Settled, Error> {
+    (start, certain): (&Front, bool),
+) -> Result<Option<Settled>, Error> {
     let mut ties = Ties {
         watched,
         correction,
@@ -54,20 +64,22 @@ pub(super) fn settle<U: LinearUpdater>(
         count: run.contact.len() - settled.events.len(),
         approach: start.approach(),
         settled,
+        certain,
         asked: None,
     };
     let mut next = 0;
+    ties.make_orbits_equal(0..ties.settled.events.len());
     while next < ties.settled.events.len() {
         next = match ties.run_from(next) {
-            Some(last) if ties.is_orbit(next, last) => {
-                ties.make_equal(next, last);
-                last + 1
-            }
-            Some(last) => ties.resolve(run, next, last)?,
+            Some(last) if ties.is_orbit(next, last) => last + 1,
+            Some(last) => match ties.resolve(run, next, last)? {
+                Some(next) => next,
+                None => return Ok(None),
+            },
             None => next + 1,
         };
     }
-    Ok(ties.settled)
+    Ok(Some(ties.settled))
 }
 
 /// Plays the events that joined under the corrected Schur complement, and estimates their errors. `first` is
@@ -88,12 +100,8 @@ pub(super) fn second_pass(
         }
     }
     let (other, _) = play(&watched.schur, &correction.hermite, end, at_most);
-    let distance = |events: &[Played], event: &Played| {
-        let found = events.iter().find(|other| other.position == event.position);
-        found.map_or(time, |found| (found.time - event.time).abs())
-    };
     let count = events.len() as f64;
-    let change: f64 = events.iter().map(|event| distance(first, event)).sum();
+    let change = mean_change(first, &events, time);
     let part = if correction.updated {
         OF_CHANGE
     } else {
@@ -102,14 +110,26 @@ pub(super) fn second_pass(
     let error = |event: &Played| {
         let [_, closing] = watched.lines[event.position];
         let of_rate = RATE_ERROR * event.time / closing;
-        let changed = part * (distance(first, event) + change / count);
-        let between = BETWEEN_CORRECTIONS * distance(&other, event);
+        let changed = part * (distance(first, event, time) + change);
+        let between = BETWEEN_CORRECTIONS * distance(&other, event, time);
         between.max(changed).max(OF_SPACING * time / count) + of_rate
     };
     Settled {
         errors: events.iter().map(error).collect(),
         events,
     }
+}
+
+/// How far an event is from where a pass has it, in a window that ends after `time`.
+fn distance(pass: &[Played], event: &Played, time: f64) -> f64 {
+    let found = pass.iter().find(|other| other.position == event.position);
+    found.map_or(time, |found| (found.time - event.time).abs())
+}
+
+/// The mean distance of some events from where a pass has them.
+pub(super) fn mean_change(pass: &[Played], events: &[Played], time: f64) -> f64 {
+    let changes = events.iter().map(|event| distance(pass, event, time));
+    changes.sum::<f64>() / events.len() as f64
 }
 
 /// A window whose events are being settled.
@@ -121,6 +141,8 @@ struct Ties<'a> {
     count: usize,
     approach: f64,
     settled: Settled,
+    /// Whether no solution can contradict it.
+    certain: bool,
     /// The event that the last solution was for, if it did not settle everything.
     asked: Option<usize>,
 }
@@ -157,48 +179,86 @@ impl Ties<'_> {
         Some(last)
     }
 
-    /// Whether events are those of nodes that symmetry maps to each other: the same gap and the same closing
-    /// rate when the window began, and the same time. Before first touch all nodes close at the same rate, and
-    /// what joins first tells them apart.
+    /// Whether symmetry maps the nodes of two events to each other: they had the same gap and the same closing rate when the
+    /// window began, they give way alike, and their times are not told apart. Before first touch all nodes close at the same
+    /// rate, and what joins first tells them apart: only ties count.
+    fn are_images(&self, event: usize, other: usize) -> bool {
+        let Settled { events, errors } = &self.settled;
+        let (watched, scales) = (self.watched, self.scales);
+        let [p, q] = [event, other].map(|event| events[event].position);
+        let ([a, b], [other_a, other_b]) = (watched.lines[p], watched.lines[q]);
+        let [own, other_own] = [p, q].map(|p| self.correction.schur[(p, p)]);
+        let gap = SAME_GAP * scales.tolerance * scales.length;
+        let way = (gap / b).min(errors[event] + errors[other]);
+        let apart = if self.count == 0 { 0.0 } else { way };
+        (events[event].time - events[other].time).abs() <= apart.max(scales.tie)
+            && (a - other_a).abs() <= gap
+            && (b - other_b).abs() < SAME_RATE * b.max(1e-3)
+            && (own - other_own).abs() < SAME_PIVOT * own
+    }
+
+    /// Whether events are those of nodes that symmetry maps to each other, all of them.
     fn is_orbit(&self, first: usize, last: usize) -> bool {
-        let line = |event: usize| self.watched.lines[self.settled.events[event].position];
-        let scales = self.scales;
-        let rate = 10.0 * scales.rate_tolerance(scales.length).max(1e-7);
-        (first..=last).all(|event| !self.is_poor(event))
-            && first < last
-            && (first..last).all(|event| {
-                let ([a, b], [other_a, other_b]) = (line(event), line(event + 1));
-                let events = &self.settled.events;
-                events[event + 1].time - events[event].time <= scales.tie
-                    && (a - other_a).abs() < 10.0 * scales.tolerance * scales.length
-                    && (b - other_b).abs() < rate * b.max(1e-3)
+        let events = &self.settled.events;
+        first < last
+            && (first..=last).all(|event| !self.is_poor(event))
+            && (first..=last).all(|event| {
+                events[event].time == events[first].time && self.are_images(first, event)
             })
     }
 
-    /// Events at their mean time, in the order of the nodes.
-    fn make_equal(&mut self, first: usize, last: usize) {
+    /// Gives nodes that symmetry maps to each other their mean time, and the greatest of their errors, in the order of the
+    /// nodes.
+    fn make_orbits_equal(&mut self, range: Range<usize>) {
+        let mut orbits: Vec<Vec<usize>> = Vec::new();
+        for event in range.clone() {
+            match orbits
+                .iter_mut()
+                .find(|orbit| self.are_images(orbit[0], event))
+            {
+                Some(orbit) => orbit.push(event),
+                None => orbits.push(vec![event]),
+            }
+        }
+        if orbits.len() == range.len() {
+            return;
+        }
+        let Settled { events, errors } = &mut self.settled;
+        let mut equal = Vec::with_capacity(range.len());
+        for orbit in orbits {
+            let times = orbit.iter().map(|&event| events[event].time);
+            let time = times.sum::<f64>() / orbit.len() as f64;
+            let error = orbit.iter().map(|&event| errors[event]).fold(0.0, f64::max);
+            let alike = |event| Played {
+                time,
+                ..events[event]
+            };
+            equal.extend(orbit.into_iter().map(|event| (alike(event), error)));
+        }
         let nodes = &self.watched.nodes;
-        let events = &mut self.settled.events[first..=last];
-        let mean = events.iter().map(|event| event.time).sum::<f64>() / events.len() as f64;
-        events.sort_by_key(|event| nodes[event.position]);
-        for event in events {
-            event.time = mean;
+        equal.sort_by(|(a, _), (b, _)| {
+            let by_node = nodes[a.position].cmp(&nodes[b.position]);
+            a.time.total_cmp(&b.time).then(by_node)
+        });
+        for (place, (event, error)) in range.zip(equal) {
+            (events[place], errors[place]) = (event, error);
         }
     }
 
-    /// Settles a run of events by the exact gaps just before it, and returns from which event to go on.
+    /// Settles a run of events by the exact gaps just before it, and returns from which event to go on; `None` if these gaps
+    /// contradict what was expected.
     fn resolve<U: LinearUpdater>(
         &mut self,
         run: &mut LoadingRun<U>,
         first: usize,
         last: usize,
-    ) -> Result<usize, Error> {
+    ) -> Result<Option<usize>, Error> {
         let time = self.settled.events[first].time;
         let gap_error = self.sufficient_error(first, last);
         let gaps = self.exact_gaps(run, first, last, gap_error)?;
         run.timings.ties += 1;
         let Some((schur, rates)) = self.eliminated(first, last) else {
-            return Ok(last + 1);
+            return Ok(Some(last + 1));
         };
         // Some may lie a little behind.
         let lines = gaps.iter().zip(rates.iter());
@@ -209,7 +269,7 @@ impl Ties<'_> {
             .collect();
         let (played, _) = play(&schur, &courses, f64::INFINITY, courses.len());
         if played.len() < courses.len() {
-            return Ok(last + 1);
+            return Ok(Some(last + 1));
         }
         let before: Vec<usize> = (first..=last)
             .map(|event| self.settled.events[event].position)
@@ -222,6 +282,10 @@ impl Ties<'_> {
             })
             .collect();
         let exact = gap_error == 0.0;
+        let is_open = !self.certain && self.asked != Some(first);
+        if is_open && (first..=last).any(|event| self.is_contradicted(event, &events)) {
+            return Ok(None);
+        }
         if exact {
             self.order_ties(&mut events);
         }
@@ -235,13 +299,21 @@ impl Ties<'_> {
             self.settled.errors[first + k] = OF_WAY * (event.time - start) + left / rate;
         }
         self.settled.events[first..=last].copy_from_slice(&events);
+        self.make_orbits_equal(first..last + 1);
         // Far behind the solution it may not be enough, or the solution was not exact enough.
         let again = (first + usize::from(exact)..last).find(|&event| {
             let spacing = self.settled.events[event + 1].time - self.settled.events[event].time;
             (spacing > self.scales.tie || !exact) && self.is_close(event)
         });
         self.asked = again;
-        Ok(again.unwrap_or(last + 1))
+        Ok(Some(again.unwrap_or(last + 1)))
+    }
+
+    /// Whether an event was expected far from where it is among those that were found.
+    fn is_contradicted(&self, event: usize, found: &[Played]) -> bool {
+        let Settled { events, errors } = &self.settled;
+        let most = CONTRADICTED * (errors[event] + self.scales.tie);
+        distance(found, &events[event], f64::INFINITY) > most
     }
 
     /// The error of gaps with which most runs of events are settled, and after that none.

@@ -365,3 +365,46 @@ fn windows_without_events_are_gone_through() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Watched nodes 2, 4, 6 and 8 touch half a metre after each other from 1.5 on. What was left out of pivots bounds the number of events,
+/// but one event there always is, and ties stay together.
+#[test]
+fn windows_have_fewer_events_where_more_is_left_out() -> Result<(), Error> {
+    let mut corrected = Corrected::new(None, true);
+    for (left_out, most) in [(0.0, 9), (1e-3, 9), (0.0625, 3), (0.2, 1), (0.5, 1)] {
+        corrected.left_out = left_out;
+        assert_eq!(corrected.most_events().min(9), most, "{left_out}");
+    }
+    let events = [0.5, 1.0, 1.0 + 1e-10, 2.0].map(|time| Played { position: 0, time });
+    for (most, kept) in [(0, 1), (1, 1), (2, 3), (3, 3), (4, 4), (9, 4)] {
+        assert_eq!(with_ties(&events, most, &scales(0.0)), kept, "{most}");
+    }
+    Ok(())
+}
+
+/// The Schur complement says that no node acts on another one, and its pivots are twice what they are: at the end of a window of
+/// three events two fifths of a pivot are taken off, which is too much for three. Nothing has happened then, and the next window has
+/// one event.
+#[test]
+fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
+    let gaps = [0.0, 9.0, 1.5, 9.0, 2.0, 9.0, 2.5, 9.0];
+    let mut run = row::solved(&gaps, &[0], 1.0)?;
+    run.front.renew_load(&run.problem, &run.contact, &run.field);
+    let mut corrected = Corrected::new(None, true);
+    corrected.survey(&mut run)?;
+    let watched = Watched {
+        nodes: vec![2, 4, 6],
+        lines: vec![[0.5, 1.0], [1.0, 1.0], [1.5, 1.0]],
+        schur: DMatrix::from_diagonal_element(3, 3, 8.0),
+        row_sums: vec![6.0; 3],
+        horizon: 3.0,
+    };
+    let advanced = corrected.advance(&mut run, &scales(1e-9), &watched, 9)?;
+    assert!(matches!(advanced, Err((outside, f64::INFINITY)) if outside.is_empty()));
+    assert_eq!((run.contact.order(), run.front.approach()), (&[0][..], 1.0));
+    assert!(run.queue.is_empty() && run.timings.taken_back == 1);
+    assert_eq!(corrected.most_events(), 1);
+    let advanced = corrected.advance(&mut run, &scales(1e-9), &watched, 9)?;
+    assert!(advanced.is_ok() && run.contact.order() == [0, 2]);
+    Ok(())
+}

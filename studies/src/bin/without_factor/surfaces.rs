@@ -12,6 +12,8 @@ pub(crate) enum Shape {
     Paper,
     /// Self-affine, roll-off at a quarter of the side, short cut-off at four cells.
     Rough,
+    /// The first rows of a square one: a strip whose rows differ.
+    Strip,
     /// The same with its upper half worn flat.
     Worn,
     /// The same with heights in steps.
@@ -22,8 +24,14 @@ pub(crate) enum Shape {
     White,
     /// A paraboloid.
     Sphere,
+    /// A cone.
+    Cone,
+    /// A pyramid.
+    Pyramid,
     /// Crossed waves.
     Waves,
+    /// Two by two copies of a rough surface, if both numbers of nodes are even: four nodes touch at a time.
+    Tiled,
     /// A flat square punch on lower ground.
     Punch,
     /// A plane with three pits.
@@ -62,6 +70,10 @@ pub(crate) fn make(
     let heights = match shape {
         Shape::Paper => SelfAffine::zhang2020(seed).heights(&grid)?,
         Shape::Rough => rough(&grid)?,
+        Shape::Strip => {
+            let square = rough(&Grid::new(nx, nx.max(ny), grid.dx(), grid.dy())?)?;
+            square.columns(0, ny).into_owned()
+        }
         Shape::Worn => {
             let heights = rough(&grid)?;
             let mut sorted: Vec<f64> = heights.iter().copied().collect();
@@ -81,6 +93,14 @@ pub(crate) fn make(
             })
         }
         Shape::Sphere => formula(&|x, y| -0.1 * (x * x + y * y)),
+        Shape::Cone => formula(&|x, y| -0.1 * x.hypot(y)),
+        Shape::Pyramid => formula(&|x, y| -0.1 * x.abs().max(y.abs())),
+        Shape::Tiled => {
+            let tile = rough(&Grid::new(nx / 2, ny / 2, grid.dx(), grid.dy())?)?;
+            DMatrix::from_fn(nx, ny, |ix, iy| {
+                tile[(ix % tile.nrows(), iy % tile.ncols())]
+            })
+        }
         Shape::Waves => {
             let wave = |x: f64| (4.0 * std::f64::consts::TAU * x).cos();
             formula(&|x, y| 0.01 * (wave(x) + wave(y)))
