@@ -63,6 +63,11 @@ impl Front {
         self.load - other.load
     }
 
+    /// The load that a change of the approach takes.
+    pub(super) fn load_over(&self, approach: f64) -> f64 {
+        self.load_of(self.unit_stiffness, approach)
+    }
+
     /// The load that a part of the stiffness takes over a change of the approach.
     pub(super) fn load_of(&self, unit_stiffness: f64, approach: f64) -> f64 {
         self.grid.cell_area() * unit_stiffness * approach

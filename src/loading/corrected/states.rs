@@ -17,6 +17,9 @@ const OF_TIME: f64 = 2.0;
 /// events so far make of it.
 const OF_LOAD: f64 = 3.0;
 
+/// The load at the window's end is that of an approach which is off by this part of the mean spacing of events.
+const OF_END: f64 = 1e-5;
+
 /// Queues the states of the events of a window from `start` to the front.
 ///
 /// Stiffness and closing rate grow as the pivots say, all of them scaled so that they end where they should;
@@ -51,7 +54,9 @@ pub(super) fn enqueue<U: LinearUpdater>(
     }
     walked.advance(run.front.approach());
     // What the load may be off by: what is spread, and what the events so far would change of it.
-    let mut load_error = run.front.load_beyond(&walked).abs();
+    let spacing = time / settled.events.len() as f64;
+    let mut load_error =
+        run.front.load_beyond(&walked).abs() + run.front.load_over(OF_END * spacing);
     for (k, (mut front, event)) in fronts.into_iter().zip(&settled.events).enumerate() {
         let contact_nodes = count + k + 1;
         front.pin(&walked, &run.front, event.time / time);
