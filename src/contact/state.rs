@@ -7,6 +7,10 @@ use crate::Grid;
 /// A node whose gap is closed is in contact, with pressure or without: at the instant at which it
 /// touches it carries nothing yet. Stiffnesses are exact derivatives *on further loading* of the nodes
 /// in contact.
+///
+/// In full contact, that of a flat surface under no load too, the mean gap is exactly 0 and the interfacial stiffness
+/// infinite. Nodes that touch at one approach have a state each, of which only the last lasts: with a factor the others have the
+/// stiffnesses of the nodes taken so far, without one those of equal steps, and they agree on the last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -6,12 +6,12 @@ use std::f64::consts::PI;
 
 /// Contact stiffness of a rigid square punch of side `L`, divided by `E* L`.
 ///
-/// `K = 1.15230 E* L`: in the units where a disc of radius `a` has the electrostatic capacity
+/// `K = 1.152297 E* L`: in the units where a disc of radius `a` has the electrostatic capacity
 /// `2a/π`, the stiffness of a punch is `π E*` times the capacity of its face, and that of the
-/// unit square is 0.36679. No closed form is known; all the digits given are right, to within one
-/// unit of the fifth decimal. This is where the stiffness of *any* surface on a square nominal
+/// unit square is 0.3667874. No closed form is known; the digits of the capacity are right, to within one
+/// unit of the last. This is where the stiffness of *any* surface on a square nominal
 /// area ends when contact is complete.
-pub const SQUARE_PUNCH_STIFFNESS: f64 = 1.15230;
+pub const SQUARE_PUNCH_STIFFNESS: f64 = PI * 0.366_787_4;
 
 /// Contact of a rigid cylinder's flat end of radius `a`.
 ///

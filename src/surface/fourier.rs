@@ -82,6 +82,11 @@ impl Waves {
         }
     }
 
+    /// The grid of the map.
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
     /// The same waves about a mean of 0.
     pub(super) fn without_mean(mut self) -> Self {
         self.mean = 0.0;

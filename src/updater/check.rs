@@ -35,8 +35,9 @@ pub struct UpdaterReport {
 /// Goes through all verbs of an updater that has no node in contact yet, in the order in which a path
 /// would call them, and compares every answer with [`Dense`]. The updater is of no further use.
 ///
-/// The contact grows by nodes in the order of their initial gaps, with windows in which some nodes are
-/// watched and do not join. See [`LinearUpdater`] for an example.
+/// The contact grows from nothing by nodes in the order of their initial gaps, with windows in which some
+/// nodes are watched and do not join. Solutions are asked for on the contact as it grows, on its first half,
+/// and on none of its nodes. See [`LinearUpdater`] for an example.
 ///
 /// # Errors
 ///
@@ -57,6 +58,7 @@ pub fn check<U: LinearUpdater + ?Sized>(
         schur_error: 0.0,
         solution_error: 0.0,
     };
+    examiner.solution(0)?;
     let mut left = &nodes[..];
     let mut repeated = None;
     while !left.is_empty() {
@@ -70,7 +72,7 @@ pub fn check<U: LinearUpdater + ?Sized>(
         }
     }
     let contact_nodes = examiner.contact.len();
-    for count in [contact_nodes / 2, contact_nodes] {
+    for count in [0, contact_nodes / 2, contact_nodes] {
         examiner.solution(count)?;
     }
     let truncates = examiner.truncate(contact_nodes - contact_nodes / 3)?;
@@ -259,6 +261,16 @@ mod tests {
         lie: &'static str,
     }
 
+    impl Lying {
+        /// An error on no nodes, if that is the lie.
+        fn refuse(&self, lie: &str, nodes: usize) -> Result<(), Error> {
+            if self.lie == lie && nodes == 0 {
+                return Err(Error::FactorizationFailed { nodes });
+            }
+            Ok(())
+        }
+    }
+
     impl LinearUpdater for Lying {
         fn watch(
             &mut self,
@@ -267,6 +279,7 @@ mod tests {
             nodes: &[usize],
             schur: &mut Schur,
         ) -> Result<(), Error> {
+            self.refuse("watch", contact.len())?;
             self.inner.watch(problem, contact, nodes, schur)?;
             match self.lie {
                 "matrix" => schur.matrix_mut()[(0, 0)] *= 1.0 + 1e-6,
@@ -293,9 +306,11 @@ mod tests {
             request: SolveRequest,
             solution: &mut Solution,
         ) -> Result<(), Error> {
+            self.refuse("solve", request.count)?;
+            self.refuse("part", request.count + usize::from(contact.is_empty()))?;
             self.inner.solve(problem, contact, request, solution)?;
             match self.lie {
-                "pressure" => solution.pressure[0] = f64::NAN,
+                "pressure" if request.count > 0 => solution.pressure[0] = f64::NAN,
                 "rate" => solution.rate.reverse(),
                 "length" => solution.rate.clear(),
                 _ => {}
@@ -385,6 +400,14 @@ mod tests {
                     found,
                     Err(Error::Updater(UpdaterError::UpdaterMismatch { .. }))
                 ),
+                "{lie}: {found:?}"
+            );
+        }
+        // Updaters that cannot do without a node: a path asks them on an empty contact, and on none of its nodes.
+        for lie in ["watch", "solve", "part"] {
+            let found = checked(lie);
+            assert!(
+                matches!(found, Err(Error::FactorizationFailed { nodes: 0 })),
                 "{lie}: {found:?}"
             );
         }

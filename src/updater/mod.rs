@@ -182,6 +182,8 @@ pub trait LinearUpdater {
     ///
     /// with the row sums s of [`Problem::row_sums`]. Only the lower triangle of S need be written.
     ///
+    /// The first window of a path has no node in contact: S is $`C_{PP}`$ then, and σ is $`s_P`$.
+    ///
     /// # Errors
     ///
     /// Whatever keeps the updater from answering.
@@ -211,7 +213,8 @@ pub trait LinearUpdater {
     ) -> Result<(), Error>;
 
     /// Solves on the first nodes of `contact`: on all of them while the path advances, on fewer for an
-    /// earlier state. A later call must not depend on that.
+    /// earlier state. A later call must not depend on that. A path begins with a solution on no node, a
+    /// [`count`](SolveRequest::count) of 0: pressures and rates are empty then.
     ///
     /// A path holds an [exact](UpdaterProfile::exact) updater to its answer: where that does not close the gaps in
     /// contact to rounding, the path ends with [`UpdaterError::ContactNotClosed`].

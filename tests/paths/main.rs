@@ -9,6 +9,7 @@ mod rough;
 mod areas;
 mod continued;
 mod ends;
+mod flat;
 mod foreign_states;
 mod handover;
 mod inexact_updaters;

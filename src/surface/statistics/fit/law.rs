@@ -20,8 +20,9 @@ const TRIALS: usize = 100;
 /// Steps of the golden section, each of which leaves 0.62 of an interval: to 10⁻⁸ of it.
 const SECTIONS: usize = 40;
 
-/// Steps of the iteration for level and exponent: it converges quadratically.
-const STEPS: usize = 50;
+/// Steps of the iteration for level and exponent: it converges quadratically, but from far above the densities, as where
+/// some of them are rounding, each step gains a factor of e.
+const STEPS: usize = 100;
 
 /// The mean density of some waves of the same length.
 #[derive(Debug, Clone, Copy)]
@@ -44,12 +45,19 @@ pub(super) struct Law {
     pub(super) errors: Errors,
 }
 
-/// Standard errors.
+/// Standard errors if the mean square of relative residuals is 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Errors {
     pub(super) exponent: f64,
     /// `None` where the law has no plateau.
     pub(super) rolloff: Option<f64>,
+}
+
+impl Law {
+    /// The density at x = ln q.
+    pub(super) fn density(&self, x: f64) -> f64 {
+        libm::exp(self.plateau - self.exponent * (x - self.rolloff).max(0.0))
+    }
 }
 
 /// The law of greatest likelihood, with a plateau or without.
@@ -206,7 +214,8 @@ impl Line {
         squares.sum::<f64>() / rings.len().saturating_sub(parameters).max(1) as f64
     }
 
-    /// The law, with standard errors from the inverse of Fisher's information.
+    /// The law, with standard errors from the inverse of Fisher's information, as if waves were independent and the mean
+    /// square of their relative residuals 1.
     fn with_errors(self, rings: &[Ring], dispersion: f64, bent: bool) -> Result<Law, Error> {
         let [plateau, exponent] = self.parameters.into();
         let mut information = Matrix3::zeros();
@@ -225,7 +234,7 @@ impl Line {
             tolerance: 0.0,
             iterations: 0,
         })?;
-        let error = |place: usize| (dispersion * covariance[(place, place)]).sqrt();
+        let error = |place: usize| covariance[(place, place)].sqrt();
         Ok(Law {
             plateau,
             exponent,

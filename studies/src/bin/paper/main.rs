@@ -115,7 +115,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             rules: Rules::new(study.nodes)?,
             peers: peers::compare()?,
             iterations: Iterations::new(study.nodes)?,
-            effort: Effort::new(study.nodes)?,
+            effort: Effort::new()?,
             whole_path,
             study,
             figure3,

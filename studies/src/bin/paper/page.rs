@@ -122,7 +122,8 @@ impl Report {
         }
         format!(
             "## The paper, figure by figure\n\n\
-             Every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
+             No curve of the paper is compared here: its pictures have not been read off. What is compared are the numbers and \
+             statements of its text: every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
              the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 (2020), \"the \
              paper\", next to ours. This part of the page, numbers and pictures, is written by\n\n\
              ```text\n\

@@ -8,15 +8,14 @@ use crate::study::Family;
 use asperity_studies::line::Line;
 use asperity_studies::spread::Spread;
 
-/// The fits of the paper: y₀, A, t; slope and intercept; saturated stiffness.
+/// The fits of the paper: y₀, A, t; slope and intercept.
 pub(crate) const PAPER_EXPONENTIAL: (f64, f64, f64) = (-2.56, 2.26, 0.0021);
 pub(crate) const PAPER_LINE: (f64, f64) = (-8.93, -0.11);
-pub(crate) const PAPER_STIFFNESS: f64 = 5.8e-3;
-/// Greatest load of the exponential fit, about the greatest at which the paper's own, with t = 0.0021, has
-/// not yet come to its end. The fit up to there is judged.
+/// Greatest loads of the exponential fit: the paper does not state its range, so that each is judged.
+pub(crate) const LIGHT_LOADS: [f64; 3] = [2.5e-3, SMALL_LOAD, 1e-2];
+/// Greatest load of the fits of K, about the greatest at which the paper's exponential, with t = 0.0021, has not yet come to
+/// its end.
 pub(crate) const SMALL_LOAD: f64 = 5e-3;
-/// Others, for information: the paper does not state its range.
-pub(crate) const OTHER_LOADS: [f64; 2] = [2.5e-3, 1e-2];
 /// Least load of the fits of K.
 pub(crate) const LEAST_LOAD: f64 = 1e-4;
 /// Least load of the linear fit, which the paper does not state.
@@ -46,10 +45,8 @@ pub(crate) fn ratio_of_line() -> f64 {
 
 /// The fits of one surface.
 pub(crate) struct Fits {
-    /// Up to [`SMALL_LOAD`].
-    pub(crate) small: Approach,
-    /// Up to each of [`OTHER_LOADS`].
-    pub(crate) others: [Approach; 2],
+    /// Up to each of [`LIGHT_LOADS`].
+    pub(crate) light: [Approach; 3],
     /// Slope and intercept of u/Sq, and the intercept over the slope.
     pub(crate) line: [Spread; 2],
     pub(crate) offset: Spread,
@@ -151,10 +148,9 @@ impl Fits {
         let lines: Vec<Line> = family.runs.iter().map(line).collect();
         let growth: Vec<[f64; 3]> = family.runs.iter().map(growth).collect::<Result<_, _>>()?;
         let exponents = family.runs.iter().map(|run| exponent(run).slope);
-        let [lighter, heavier] = OTHER_LOADS.map(|load| Approach::of(family, load));
+        let [a, b, c] = LIGHT_LOADS.map(|load| Approach::of(family, load));
         Ok(Self {
-            small: Approach::of(family, SMALL_LOAD)?,
-            others: [lighter?, heavier?],
+            light: [a?, b?, c?],
             line: [
                 Spread::of(lines.iter().map(|l| l.slope)),
                 Spread::of(lines.iter().map(|l| l.intercept)),

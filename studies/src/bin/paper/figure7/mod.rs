@@ -16,8 +16,8 @@ use asperity_cli::chart::{
 use asperity_cli::outcome::Failure;
 
 pub(crate) use fits::{
-    Approach, Fits, LARGE_LOAD, LEAST_LOAD, LINE_UNIT, OTHER_LOADS, PAPER_EXPONENTIAL, PAPER_LINE,
-    PAPER_STIFFNESS, SATURATED, SMALL_LOAD, ratio_of_line,
+    Fits, LARGE_LOAD, LEAST_LOAD, LIGHT_LOADS, LINE_UNIT, PAPER_EXPONENTIAL, PAPER_LINE, SATURATED,
+    SMALL_LOAD, ratio_of_line,
 };
 use fits::{SAMPLES, growth_loads, growths, light_loads, line};
 

@@ -1,9 +1,7 @@
 //! Fig. 7 on the page.
 
 use super::{Table, picture};
-use crate::figure7::{
-    Approach, Fits, LARGE_LOAD, LINE_UNIT, OTHER_LOADS, PAPER_EXPONENTIAL, PAPER_LINE, SMALL_LOAD,
-};
+use crate::figure7::{Fits, LARGE_LOAD, LIGHT_LOADS, LINE_UNIT, PAPER_EXPONENTIAL, PAPER_LINE};
 use crate::report::Report;
 use crate::surfaces::{SIDE, SQ};
 use crate::words::{percent, scaled, scientific, signed};
@@ -16,14 +14,14 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     format!(
         "### Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
          The exponential is y₀ + A exp(−W/t) through u/Sq = −δ/Sq, the line is fitted from {} on; both by least \
-         squares over evenly spaced loads, since the paper does not say which it took. Only the exponential up to W = {} is \
-         judged (above); the others are here because it depends on the range more than on the seed. None starts at 0, where \
-         every path does. The paper's line cannot be one of u/Sq: saturation alone means a slope of {}. In the picture, and \
+         squares over evenly spaced loads, since the paper does not say which it took. Nor does it say how \
+         far it fitted the exponential, which depends on the range more than on the seed: all three are judged (above). None starts \
+         at 0, where every path does. The paper's line cannot be one of u/Sq: saturation alone means a slope of {}. In the picture, and \
          in two rows, u is over {LINE_UNIT} Sq, the unit in which its line fits. What does not depend on the unit, intercept \
          over slope, is judged.\n\n\
          **Saturated stiffness.** The rigid square punch has K = {} E\\*L, {} in these units; the same punch on \
          the mesh has {} ({} % less, the error of the mesh), and the rough surfaces end there: the value has \
-         nothing to do with roughness.\n\n\
+         nothing to do with roughness, and no verdict is made of it.\n\n\
          **Growth at light loads.** For few asperities of a finite surface a power with the exponent 1/(1 + H) = 0.56 is \
          expected (Pastewka et al., arXiv 1210.4635).",
         picture(
@@ -33,7 +31,6 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
         ),
         table(report),
         scientific(LARGE_LOAD, 1),
-        scientific(SMALL_LOAD, 1),
         signed(-1.0 / exact, 0),
         asperity::reference::SQUARE_PUNCH_STIFFNESS,
         scientific(exact, 4),
@@ -42,26 +39,15 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     )
 }
 
-/// The fit over one of the ranges.
-type Part = fn(&Fits) -> &Approach;
-
 fn table(report: &Report) -> String {
     let fits = &report.figure7.fits;
     let mut table = Table::new(&report.names());
     let mut row = |quantity: &str, paper: &str, value: &dyn Fn(&Fits) -> String| {
         table.row(quantity, paper, fits.iter().map(value));
     };
-    let [lighter, heavier] = OTHER_LOADS;
-    let of_lighter: Part = |f| &f.others[0];
-    let of_small: Part = |f| &f.small;
-    let of_heavier: Part = |f| &f.others[1];
-    let ranges = [
-        (lighter, of_lighter),
-        (SMALL_LOAD, of_small),
-        (heavier, of_heavier),
-    ];
     let (y0, a, t) = PAPER_EXPONENTIAL;
-    for (load, of) in ranges {
+    for (k, load) in LIGHT_LOADS.into_iter().enumerate() {
+        let of = |f: &Fits| f.light[k];
         let range = format!("W ≤ {}", scientific(load, 2));
         let name = |symbol: &str| format!("{symbol}, {range}");
         row(&name("y₀"), &signed(y0, 2), &|f| of(f).offset.decimals(2));
