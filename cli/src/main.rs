@@ -1,5 +1,7 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
+mod columns;
+mod contact_map;
 mod elasticity;
 mod ensemble;
 mod gather;
@@ -8,6 +10,7 @@ mod load;
 mod patches;
 mod path;
 mod reading;
+mod resolution;
 mod values;
 
 use std::process::ExitCode;
@@ -15,10 +18,20 @@ use std::process::ExitCode;
 use asperity_cli::speech;
 use clap::{Parser, Subcommand};
 
-/// Exact elastic contact of rough surfaces.
+/// Elastic contact of rough surfaces: the whole loading path, event by event, or single loads.
 ///
-/// Without a command, `path` of a generated surface: the whole loading to 10 % contact, in seconds.
-/// `asperity path --help`, and the same of every other command, lists its options.
+/// The model: a rigid rough surface is pressed into an elastic half-space (two elastic bodies are one of composite modulus E*),
+/// without friction, without adhesion, without yielding, and with slopes well below 1. The discrete problem, one pressure for
+/// each cell of the grid, is solved exactly; how far it is from the surface itself is a question of the grid, and every
+/// command warns where the grid is too coarse.
+///
+/// info: what is in a file, and whether it can be believed. path: area, load, approach, gap and stiffness at every
+/// event. load: the contact under given loads. patches: percolation, sealing, which asperities carry. gather: mean and spread of
+/// many paths.
+///
+/// Without a command it is `path` of a generated surface to 10 % contact, in seconds, as an example. Surfaces of one's own:
+/// `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help`, and the same of
+/// every other command, lists options. All numbers are in SI units.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true)]
 struct Arguments {

@@ -102,6 +102,14 @@ impl Outcome {
         self.finish_quietly()
     }
 
+    /// The same where stdout is for programs.
+    pub fn finish_on_stderr(self) -> Result<(), Failure> {
+        for file in &self.files {
+            eprintln!("wrote {}", file.display());
+        }
+        self.finish_quietly()
+    }
+
     /// Reports all failures but the first, which it returns.
     pub fn finish_quietly(self) -> Result<(), Failure> {
         let mut failures = self.failures.into_iter();

@@ -118,14 +118,19 @@ impl Reading {
             measured = measured.fill_missing().map_err(failed)?;
             eprintln!("filled     {missing} nodes from those around them");
         }
-        self.prepare(measured.topography().map_err(failed)?)
-            .map_err(failed)
-    }
-
-    /// Levels and inverts.
-    fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
+        let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();
         eprintln!("tilt       {sx:.2e} along x, {sy:.2e} along y");
+        self.prepare(surface).map_err(failed)
+    }
+
+    /// Whether missing nodes are to be filled.
+    pub(crate) fn fills(&self) -> bool {
+        self.fill
+    }
+
+    /// Levels and inverts as asked, and says so on stderr.
+    pub(crate) fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
         let mut surface = surface;
         if let Some(level) = self.level {
             let levelled = surface.level(level.into())?;
@@ -136,10 +141,10 @@ impl Reading {
             );
             surface = levelled;
         }
-        Ok(if self.invert {
-            surface.invert()
-        } else {
-            surface
-        })
+        if self.invert {
+            eprintln!("inverted   peaks are valleys");
+            surface = surface.invert();
+        }
+        Ok(surface)
     }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::LoadingState;
+use asperity::patches::ContactEdge;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::options::Options;
@@ -100,6 +101,8 @@ impl Followed {
 /// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
 /// are whole lines.
 pub(super) struct PathFile {
+    /// The edge of the contact, for its corrected area.
+    edge: ContactEdge,
     name: PathBuf,
     part: PathBuf,
     output: File,
@@ -110,7 +113,7 @@ pub(super) struct PathFile {
 
 impl PathFile {
     /// Begins the file in a directory, in place of one that may be there from another path.
-    pub(super) fn create(directory: &Path) -> Result<Self, Failure> {
+    pub(super) fn create(directory: &Path, edge: ContactEdge) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
             match fs::remove_file(&name) {
@@ -121,11 +124,12 @@ impl PathFile {
         };
         let output = begin().map_err(|error| Failure::writing(&part, error))?;
         Ok(Self {
+            edge,
             name,
             part,
             output,
             lines: "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                    contact_stiffness,interfacial_stiffness\n"
+                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error\n"
                 .to_string(),
             waiting: 0,
         })
@@ -134,6 +138,9 @@ impl PathFile {
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
     fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
         let (ix, iy) = state.node;
+        self.edge
+            .follow(state.event, state.node)
+            .map_err(|error| Failure::writing(&self.part, error))?;
         // Empty where there is none: on a periodic half-space.
         let printed = |stiffness: Option<f64>| {
             stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
@@ -141,7 +148,7 @@ impl PathFile {
         // Writing to a text cannot fail.
         let _ = writeln!(
             self.lines,
-            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{}",
+            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e}",
             state.step,
             state.approach,
             state.load,
@@ -150,6 +157,8 @@ impl PathFile {
             state.mean_gap,
             printed(state.contact_stiffness),
             printed(state.interfacial_stiffness),
+            self.edge.corrected_area(),
+            state.approach_error,
         );
         self.waiting += 1;
         if self.waiting == STRIDE {

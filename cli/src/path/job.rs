@@ -6,27 +6,26 @@ use std::path::Path;
 use asperity::kernel::KernelOrigin;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
-use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
+use asperity::surface::{HeightMap, SelfAffine, Topography};
 use asperity::updater::Handover;
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    Boundary, ContactRule, ContactTarget, Doubt, Grid, InfluenceKernel, LoadingSolver, LoadingState,
 };
 
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater};
 use super::progress::{Progress, total};
+use crate::elasticity::Bodies;
 use crate::ensemble::Expected;
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
-/// Side \[m\] and nodes a side of the generated surface, and its seed, if not given.
+/// Side \[m\] and nodes a side of the generated surface, its seed, and cells of its shortest wave, if not given.
 const SIDE: f64 = 1e-2;
 const NODES: usize = 256;
 const SEED: u64 = 1;
-
-/// E* of two bodies of steel, if there is no surface and no material \[Pa\].
-const STEEL_ON_STEEL: f64 = 0.5 * 210e9 / (1.0 - 0.3 * 0.3);
+const CELLS_OF_SHORTEST_WAVE: f64 = 8.0;
 
 /// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
 const BYTES_A_NODE: f64 = 1000.0;
@@ -36,7 +35,7 @@ pub(super) struct Job {
     surface: Topography,
     name: String,
     rms_gradient: f64,
-    e_star: f64,
+    bodies: Bodies,
     periodic: Option<Periodic>,
     rule: ContactRule,
     updater: Updater,
@@ -53,9 +52,9 @@ impl Job {
         if let Some(file) = &options.resume {
             return Self::resumed(file, options);
         }
-        let e_star = match &options.surface {
+        let bodies = match &options.surface {
             Some(_) => options.elasticity.required()?,
-            None => options.elasticity.e_star()?.unwrap_or(STEEL_ON_STEEL),
+            None => options.elasticity.or_steel()?,
         };
         let (surface, name, rms_gradient) = match &options.surface {
             Some(file) => read(file, options)?,
@@ -67,7 +66,7 @@ impl Job {
             surface,
             name,
             rms_gradient,
-            e_star,
+            bodies,
             periodic: options.periodic,
             rule: options.rule.into(),
             updater: options.updater,
@@ -96,7 +95,7 @@ impl Job {
         Ok(Self {
             name: format!("{}, {} states", file.display(), record.states().len()),
             rms_gradient,
-            e_star,
+            bodies: Bodies::of_modulus(e_star, "composite modulus of the record"),
             periodic,
             rule: record.settings().rule,
             updater: options.updater,
@@ -136,16 +135,23 @@ impl Job {
         *self.surface.grid()
     }
 
-    pub(super) fn surface(&self) -> &Topography {
-        &self.surface
-    }
-
     pub(super) fn heights(&self) -> &HeightMap {
         self.surface.map()
     }
 
     pub(super) fn e_star(&self) -> f64 {
-        self.e_star
+        self.bodies.e_star
+    }
+
+    pub(super) fn boundary(&self) -> Boundary {
+        boundary(self.periodic)
+    }
+
+    /// What looks wrong before anything is computed.
+    pub(super) fn doubts(&self) -> Vec<Doubt> {
+        let mut doubts = Doubt::of_surface(&self.surface);
+        doubts.extend(Doubt::of_modulus(self.e_star()));
+        doubts
     }
 
     pub(super) fn rule(&self) -> ContactRule {
@@ -192,7 +198,7 @@ impl Job {
         let pressure = |load: f64| load / grid.nominal_area();
         let share = |target: &ContactTarget| match *target {
             ContactTarget::AreaFraction(fraction) => fraction,
-            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star)
+            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star())
                 .map_or(1.0, |law| law.persson(pressure(load))),
             // Not more than all.
             _ => 1.0,
@@ -212,7 +218,7 @@ impl Job {
     }
 
     fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
-        half_space(self.periodic, self.grid(), self.e_star)
+        half_space(self.periodic, self.grid(), self.e_star())
             .map_err(|error| Failure::new("no such half-space", error))
     }
 }
@@ -224,9 +230,11 @@ impl fmt::Display for Job {
         writeln!(f, "surface    {}", self.name)?;
         writeln!(
             f,
-            "grid       {nx} x {ny} nodes on {} x {}",
+            "grid       {nx} x {ny} nodes on {} x {}, cells of {} x {}",
             quantity(lx, "m", 6),
-            quantity(ly, "m", 6)
+            quantity(ly, "m", 6),
+            quantity(self.grid().dx(), "m", 4),
+            quantity(self.grid().dy(), "m", 4)
         )?;
         writeln!(
             f,
@@ -234,11 +242,12 @@ impl fmt::Display for Job {
             quantity(self.heights().rms_height(), "m", 5),
             self.rms_gradient.abs()
         )?;
+        writeln!(f, "bodies     {}", self.bodies)?;
         match self.periodic {
             None => writeln!(f, "half-space free")?,
             Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
         }
-        write!(f, "loading    E* {}", quantity(self.e_star, "Pa", 6))?;
+        write!(f, "loading    {}", in_words(self.rule))?;
         for target in &self.targets {
             match *target {
                 ContactTarget::Load(load) => write!(f, ", to {}", quantity(load, "N", 6))?,
@@ -254,7 +263,23 @@ impl fmt::Display for Job {
                 _ => {}
             }
         }
-        writeln!(f, ", rule {:?}", self.rule)
+        writeln!(f)
+    }
+}
+
+/// How a rule orders the nodes.
+fn in_words(rule: ContactRule) -> &'static str {
+    match rule {
+        ContactRule::FirstContact => "nodes in the exact order in which they touch",
+        ContactRule::ApproximateOrder => "nodes nearly in the order in which they touch",
+        ContactRule::SmallestGap => "smallest gap next, as in Zhang et al. (2020), not exact",
+    }
+}
+
+fn boundary(periodic: Option<Periodic>) -> Boundary {
+    match periodic {
+        None => Boundary::Free,
+        Some(_) => Boundary::Periodic,
     }
 }
 
@@ -272,8 +297,8 @@ fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
     Ok((surface, name, rms_gradient))
 }
 
-/// The surface of the paper's Table 1, with its short cut-off moved to two cells if the grid cannot
-/// carry it.
+/// A surface with the spectrum of Zhang et al. (2020), Table 1, but for its shortest wave, which has so many cells that the
+/// grid resolves it, unless another one is asked for.
 fn generate(options: &Options) -> Result<Made, Failure> {
     let nodes = options.nodes.unwrap_or(NODES);
     let seed = options.seed.unwrap_or(SEED);
@@ -286,39 +311,33 @@ fn generate(options: &Options) -> Result<Made, Failure> {
         )
     };
     let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
-    let boundary = match options.periodic {
-        None => Boundary::Free,
-        Some(_) => Boundary::Periodic,
-    };
-    LoadingSolver::check_room(&grid, boundary, options.memory_budget).map_err(failed)?;
-    let mut surface = SelfAffine::zhang2020(seed);
-    let two_cells = 2.0 * grid.dx().max(grid.dy());
-    let wanted = surface.short_cutoff_wavelength();
-    if two_cells > surface.rolloff_wavelength() {
+    LoadingSolver::check_room(&grid, boundary(options.periodic), options.memory_budget)
+        .map_err(failed)?;
+    let paper = SelfAffine::zhang2020(seed);
+    let (cell, rolloff) = (grid.dx().max(grid.dy()), paper.rolloff_wavelength());
+    if 2.0 * cell > rolloff {
         return Err(Failure::request(format!(
             "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
-            quantity(surface.rolloff_wavelength(), "m", 5),
-            quantity(two_cells, "m", 5)
+            quantity(rolloff, "m", 5),
+            quantity(2.0 * cell, "m", 5)
         )));
     }
-    if two_cells > wanted * (1.0 + 1e-9) {
-        eprintln!(
-            "note: {nodes} nodes a side cannot carry the short cut-off wavelength of {}; \
-             it is {}, two cells, instead",
-            quantity(wanted, "m", 5),
-            quantity(two_cells, "m", 5)
-        );
-        surface = SelfAffine::new(
-            surface.hurst(),
-            surface.rolloff_wavelength(),
-            two_cells,
-            Amplitude::RmsHeight(50e-6),
-            seed,
-        )
-        .map_err(failed)?;
-    }
+    let resolved = CELLS_OF_SHORTEST_WAVE * cell;
+    let least = paper.short_cutoff_wavelength();
+    let shortest = options
+        .short_cutoff
+        .unwrap_or(resolved.max(least).min(rolloff));
+    let amplitude = paper.amplitude();
+    let surface = SelfAffine::new(paper.hurst(), rolloff, shortest, amplitude, seed);
+    let surface = surface.map_err(failed)?;
     let heights = Topography::sample(&surface, grid).map_err(failed)?;
     let rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
-    let name = format!("self-affine, Table 1 of Zhang et al. (2020), seed {seed}");
+    let name = format!(
+        "generated as an example: self-affine, Hurst exponent {}, waves of {} ({}) and longer, roll-off at {}, seed {seed}",
+        surface.hurst(),
+        quantity(shortest, "m", 4),
+        quantity(shortest / cell, "cells", 4),
+        quantity(rolloff, "m", 4)
+    );
     Ok((heights, name, rms_gradient))
 }

@@ -16,9 +16,10 @@ mod table;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use asperity::patches::ContactEdge;
 use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
-use asperity::{Doubt, LoadingSolver, LoadingState};
+use asperity::{LoadingSolver, LoadingState};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::say;
@@ -55,7 +56,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 fn follow_one(options: &Options) -> Result<(), Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
-    for doubt in Doubt::of_surface(job.surface()) {
+    for doubt in job.doubts() {
         eprintln!("warning: {doubt}");
     }
     let mut solver = job.solver()?;
@@ -64,7 +65,7 @@ fn follow_one(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let start = Instant::now();
-    let file = PathFile::create(&options.out)?;
+    let file = PathFile::create(&options.out, ContactEdge::new(job.grid(), job.boundary()))?;
     let mut followed = Followed::new(job.begun(), file, options)?;
     let ended = followed.follow(&mut solver, |state| job.progress(state));
     let (states, file) = followed.end();

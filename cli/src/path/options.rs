@@ -14,13 +14,19 @@ use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
 use crate::values::{bytes, fraction, positive};
 
-/// The exact loading path of a rough surface: one state of contact for each node that touches
+/// The loading path of a rough surface: one state of contact for each node that touches, in their exact order
 ///
-/// Writes path.csv, loading_curve.svg and contact_map.png, and prints a short table.
+/// Prints a table of states at loads spread over the path, and how well the last one solves the equations. Writes path.csv (a
+/// line for each state), loading_curve.svg and contact_map.png.
 ///
-/// Without --surface, a self-affine surface with the spectrum of Zhang, Zhang & Jin (2020), Table 1:
-/// rms height 50 µm, Hurst exponent 0.8, roll-off at 2.5 mm, short cut-off at 78.125 µm; both bodies
-/// are steel unless the command line says otherwise.
+/// The model is an elastic half-space without friction and adhesion and a rigid rough surface of small slopes; both bodies may
+/// be elastic, then E* has both. It solves that problem exactly for one pressure in each cell of the grid; what the grid
+/// does not resolve, no solver brings back: column corrected_contact_area says how much area is due to the mesh, and a
+/// warning comes where patches or waves are a few cells.
+///
+/// Without --surface it generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst exponent
+/// 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wave that the grid
+/// resolves. Of their mesh, and with their shortest wave, it is --nodes 512 --short-cutoff 78.125e-6.
 #[derive(Debug, Clone, Parser)]
 pub(crate) struct Options {
     /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
@@ -59,6 +65,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S")]
     pub(super) seed: Option<u64>,
 
+    /// Shortest wave of the generated surface [default: eight cells, which resolve it, but no less than 78.125 µm]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    pub(super) short_cutoff: Option<f64>,
+
     /// Keep the path in this file, which numpy.load opens and --resume goes on from
     #[arg(long, value_name = "FILE.npz")]
     pub(super) record: Option<PathBuf>,
@@ -72,7 +82,7 @@ pub(crate) struct Options {
     pub(super) save_every: Option<NonZeroUsize>,
 
     /// Go on with the path of a record, to where it was to end unless another end is given
-    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "side", "side_y", "e_star", "material", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Bytes that the path may hold at most, 2e9 say [default: three quarters of the memory]
