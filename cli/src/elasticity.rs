@@ -52,17 +52,17 @@ impl fmt::Display for Bodies {
 
 impl Elasticity {
     /// The bodies, `None` if nothing was said of them.
-    fn bodies(&self) -> Result<Option<Bodies>, Failure> {
+    fn given(&self) -> Result<Option<Bodies>, Failure> {
         let Some(first) = self.material else {
-            let given = |e_star| Bodies::of_modulus(e_star, "composite modulus as given");
-            return Ok(self.e_star.map(given));
+            let alone = |e_star| Bodies::of_modulus(e_star, "composite modulus as given");
+            return Ok(self.e_star.map(alone));
         };
         Bodies::between(first, self.against).map(Some)
     }
 
     /// The bodies that were said, otherwise steel against a rigid body.
     pub(crate) fn or_steel(&self) -> Result<Bodies, Failure> {
-        match self.bodies()? {
+        match self.given()? {
             Some(bodies) => Ok(bodies),
             None => {
                 let mut steel = Bodies::between(Material::STEEL, None)?;
@@ -74,7 +74,7 @@ impl Elasticity {
 
     /// The bodies, without which no measured surface can be pressed.
     pub(crate) fn required(&self) -> Result<Bodies, Failure> {
-        self.bodies()?.ok_or_else(|| {
+        self.given()?.ok_or_else(|| {
             Failure::request("how stiff are the bodies? Give --e-star or --material")
         })
     }
@@ -180,7 +180,7 @@ mod tests {
             material: Some(material.parse()?),
             against: against.map(str::parse).transpose()?,
         };
-        let bodies = elasticity.bodies().map_err(|_| "refused".to_string())?;
+        let bodies = elasticity.given().map_err(|_| "refused".to_string())?;
         Ok(bodies.map(|bodies| bodies.e_star))
     }
 

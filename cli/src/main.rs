@@ -22,12 +22,8 @@ use clap::{Parser, Subcommand};
 ///
 /// The model: a rigid rough surface is pressed into an elastic half-space (two elastic bodies are one of composite modulus E*),
 /// without friction, without adhesion, without yielding, and with slopes well below 1. The discrete problem, one pressure for
-/// each cell of the grid, is solved exactly; how far it is from the surface itself is a question of the grid, and every
-/// command warns where the grid is too coarse.
-///
-/// info: what is in a file, and whether it can be believed. path: area, load, approach, gap and stiffness at every
-/// event. load: the contact under given loads. patches: percolation, sealing, which asperities carry. gather: mean and spread of
-/// many paths.
+/// each cell of the grid, is solved to rounding, or the error that is left is printed. How far it is from the surface
+/// itself is a question of the grid, and every command warns where the grid is too coarse.
 ///
 /// Without a command it is `path` of a generated surface to 10 % contact, in seconds, as an example. Surfaces of one's own:
 /// `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help`, and the same of

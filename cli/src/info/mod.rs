@@ -23,7 +23,7 @@ use summary::Whole;
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
 const HIGHEST_HURST: f64 = 1.2;
 
-/// What is in a file of an instrument: size, units, missing nodes, roughness, and pictures of it
+/// What is in a file of an instrument, and what looks wrong: size, units, missing nodes, roughness, pictures
 ///
 /// All figures are of the surface that would touch: with missing nodes filled, and levelled and inverted if that is asked for.
 /// Warnings say what looks wrong: units, tilt, waves that the grid does not resolve.

@@ -27,7 +27,7 @@ use crate::values::{fraction, positive};
 use followed::Followed;
 use moment::Moment;
 
-/// Contact patches along a path: when it percolates and seals, which patches carry, from its record
+/// Contact patches along a path, from its record: when it percolates and seals, and which patches carry
 ///
 /// Prints when one patch leads all the way along x or y, when the last channel through the gap closes, and for one state the
 /// largest patch and the narrowest place of the widest channel, which any leak has to pass.

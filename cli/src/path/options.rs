@@ -14,15 +14,15 @@ use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
 use crate::values::{bytes, fraction, positive};
 
-/// The loading path of a rough surface: one state of contact for each node that touches, in their exact order
+/// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
 ///
 /// Prints a table of states at loads spread over the path, and how well the last one solves the equations. Writes path.csv (a
 /// line for each state), loading_curve.svg and contact_map.png.
 ///
 /// The model is an elastic half-space without friction and adhesion and a rigid rough surface of small slopes; both bodies may
-/// be elastic, then E* has both. It solves that problem exactly for one pressure in each cell of the grid; what the grid
-/// does not resolve, no solver brings back: column corrected_contact_area says how much area is due to the mesh, and a
-/// warning comes where patches or waves are a few cells.
+/// be elastic, then E* has both. With one pressure in each cell of the grid it solves that problem to rounding; of long paths
+/// approach_error says what is left. What the grid does not resolve, no solver brings back: corrected_contact_area says
+/// how much area is due to the mesh, and a warning comes where patches or waves are a few cells.
 ///
 /// Without --surface it generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst exponent
 /// 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wave that the grid
