@@ -207,7 +207,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             last,
             timings: LoadingTimings::default(),
         };
-        run.updater.make_room(&run.problem, budget - fixed_bytes)?;
+        run.updater
+            .make_room(&run.problem, run.memory.left())
+            .map_err(|error| run.memory.in_all(error))?;
         Ok(LoadingSolver {
             run,
             procedure,
@@ -228,12 +230,16 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::build`]; [`Error::NotOnPath`] for states that are not those of this path, or not in
+    /// Those of [`Self::build`]; [`Error::OutOfRange`] for a limit that the states have passed (for the state there see
+    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in
     /// the order of a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that
     /// are in no such order; [`Error::MemoryBudget`]; those of the updater.
     pub fn resume(self, history: &History) -> Result<LoadingSolver<U>, Error> {
         let mut solver = self.build()?;
         solver.restore(history)?;
+        if let Some(state) = &solver.state {
+            solver.limits.check_ahead(state, false)?;
+        }
         solver.rebuild()?;
         Ok(solver)
     }
