@@ -39,6 +39,12 @@ impl Elasticity {
         .map_err(|error| Failure::new("no such material", error))
     }
 
+    /// Young's modulus \[Pa\] and Poisson's ratio of each body that was given.
+    pub(crate) fn bodies(&self) -> Vec<[f64; 2]> {
+        let given = [self.material, self.against].into_iter().flatten();
+        given.map(|Material((e, nu))| [e, nu]).collect()
+    }
+
     /// E*, without which no measured surface can be pressed.
     pub(crate) fn required(&self) -> Result<f64, Failure> {
         self.e_star()?.ok_or_else(|| {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
-use asperity::{Doubt, FixedLoadSolver};
+use asperity::{Doubt, FixedLoadSolver, Grid, InfluenceKernel};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::outcome::Failure;
 use asperity_cli::say;
@@ -13,6 +13,7 @@ use clap::Args;
 
 use crate::elasticity::Elasticity;
 use crate::reading::Reading;
+use crate::room;
 use crate::values::bytes;
 
 /// The contact of a measured surface under given loads, each solved by itself: one line for each
@@ -74,17 +75,20 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let mut solver = half_space(options.periodic, grid, e_star)
-        .and_then(|half_space| {
-            let mut builder = FixedLoadSolver::builder(&surface, &half_space)
-                .tolerance(options.tolerance)
-                .stiffness(false);
-            if let Some(budget) = options.memory_budget {
-                builder = builder.memory_budget(budget);
-            }
-            builder.build()
-        })
-        .map_err(|error| Failure::new("no solution can begin", error))?;
+    let half_space = half_space(options.periodic, grid, e_star)
+        .map_err(|error| Failure::new("no such half-space", error))?;
+    let check = |grid: &Grid| {
+        FixedLoadSolver::check_room(grid, half_space.boundary(), options.memory_budget)
+    };
+    let mut builder = FixedLoadSolver::builder(&surface, &half_space)
+        .tolerance(options.tolerance)
+        .stiffness(false);
+    if let Some(budget) = options.memory_budget {
+        builder = builder.memory_budget(budget);
+    }
+    let mut solver = builder
+        .build()
+        .map_err(|error| room::failure("no solution can begin".to_string(), error, check))?;
     eprintln!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
@@ -109,6 +113,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                 write_npy(&file, field).map_err(|error| Failure::writing(&file, error))?;
             }
         }
+        verify(&solution, options.tolerance)?;
     }
     Ok(())
 }
@@ -138,6 +143,30 @@ fn print(solution: &FixedLoadSolution, seconds: f64, seconds_more: f64) {
         solution.certificate.greatest_contact_gap,
         solution.certificate.least_gap,
     );
+}
+
+/// `Ok` if the certificate of a solution is within what was asked for. The solver stops at a tolerance of gaps that is relative to
+/// no more than the length of the certificate, and keeps pressures from being negative and their sum at the load: what is
+/// ten times worse, or than rounding, is wrong.
+fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
+    let allowed = (10.0 * tolerance).max(1e-10);
+    let certificate = &solution.certificate;
+    for (quantity, error) in [
+        ("least pressure in contact", -certificate.least_pressure),
+        ("least gap out of contact", -certificate.least_gap),
+        ("greatest gap in contact", certificate.greatest_contact_gap),
+        ("complementarity", certificate.complementarity),
+        ("sum of pressures less load", certificate.load_error.abs()),
+    ] {
+        // NaN is wrong as well.
+        let is_right = error <= allowed;
+        if !is_right {
+            return Err(Failure::request(format!(
+                "the certificate is bad: an error of {error:.1e} ({quantity}), where {allowed:.1e} is the most"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Nothing where there is none.

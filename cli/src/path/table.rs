@@ -94,7 +94,9 @@ pub(super) fn print(
         "  sum of pressures less load  {:>10.1e} of the load",
         certificate.load_error
     );
-    Ok(())
+    solver
+        .verify()
+        .map_err(|error| Failure::new("the last state is no state of contact", error))
 }
 
 /// What looks wrong with the end of the path.
