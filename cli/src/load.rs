@@ -173,3 +173,38 @@ fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
 fn printed(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:e}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use asperity::surface::SelfAffine;
+    use asperity::{Boussinesq, Error};
+
+    use super::*;
+
+    /// A solution is within its tolerance, and each of its errors counts.
+    #[test]
+    fn bad_certificates_are_errors() -> Result<(), Error> {
+        let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+        let surface = SelfAffine::zhang2020(1);
+        let solution = || {
+            let builder = FixedLoadSolver::builder(&surface, &half_space).tolerance(1e-8);
+            builder.build()?.solve(10.0)
+        };
+        assert!(verify(&solution()?, 1e-8).is_ok());
+        let errors: [fn(&mut FixedLoadSolution, f64); 5] = [
+            |solution, error| solution.certificate.least_pressure = -error,
+            |solution, error| solution.certificate.least_gap = -error,
+            |solution, error| solution.certificate.greatest_contact_gap = error,
+            |solution, error| solution.certificate.complementarity = error,
+            |solution, error| solution.certificate.load_error = -error,
+        ];
+        for spoil in errors {
+            for (error, is_right) in [(0.9e-7, true), (1.1e-7, false), (f64::NAN, false)] {
+                let mut solution = solution()?;
+                spoil(&mut solution, error);
+                assert_eq!(verify(&solution, 1e-8).is_ok(), is_right, "{error:e}");
+            }
+        }
+        Ok(())
+    }
+}

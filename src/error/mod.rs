@@ -377,9 +377,9 @@ pub enum Error {
     File(#[from] FileError),
 }
 
-/// A number of bytes with three or four digits and a prefix; with all digits if another one would look the same.
+/// A number of bytes with a prefix and one digit behind the point, with more if another number would look the same.
 fn bytes(bytes: usize, other: usize) -> String {
-    let short = |bytes: usize| {
+    let short = |bytes: usize, digits: usize| {
         let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
         let mut thousands = 0;
         let mut value = bytes as f64;
@@ -387,14 +387,12 @@ fn bytes(bytes: usize, other: usize) -> String {
             value /= 1000.0;
             thousands += 1;
         }
-        let text = format!("{value:.1}");
-        let text = text.strip_suffix(".0").unwrap_or(&text);
+        let text = format!("{value:.digits$}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
         format!("{text} {}", units[thousands])
     };
-    if bytes != other && short(bytes) == short(other) {
-        return format!("{bytes} bytes");
-    }
-    short(bytes)
+    let digits = (1..9).find(|&digits| short(bytes, digits) != short(other, digits));
+    short(bytes, digits.unwrap_or(1))
 }
 
 impl Error {
@@ -428,10 +426,11 @@ mod tests {
         for (needed, budget, expected) in [
             (2, 1, "2 bytes > 1 bytes"),
             (8_076_320, 5_000_000, "8.1 MB > 5 MB"),
+            (10_049_329, 10_000_000, "10.05 MB > 10 MB"),
             (999_949, 999, "999.9 kB > 999 bytes"),
             (999_950, 0, "1 MB > 0 bytes"),
             (42_949_672_960, 12_345_678_901, "42.9 GB > 12.3 GB"),
-            (5_000_001, 5_000_000, "5000001 bytes > 5000000 bytes"),
+            (5_000_001, 5_000_000, "5.000001 MB > 5 MB"),
             (usize::MAX, 1_000_000_000_000, "18.4 EB > 1 TB"),
         ] {
             assert_eq!(told(needed, budget), expected);
