@@ -31,6 +31,8 @@ pub(crate) struct Elasticity {
 #[derive(Debug, Clone)]
 pub(crate) struct Bodies {
     pub(crate) e_star: f64,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic one that is known.
+    pub(crate) elastic: Vec<[f64; 2]>,
     words: String,
 }
 
@@ -39,6 +41,7 @@ impl Bodies {
     pub(crate) fn of_modulus(e_star: f64, source: &str) -> Self {
         Self {
             e_star,
+            elastic: Vec::new(),
             words: source.to_string(),
         }
     }
@@ -91,6 +94,11 @@ impl Bodies {
         };
         Ok(Self {
             e_star: e_star.map_err(|error| Failure::new("no such material", error))?,
+            elastic: [Some(first), second]
+                .into_iter()
+                .flatten()
+                .map(|material| [material.e, material.nu])
+                .collect(),
             words: format!("{first} against {against}"),
         })
     }

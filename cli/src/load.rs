@@ -17,6 +17,7 @@ use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::reading::Reading;
 use crate::resolution::Resolution;
+use crate::room;
 use crate::values::{bytes, positive};
 
 /// The contact of a measured surface under given loads or mean pressures, each solved by itself
@@ -104,15 +105,20 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let cannot_begin = |error| Failure::new("no solution can begin", error);
-    let half_space = half_space(options.periodic, grid, bodies.e_star).map_err(cannot_begin)?;
+    let half_space = half_space(options.periodic, grid, bodies.e_star)
+        .map_err(|error| Failure::new("no such half-space", error))?;
+    let check = |grid: &Grid| {
+        FixedLoadSolver::check_room(grid, half_space.boundary(), options.memory_budget)
+    };
     let mut builder = FixedLoadSolver::builder(&surface, &half_space)
         .tolerance(options.tolerance)
         .stiffness(false);
     if let Some(budget) = options.memory_budget {
         builder = builder.memory_budget(budget);
     }
-    let mut solver = builder.build().map_err(cannot_begin)?;
+    let mut solver = builder
+        .build()
+        .map_err(|error| room::failure("no solution can begin".to_string(), error, check))?;
     eprintln!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
@@ -156,6 +162,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                 if let Some(directory) = &options.save {
                     outcome.all_written(save(directory, &solution, k));
                 }
+                outcome.note(verify(&solution, options.tolerance));
             }
             // What was found before is not lost.
             Err(failure) => outcome.note(Err(failure)),
@@ -297,4 +304,64 @@ fn save(directory: &Path, solution: &FixedLoadSolution, k: usize) -> Result<Vec<
         }
     });
     written.into_iter().collect()
+}
+
+/// `Ok` if the certificate of a solution is within what was asked for. The solver stops at a tolerance of gaps that is relative to
+/// no more than the length of the certificate, and keeps pressures from being negative and their sum at the load: what is
+/// ten times worse, or than rounding, is wrong.
+fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
+    let allowed = (10.0 * tolerance).max(1e-10);
+    let certificate = &solution.certificate;
+    for (what, error) in [
+        ("least pressure in contact", -certificate.least_pressure),
+        ("least gap out of contact", -certificate.least_gap),
+        ("greatest gap in contact", certificate.greatest_contact_gap),
+        ("complementarity", certificate.complementarity),
+        ("sum of pressures less load", certificate.load_error.abs()),
+    ] {
+        // NaN is wrong as well.
+        let is_right = error <= allowed;
+        if !is_right {
+            return Err(Failure::request(format!(
+                "the certificate of the contact under {} is bad: an error of {error:.1e} ({what}), where {allowed:.1e} is the most",
+                quantity(solution.state.load, "N", 6)
+            )));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use asperity::surface::SelfAffine;
+    use asperity::{Boussinesq, Error};
+
+    use super::*;
+
+    /// A solution is within its tolerance, and each of its errors counts.
+    #[test]
+    fn bad_certificates_are_errors() -> Result<(), Error> {
+        let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+        let surface = SelfAffine::zhang2020(1);
+        let solution = || {
+            let builder = FixedLoadSolver::builder(&surface, &half_space).tolerance(1e-8);
+            builder.build()?.solve(10.0)
+        };
+        assert!(verify(&solution()?, 1e-8).is_ok());
+        let errors: [fn(&mut FixedLoadSolution, f64); 5] = [
+            |solution, error| solution.certificate.least_pressure = -error,
+            |solution, error| solution.certificate.least_gap = -error,
+            |solution, error| solution.certificate.greatest_contact_gap = error,
+            |solution, error| solution.certificate.complementarity = error,
+            |solution, error| solution.certificate.load_error = -error,
+        ];
+        for spoil in errors {
+            for (error, is_right) in [(0.9e-7, true), (1.1e-7, false), (f64::NAN, false)] {
+                let mut solution = solution()?;
+                spoil(&mut solution, error);
+                assert_eq!(verify(&solution, 1e-8).is_ok(), is_right, "{error:e}");
+            }
+        }
+        Ok(())
+    }
 }

@@ -9,8 +9,11 @@ mod info;
 mod load;
 mod patches;
 mod path;
+mod physics;
 mod reading;
 mod resolution;
+mod room;
+mod settings;
 mod values;
 
 use std::process::ExitCode;
@@ -45,7 +48,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+        if let Some(sentence) = physics::left_out(&error) {
+            eprint!("{sentence}");
+            std::process::exit(2);
+        }
+        error.exit()
+    });
+    let done = match arguments.command {
         None => path::run(&path::Options::parse_from(["asperity path"])),
         Some(Command::Path(options)) => path::run(&options),
         Some(Command::Load(options)) => load::run(&options),
@@ -57,7 +67,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report();
-            ExitCode::FAILURE
+            ExitCode::from(failure.code())
         }
     }
 }

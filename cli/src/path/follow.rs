@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::Write as _;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,8 @@ use asperity::LoadingState;
 use asperity::patches::ContactEdge;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::options::Options;
+use super::interrupt::Interrupt;
+use super::job::Job;
 use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
@@ -30,25 +32,26 @@ pub(super) struct Followed {
 impl Followed {
     /// Begins with the states that there are already.
     pub(super) fn new(
-        begun: &[LoadingState],
+        job: &Job,
         mut file: PathFile,
-        options: &Options,
+        save_every: Option<NonZeroUsize>,
     ) -> Result<Self, Failure> {
-        for state in begun {
+        for state in job.begun() {
             file.write(state)?;
         }
-        let every = options.save_every.map(usize::from);
+        let record = job.record().map(Path::to_path_buf);
         Ok(Self {
-            states: begun.to_vec(),
+            states: job.begun().to_vec(),
             file,
-            saves: options.record.clone().zip(every),
+            saves: record.zip(save_every.map(usize::from)),
         })
     }
 
-    /// Runs the path to its end, writing each state as it comes.
+    /// Runs the path to its end, or until it is asked to stop, writing each state as it comes.
     pub(super) fn follow(
         &mut self,
         solver: &mut Solver,
+        interrupt: &Interrupt,
         progress: impl Fn(&LoadingState) -> Progress,
     ) -> Result<(), Failure> {
         let bar = ProgressBar::new(100);
@@ -60,7 +63,11 @@ impl Followed {
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut ended = Ok(());
-        while let (Ok(()), Some(state)) = (&ended, solver.next()) {
+        interrupt.wait();
+        while ended.is_ok()
+            && !interrupt.is_asked()
+            && let Some(state) = solver.next()
+        {
             ended = state
                 .map_err(|error| Failure::new("the path broke off", error))
                 .and_then(|state| {

@@ -1,31 +1,30 @@
 //! What to compute: the surface, the half-space and where to stop.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::kernel::KernelOrigin;
+use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
-use asperity::surface::{HeightMap, SelfAffine, Topography};
+use asperity::surface::{HeightMap, Topography};
 use asperity::updater::Handover;
 use asperity::{
     Boundary, ContactRule, ContactTarget, Doubt, Grid, InfluenceKernel, LoadingSolver, LoadingState,
 };
+use serde_json::{Value, json};
 
 use super::Solver;
-use super::options::{AREA_FRACTION, Options, Updater};
+use super::options::{AREA_FRACTION, Options, Updater, no_room};
+use super::parts::Parts;
 use super::progress::{Progress, total};
+use super::source::{Generated, fingerprint, generate, read, source_of};
 use crate::elasticity::Bodies;
 use crate::ensemble::Expected;
-use asperity_cli::half_space::{Periodic, half_space};
+use crate::settings::Settings;
+use asperity_cli::half_space::{Periodic, boundary, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
-
-/// Side \[m\] and nodes a side of the generated surface, its seed, and cells of its shortest wave, if not given.
-const SIDE: f64 = 1e-2;
-const NODES: usize = 256;
-const SEED: u64 = 1;
-const CELLS_OF_SHORTEST_WAVE: f64 = 8.0;
 
 /// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
 const BYTES_A_NODE: f64 = 1000.0;
@@ -43,7 +42,10 @@ pub(super) struct Job {
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
     /// What there is of the path already.
-    begun: Option<LoadingRecord>,
+    begun: Option<History>,
+    /// Where its record goes.
+    record: Option<PathBuf>,
+    settings: Settings,
 }
 
 impl Job {
@@ -52,28 +54,43 @@ impl Job {
         if let Some(file) = &options.resume {
             return Self::resumed(file, options);
         }
-        let bodies = match &options.surface {
-            Some(_) => options.elasticity.required()?,
-            None => options.elasticity.or_steel()?,
-        };
-        let (surface, name, rms_gradient) = match &options.surface {
+        let bodies = options.bodies()?;
+        let (surface, name, source) = match &options.surface {
+            Some(file)
+                if options
+                    .record
+                    .as_ref()
+                    .is_some_and(|kept| is_same(kept, file)) =>
+            {
+                return Err(Failure::request(format!(
+                    "--record would replace the surface {}: give another file",
+                    file.display()
+                )));
+            }
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
-        let otherwise = [ContactTarget::AreaFraction(AREA_FRACTION)];
-        let targets = options.targets(surface.grid(), &otherwise);
+        let grid = *surface.grid();
         Ok(Self {
-            surface,
             name,
-            rms_gradient,
-            bodies,
+            rms_gradient: rms_gradient(&surface)?,
             periodic: options.periodic,
             rule: options.rule.into(),
             updater: options.updater,
             memory_budget: options.memory_budget,
-            targets,
+            targets: targets(options, &grid),
             begun: None,
+            record: options.record.clone(),
+            settings: settings(options, (&bodies, &grid), source)?,
+            bodies,
+            surface,
         })
+    }
+
+    /// What the path of a generated surface is of, without the surface.
+    pub(super) fn expected_settings(options: &Options) -> Result<Settings, Failure> {
+        let Generated { spectrum, grid } = Generated::new(options)?;
+        settings(options, (&options.bodies()?, &grid), source_of(&spectrum))
     }
 
     /// The path of a record.
@@ -87,29 +104,75 @@ impl Job {
             _ => return Err(failed(asperity::Error::ForeignKernel)),
         };
         let heights = record.heights().matrix().clone();
-        let surface = options
+        options
             .reading
-            .untouched()
-            .and_then(|()| Topography::new(record.grid(), heights).map_err(failed))?;
-        let rms_gradient = surface.map().rms_gradient(surface.grid()).map_err(failed)?;
-        Ok(Self {
-            name: format!("{}, {} states", file.display(), record.states().len()),
-            rms_gradient,
-            bodies: Bodies::of_modulus(e_star, "composite modulus of the record"),
+            .only_sides("the surface of a record: it is as it is")?;
+        let surface = Topography::new(record.grid(), heights).map_err(failed)?;
+        let grid = *surface.grid();
+        let targets = options.targets(&grid, &record.settings().targets);
+        let (history, passed) = record
+            .history()
+            .ending_at(&grid, &targets)
+            .map_err(failed)?;
+        let kept = match (&options.record, passed) {
+            (Some(kept), Some(_)) if is_same(kept, file) => {
+                return Err(Failure::request(format!(
+                    "{} goes beyond what is asked for, and would lose that: give --record another file",
+                    file.display()
+                )));
+            }
+            (Some(kept), _) => Some(kept.clone()),
+            (None, Some(_)) => None,
+            (None, None) => Some(file.to_path_buf()),
+        };
+        if let (Some(_), Some(last)) = (passed, record.states().last()) {
+            eprintln!(
+                "note: {} goes on to {}; what is asked for lies before that, and is read from it",
+                file.display(),
+                quantity(last.load, "N", 4)
+            );
+        }
+        let source = json!({
+            "record": file.display().to_string(),
+            "heights_md5": fingerprint(&surface),
+        });
+        let bodies = Bodies::of_modulus(e_star, "composite modulus of the record");
+        let parts = Parts {
+            bodies: &bodies,
             periodic,
             rule: record.settings().rule,
             updater: options.updater,
+            targets: &targets,
+        };
+        Ok(Self {
+            name: format!("{}, {} states", file.display(), record.states().len()),
+            rms_gradient: rms_gradient(&surface)?,
+            settings: parts.settings(&grid, source)?,
+            periodic,
+            rule: parts.rule,
+            updater: options.updater,
             memory_budget: options.memory_budget,
-            targets: options.targets(surface.grid(), &record.settings().targets),
+            targets,
+            bodies,
             surface,
-            begun: Some(record),
+            begun: Some(history),
+            record: kept,
         })
     }
 
     /// The events that the path had already, in a record.
     pub(super) fn begun(&self) -> &[LoadingState] {
-        let record = self.begun.as_ref();
-        record.map_or(&[], |record| record.history().events())
+        self.begun.as_ref().map_or(&[], History::events)
+    }
+
+    /// Where its record goes, if anywhere.
+    pub(super) fn record(&self) -> Option<&Path> {
+        self.record.as_deref()
+    }
+
+    /// Everything that determines the path.
+    pub(super) fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The path, at its beginning or where it was interrupted.
@@ -126,9 +189,15 @@ impl Job {
         }
         match &self.begun {
             None => builder.build(),
-            Some(record) => builder.resume(record.history()),
+            Some(history) => builder.resume(history),
         }
-        .map_err(|error| Failure::new("the path cannot begin", error))
+        .map_err(|error| {
+            no_room(
+                "the path cannot begin".to_string(),
+                error,
+                (self.updater, kernel.boundary(), self.memory_budget),
+            )
+        })
     }
 
     pub(super) fn grid(&self) -> Grid {
@@ -276,68 +345,36 @@ fn in_words(rule: ContactRule) -> &'static str {
     }
 }
 
-fn boundary(periodic: Option<Periodic>) -> Boundary {
-    match periodic {
-        None => Boundary::Free,
-        Some(_) => Boundary::Periodic,
+/// Everything that the command line says of a path that begins.
+fn settings(
+    options: &Options,
+    (bodies, grid): (&Bodies, &Grid),
+    source: Value,
+) -> Result<Settings, Failure> {
+    Parts {
+        bodies,
+        periodic: options.periodic,
+        rule: options.rule.into(),
+        updater: options.updater,
+        targets: &targets(options, grid),
     }
+    .settings(grid, source)
 }
 
-/// A surface, its name and its rms gradient.
-type Made = (Topography, String, f64);
-
-/// The surface of a file.
-fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
-    let surface = options.reading.surface(file)?;
-    let name = file.display().to_string();
-    let rms_gradient = surface
-        .map()
-        .rms_gradient(surface.grid())
-        .map_err(|error| Failure::new(format!("cannot use {name}"), error))?;
-    Ok((surface, name, rms_gradient))
+fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
+    options.targets(grid, &[ContactTarget::AreaFraction(AREA_FRACTION)])
 }
 
-/// A surface with the spectrum of Zhang et al. (2020), Table 1, but for its shortest wave, which has so many cells that the
-/// grid resolves it, unless another one is asked for.
-fn generate(options: &Options) -> Result<Made, Failure> {
-    let nodes = options.nodes.unwrap_or(NODES);
-    let seed = options.seed.unwrap_or(SEED);
-    let side = options.reading.side.unwrap_or(SIDE);
-    let side_y = options.reading.side_y.unwrap_or(side);
-    let failed = |error: asperity::Error| {
-        Failure::new(
-            format!("cannot put the surface on {nodes} x {nodes} nodes"),
-            error,
-        )
-    };
-    let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
-    LoadingSolver::check_room(&grid, boundary(options.periodic), options.memory_budget)
-        .map_err(failed)?;
-    let paper = SelfAffine::zhang2020(seed);
-    let (cell, rolloff) = (grid.dx().max(grid.dy()), paper.rolloff_wavelength());
-    if 2.0 * cell > rolloff {
-        return Err(Failure::request(format!(
-            "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
-            quantity(rolloff, "m", 5),
-            quantity(2.0 * cell, "m", 5)
-        )));
+/// From differences of the heights, whatever the surface is from: a record knows nothing else.
+fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {
+    let gradient = surface.map().rms_gradient(surface.grid());
+    gradient.map_err(|error| Failure::new("no gradient of the surface", error))
+}
+
+/// Whether two names are of one file that is there.
+fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => false,
     }
-    let resolved = CELLS_OF_SHORTEST_WAVE * cell;
-    let least = paper.short_cutoff_wavelength();
-    let shortest = options
-        .short_cutoff
-        .unwrap_or(resolved.max(least).min(rolloff));
-    let amplitude = paper.amplitude();
-    let surface = SelfAffine::new(paper.hurst(), rolloff, shortest, amplitude, seed);
-    let surface = surface.map_err(failed)?;
-    let heights = Topography::sample(&surface, grid).map_err(failed)?;
-    let rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
-    let name = format!(
-        "generated as an example: self-affine, Hurst exponent {}, waves of {} ({}) and longer, roll-off at {}, seed {seed}",
-        surface.hurst(),
-        quantity(shortest, "m", 4),
-        quantity(shortest / cell, "cells", 4),
-        quantity(rolloff, "m", 4)
-    );
-    Ok((heights, name, rms_gradient))
 }

@@ -59,7 +59,9 @@ pub(super) fn print(
         .certificate()
         .map_err(|error| Failure::new("no certificate", error))?;
     exactness(&certificate, last);
-    Ok(())
+    solver
+        .verify()
+        .map_err(|error| Failure::new("the last state is no state of contact", error))
 }
 
 /// The corrected contact area \[m²\] after each event.
