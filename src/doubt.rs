@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::surface::{Topography, Trend};
+use crate::surface::{Filter, Topography, Trend, Window};
 
 /// Something that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,29 @@ pub enum Doubt {
         /// Root mean square height of what is left \[m\].
         left: f64,
     },
-    /// A pressure that no body bears elastically.
+    /// Heights that differ by less than atoms do.
+    Smooth {
+        /// Root mean square height \[m\].
+        rms_height: f64,
+    },
+    /// Waves that the grid does not resolve: contact areas at light loads are those of the mesh.
+    Unresolved {
+        /// The share of waves shorter than four cells in the mean square gradient, without tilt.
+        share: f64,
+    },
+    /// Contact of patches that the grid does not resolve.
+    SmallPatches {
+        /// Number of patches.
+        patches: usize,
+        /// Nodes in contact.
+        contact_nodes: usize,
+    },
+    /// A composite modulus that no two bodies have.
+    Modulus {
+        /// Composite modulus \[Pa\].
+        e_star: f64,
+    },
+    /// A pressure that metals do not bear elastically.
     HighPressure {
         /// The greatest pressure \[Pa\].
         pressure: f64,
@@ -33,10 +55,19 @@ pub enum Doubt {
 const STEEP: f64 = 1.0;
 /// How many times the roughness a tilt may be.
 const TILT: f64 = 3.0;
+/// Root mean square height below which a surface is doubted \[m\]: a tenth of an atom.
+const SMOOTH: f64 = 1e-11;
+/// Cells of the shortest wave that counts as resolved, and the share that shorter waves may have.
+const CELLS: f64 = 4.0;
+const UNRESOLVED: f64 = 0.1;
+/// Nodes a side of the piece in which waves are looked at: more of them tell nothing new, and take memory.
+const MIDDLE: std::ops::RangeInclusive<usize> = 16..=512;
+/// Nodes that patches have on average, if they are resolved.
+const PATCH: f64 = 10.0;
 /// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and glass at 0.1.
-const HIGH: f64 = 0.1;
-/// No solid is softer \[Pa\].
-const SOFTEST: f64 = 1e3;
+const HIGH: f64 = 0.02;
+/// Moduli of solids lie between that of soft rubber and that of diamond \[Pa\].
+const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
 
 impl Doubt {
     /// What looks wrong with a surface.
@@ -46,6 +77,14 @@ impl Doubt {
         let gradient = surface.map().rms_gradient(surface.grid());
         if let Some(rms_gradient) = gradient.ok().filter(|gradient| *gradient > STEEP) {
             doubts.push(Self::Steep { rms_gradient });
+        }
+        let rms_height = surface.map().rms_height();
+        // A mean may round: all heights are the same where they do not differ.
+        if rms_height < SMOOTH && surface.map().peak_to_valley() > 0.0 {
+            doubts.push(Self::Smooth { rms_height });
+        }
+        if let Some(share) = short_waves(surface).filter(|share| *share > UNRESOLVED) {
+            doubts.push(Self::Unresolved { share });
         }
         if let Ok(levelled) = surface.level(Trend::Plane) {
             let left = levelled.map().rms_height();
@@ -58,11 +97,50 @@ impl Doubt {
         doubts
     }
 
+    /// What looks wrong with the patches of a contact.
+    #[must_use]
+    pub fn of_patches(patches: usize, contact_nodes: usize) -> Option<Self> {
+        ((contact_nodes as f64) < PATCH * patches as f64).then_some(Self::SmallPatches {
+            patches,
+            contact_nodes,
+        })
+    }
+
+    /// What looks wrong with a composite modulus.
+    #[must_use]
+    pub fn of_modulus(e_star: f64) -> Option<Self> {
+        (!SOLIDS.contains(&e_star)).then_some(Self::Modulus { e_star })
+    }
+
     /// What looks wrong with the greatest pressure of a contact.
     #[must_use]
     pub fn of_pressure(pressure: f64, e_star: f64) -> Option<Self> {
         (pressure > HIGH * e_star).then_some(Self::HighPressure { pressure, e_star })
     }
+}
+
+/// The share of waves shorter than [`CELLS`] cells in the mean square gradient in the middle of a surface; `None` where
+/// there is no gradient, or too few nodes to tell waves apart.
+fn short_waves(surface: &Topography) -> Option<f64> {
+    let grid = surface.grid();
+    let (nx, ny) = grid.shape();
+    if nx.min(ny) < *MIDDLE.start() {
+        return None;
+    }
+    let middle = |n: usize| {
+        let some = n.min(*MIDDLE.end());
+        let first = (n - some) / 2;
+        first..first + some
+    };
+    let piece = surface.crop(middle(nx), middle(ny)).ok()?;
+    // Maps need not repeat: jumps at their borders would be short waves.
+    let levelled = piece.level(Trend::Plane).ok()?;
+    let whole = levelled.window(Window::Hann).ok()?;
+    let shortest = CELLS * grid.dx().max(grid.dy());
+    let resolved = whole.low_pass(shortest, Filter::Sharp).ok()?;
+    let mean_square = |surface: &Topography| surface.rms_gradient_spectral().powi(2);
+    let share = 1.0 - mean_square(&resolved) / mean_square(&whole);
+    share.is_finite().then_some(share)
 }
 
 impl fmt::Display for Doubt {
@@ -92,22 +170,53 @@ impl fmt::Display for Doubt {
                  roughness. Contact would begin at one edge; level it (`level`, `--level plane`) unless the tilt is \
                  meant"
             ),
-            Self::HighPressure { pressure, e_star } => {
-                write!(
-                    f,
-                    "the greatest pressure is {pressure:.3e} Pa, {:.2} of E* = {e_star:.3e} Pa; metals yield at some \
-                     0.01 to 0.03 of it",
-                    pressure / e_star
-                )?;
-                if e_star < SOFTEST {
-                    write!(
+            Self::Smooth { rms_height } => write!(
+                f,
+                "the rms height of the surface is {rms_height:.3e} m, less than a tenth of an atom: is the unit of \
+                 heights right?"
+            ),
+            Self::Unresolved { share } => write!(
+                f,
+                "waves shorter than four cells make up {:.0} % of the mean square gradient. The grid does not resolve \
+                 them: contact areas and greatest pressures depend on the mesh",
+                100.0 * share
+            ),
+            Self::SmallPatches {
+                patches,
+                contact_nodes,
+            } => write!(
+                f,
+                "patches of contact have {:.1} nodes on average. Those of fewer than some ten nodes are not resolved: \
+                 contact area and greatest pressure depend on the mesh",
+                contact_nodes as f64 / patches as f64
+            ),
+            Self::Modulus { e_star } if e_star > *SOLIDS.end() => write!(
+                f,
+                "E* = {e_star:.3e} Pa is above that of diamond: is the modulus in Pa?"
+            ),
+            Self::Modulus { e_star } => {
+                write!(f, "E* = {e_star:.3e} Pa is softer than rubber")?;
+                let units = [(1e9, "GPa"), (1e6, "MPa")];
+                let fits = |(factor, _): &&(f64, &str)| SOLIDS.contains(&(e_star * factor));
+                match units.iter().find(fits) {
+                    Some((factor, unit)) => write!(
                         f,
-                        ". No solid is as soft as that: in GPa it would be {:.3e} Pa",
-                        1e9 * e_star
-                    )?;
+                        ": if the modulus was given in {unit}, it is {:.3e} Pa",
+                        factor * e_star
+                    ),
+                    None => write!(f, ": is the modulus in Pa?"),
                 }
-                Ok(())
             }
+            Self::HighPressure { pressure, e_star } => write!(
+                f,
+                "the greatest pressure is {pressure:.3e} Pa, {} of E* = {e_star:.3e} Pa. The model is elastic; \
+                 metals yield at some 0.01 to 0.03 of E*",
+                // Nobody reads a hundred digits.
+                match pressure / e_star {
+                    ratio if ratio < 1e3 => format!("{ratio:.3}"),
+                    ratio => format!("{ratio:.1e}"),
+                }
+            ),
         }
     }
 }
@@ -127,7 +236,7 @@ mod tests {
 
     #[test]
     fn units_that_are_mixed_up_are_noticed() -> Result<(), Error> {
-        let rough = |x: f64, y: f64| 1e-6 * (x.sin() + (1.7 * y).sin());
+        let rough = |x: f64, y: f64| 1e-6 * (x.sin() + (0.9 * y).sin());
         assert_eq!(doubts(1e-5, rough)?, []);
         // Heights in nm that are taken for µm.
         let found = doubts(1e-5, |x, y| 1e3 * rough(x, y))?;
@@ -143,7 +252,7 @@ mod tests {
     #[test]
     fn a_tilt_that_hides_the_roughness_is_noticed() -> Result<(), Error> {
         let tilted =
-            |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (1.7 * y).sin()) + slope * x;
+            |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (0.9 * y).sin()) + slope * x;
         assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
         let found = doubts(1e-5, tilted(1e-8))?;
         let [doubt @ Doubt::Tilted { plane, left }] = found[..] else {
@@ -193,11 +302,20 @@ mod tests {
     fn a_doubt_that_does_not_fit_is_an_error() {
         use fmt::Write;
         let (plane, left) = (1e-6, 1e-9);
-        let (pressure, e_star) = (60.0, 115.0);
+        let (pressure, e_star, rms_height) = (60.0, 115.0, 1e-13);
         for doubt in [
             Doubt::Steep { rms_gradient: 40.0 },
             Doubt::Steep { rms_gradient: 1e10 },
             Doubt::Tilted { plane, left },
+            Doubt::Smooth { rms_height },
+            Doubt::Unresolved { share: 0.3 },
+            Doubt::SmallPatches {
+                patches: 3,
+                contact_nodes: 7,
+            },
+            Doubt::Modulus { e_star },
+            Doubt::Modulus { e_star: 1e-9 },
+            Doubt::Modulus { e_star: 1e13 },
             Doubt::HighPressure { pressure, e_star },
         ] {
             let length = doubt.to_string().len();
@@ -209,16 +327,66 @@ mod tests {
     }
 
     #[test]
-    fn pressures_that_no_body_bears_are_noticed() {
-        assert_eq!(Doubt::of_pressure(1e9, 115e9), None);
-        let gigapascals = Doubt::of_pressure(60.0, 115.0);
-        assert!(gigapascals.is_some_and(|doubt| doubt.to_string().contains("1.150e11")));
-        // Too high for metals, on a modulus that solids have.
-        let high = Doubt::of_pressure(20e9, 115e9).map(|doubt| doubt.to_string());
-        assert!(
-            high.is_some_and(
-                |text| text.contains("2.000e10 Pa, 0.17 of E*") && !text.contains("GPa")
-            )
+    fn pressures_that_metals_do_not_bear_are_noticed() {
+        assert_eq!(Doubt::of_pressure(2e9, 115e9), None);
+        let high = Doubt::of_pressure(2.5e9, 115e9).map(|doubt| doubt.to_string());
+        assert!(high.is_some_and(|text| text.contains("2.500e9 Pa, 0.022 of E*")));
+    }
+
+    #[test]
+    fn moduli_in_other_units_are_noticed() {
+        for e_star in [2.3e6, 115e9, 1.2e12] {
+            assert_eq!(Doubt::of_modulus(e_star), None);
+        }
+        for (e_star, said) in [
+            (230.8, "in GPa, it is 2.308e11 Pa"),
+            (230_769.0, "in MPa, it is 2.308e11 Pa"),
+            (1e-9, "is the modulus in Pa?"),
+            (2.3e13, "above that of diamond"),
+        ] {
+            let found = Doubt::of_modulus(e_star).map(|doubt| doubt.to_string());
+            assert!(
+                found.as_ref().is_some_and(|text| text.contains(said)),
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn heights_smaller_than_atoms_are_noticed() -> Result<(), Error> {
+        let found = doubts(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
+        let [doubt @ Doubt::Smooth { rms_height }] = found[..] else {
+            return Err(Error::NotFinite { step: 0 });
+        };
+        assert!((rms_height / 5e-13 - 1.0).abs() < 0.1, "{rms_height}");
+        assert!(doubt.to_string().contains("less than a tenth of an atom"));
+        // Nothing is wrong with a plane.
+        assert_eq!(doubts(1e-5, |_, _| 1e-6)?, []);
+        Ok(())
+    }
+
+    /// Two waves of 16/6 and 16/2 cells with equal gradients: half of the mean square gradient is not resolved.
+    #[test]
+    fn waves_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
+        let wave = |waves: f64, x: f64| (std::f64::consts::TAU * waves * x / 16.0).sin() / waves;
+        let found = doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
+        let [doubt @ Doubt::Unresolved { share }] = found[..] else {
+            return Err(Error::NotFinite { step: 0 });
+        };
+        assert!((share - 0.5).abs() < 0.1, "{share}");
+        assert!(doubt.to_string().contains("% of the mean square gradient"));
+        assert_eq!(
+            doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?,
+            []
         );
+        Ok(())
+    }
+
+    #[test]
+    fn patches_of_few_nodes_are_noticed() {
+        assert_eq!(Doubt::of_patches(0, 0), None);
+        assert_eq!(Doubt::of_patches(3, 30), None);
+        let few = Doubt::of_patches(3, 29).map(|doubt| doubt.to_string());
+        assert!(few.is_some_and(|text| text.contains("have 9.7 nodes on average")));
     }
 }

@@ -1,8 +1,10 @@
 //! The composite modulus that a command line asks for.
 
+use std::fmt;
 use std::str::FromStr;
 
 use asperity::{composite_modulus, plane_strain_modulus};
+use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
@@ -16,7 +18,7 @@ pub(crate) struct Elasticity {
     e_star: Option<f64>,
 
     /// In place of E*, one body: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...: typical
-    /// values), or Young's modulus in Pa and Poisson's ratio: 210e9,0.3
+    /// values), or Young's modulus in Pa and Poisson's ratio: 210e9,0.3 [generated surface: steel]
     #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     material: Option<Material>,
 
@@ -25,31 +27,115 @@ pub(crate) struct Elasticity {
     against: Option<Material>,
 }
 
-impl Elasticity {
-    /// E*, `None` if nothing was said of it.
-    pub(crate) fn e_star(&self) -> Result<Option<f64>, Failure> {
-        let Some(Material(first)) = self.material else {
-            return Ok(self.e_star);
-        };
-        match self.against {
-            Some(Material(second)) => composite_modulus(first, second),
-            None => plane_strain_modulus(first.0, first.1),
+/// The two bodies in words, and their composite modulus.
+#[derive(Debug, Clone)]
+pub(crate) struct Bodies {
+    pub(crate) e_star: f64,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic one that is known.
+    pub(crate) elastic: Vec<[f64; 2]>,
+    words: String,
+}
+
+impl Bodies {
+    /// Bodies of which only E* is known, and where from.
+    pub(crate) fn of_modulus(e_star: f64, source: &str) -> Self {
+        Self {
+            e_star,
+            elastic: Vec::new(),
+            words: source.to_string(),
         }
-        .map(Some)
-        .map_err(|error| Failure::new("no such material", error))
+    }
+}
+
+impl fmt::Display for Bodies {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: E* {}", self.words, quantity(self.e_star, "Pa", 4))
+    }
+}
+
+impl Elasticity {
+    /// The bodies, `None` if nothing was said of them.
+    fn given(&self) -> Result<Option<Bodies>, Failure> {
+        let Some(first) = self.material else {
+            let alone = |e_star| Bodies::of_modulus(e_star, "composite modulus as given");
+            return Ok(self.e_star.map(alone));
+        };
+        Bodies::between(first, self.against).map(Some)
     }
 
-    /// E*, without which no measured surface can be pressed.
-    pub(crate) fn required(&self) -> Result<f64, Failure> {
-        self.e_star()?.ok_or_else(|| {
+    /// The bodies that were said, otherwise steel against a rigid body.
+    pub(crate) fn or_steel(&self) -> Result<Bodies, Failure> {
+        match self.given()? {
+            Some(bodies) => Ok(bodies),
+            None => {
+                let mut steel = Bodies::between(Material::STEEL, None)?;
+                steel.words = format!("assumed: {}", steel.words);
+                Ok(steel)
+            }
+        }
+    }
+
+    /// The bodies, without which no measured surface can be pressed.
+    pub(crate) fn required(&self) -> Result<Bodies, Failure> {
+        self.given()?.ok_or_else(|| {
             Failure::request("how stiff are the bodies? Give --e-star or --material")
         })
     }
 }
 
-/// Young's modulus \[Pa\] and Poisson's ratio.
-#[derive(Debug, Clone, Copy)]
-struct Material((f64, f64));
+impl Bodies {
+    fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
+        let (e_star, against) = match second {
+            Some(second) => (
+                composite_modulus((first.e, first.nu), (second.e, second.nu)),
+                second.to_string(),
+            ),
+            None => (plane_strain_modulus(first.e, first.nu), "rigid".to_string()),
+        };
+        Ok(Self {
+            e_star: e_star.map_err(|error| Failure::new("no such material", error))?,
+            elastic: [Some(first), second]
+                .into_iter()
+                .flatten()
+                .map(|material| [material.e, material.nu])
+                .collect(),
+            words: format!("{first} against {against}"),
+        })
+    }
+}
+
+/// A body, with its name if it was given by name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Material {
+    name: Option<&'static str>,
+    /// Young's modulus \[Pa\].
+    e: f64,
+    /// Poisson's ratio.
+    nu: f64,
+}
+
+impl Material {
+    const STEEL: Self = Self::named(MATERIALS[0]);
+
+    const fn named((name, e, nu): (&'static str, f64, f64)) -> Self {
+        Self {
+            name: Some(name),
+            e,
+            nu,
+        }
+    }
+}
+
+/// `steel (210 GPa, 0.30)`.
+impl fmt::Display for Material {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let e = quantity(self.e, "Pa", 4);
+        match self.name {
+            Some(name) => write!(f, "{name} ({e}, {:.2})", self.nu),
+            None => write!(f, "E = {e}, ν = {:.2}", self.nu),
+        }
+    }
+}
 
 /// Typical values at room temperature. Those of an alloy or a polymer vary: for results that matter they are given
 /// as numbers.
@@ -78,12 +164,12 @@ impl FromStr for Material {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some((_, e, nu)) = MATERIALS.iter().find(|(name, ..)| *name == text) {
-            return Ok(Self((*e, *nu)));
+        if let Some(named) = MATERIALS.iter().find(|(name, ..)| *name == text) {
+            return Ok(Self::named(*named));
         }
         let number = |text: &str| text.trim().parse::<f64>().ok();
         match text.split_once(',').map(|(e, nu)| (number(e), number(nu))) {
-            Some((Some(e), Some(nu))) => Ok(Self((e, nu))),
+            Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu }),
             _ => {
                 let names: Vec<&str> = MATERIALS.iter().map(|(name, ..)| *name).collect();
                 Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))
@@ -102,7 +188,8 @@ mod tests {
             material: Some(material.parse()?),
             against: against.map(str::parse).transpose()?,
         };
-        elasticity.e_star().map_err(|_| "refused".to_string())
+        let bodies = elasticity.given().map_err(|_| "refused".to_string())?;
+        Ok(bodies.map(|bodies| bodies.e_star))
     }
 
     #[test]
@@ -113,6 +200,37 @@ mod tests {
             modulus("glass", Some("pmma")),
             modulus("3e9, 0.37", Some("70e9, 0.22"))
         );
+    }
+
+    /// One body alone presses against a rigid one, whether it was named or assumed.
+    #[test]
+    fn both_bodies_are_said() -> Result<(), String> {
+        let said = |material: &str, against: Option<&str>| -> Result<String, String> {
+            let elasticity = Elasticity {
+                e_star: None,
+                material: Some(material.parse()?),
+                against: against.map(str::parse).transpose()?,
+            };
+            let bodies = elasticity.required().map_err(|_| "refused")?;
+            Ok(bodies.to_string())
+        };
+        let steel = "steel (210 GPa, 0.30) against rigid: E* 230.8 GPa";
+        assert_eq!(said("steel", None)?, steel);
+        assert_eq!(
+            said("70e9,0.33", Some("rubber"))?,
+            "E = 70 GPa, ν = 0.33 against rubber (2 MPa, 0.50): E* 2.667 MPa"
+        );
+        let nothing = |e_star| Elasticity {
+            e_star,
+            material: None,
+            against: None,
+        };
+        let assumed = nothing(None).or_steel().map_err(|_| "refused")?;
+        assert_eq!(assumed.to_string(), format!("assumed: {steel}"));
+        assert!(nothing(None).required().is_err());
+        let given = nothing(Some(115e9)).or_steel().map_err(|_| "refused")?;
+        assert_eq!(given.to_string(), "composite modulus as given: E* 115 GPa");
+        Ok(())
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! A folder is there whole or not at all: it is written under another name, and renamed at the end. What is there is
 //! skipped, so that a job that was killed is simply started again, and several machines may share the work.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -74,31 +75,75 @@ pub(crate) struct Member {
 }
 
 impl Ensemble {
-    /// The seeds of this task whose folders are not there yet, and the number of those that are.
-    pub(crate) fn members(&self, out: &Path) -> (Vec<Member>, usize) {
-        let Some(seeds) = self.seeds else {
-            return (Vec::new(), 0);
+    /// The first seed of this task, how far apart its seeds are, and the last one that may be one.
+    fn span(&self) -> Option<(u64, u64, u64)> {
+        let Seeds { first, last } = self.seeds?;
+        let (which, of) = self
+            .task
+            .map_or((0, 1), |task| (task.which % task.of, task.of));
+        let first = first.checked_add(which)?;
+        (first <= last).then_some((first, of, last))
+    }
+
+    /// The seeds of this task, in order.
+    pub(crate) fn seeds_of_task(&self) -> impl Iterator<Item = u64> {
+        let span = self.span();
+        let next = move |seed: &u64| {
+            let (_, step, last) = span?;
+            seed.checked_add(step).filter(|seed| *seed <= last)
         };
-        let is_mine = |place: u64| {
-            self.task
-                .is_none_or(|task| place % task.of == task.which % task.of)
+        std::iter::successors(span.map(|(first, ..)| first), next)
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> u128 {
+        self.span().map_or(0, |(first, step, last)| {
+            u128::from((last - first) / step) + 1
+        })
+    }
+
+    /// Those of them whose folders are there: found by what is in the folder, however many seeds there may be.
+    pub(crate) fn there(&self, out: &Path) -> Result<BTreeSet<u64>, Failure> {
+        let failed = |error| Failure::new(format!("cannot read {}", out.display()), error);
+        let (Some((first, step, last)), true) = (self.span(), out.is_dir()) else {
+            return Ok(BTreeSet::new());
         };
-        let mine = (seeds.first..=seeds.last).filter(|seed| is_mine(seed - seeds.first));
-        let members = mine.map(|seed| Member {
-            seed,
-            folder: out.join(format!("seed_{seed}")),
-        });
-        let (there, missing): (Vec<Member>, Vec<Member>) =
-            members.partition(|member| member.folder.is_dir());
-        (missing, there.len())
+        let mut there = BTreeSet::new();
+        for entry in std::fs::read_dir(out).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name();
+            let seed = name.to_str().and_then(|name| name.strip_prefix("seed_"));
+            let seed = seed.and_then(|seed| seed.parse::<u64>().ok());
+            let is_mine = |seed: &u64| {
+                let in_span = (first..=last).contains(seed) && (seed - first).is_multiple_of(step);
+                in_span && Member::new(*seed, out).folder.is_dir()
+            };
+            there.extend(seed.filter(is_mine));
+        }
+        Ok(there)
     }
 }
 
 impl Member {
+    /// The path of a seed, in its folder.
+    pub(crate) fn new(seed: u64, out: &Path) -> Self {
+        Self {
+            seed,
+            folder: out.join(format!("seed_{seed}")),
+        }
+    }
+
     /// Where the files are written before the folder gets its name.
     pub(crate) fn unfinished(&self) -> PathBuf {
         let name = format!("seed_{}.{}.unfinished", self.seed, std::process::id());
         self.folder.with_file_name(name)
+    }
+
+    /// Removes what is not finished.
+    pub(crate) fn abandon(&self) -> Result<(), Failure> {
+        let unfinished = self.unfinished();
+        std::fs::remove_dir_all(&unfinished)
+            .map_err(|error| Failure::new(format!("cannot remove {}", unfinished.display()), error))
     }
 
     /// Gives the folder its name; one that another process has finished meanwhile stays.

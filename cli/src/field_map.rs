@@ -41,6 +41,8 @@ struct Margin {
 pub enum Scale {
     /// In proportion to the value; what lies below the range is red.
     Linear,
+    /// In proportion to the value, the greatest bright: for heights.
+    Relief,
     /// In proportion to its logarithm, between positive ends; what lies below the range is as light as its end.
     Logarithmic,
 }
@@ -53,7 +55,7 @@ pub struct FieldMap<'a> {
     pub length_unit: &'a str,
     /// The values, NaN where nothing is to be drawn.
     pub values: &'a DMatrix<f64>,
-    /// Values of the lightest and the darkest colour.
+    /// The least and the greatest value.
     pub range: (f64, f64),
     /// How colours go with values in between.
     pub scale: Scale,
@@ -97,7 +99,7 @@ impl FieldMap<'_> {
         let (least, greatest) = self.range;
         let (label, unit) = self.label;
         let colours = match self.scale {
-            Scale::Linear => Axis::linear(label, unit, least, greatest),
+            Scale::Linear | Scale::Relief => Axis::linear(label, unit, least, greatest),
             Scale::Logarithmic => Axis::logarithmic(label, unit, least, greatest),
         };
         for (place, value) in (0_i32..).zip(self.pixels(panel)) {
@@ -134,14 +136,14 @@ impl FieldMap<'_> {
     ) -> Drawn<DB> {
         // Lines run where the colours change evenly.
         let even = |value: f64| match self.scale {
-            Scale::Linear => value,
+            Scale::Linear | Scale::Relief => value,
             Scale::Logarithmic => value.log10(),
         };
         let field = self.values.map(even);
         let (dx, dy) = (self.grid.dx(), self.grid.dy());
         let position = |(x, y): (f64, f64)| ((x + 0.5) * dx, (y + 0.5) * dy);
         for &level in self.contours {
-            let colour = ink_on(colours.place(level));
+            let colour = self.ink_on(colours.place(level));
             for piece in contour(&field, even(level)) {
                 let points = panel.trace(axes, piece.map(position).into_iter());
                 area.draw(&PathElement::new(points, colour.stroke_width(1)))?;
@@ -188,11 +190,16 @@ impl FieldMap<'_> {
             width: 26,
             ..*panel
         };
-        bar.colour_bar(area, colours)?;
+        bar.colour_bar(area, colours, |share| self.shade(share))?;
         let across = Axis::plain("", 0.0, 1.0);
         for &level in self.contours {
             let ends = [(0.0, level), (1.0, level)].into_iter();
-            bar.curve(area, (&across, colours), ends, ink_on(colours.place(level)))?;
+            bar.curve(
+                area,
+                (&across, colours),
+                ends,
+                self.ink_on(colours.place(level)),
+            )?;
         }
         if self.values.iter().any(|value| self.is_below(*value)) {
             let at = (bar.left + bar.width, bar.top - FONT);
@@ -217,17 +224,22 @@ impl FieldMap<'_> {
             return BELOW;
         }
         match colours.place(value) {
-            Some(share) if greatest > least => shade(share),
-            _ => shade(0.0),
+            Some(share) if greatest > least => self.shade(share),
+            _ => self.shade(0.0),
         }
     }
-}
 
-/// A line that stands out on the colour at this place of the scale.
-fn ink_on(place: Option<f64>) -> RGBColor {
-    match place {
-        Some(place) if place > 0.5 => WHITE,
-        _ => BLACK,
+    /// A line that stands out on the colour at this place of the scale.
+    fn ink_on(&self, place: Option<f64>) -> RGBColor {
+        let is_dark = place.is_some_and(|place| (place > 0.5) != (self.scale == Scale::Relief));
+        if is_dark { WHITE } else { BLACK }
+    }
+
+    fn shade(&self, share: f64) -> RGBColor {
+        match self.scale {
+            Scale::Relief => shade(1.0 - share),
+            Scale::Linear | Scale::Logarithmic => shade(share),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The half-space that the command line asks for.
 
-use asperity::{Boussinesq, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
+use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
 use clap::ValueEnum;
 
 /// The kernel of a periodic half-space.
@@ -19,6 +19,14 @@ impl Periodic {
             Self::Love => "Love",
             Self::Spectral => "spectral",
         }
+    }
+}
+
+/// What surrounds the nominal area.
+pub fn boundary(periodic: Option<Periodic>) -> Boundary {
+    match periodic {
+        None => Boundary::Free,
+        Some(_) => Boundary::Periodic,
     }
 }
 

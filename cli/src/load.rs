@@ -1,23 +1,30 @@
 //! `asperity load`: the contact of a measured surface under given loads.
 
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
-use asperity::{Doubt, FixedLoadSolver};
+use asperity::{Doubt, FixedLoadSolver, Grid, InfluenceKernel};
 use asperity_cli::half_space::{Periodic, half_space};
-use asperity_cli::outcome::Failure;
-use asperity_cli::say;
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::{self, Failure, Outcome};
+use asperity_cli::{panel, say};
 use clap::Args;
 
+use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::reading::Reading;
-use crate::values::bytes;
+use crate::resolution::Resolution;
+use crate::room;
+use crate::values::{bytes, positive};
 
-/// The contact of a measured surface under given loads, each solved by itself: one line for each
+/// The contact of a measured surface under given loads or mean pressures, each solved by itself
 ///
-/// Results go to stdout, progress to stderr. Memory grows with the grid and not with the contact.
+/// Prints one line for each on stdout, for programs, and what people want to know on stderr. Writes load.csv and
+/// contact_map_K.png, K counting from 0. The model is that of `asperity path`: elastic, without friction and
+/// adhesion, small slopes. Memory grows with the grid and not with the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
@@ -31,14 +38,8 @@ pub(crate) struct Options {
     #[command(flatten)]
     elasticity: Elasticity,
 
-    /// Load; may be given several times
-    #[arg(
-        long,
-        value_name = "NEWTONS",
-        allow_negative_numbers = true,
-        required = true
-    )]
-    load: Vec<f64>,
+    #[command(flatten)]
+    loads: Loads,
 
     /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
     /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and
@@ -62,85 +63,305 @@ pub(crate) struct Options {
     /// Directory for pressure_K.npy and gap_K.npy, K counting the loads from 0
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
+
+    /// Directory for load.csv and the pictures, made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+/// At least one.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
+struct Loads {
+    /// Load; may be given several times
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true)]
+    load: Vec<f64>,
+
+    /// Load over nominal area; may be given several times, and comes after the loads
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    mean_pressure: Vec<f64>,
+}
+
+impl Loads {
+    /// All of them \[N\], on a nominal area.
+    fn on(&self, nominal_area: f64) -> Vec<f64> {
+        let pressures = self.mean_pressure.iter();
+        let given = self.load.iter().copied();
+        given
+            .chain(pressures.map(|pressure| pressure * nominal_area))
+            .collect()
+    }
 }
 
 /// Solves for each load in turn.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
-    let e_star = options.elasticity.required()?;
+    let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
-    for doubt in Doubt::of_surface(&surface) {
+    eprintln!("bodies     {bodies}");
+    let doubts = Doubt::of_surface(&surface).into_iter();
+    for doubt in doubts.chain(Doubt::of_modulus(bodies.e_star)) {
         eprintln!("warning: {doubt}");
     }
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let mut solver = half_space(options.periodic, grid, e_star)
-        .and_then(|half_space| {
-            let mut builder = FixedLoadSolver::builder(&surface, &half_space)
-                .tolerance(options.tolerance)
-                .stiffness(false);
-            if let Some(budget) = options.memory_budget {
-                builder = builder.memory_budget(budget);
-            }
-            builder.build()
-        })
-        .map_err(|error| Failure::new("no solution can begin", error))?;
+    let half_space = half_space(options.periodic, grid, bodies.e_star)
+        .map_err(|error| Failure::new("no such half-space", error))?;
+    let check = |grid: &Grid| {
+        FixedLoadSolver::check_room(grid, half_space.boundary(), options.memory_budget)
+    };
+    let mut builder = FixedLoadSolver::builder(&surface, &half_space)
+        .tolerance(options.tolerance)
+        .stiffness(false);
+    if let Some(budget) = options.memory_budget {
+        builder = builder.memory_budget(budget);
+    }
+    let mut solver = builder
+        .build()
+        .map_err(|error| room::failure("no solution can begin".to_string(), error, check))?;
     eprintln!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
         solver.bytes() / 1_000_000
     );
-    if let Some(directory) = &options.save {
+    panel::register_font()?;
+    for directory in options.save.iter().chain([&options.out]) {
         std::fs::create_dir_all(directory)
             .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
     }
-    for (k, &load) in options.load.iter().enumerate() {
-        eprintln!("load {} of {}: {load} N", k + 1, options.load.len());
-        let failed = |error| Failure::new(format!("no contact under {load} N"), error);
-        let start = Instant::now();
-        let mut solution = solver.solve(load).map_err(failed)?;
-        let seconds = start.elapsed().as_secs_f64();
-        solver.add_stiffness(&mut solution).map_err(failed)?;
-        let seconds_more = start.elapsed().as_secs_f64() - seconds;
-        print(&solution, seconds, seconds_more);
-        if let Some(directory) = &options.save {
-            for (name, field) in [("pressure", &solution.pressure), ("gap", &solution.gap)] {
-                let file = directory.join(format!("{name}_{k}.npy"));
-                write_npy(&file, field).map_err(|error| Failure::writing(&file, error))?;
+    let loads = options.loads.on(grid.nominal_area());
+    let mut outcome = Outcome::default();
+    let mut table = format!("{}\n", COLUMNS.join(","));
+    for (k, &load) in loads.iter().enumerate() {
+        eprintln!(
+            "load {} of {}: {}",
+            k + 1,
+            loads.len(),
+            quantity(load, "N", 6)
+        );
+        let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
+            let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
+            let resolution = resolution.map_err(|error| Failure::new("no patches", error))?;
+            let numbers = numbers(&solution, &resolution, &grid);
+            // Writing to a text cannot fail.
+            let _ = writeln!(table, "{}", numbers.join(","));
+            print_line(&numbers, &solution, effort.0);
+            print_words(&solution, &resolution, bodies.e_star, effort.1);
+            Ok(solution)
+        });
+        match solved {
+            Ok(solution) => {
+                let picture = options.out.join(format!("contact_map_{k}.png"));
+                let FixedLoadSolution {
+                    state,
+                    pressure,
+                    contact_map,
+                    ..
+                } = &solution;
+                outcome.written(draw_map(&grid, state, pressure, contact_map, &picture));
+                if let Some(directory) = &options.save {
+                    outcome.all_written(save(directory, &solution, k));
+                }
+                outcome.note(verify(&solution, options.tolerance));
             }
+            // What was found before is not lost.
+            Err(failure) => outcome.note(Err(failure)),
+        }
+    }
+    if table.lines().count() > 1 {
+        outcome.written(outcome::write(&options.out.join("load.csv"), table));
+    }
+    outcome.finish_on_stderr()
+}
+
+/// A solution with its stiffnesses, and the seconds that it and they took.
+fn solve(
+    solver: &mut FixedLoadSolver,
+    load: f64,
+) -> Result<(FixedLoadSolution, (f64, f64)), Failure> {
+    let failed = |error| {
+        Failure::new(
+            format!("no contact under {}", quantity(load, "N", 6)),
+            error,
+        )
+    };
+    let start = Instant::now();
+    let mut solution = solver.solve(load).map_err(failed)?;
+    let seconds = start.elapsed().as_secs_f64();
+    solver.add_stiffness(&mut solution).map_err(failed)?;
+    let seconds_more = start.elapsed().as_secs_f64() - seconds;
+    Ok((solution, (seconds, seconds_more)))
+}
+
+/// The columns of load.csv, in SI units.
+const COLUMNS: [&str; 11] = [
+    "load",
+    "contact_nodes",
+    "max_pressure",
+    "mean_gap",
+    "approach",
+    "contact_stiffness",
+    "interfacial_stiffness",
+    "mean_pressure",
+    "contact_area",
+    "contact_area_fraction",
+    "corrected_contact_area",
+];
+
+/// The numbers of those columns; nothing where there is none.
+fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> [String; 11] {
+    let state = solution.state;
+    let exact = |value: f64| format!("{value:e}");
+    let optional = |value: Option<f64>| value.map_or_else(String::new, exact);
+    [
+        exact(state.load),
+        state.contact_nodes.to_string(),
+        exact(solution.max_pressure()),
+        exact(state.mean_gap),
+        exact(state.approach),
+        optional(state.contact_stiffness),
+        optional(state.interfacial_stiffness),
+        exact(state.load / grid.nominal_area()),
+        exact(state.contact_area),
+        exact(state.contact_area_fraction),
+        exact(resolution.corrected_area),
+    ]
+}
+
+/// The line for programs.
+fn print_line(numbers: &[String; 11], solution: &FixedLoadSolution, seconds: f64) {
+    let named = COLUMNS.iter().zip(numbers);
+    let named: Vec<String> = named
+        .map(|(name, number)| format!("{name}={number}"))
+        .collect();
+    say!(
+        "{} iterations={} seconds={seconds:.6}",
+        named.join(" "),
+        solution.effort.iterations,
+    );
+}
+
+/// The lines for people.
+fn print_words(
+    solution: &FixedLoadSolution,
+    resolution: &Resolution,
+    e_star: f64,
+    seconds_more: f64,
+) {
+    let state = solution.state;
+    let greatest = solution.max_pressure();
+    eprintln!(
+        "  contact {:.4} % of the nominal area, {resolution}",
+        100.0 * state.contact_area_fraction
+    );
+    eprintln!(
+        "  mean pressure {}, greatest pressure {}, mean gap {}, approach {}",
+        quantity(state.mean_pressure(), "Pa", 4),
+        quantity(greatest, "Pa", 4),
+        quantity(state.mean_gap, "m", 4),
+        quantity(state.approach, "m", 4)
+    );
+    for (name, stiffness) in [
+        ("contact stiffness", state.contact_stiffness),
+        ("interfacial stiffness", state.interfacial_stiffness),
+    ] {
+        if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.is_finite()) {
+            eprintln!("  {name} {}", quantity(stiffness, "N/m", 4));
+        }
+    }
+    let gap = |relative: f64| quantity(relative * solution.certificate.length, "m", 2);
+    let least = solution.certificate.least_gap;
+    eprintln!(
+        "  left of the equations: gap in contact {}{}",
+        gap(solution.certificate.greatest_contact_gap),
+        // There is none in full contact.
+        match least.is_finite() {
+            true => format!(", least gap outside {}", gap(least)),
+            false => String::new(),
+        }
+    );
+    eprintln!(
+        "  {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more for the stiffness",
+        solution.effort.convolutions, solution.effort.coarse_convolutions,
+    );
+    let high = Doubt::of_pressure(greatest, e_star);
+    for doubt in resolution.doubt().into_iter().chain(high) {
+        eprintln!("warning: {doubt}");
+    }
+    if state.contact_area_fraction == 1.0 {
+        eprintln!("note: the contact is full; above full contact nothing but the pressure changes");
+    }
+}
+
+/// Writes the fields of the K-th load.
+fn save(directory: &Path, solution: &FixedLoadSolution, k: usize) -> Result<Vec<PathBuf>, Failure> {
+    let fields = [("pressure", &solution.pressure), ("gap", &solution.gap)];
+    let written = fields.map(|(name, field)| {
+        let file = directory.join(format!("{name}_{k}.npy"));
+        match write_npy(&file, field) {
+            Ok(()) => Ok(file),
+            Err(error) => Err(Failure::writing(&file, error)),
+        }
+    });
+    written.into_iter().collect()
+}
+
+/// `Ok` if the certificate of a solution is within what was asked for. The solver stops at a tolerance of gaps that is relative to
+/// no more than the length of the certificate, and keeps pressures from being negative and their sum at the load: what is
+/// ten times worse, or than rounding, is wrong.
+fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
+    let allowed = (10.0 * tolerance).max(1e-10);
+    let certificate = &solution.certificate;
+    for (what, error) in [
+        ("least pressure in contact", -certificate.least_pressure),
+        ("least gap out of contact", -certificate.least_gap),
+        ("greatest gap in contact", certificate.greatest_contact_gap),
+        ("complementarity", certificate.complementarity),
+        ("sum of pressures less load", certificate.load_error.abs()),
+    ] {
+        // NaN is wrong as well.
+        let is_right = error <= allowed;
+        if !is_right {
+            return Err(Failure::request(format!(
+                "the certificate of the contact under {} is bad: an error of {error:.1e} ({what}), where {allowed:.1e} is the most",
+                quantity(solution.state.load, "N", 6)
+            )));
         }
     }
     Ok(())
 }
 
-/// A line for programs on stdout, and one for people on stderr.
-fn print(solution: &FixedLoadSolution, seconds: f64, seconds_more: f64) {
-    let state = solution.state;
-    say!(
-        "load={:e} contact_nodes={} max_pressure={:e} mean_gap={:e} approach={:e} \
-         contact_stiffness={} interfacial_stiffness={} iterations={} seconds={seconds:.6}",
-        state.load,
-        state.contact_nodes,
-        solution.max_pressure(),
-        state.mean_gap,
-        state.approach,
-        printed(state.contact_stiffness),
-        printed(state.interfacial_stiffness),
-        solution.effort.iterations,
-    );
-    eprintln!(
-        "  {:.3} % in contact, {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more \
-         for the stiffness, errors: complementarity {:.1e}, gap in contact {:.1e}, least gap {:.1e}",
-        100.0 * state.contact_area_fraction,
-        solution.effort.convolutions,
-        solution.effort.coarse_convolutions,
-        solution.certificate.complementarity,
-        solution.certificate.greatest_contact_gap,
-        solution.certificate.least_gap,
-    );
-}
+#[cfg(test)]
+mod tests {
+    use asperity::surface::SelfAffine;
+    use asperity::{Boussinesq, Error};
 
-/// Nothing where there is none.
-fn printed(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| format!("{value:e}"))
+    use super::*;
+
+    /// A solution is within its tolerance, and each of its errors counts.
+    #[test]
+    fn bad_certificates_are_errors() -> Result<(), Error> {
+        let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+        let surface = SelfAffine::zhang2020(1);
+        let solution = || {
+            let builder = FixedLoadSolver::builder(&surface, &half_space).tolerance(1e-8);
+            builder.build()?.solve(10.0)
+        };
+        assert!(verify(&solution()?, 1e-8).is_ok());
+        let errors: [fn(&mut FixedLoadSolution, f64); 5] = [
+            |solution, error| solution.certificate.least_pressure = -error,
+            |solution, error| solution.certificate.least_gap = -error,
+            |solution, error| solution.certificate.greatest_contact_gap = error,
+            |solution, error| solution.certificate.complementarity = error,
+            |solution, error| solution.certificate.load_error = -error,
+        ];
+        for spoil in errors {
+            for (error, is_right) in [(0.9e-7, true), (1.1e-7, false), (f64::NAN, false)] {
+                let mut solution = solution()?;
+                spoil(&mut solution, error);
+                assert_eq!(verify(&solution, 1e-8).is_ok(), is_right, "{error:e}");
+            }
+        }
+        Ok(())
+    }
 }

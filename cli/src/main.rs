@@ -1,5 +1,7 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
+mod columns;
+mod contact_map;
 mod elasticity;
 mod ensemble;
 mod gather;
@@ -7,7 +9,11 @@ mod info;
 mod load;
 mod patches;
 mod path;
+mod physics;
 mod reading;
+mod resolution;
+mod room;
+mod settings;
 mod values;
 
 use std::process::ExitCode;
@@ -15,10 +21,16 @@ use std::process::ExitCode;
 use asperity_cli::speech;
 use clap::{Parser, Subcommand};
 
-/// Exact elastic contact of rough surfaces.
+/// Elastic contact of rough surfaces: the whole loading path, event by event, or single loads.
 ///
-/// Without a command, `path` of a generated surface: the whole loading to 10 % contact, in seconds.
-/// `asperity path --help`, and the same of every other command, lists its options.
+/// The model: a rigid rough surface is pressed into an elastic half-space (two elastic bodies are one of composite modulus E*),
+/// without friction, without adhesion, without yielding, and with slopes well below 1. The discrete problem, one pressure for
+/// each cell of the grid, is solved to rounding, or the error that is left is printed. How far it is from the surface
+/// itself is a question of the grid, and every command warns where the grid is too coarse.
+///
+/// Without a command it is `path` of a generated surface to 10 % contact, in seconds, as an example. Surfaces of one's own:
+/// `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help`, and the same of
+/// every other command, lists options. All numbers are in SI units.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true)]
 struct Arguments {
@@ -36,7 +48,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+        if let Some(sentence) = physics::left_out(&error) {
+            eprint!("{sentence}");
+            std::process::exit(2);
+        }
+        error.exit()
+    });
+    let done = match arguments.command {
         None => path::run(&path::Options::parse_from(["asperity path"])),
         Some(Command::Path(options)) => path::run(&options),
         Some(Command::Load(options)) => load::run(&options),
@@ -48,7 +67,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report();
-            ExitCode::FAILURE
+            ExitCode::from(failure.code())
         }
     }
 }

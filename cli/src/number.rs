@@ -45,33 +45,168 @@ fn superscript(number: &str) -> String {
         .collect()
 }
 
-/// A quantity with up to `digits` significant digits and an SI prefix.
+/// A quantity with up to `digits` significant digits and an SI prefix, or a power of ten where there is none.
 pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
-    let (scale, unit) = prefixed(unit, value);
-    let scaled = value / scale;
-    let whole = scaled.abs().max(1.0).log10().floor() as usize + 1;
-    let text = format!("{scaled:.*}", digits.saturating_sub(whole));
-    let short = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
+    // Rounded before the prefix is chosen: 999.9996 of something are 1 thousand.
+    let rounded = round(value, digits);
+    match prefix(rounded) {
+        Some((scale, prefix)) => format!("{} {prefix}{unit}", plain(rounded / scale, digits)),
+        None => format!("{} {unit}", short(rounded, digits)),
+    }
+}
+
+/// An area with up to `digits` significant digits, in m² or the square of a shorter length.
+pub fn area(value: f64, digits: usize) -> String {
+    let (scale, unit) = area_unit(value);
+    let rounded = round(value / scale, digits);
+    let text = if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
+        plain(rounded, digits)
+    } else {
+        short(rounded, digits)
     };
-    format!("{short} {unit}")
+    format!("{text} {unit}")
+}
+
+/// A unit that suits areas up to `greatest`, in m², and its name.
+pub fn area_unit(greatest: f64) -> (f64, &'static str) {
+    const UNITS: [(f64, &str); 4] = [(1.0, "m²"), (1e-6, "mm²"), (1e-12, "µm²"), (1e-18, "nm²")];
+    let fits = |(unit, _): &&(f64, &str)| greatest.abs() >= 0.01 * unit;
+    match UNITS.iter().find(fits) {
+        Some(unit) => *unit,
+        None if greatest == 0.0 => UNITS[0],
+        None => UNITS[3],
+    }
+}
+
+/// A number with so many significant digits for a table: as it is written by hand, or with a power of ten far from 1.
+pub fn significant(value: f64, digits: usize) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e6).contains(&size) {
+        let rounded = round(value, digits);
+        format!("{rounded:.*}", decimals(rounded, digits))
+    } else {
+        format!("{value:.*e}", digits.saturating_sub(1))
+    }
+}
+
+fn round(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.*e}", digits.saturating_sub(1));
+    text.parse().unwrap_or(value)
+}
+
+/// Places after the point that a number with so many digits has.
+fn decimals(value: f64, digits: usize) -> usize {
+    let place = if value == 0.0 {
+        0.0
+    } else {
+        value.abs().log10().floor()
+    };
+    (digits as f64 - 1.0 - place).max(0.0) as usize
+}
+
+/// Without zeros behind the point.
+fn plain(value: f64, digits: usize) -> String {
+    let text = format!("{value:.*}", decimals(value, digits));
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    }
+}
+
+/// As m × 10ⁿ without zeros at the end of m.
+fn short(value: f64, digits: usize) -> String {
+    let text = scientific(value, digits);
+    match text.split_once(" × ") {
+        Some((m, power)) if m.contains('.') => {
+            let m = m.trim_end_matches('0').trim_end_matches('.');
+            format!("{m} × {power}")
+        }
+        _ => text,
+    }
+}
+
+/// The scale and the name of the prefix, from femto to peta, that suits a number.
+fn prefix(value: f64) -> Option<(f64, &'static str)> {
+    const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
+    if value == 0.0 {
+        return Some((1.0, ""));
+    }
+    let thousands = thousands(value)?;
+    let place = usize::try_from(thousands + 5).ok()?;
+    Some((10_f64.powi(3 * thousands), PREFIXES.get(place)?))
+}
+
+/// How many times a number has the factor 1000, `None` if it has no end.
+fn thousands(value: f64) -> Option<i32> {
+    let size = value.abs().log10();
+    size.is_finite()
+        .then(|| ((size + 1e-9) / 3.0).floor() as i32)
 }
 
 /// The power of ten of the SI prefix that suits numbers up to `greatest`, and the unit with it: a
 /// prefix from femto to peta, or a power of ten beyond those.
-pub(crate) fn prefixed(unit: &str, greatest: f64) -> (f64, String) {
-    const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
-    if greatest == 0.0 || !greatest.is_finite() {
-        return (1.0, unit.to_string());
+pub fn prefixed(unit: &str, greatest: f64) -> (f64, String) {
+    if let Some((scale, prefix)) = prefix(greatest) {
+        return (scale, format!("{prefix}{unit}"));
     }
-    let thousands = ((greatest.abs().log10() + 1e-9) / 3.0).floor() as i32;
-    let scale = 10_f64.powi(3 * thousands);
-    let prefix = usize::try_from(thousands + 5)
-        .ok()
-        .and_then(|index| PREFIXES.get(index));
-    match prefix {
-        Some(prefix) => (scale, format!("{prefix}{unit}")),
-        None => (scale, format!("{} {unit}", power_of_ten(3 * thousands))),
+    match thousands(greatest) {
+        Some(thousands) => {
+            let power = power_of_ten(3 * thousands);
+            (10_f64.powi(3 * thousands), format!("{power} {unit}"))
+        }
+        None => (1.0, unit.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_are_written_as_an_engineer_would() {
+        for (value, text) in [
+            (0.0, "0 Pa"),
+            (115.384_615e9, "115.4 GPa"),
+            (-2.5e-3, "-2.5 mPa"),
+            (999.96e3, "1 MPa"),
+            (1e99, "1 × 10⁹⁹ Pa"),
+            (-4.9438e-15, "-4.944 fPa"),
+            (-4.9438e-16, "-4.944 × 10⁻¹⁶ Pa"),
+            (f64::INFINITY, "inf Pa"),
+            (f64::NAN, "NaN Pa"),
+        ] {
+            assert_eq!(quantity(value, "Pa", 4), text);
+        }
+    }
+
+    #[test]
+    fn areas_have_squares_of_lengths() {
+        for (value, text) in [
+            (0.0, "0 m²"),
+            (1.0, "1 m²"),
+            (1e-4, "100 mm²"),
+            (3.2e-6, "3.2 mm²"),
+            (4.340_277e-8, "0.0434 mm²"),
+            (2.5e-10, "250 µm²"),
+            (4e-20, "0.04 nm²"),
+            (1e-30, "1 × 10⁻¹² nm²"),
+            (1e12, "1 × 10¹² m²"),
+        ] {
+            assert_eq!(area(value, 4), text);
+        }
+    }
+
+    #[test]
+    fn numbers_of_tables_have_their_digits() {
+        for (value, text) in [
+            (0.0, "0.000"),
+            (12.345_6, "12.35"),
+            (9999.6, "10000"),
+            (0.012_345_6, "0.01235"),
+            (1.5e-7, "1.500e-7"),
+            (-3e9, "-3.000e9"),
+        ] {
+            assert_eq!(significant(value, 4), text);
+        }
     }
 }

@@ -12,6 +12,7 @@ use crate::say;
 pub struct Failure {
     what: String,
     source: Option<Box<dyn Error>>,
+    code: u8,
 }
 
 impl Failure {
@@ -20,6 +21,7 @@ impl Failure {
         Self {
             what: what.into(),
             source: Some(source.into()),
+            code: 1,
         }
     }
 
@@ -30,15 +32,37 @@ impl Failure {
 
     /// A request that cannot be met.
     pub fn request(what: impl Into<String>) -> Self {
+        Self::with_code(what, 1)
+    }
+
+    /// An end that has an exit code of its own.
+    pub fn with_code(what: impl Into<String>, code: u8) -> Self {
         Self {
             what: what.into(),
             source: None,
+            code,
         }
+    }
+
+    /// The same, with what can be done.
+    #[must_use]
+    pub fn with_advice(mut self, advice: &str) -> Self {
+        self.what = format!("{}; {advice}", self.what);
+        self
+    }
+
+    /// What the program ends with.
+    pub fn code(&self) -> u8 {
+        self.code
     }
 
     /// Prints the whole chain of causes on stderr.
     pub fn report(&self) {
-        eprintln!("error: {}", self.what);
+        match self.code {
+            1 => eprintln!("error: {}", self.what),
+            // Not an error, but what was asked for.
+            _ => eprintln!("{}", self.what),
+        }
         let mut said = String::new();
         let mut cause: Option<&dyn Error> = self.source.as_deref();
         while let Some(error) = cause {
@@ -62,6 +86,30 @@ pub fn write(name: &Path, bytes: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
     write_whole(name, |output| output.write_all(bytes.as_ref()))
         .map(|()| name.to_path_buf())
         .map_err(|error| Failure::writing(name, error))
+}
+
+/// `Ok` if a file can be written: before the work whose result it is to hold. What is there stays as it is.
+///
+/// # Errors
+///
+/// If it cannot be written.
+pub fn check_place(name: &Path) -> Result<(), Failure> {
+    let failed = |error| Failure::writing(name, error);
+    if name.is_dir() {
+        return Err(failed(std::io::ErrorKind::IsADirectory.into()));
+    }
+    if name.exists() && !name.is_file() {
+        // A device is written to as it is.
+        return Ok(());
+    }
+    // As it will be written: beside its place.
+    let place = name.canonicalize().unwrap_or_else(|_| name.to_path_buf());
+    let mut probe = place.file_name().unwrap_or_default().to_os_string();
+    probe.push(format!(".{}.probe", std::process::id()));
+    let probe = place.with_file_name(probe);
+    std::fs::File::create(&probe)
+        .and_then(|_| std::fs::remove_file(&probe))
+        .map_err(failed)
 }
 
 /// Collects failures and the names of the files that were written.
@@ -98,6 +146,14 @@ impl Outcome {
         say!();
         for file in &self.files {
             say!("wrote {}", file.display());
+        }
+        self.finish_quietly()
+    }
+
+    /// The same where stdout is for programs.
+    pub fn finish_on_stderr(self) -> Result<(), Failure> {
+        for file in &self.files {
+            eprintln!("wrote {}", file.display());
         }
         self.finish_quietly()
     }

@@ -179,7 +179,12 @@ impl Panel {
     }
 
     /// All shades as a bar, with an axis along its right edge.
-    pub fn colour_bar<DB: DrawingBackend>(&self, area: &Area<DB>, y: &Axis) -> Drawn<DB> {
+    pub fn colour_bar<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        y: &Axis,
+        shade: impl Fn(f64) -> RGBColor,
+    ) -> Drawn<DB> {
         for row in 0..self.height {
             let share = 1.0 - (f64::from(row) + 0.5) / f64::from(self.height);
             let top = self.top + row;

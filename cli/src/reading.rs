@@ -7,6 +7,7 @@ use asperity::surface::{Topography, Trend};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::{Args, ValueEnum};
+use serde_json::{Map, Value};
 
 use crate::values::{positive, unit};
 
@@ -69,14 +70,43 @@ impl From<Level> for Trend {
 }
 
 impl Reading {
-    /// `Ok` if nothing was asked for: a surface on record is as it is.
-    pub(crate) fn untouched(&self) -> Result<(), Failure> {
-        if self.fill || self.level.is_some() || self.invert {
-            return Err(Failure::request(
-                "the surface of a record is not filled, levelled or inverted",
-            ));
+    /// What was asked for besides the sides, by option.
+    pub(crate) fn given(&self) -> Map<String, Value> {
+        let text = |value: Option<String>| value.map(Value::String);
+        let flag = |is_given: bool| is_given.then_some(Value::Bool(true));
+        let level = self.level.and_then(|level| level.to_possible_value());
+        let options = [
+            (
+                "height-unit",
+                text(self.height_unit.map(|unit| unit.to_string())),
+            ),
+            (
+                "lateral-unit",
+                text(self.lateral_unit.map(|unit| unit.to_string())),
+            ),
+            ("channel", text(self.channel.clone())),
+            ("ignore-mask", flag(self.ignore_mask)),
+            ("fill", flag(self.fill)),
+            (
+                "level",
+                text(level.map(|level| level.get_name().to_string())),
+            ),
+            ("invert", flag(self.invert)),
+        ];
+        let given = options.into_iter();
+        given
+            .filter_map(|(name, value)| Some((name.to_string(), value?)))
+            .collect()
+    }
+
+    /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for this one.
+    pub(crate) fn only_sides(&self, this: &str) -> Result<(), Failure> {
+        match self.given().keys().next() {
+            None => Ok(()),
+            Some(option) => Err(Failure::request(format!(
+                "--{option} does nothing to {this}"
+            ))),
         }
-        Ok(())
     }
 
     /// What is in a file, as it is.
@@ -118,14 +148,19 @@ impl Reading {
             measured = measured.fill_missing().map_err(failed)?;
             eprintln!("filled     {missing} nodes from those around them");
         }
-        self.prepare(measured.topography().map_err(failed)?)
-            .map_err(failed)
-    }
-
-    /// Levels and inverts.
-    fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
+        let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();
         eprintln!("tilt       {sx:.2e} along x, {sy:.2e} along y");
+        self.prepare(surface).map_err(failed)
+    }
+
+    /// Whether missing nodes are to be filled.
+    pub(crate) fn fills(&self) -> bool {
+        self.fill
+    }
+
+    /// Levels and inverts as asked, and says so on stderr.
+    pub(crate) fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
         let mut surface = surface;
         if let Some(level) = self.level {
             let levelled = surface.level(level.into())?;
@@ -136,10 +171,10 @@ impl Reading {
             );
             surface = levelled;
         }
-        Ok(if self.invert {
-            surface.invert()
-        } else {
-            surface
-        })
+        if self.invert {
+            eprintln!("inverted   peaks are valleys");
+            surface = surface.invert();
+        }
+        Ok(surface)
     }
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use common::{Scratch, asperity, data, limited, said};
+use common::{Scratch, asperity, data, is_refused, limited, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -30,15 +30,6 @@ fn files(folder: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
         files.insert(name, fs::read(entry.path())?);
     }
     Ok(files)
-}
-
-/// A refusal by the program itself, not by a signal.
-fn is_refused(output: &Output, words: &[&str]) {
-    let said = said(output);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    for word in words {
-        assert!(said.contains(word), "{word} is not in: {said}");
-    }
 }
 
 /// No file may be longer than so many blocks, as if the disk were full then. The oracle is what is written without a

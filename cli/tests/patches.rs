@@ -54,10 +54,10 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
     assert!(done.status.success());
     let said = String::from_utf8(done.stdout)?;
     for passage in [
-        "a patch along x",
-        "a patch along y",
-        "no channel along x",
-        "no channel along y",
+        "percolates along x",
+        "percolates along y",
+        "seals along x",
+        "seals along y",
     ] {
         let line = said.lines().find(|line| line.starts_with(passage));
         assert!(

@@ -343,8 +343,8 @@ pub enum Error {
 
     /// The memory budget would be exceeded by going on.
     #[error(
-        "{needed} bytes are needed, but the memory budget is {budget} bytes, \
-         which is enough for {nodes_that_fit} nodes in contact"
+        "{} of memory are needed, but the budget is {}, which is enough for {nodes_that_fit} nodes in contact",
+        bytes(*needed, *budget), bytes(*budget, *needed)
     )]
     MemoryBudget {
         /// Bytes needed to go on.
@@ -377,6 +377,24 @@ pub enum Error {
     File(#[from] FileError),
 }
 
+/// A number of bytes with a prefix and one digit behind the point, with more if another number would look the same.
+fn bytes(bytes: usize, other: usize) -> String {
+    let short = |bytes: usize, digits: usize| {
+        let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
+        let mut thousands = 0;
+        let mut value = bytes as f64;
+        while value >= 999.95 && thousands + 1 < units.len() {
+            value /= 1000.0;
+            thousands += 1;
+        }
+        let text = format!("{value:.digits$}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        format!("{text} {}", units[thousands])
+    };
+    let digits = (1..9).find(|&digits| short(bytes, digits) != short(other, digits));
+    short(bytes, digits.unwrap_or(1))
+}
+
 impl Error {
     /// `Ok(value)` if `value` is positive and finite, the typed error otherwise.
     pub(crate) fn require_positive(quantity: &'static str, value: f64) -> Result<f64, Self> {
@@ -384,6 +402,38 @@ impl Error {
             Ok(value)
         } else {
             Err(Self::NotPositive { quantity, value })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_told_in_numbers_that_can_be_read() {
+        let told = |needed, budget| {
+            let nodes_that_fit = 3;
+            let error = Error::MemoryBudget {
+                needed,
+                budget,
+                nodes_that_fit,
+            };
+            let told = error.to_string();
+            let told = told.replace(" of memory are needed, but the budget is ", " > ");
+            told.replace(", which is enough for 3 nodes in contact", "")
+        };
+        for (needed, budget, expected) in [
+            (2, 1, "2 bytes > 1 bytes"),
+            (8_076_320, 5_000_000, "8.1 MB > 5 MB"),
+            (10_049_329, 10_000_000, "10.05 MB > 10 MB"),
+            (999_949, 999, "999.9 kB > 999 bytes"),
+            (999_950, 0, "1 MB > 0 bytes"),
+            (42_949_672_960, 12_345_678_901, "42.9 GB > 12.3 GB"),
+            (5_000_001, 5_000_000, "5.000001 MB > 5 MB"),
+            (usize::MAX, 1_000_000_000_000, "18.4 EB > 1 TB"),
+        ] {
+            assert_eq!(told(needed, budget), expected);
         }
     }
 }

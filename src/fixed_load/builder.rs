@@ -5,7 +5,7 @@ use super::hierarchy::Hierarchy;
 use super::settings::Settings;
 use super::solver::FixedLoadSolver;
 use crate::krylov::check_cells;
-use crate::{Error, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
+use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
 
 /// Greatest ratio of the sides of periodic cells, and what is expected of it.
 const LONGEST_CELLS: (f64, &str) = (
@@ -102,6 +102,18 @@ impl FixedLoadSolver {
     /// As [`FixedLoadBuilder::build`].
     pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
         Self::builder(surface, kernel).build()
+    }
+
+    /// `Ok` if a solver on a grid has room within a memory budget, by default that of
+    /// [`FixedLoadBuilder::memory_budget`], whatever the load: with all nodes in contact.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] if they do not fit.
+    pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
+        let budget = budget.unwrap_or_else(memory::default_budget);
+        let nested = Settings::default().nested;
+        MemoryBudget::new(budget, grid, boundary, nested)?.check(grid.nodes())
     }
 
     /// Sets up a solver for `surface` on the half-space of `kernel`.

@@ -4,6 +4,7 @@ use std::io::{Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -17,6 +18,18 @@ use crate::Error;
 const MOST: usize = 1 << 11;
 /// Members from which on the archive needs longer numbers.
 const LARGE: usize = u32::MAX as usize / 2;
+
+/// What is wrong with a zip file, for people who do not know how one is made.
+pub(super) fn incomplete(error: ZipError) -> Fault {
+    Fault::malformed(match error {
+        ZipError::InvalidArchive(_) | ZipError::Io(_) => {
+            "it is no complete zip archive, which this format is; was it cut off, or is it of another kind?"
+                .to_string()
+        }
+        ZipError::FileNotFound => "it is not there".to_string(),
+        other => other.to_string(),
+    })
+}
 
 /// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
 pub(crate) struct ArchiveWriter<W: Write + Seek> {
@@ -104,7 +117,13 @@ pub(crate) struct Archive {
 
 impl Archive {
     pub(crate) fn open(path: &Path, format: &'static str) -> Result<Self, Error> {
-        let bytes = read_file(path).map_err(|fault| fault.in_file(path, format))?;
+        let bytes = read_file(path)
+            .and_then(|bytes| {
+                let opened = ZipArchive::new(Cursor::new(&bytes[..])).map(drop);
+                opened.map_err(incomplete)?;
+                Ok(bytes)
+            })
+            .map_err(|fault| fault.in_file(path, format))?;
         Ok(Self {
             path: path.to_path_buf(),
             format,
@@ -126,9 +145,8 @@ impl Archive {
     }
 
     fn bytes_of(&self, name: &str) -> Result<Vec<u8>, Fault> {
-        let bad = |error: zip::result::ZipError| Fault::malformed(error.to_string());
-        let mut zip = ZipArchive::new(Cursor::new(&self.bytes[..])).map_err(bad)?;
-        let member = zip.by_name(&format!("{name}.npy")).map_err(bad)?;
+        let mut zip = ZipArchive::new(Cursor::new(&self.bytes[..])).map_err(incomplete)?;
+        let member = zip.by_name(&format!("{name}.npy")).map_err(incomplete)?;
         let most = self.bytes.len().saturating_mul(MOST);
         let mut bytes = Vec::new();
         member

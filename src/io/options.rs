@@ -14,8 +14,8 @@ use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
 ///
-/// Heights and cell come in metres; missing nodes are NaN. What the file leaves open is never guessed: see
-/// [`ReadOptions`].
+/// Heights and cell come in metres; missing nodes are NaN. What the file leaves open has to be given in [`ReadOptions`]; of
+/// a NumPy array, which never has a unit, heights are taken to be in metres, and [`MeasuredSurface::notes`] says so.
 ///
 /// # Errors
 ///
@@ -136,6 +136,7 @@ impl ReadOptions {
         let cell = self.cell(&channel, path)?;
         let mut notes = std::mem::take(&mut channel.notes);
         self.apply_mask(&mut channel, &mut notes);
+        notes.extend(self.assumed(format, cell, channel.shape));
         let mut missing = 0;
         for value in &mut channel.values {
             // Infinite values mark missing nodes as well, in files of several makers.
@@ -220,6 +221,27 @@ impl ReadOptions {
         let dx = Error::require_positive("cell along x in the file", cell.0 * metres)?;
         let dy_of_file = Error::require_positive("cell along y in the file", cell.1 * metres)?;
         Ok(Some((dx, dy.unwrap_or(dy_of_file))))
+    }
+
+    /// What neither the file nor the options say, in words.
+    fn assumed(
+        &self,
+        format: Format,
+        cell: Option<(f64, f64)>,
+        (_, ny): (usize, usize),
+    ) -> Vec<String> {
+        let mut assumed = Vec::new();
+        if format == Format::Npy && self.height_unit.is_none() {
+            assumed
+                .push("a NumPy array has no unit: its heights are assumed to be in m".to_string());
+        }
+        if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {
+            assumed.push(format!(
+                "cells are assumed to be square: the side along y is {:e} m",
+                ny as f64 * dy
+            ));
+        }
+        assumed
     }
 
     fn apply_mask(&self, channel: &mut Channel, notes: &mut Vec<String>) {

@@ -14,7 +14,7 @@ use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
-use crate::updater::{Handover, LinearUpdater};
+use crate::updater::{ConjugateGradient, Handover, LinearUpdater, Touched};
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
@@ -51,6 +51,32 @@ impl LoadingSolver {
     pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
         fixed_bytes(grid, boundary, budget).map(drop)
+    }
+
+    /// The same for the whole path: `Ok` if it gets to full contact, by iterations where there is no room for a factor.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MemoryBudget`] if all nodes in contact do not fit.
+    pub fn check_room_to_full_contact(
+        grid: &Grid,
+        boundary: Boundary,
+        budget: Option<usize>,
+    ) -> Result<(), Error> {
+        let budget = budget.unwrap_or_else(memory::default_budget);
+        let fixed = fixed_bytes(grid, boundary, budget)?;
+        let bytes =
+            |contact| fixed.saturating_add(ConjugateGradient::bytes_of(grid.nodes(), contact));
+        // With the window of the last nodes.
+        let needed = bytes(grid.nodes()).saturating_add(Touched::bytes(8));
+        if needed <= budget {
+            return Ok(());
+        }
+        Err(Error::MemoryBudget {
+            needed,
+            budget,
+            nodes_that_fit: budget.saturating_sub(bytes(0)) / (bytes(1) - bytes(0)).max(1),
+        })
     }
 
     /// Sets up the path of `surface` on the half-space of `kernel`.
@@ -207,7 +233,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             last,
             timings: LoadingTimings::default(),
         };
-        run.updater.make_room(&run.problem, budget - fixed_bytes)?;
+        run.updater
+            .make_room(&run.problem, run.memory.left())
+            .map_err(|error| run.memory.in_all(error))?;
         Ok(LoadingSolver {
             run,
             procedure,
@@ -228,12 +256,16 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// # Errors
     ///
-    /// Those of [`Self::build`]; [`Error::NotOnPath`] for states that are not those of this path, or not in
+    /// Those of [`Self::build`]; [`Error::OutOfRange`] for a limit that the states have passed (for the state there see
+    /// [`History::ending_at`]); [`Error::NotOnPath`] for states that are not those of this path, or not in
     /// the order of a path; [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for nodes that
     /// are in no such order; [`Error::MemoryBudget`]; those of the updater.
     pub fn resume(self, history: &History) -> Result<LoadingSolver<U>, Error> {
         let mut solver = self.build()?;
         solver.restore(history)?;
+        if let Some(state) = &solver.state {
+            solver.limits.check_ahead(state, false)?;
+        }
         solver.rebuild()?;
         Ok(solver)
     }

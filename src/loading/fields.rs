@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::snapshot::Snapshot;
-use super::solver::{LoadingSolver, Procedure};
+use super::solver::LoadingSolver;
 use super::state::LoadingState;
 use crate::Error;
 use crate::contact::{Certificate, Conditions, LengthScale};
@@ -82,7 +82,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         self.check_reached(state)?;
         let snapshot = Snapshot::of(&mut self.run, state)?;
-        let keeps_conditions = !matches!(self.procedure, Procedure::Paper(_));
+        let keeps_conditions = self.keeps_conditions();
         snapshot.recognise(&mut self.run, state, keeps_conditions)?;
         Ok(snapshot.pressure)
     }
@@ -178,6 +178,24 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let sum = load / run.problem.grid().cell_area();
         Ok(Conditions::new(sum, reported, scale).check(nodes))
     }
+
+    /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and
+    /// gaps are right to 10⁻⁶, and to 10⁻⁴ where the approach of its event is an estimate. An exact path is right to some 10⁻¹²,
+    /// so that what is refused is no rounding; the smallest-gap rule promises closed gaps only.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotOnPath`] with what is wrong, and those of [`Self::pressure`].
+    pub fn verify(&mut self) -> Result<(), Error> {
+        let Some(state) = self.state else {
+            return Ok(());
+        };
+        let keeps_conditions = self.keeps_conditions();
+        let certificate = self.certificate()?;
+        let snapshot = Snapshot::of(&mut self.run, &state)?;
+        snapshot.recognise(&mut self.run, &state, keeps_conditions)?;
+        snapshot.check_gaps(&self.run, &state, &certificate, keeps_conditions)
+    }
 }
 
 #[cfg(test)]
@@ -231,6 +249,36 @@ mod tests {
             assert!((found - expected).abs() < 1e-13, "{found} {expected}");
         }
         Ok(())
+    }
+
+    /// Every state of the path is one; what is a state in number only is none: too little load on both nodes, an approach at
+    /// which a node beside them would overlap, an approach that is no number.
+    #[test]
+    fn what_is_no_state_of_contact_is_refused() -> Result<(), Error> {
+        let (mut path, states) = path()?;
+        path.verify()?;
+        let last = states[2];
+        // Both nodes are in contact from the approach 1 on, and at less the second is pulled.
+        let invented = last.contact.at_approach(0.5).unwrap_or(last.contact);
+        path.state = Some(last.with(invented));
+        let refused = path.verify();
+        assert!(
+            matches!(refused, Err(Error::NotOnPath { quantity: "least pressure in contact", value, .. }) if value < -0.1),
+            "{refused:?}"
+        );
+        let invented = last.contact.at_approach(15.0).unwrap_or(last.contact);
+        path.state = Some(last.with(invented));
+        let refused = path.verify();
+        assert!(
+            matches!(refused, Err(Error::NotOnPath { quantity: "least gap out of contact", value, .. }) if value < -0.5),
+            "{refused:?}"
+        );
+        let mut lost = last;
+        lost.contact.approach = f64::NAN;
+        path.state = Some(lost);
+        assert!(path.verify().is_err());
+        path.state = None;
+        path.verify()
     }
 
     #[test]

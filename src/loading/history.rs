@@ -1,7 +1,9 @@
 //! A finished path as a record that can be read at any load, approach, area or mean gap.
 
+use super::limits::{Limits, LoadingEnd};
 use super::{ContactEvent, LoadingState};
-use crate::contact::ContactState;
+use crate::contact::{ContactState, ContactTarget};
+use crate::{Error, Grid};
 
 /// The states of a path in the order of loading, to be read at any instant between them.
 ///
@@ -56,6 +58,32 @@ impl History {
             Some((last, events)) if last.event == ContactEvent::Limit => events,
             _ => &self.states,
         }
+    }
+
+    /// What a path on a grid would have been, had it been asked to end at these targets: its states up to the first of them,
+    /// with the state there as its last, and why it ends. Of a path that has passed none of them all states, and `None`:
+    /// [`LoadingBuilder::resume`](super::LoadingBuilder::resume) goes on from there.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingBuilder::build`](super::LoadingBuilder::build) for limits that make no sense.
+    pub fn ending_at(
+        &self,
+        grid: &Grid,
+        targets: &[ContactTarget],
+    ) -> Result<(Self, Option<LoadingEnd>), Error> {
+        let unloaded = self.states.first().map_or(f64::INFINITY, |s| s.mean_gap);
+        let mut limits = Limits::default();
+        for &target in targets {
+            limits.set(target, grid, unloaded)?;
+        }
+        for (k, next) in self.states.iter().enumerate().skip(1) {
+            if let Some((end, at_limit)) = limits.between(Some(self.states[k - 1]), next) {
+                let states = self.states[..k].iter().copied().chain(at_limit);
+                return Ok((states.collect(), Some(end)));
+            }
+        }
+        Ok((self.clone(), None))
     }
 
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended

@@ -35,6 +35,8 @@ pub enum LoadingEnd {
 pub(super) struct Limits {
     pub(super) nodes: usize,
     area_nodes: usize,
+    /// The fraction of the nominal area that was asked for, in which `area_nodes` fit.
+    area_fraction: f64,
     load: f64,
     approach: f64,
     least_mean_gap: f64,
@@ -45,6 +47,7 @@ impl Default for Limits {
         Self {
             nodes: usize::MAX,
             area_nodes: usize::MAX,
+            area_fraction: f64::INFINITY,
             load: f64::INFINITY,
             approach: f64::INFINITY,
             least_mean_gap: f64::NEG_INFINITY,
@@ -80,7 +83,10 @@ impl Limits {
             ContactTarget::Approach(approach) => {
                 self.approach = Error::require_positive("greatest approach", approach)?;
             }
-            ContactTarget::AreaFraction(fraction) => self.area_nodes = grid.nodes_in(fraction)?,
+            ContactTarget::AreaFraction(fraction) => {
+                self.area_nodes = grid.nodes_in(fraction)?;
+                self.area_fraction = fraction;
+            }
             ContactTarget::MeanGap(mean_gap) => {
                 if !(mean_gap >= 0.0 && mean_gap < unloaded) {
                     return Err(Error::OutOfRange {
@@ -95,6 +101,48 @@ impl Limits {
         Ok(())
     }
 
+    /// `Ok` if a path that has got to a state has not passed any of the limits. It may be at one already, unless it is to
+    /// go on.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] with the first that it has passed.
+    pub(super) fn check_ahead(&self, state: &LoadingState, goes_on: bool) -> Result<(), Error> {
+        let most = self.most_nodes();
+        // What is asked for, and the way there.
+        let targets = [
+            (
+                "load at which the path ends",
+                self.load,
+                self.load - state.load,
+            ),
+            (
+                "approach at which the path ends",
+                self.approach,
+                self.approach - state.approach,
+            ),
+            (
+                "mean gap at which the path ends",
+                self.least_mean_gap,
+                state.mean_gap - self.least_mean_gap,
+            ),
+            (
+                "number of contact nodes at which the path ends",
+                most as f64,
+                most as f64 - state.contact_nodes as f64,
+            ),
+        ];
+        let is_passed = |way: f64| way < 0.0 || (goes_on && way == 0.0);
+        match targets.into_iter().find(|(.., way)| is_passed(*way)) {
+            None => Ok(()),
+            Some((quantity, value, _)) => Err(Error::OutOfRange {
+                quantity,
+                value,
+                expected: "beyond the present state",
+            }),
+        }
+    }
+
     /// Whether there is a limit of load, approach or mean gap.
     pub(super) fn ends_before_full_contact(&self) -> bool {
         self.load < f64::INFINITY || self.approach < f64::INFINITY || self.least_mean_gap > 0.0
@@ -103,7 +151,11 @@ impl Limits {
     /// The same as targets, on a grid.
     pub(super) fn targets(&self, grid: &Grid) -> Vec<ContactTarget> {
         let most = self.most_nodes();
-        let fraction = most as f64 / grid.nodes() as f64;
+        let fraction = if self.area_nodes <= self.nodes {
+            self.area_fraction
+        } else {
+            self.nodes as f64 / grid.nodes() as f64
+        };
         let given = [
             (self.load < f64::INFINITY).then_some(ContactTarget::Load(self.load)),
             (self.approach < f64::INFINITY).then_some(ContactTarget::Approach(self.approach)),

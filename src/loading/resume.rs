@@ -2,7 +2,7 @@
 
 use super::history::History;
 use super::snapshot::Snapshot;
-use super::solver::{LoadingSolver, Procedure};
+use super::solver::LoadingSolver;
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
 use crate::updater::{LinearUpdater, join_all};
@@ -34,22 +34,22 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let Some(last) = self.state else {
             return Ok(());
         };
+        let keeps_conditions = self.keeps_conditions();
         let run = &mut self.run;
         let order = run.contact.order().to_vec();
         let grid = run.problem.grid();
         run.contact = ContactSequence::new(grid);
-        let budget = run.memory.budget.saturating_sub(run.memory.fixed);
         join_all(
             &mut run.updater,
             &run.problem,
             &mut run.contact,
             &order,
-            budget,
-        )?;
+            run.memory.left(),
+        )
+        .map_err(|error| run.memory.in_all(error))?;
         let approach = run.front.approach();
         run.renew_field(approach)?;
         run.front.renew_load(&run.problem, &run.contact, &run.field);
-        let keeps_conditions = !matches!(self.procedure, Procedure::Paper(_));
         let snapshot = Snapshot::of(run, &last)?;
         snapshot.recognise(run, &last, keeps_conditions)
     }

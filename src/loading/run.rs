@@ -47,6 +47,29 @@ pub(super) struct Memory {
     pub(super) fixed: usize,
 }
 
+impl Memory {
+    /// What the updater may hold.
+    pub(super) fn left(&self) -> usize {
+        self.budget.saturating_sub(self.fixed)
+    }
+
+    /// An error of the updater, which knows only of what is left to it, in terms of the whole.
+    pub(super) fn in_all(&self, error: Error) -> Error {
+        match error {
+            Error::MemoryBudget {
+                needed,
+                nodes_that_fit,
+                ..
+            } => Error::MemoryBudget {
+                needed: needed.saturating_add(self.fixed),
+                budget: self.budget,
+                nodes_that_fit,
+            },
+            other => other,
+        }
+    }
+}
+
 /// The rooms of a path: each holds one thing, and procedures go from one to the next.
 #[derive(Debug)]
 pub(super) struct LoadingRun<U> {
@@ -188,10 +211,12 @@ impl<U: LinearUpdater> LoadingRun<U> {
                 self.updater
                     .join(&self.problem, &self.contact, window.touched())
             });
-        if joined.is_err() {
-            self.contact.truncate(before);
-        }
-        joined
+        joined.map_err(|error| {
+            // The updater may have taken them in: both go back, for the fields of the states up to there. One that cannot
+            // says so when it is asked for them.
+            let _ = self.truncate(before);
+            self.memory.in_all(error)
+        })
     }
 
     /// Puts the nodes of the contact behind the first `count` into another order.

@@ -5,12 +5,39 @@ use nalgebra::DMatrix;
 use super::run::LoadingRun;
 use super::state::LoadingState;
 use crate::Error;
+use crate::contact::Certificate;
 use crate::updater::{LinearUpdater, Solution};
 
 /// How far a state of this path may be off, relative to its load, pressures and lengths, to be recognised.
 const RECOGNISED: f64 = 1e-6;
 /// The same where the approach of its event is an estimate: loads err by 1e-5 at worst.
 const ESTIMATED: f64 = 1e-4;
+
+/// How far a state may be off to be recognised.
+fn allowed(state: &LoadingState) -> f64 {
+    if state.approach_error > 0.0 {
+        ESTIMATED
+    } else {
+        RECOGNISED
+    }
+}
+
+/// What a state would be on this path, and is not.
+fn not_on_path(
+    state: &LoadingState,
+    quantity: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Error {
+    Error::NotOnPath {
+        step: state.step,
+        load: state.load,
+        approach: state.approach,
+        quantity,
+        value,
+        expected,
+    }
+}
 
 /// The solution at a state.
 pub(super) struct Snapshot {
@@ -54,21 +81,9 @@ impl Snapshot {
         state: &LoadingState,
         keeps_conditions: bool,
     ) -> Result<(), Error> {
-        let refused = |quantity, value, expected| {
-            Err(Error::NotOnPath {
-                step: state.step,
-                load: state.load,
-                approach: state.approach,
-                quantity,
-                value,
-                expected,
-            })
-        };
-        let allowed = if state.approach_error > 0.0 {
-            ESTIMATED
-        } else {
-            RECOGNISED
-        };
+        let refused =
+            |quantity, value, expected| Err(not_on_path(state, quantity, value, expected));
+        let allowed = allowed(state);
         let cell_area = run.problem.grid().cell_area();
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
@@ -91,11 +106,41 @@ impl Snapshot {
             return refused("least pressure in contact", least, "no tension");
         }
         let overlap = self.worst_overlap(run, state.step)?;
-        let length = run.problem.greatest_gap() + self.approach.abs();
-        if overlap < -allowed * length {
+        if overlap < -self.allowed_gap(run, state) {
             return refused("least gap out of contact", overlap, "no overlap");
         }
         Ok(())
+    }
+
+    /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere if the path
+    /// keeps the conditions of contact: [`recognise`](Self::recognise) looks at the node that touches next alone.
+    pub(super) fn check_gaps<U: LinearUpdater>(
+        &self,
+        run: &LoadingRun<U>,
+        state: &LoadingState,
+        certificate: &Certificate,
+        keeps_conditions: bool,
+    ) -> Result<(), Error> {
+        let allowed = self.allowed_gap(run, state);
+        let [left, least] = [certificate.greatest_contact_gap, certificate.least_gap]
+            .map(|gap| gap * certificate.length);
+        // NaN is refused as well.
+        let is_closed = left <= allowed;
+        let is_clear = !keeps_conditions || least >= -allowed;
+        if !is_closed {
+            let quantity = "greatest gap in contact";
+            return Err(not_on_path(state, quantity, left, "no gap"));
+        }
+        if !is_clear {
+            let quantity = "least gap out of contact";
+            return Err(not_on_path(state, quantity, least, "no overlap"));
+        }
+        Ok(())
+    }
+
+    /// What gaps at a state may be off by.
+    fn allowed_gap<U: LinearUpdater>(&self, run: &LoadingRun<U>, state: &LoadingState) -> f64 {
+        allowed(state) * (run.problem.greatest_gap() + self.approach.abs())
     }
 
     /// What pressures may be off by where gaps in contact are closed to a tolerance τ of the approach only:

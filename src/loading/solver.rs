@@ -74,30 +74,20 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 steps: self.state.map_or(0, |state| state.step),
             });
         }
-        let target = target.into();
         let mut limits = Limits::default();
         let problem = &self.run.problem;
-        limits.set(target, &problem.grid(), problem.mean_gap())?;
-        if let Some(state) = self.state {
-            let (is_beyond, value) = match target {
-                ContactTarget::Load(load) => (load > state.load, load),
-                ContactTarget::Approach(approach) => (approach > state.approach, approach),
-                ContactTarget::AreaFraction(fraction) => {
-                    (limits.most_nodes() > state.contact_nodes, fraction)
-                }
-                ContactTarget::MeanGap(mean_gap) => (mean_gap < state.mean_gap, mean_gap),
-            };
-            if !is_beyond {
-                return Err(Error::OutOfRange {
-                    quantity: "target of a path",
-                    value,
-                    expected: "beyond the present state",
-                });
-            }
+        limits.set(target.into(), &problem.grid(), problem.mean_gap())?;
+        if let Some(state) = &self.state {
+            limits.check_ahead(state, true)?;
         }
         self.limits = limits;
         self.end = None;
         Ok(())
+    }
+
+    /// Whether states keep the conditions of contact: the paper's rule only closes gaps.
+    pub(super) fn keeps_conditions(&self) -> bool {
+        !matches!(self.procedure, Procedure::Paper(_))
     }
 
     /// The next state, `None` at the end of the path.

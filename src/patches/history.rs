@@ -110,13 +110,8 @@ impl Iterator for PatchHistory<'_> {
         self.patches = self.patches + 1 - merged;
         self.largest = self.largest.max(self.forest.size(node));
         let forest = &self.forest;
-        let change = |other| match forest.contains(other) {
-            // Periodic along a side of one node: the cell is its own neighbour.
-            true if other == node => 0,
-            true => -1,
-            false => 1,
-        };
-        self.perimeter.add(forest.lattice(), node, change);
+        self.perimeter
+            .change(forest.lattice(), node, 1, |other| forest.contains(other));
         Some(PatchState {
             step: self.step,
             node: self.grid.coordinates(node),

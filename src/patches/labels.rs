@@ -114,7 +114,7 @@ impl Patches {
                 patch.indices[k] += at[k] as i64 + i64::from(winding[k]) * sides[k] as i64;
             }
             let is_edge = |other: usize| isize::from(!in_contact[other]);
-            patch.perimeter.add(&lattice, node, is_edge);
+            patch.perimeter.add(&lattice, node, 1, is_edge);
         }
         let patches = gathered.iter().zip(roots).map(|(patch, root)| {
             let mut wraps = |axis| lattice.wraps(axis) && forest.percolates(root, axis);

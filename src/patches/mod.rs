@@ -7,8 +7,9 @@
 //! | question | answer |
 //! |---|---|
 //! | how many patches, how large, how long their edges, at every state | [`PatchHistory`] |
-//! | the contact area without the error of whole cells | [`Perimeter::corrected_area`] |
+//! | the contact area without the error of whole cells | [`Perimeter::corrected_area`], [`ContactEdge`] |
 //! | when does contact percolate, when is the last channel closed | [`Percolation`] |
+//! | where is a channel through one state narrowest | [`constriction`] |
 //! | which patch came from where, and merged into which | [`MergeTree`] |
 //! | each patch of one state: place, area, load, pressures | [`Patches`] |
 //! | at which load did each node touch | [`activation_map`] |
@@ -43,7 +44,7 @@
 //! With a kernel that lets nodes leave the contact there is no order of contact: a patch that loses a node may fall
 //! into several, which neither disjoint sets nor a tree of mergers can follow, and a channel that was closed may open
 //! again. [`contact_sequence`] refuses such a path rather than give half an answer. Single states are answered all
-//! the same: [`Patches`] takes any contact map.
+//! the same: [`Patches`] takes any contact map, and [`ContactEdge`] follows nodes that leave.
 //!
 //! # Cost
 //!
@@ -52,7 +53,9 @@
 //! [`MergeTree`] takes 0.1 to 0.2 s.
 
 mod connectivity;
+mod constriction;
 mod distribution;
+mod edge;
 mod forest;
 mod histogram;
 mod history;
@@ -66,7 +69,9 @@ mod perimeter;
 mod tests;
 
 pub use connectivity::Connectivity;
+pub use constriction::{Constriction, constriction};
 pub use distribution::{FieldDistribution, gap_distribution, pressure_distribution};
+pub use edge::ContactEdge;
 pub use histogram::{Bins, Histogram};
 pub use history::{PatchEvent, PatchHistory, PatchState};
 pub use labels::{Patch, PatchLoad, Patches};

@@ -81,7 +81,7 @@ pub fn activation_map(
 }
 
 /// The index of a node.
-fn node_of(grid: &Grid, ix: usize, iy: usize) -> Result<usize, Error> {
+pub(super) fn node_of(grid: &Grid, ix: usize, iy: usize) -> Result<usize, Error> {
     let outside = |quantity, index: usize| Error::OutOfRange {
         quantity,
         value: index as f64,

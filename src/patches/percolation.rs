@@ -105,7 +105,7 @@ impl Percolation {
 }
 
 /// How many nodes it takes, in this order, until one patch of them percolates along an axis.
-fn percolates(
+pub(super) fn percolates(
     lattice: Lattice,
     axis: Axis,
     mut nodes: impl Iterator<Item = usize>,

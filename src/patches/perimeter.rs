@@ -70,18 +70,43 @@ impl Perimeter {
         grid.cell_area() * (contact_nodes as f64 - Self::AREA_CORRECTION * sides)
     }
 
-    /// Adds the sides of a node's cell: inside the grid `change` each, a function of the node on the other side.
-    pub(super) fn add(&mut self, lattice: &Lattice, node: usize, change: impl Fn(usize) -> isize) {
+    /// A node joins the contact, or leaves it if `sign` is −1: sides between it and the other nodes in contact become
+    /// inner ones, or edges again.
+    pub(super) fn change(
+        &mut self,
+        lattice: &Lattice,
+        node: usize,
+        sign: isize,
+        is_in: impl Fn(usize) -> bool,
+    ) {
+        self.add(lattice, node, sign, |other| {
+            // Periodic along a side of one node: the cell is its own neighbour.
+            let inner = other == node;
+            let edge = if is_in(other) { -1 } else { 1 };
+            if inner { 0 } else { sign * edge }
+        });
+    }
+
+    /// Adds the sides of a node's cell: inside the grid `change` each, a function of the node on the other side, and
+    /// on the border `border` each.
+    pub(super) fn add(
+        &mut self,
+        lattice: &Lattice,
+        node: usize,
+        border: isize,
+        change: impl Fn(usize) -> isize,
+    ) {
         for (k, other) in lattice.beside(node).into_iter().enumerate() {
-            let (inside, border) = if k < 2 {
+            let (inside, at_border) = if k < 2 {
                 (&mut self.along_y, &mut self.border_along_y)
             } else {
                 (&mut self.along_x, &mut self.border_along_x)
             };
-            match other {
-                Some(other) => *inside = inside.saturating_add_signed(change(other.node)),
-                None => *border += 1,
-            }
+            let (sides, change) = match other {
+                Some(other) => (inside, change(other.node)),
+                None => (at_border, border),
+            };
+            *sides = sides.saturating_add_signed(change);
         }
     }
 }

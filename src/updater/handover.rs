@@ -21,7 +21,8 @@ const WINDOW: f64 = 3.0e-4;
 
 /// The default: [`RecursiveCholesky`] as long as its events are cheaper than those of [`ConjugateGradient`]
 /// and its factor fits the memory budget of the path, and [`ConjugateGradient`] from then on. No path ends
-/// for want of memory for n² numbers, and full contact on 512 × 512 nodes takes minutes.
+/// for want of memory for n² numbers, unless the budget is less than iterations take on the grid alone; and full contact on 512 × 512
+/// nodes takes minutes.
 ///
 /// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 4 ns for each node of
 /// the grid and 6 ns for each one in contact: the factor is given up at some 6400 contact nodes on a grid of
@@ -201,10 +202,9 @@ impl LinearUpdater for Handover {
         if self.factor_serves(factor, problem, contact.len()) {
             return Ok(());
         }
-        let fits = self.factor_fits(factor, contact.len());
         match self.hand_over(problem, contact) {
-            // Slower than iterations would be, but there is room for it.
-            Err(Error::MemoryBudget { .. }) if fits => Ok(()),
+            // There is room for the factor, and none for iterations: it grows up to where a window of one node does not fit.
+            Err(Error::MemoryBudget { .. }) => Ok(()),
             done => done,
         }
     }

@@ -60,7 +60,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
     let early = expected[150];
     let early_pressure = whole.pressure_at(&early).unwrap();
     let pressure = whole.pressure().unwrap();
-    let mut seams = Vec::new();
+    let fixed = path(Handover::new(), None, NODES).bytes();
+    let (mut seams, mut cut) = (Vec::new(), 0);
     for budget in (1_500_000..5_500_000).step_by(500_000) {
         let context = format!("budget {budget}");
         let mut path = path(Handover::new(), Some(budget), NODES);
@@ -75,8 +76,22 @@ fn the_same_path_on_both_sides_of_the_seam() {
             seam = seam.or(path.updater().handed_over_at());
         };
         if let Err(error) = ended {
-            // Not even the fields of the grid that an iteration needs.
-            assert!(matches!(error, Error::MemoryBudget { .. }), "{error}");
+            // Not even the fields of the grid that an iteration needs: a factor up to where it fits. The message speaks of
+            // the budget that was given, and all fields of the states up to there are known.
+            let given = matches!(error, Error::MemoryBudget { budget: told, .. } if told == budget);
+            assert!(given, "{error}");
+            compare(&context, &states, &expected[..states.len()]);
+            let last = states.last().copied().unwrap();
+            assert_eq!(path.state(), Some(last));
+            assert_eq!(path.contact_order().len(), states.len());
+            let found = path.pressure().unwrap();
+            let exact = whole.pressure_at(&last).unwrap();
+            assert!((&found - &exact).amax() <= 1e-9 * exact.amax(), "{context}");
+            assert!(path.certificate().unwrap().least_gap > -1e-9, "{context}");
+            // What is left is less than one more node with its window takes.
+            let bytes = path.updater().bytes(states.len() + 1, 1) + fixed + (1 << 14);
+            assert!(bytes > budget, "{context}: {bytes}");
+            cut += 1;
             continue;
         }
         compare(&context, &states, &expected);
@@ -92,7 +107,8 @@ fn the_same_path_on_both_sides_of_the_seam() {
             );
         }
     }
-    println!("seams {seams:?}");
+    println!("seams {seams:?}, {cut} cut");
+    assert!(cut >= 2, "{cut}");
     assert!(
         seams.iter().filter(|&&n| n > 0 && n < NODES).count() >= 2,
         "{seams:?}"

@@ -5,7 +5,8 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use asperity::io::{
-    ReadOptions, channels, read_npy, read_surface, write_gsf, write_npy, write_vti, write_x3p,
+    LengthUnit, ReadOptions, channels, read_npy, read_surface, write_gsf, write_npy, write_vti,
+    write_x3p,
 };
 use asperity::record::LoadingRecord;
 use asperity::{Error, FileError, Grid};
@@ -103,6 +104,25 @@ fn bytes_of_no_format_are_shown() {
         "{error}"
     );
     assert!(error.to_string().contains("unknown.sdf"), "{error}");
+}
+
+/// An array has no unit, and one side does not say the other.
+#[test]
+fn what_is_assumed_is_noted() {
+    let file = Scratch::new("assumed.npy");
+    write_npy(&file.0, &DMatrix::from_element(4, 2, 1.0)).unwrap();
+    let notes = |options: ReadOptions| options.read(&file.0).unwrap().notes;
+    let side = notes(ReadOptions::new().side(1e-3));
+    assert_eq!(
+        side,
+        [
+            "a NumPy array has no unit: its heights are assumed to be in m",
+            "cells are assumed to be square: the side along y is 5e-4 m"
+        ]
+    );
+    let both = ReadOptions::new().side(1e-3).side_y(1e-3);
+    let unit: LengthUnit = "um".parse().unwrap();
+    assert!(notes(both.height_unit(unit)).is_empty());
 }
 
 /// A side may be a number that its cells are not.

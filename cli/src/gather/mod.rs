@@ -11,6 +11,7 @@ use asperity_cli::panel;
 use asperity_cli::say;
 use clap::Args;
 
+use crate::settings::Settings;
 use table::Table;
 
 /// Mean and spread of the paths that `asperity path --seeds` has left, at common loads
@@ -35,6 +36,7 @@ pub(crate) struct Options {
 /// Reads all paths, and writes what they have in common.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let files = paths(&options.directory)?;
+    check_alike(&files)?;
     let tables = files.iter().map(|file| Table::read(file));
     let tables: Vec<Table> = tables.collect::<Result<_, _>>()?;
     let Some((first, last)) = common(&tables) else {
@@ -78,6 +80,20 @@ fn paths(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     }
     found.sort();
     Ok(found)
+}
+
+/// `Ok` if all paths are of one kind: of the same settings but for the seed.
+fn check_alike(files: &[PathBuf]) -> Result<(), Failure> {
+    let mut first: Option<(String, Settings)> = None;
+    for folder in files.iter().filter_map(|file| file.parent()) {
+        let settings = Settings::read(folder)?;
+        let name = folder.display().to_string();
+        match &first {
+            None => first = Some((name, settings)),
+            Some((other, others)) => settings.check_same(&name, (other, others), true)?,
+        }
+    }
+    Ok(())
 }
 
 /// The least and the greatest load that all paths have.

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use asperity::Doubt;
 use asperity::io::MeasuredSurface;
-use asperity::surface::{Estimate, Topography, Trend, Window};
+use asperity::surface::{Estimate, HeightMap, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
@@ -18,12 +18,15 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use crate::reading::Reading;
-use summary::Summary;
+use summary::Whole;
 
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
 const HIGHEST_HURST: f64 = 1.2;
 
-/// What is in a file of an instrument: size, units, missing nodes, roughness, and pictures of it
+/// What is in a file of an instrument, and what looks wrong: size, units, missing nodes, roughness, pictures
+///
+/// All figures are of the surface that would touch: with missing nodes filled, and levelled and inverted if that is asked for.
+/// Warnings say what looks wrong: units, tilt, waves that the grid does not resolve.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// Heights in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
@@ -33,8 +36,8 @@ pub(crate) struct Options {
     #[command(flatten)]
     reading: Reading,
 
-    /// Print one JSON object with format, nx, ny, side_x, side_y, missing, min, max, mean, sq and rms_gradient (metres; null where
-    /// the file does not say), and draw nothing unless --out is given
+    /// Print one JSON object with format, title, nx, ny, side_x, side_y, missing (in the file), min, max, mean, sa, sq, sz,
+    /// rms_gradient, notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
 
@@ -46,12 +49,11 @@ pub(crate) struct Options {
 /// Reads the file, says what is in it, and draws it.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let measured = options.reading.measured(&options.file)?;
-    let summary = Summary::of(&measured);
-    let surface = whole(&measured);
+    let whole = Whole::of(&measured, &options.reading)?;
     if options.json {
-        say!("{}", object(&measured, &summary));
+        say!("{}", object(&measured, &whole));
     } else {
-        print(options, &measured, &summary, surface.as_ref())?;
+        print(options, &measured, &whole)?;
     }
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
@@ -62,29 +64,26 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&directory)
         .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
-    outcome.written(picture::map(&measured, &summary, &directory));
-    let levelled = surface.as_ref().map(|(_, levelled)| levelled);
-    outcome.written(picture::statistics(
-        &measured, &summary, levelled, &directory,
-    ));
+    outcome.written(picture::map(&whole, &directory));
+    outcome.written(picture::statistics(&whole, &directory));
     if options.json {
         return outcome.finish_quietly();
     }
     outcome.finish()
 }
 
-/// The surface without holes, as it is and without its tilt; `None` where the file does not give its size.
-fn whole(measured: &MeasuredSurface) -> Option<(Topography, Topography)> {
-    let filled = measured.clone().fill_missing().ok()?;
-    let surface = filled.topography().ok()?;
-    let levelled = surface.level(Trend::Plane).ok()?;
-    Some((surface, levelled))
+/// What looks wrong; without a size there are no slopes.
+fn doubts(whole: &Whole) -> Vec<String> {
+    let doubts = Doubt::of_surface(&whole.surface).into_iter();
+    let known = doubts.filter(|doubt| whole.has_size || !matches!(doubt, Doubt::Steep { .. }));
+    known.map(|doubt| doubt.to_string()).collect()
 }
 
 /// One object for programs.
-fn object(measured: &MeasuredSurface, summary: &Summary) -> Value {
+fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
     let (nx, ny) = measured.heights.shape();
     let side = |n: usize, cell: f64| n as f64 * cell;
+    let map = whole.surface.map();
     json!({
         "format": measured.format.name(),
         "title": measured.title,
@@ -93,22 +92,20 @@ fn object(measured: &MeasuredSurface, summary: &Summary) -> Value {
         "side_x": measured.cell.map(|(dx, _)| side(nx, dx)),
         "side_y": measured.cell.map(|(_, dy)| side(ny, dy)),
         "missing": measured.missing,
-        "min": summary.min,
-        "max": summary.max,
-        "mean": summary.mean,
-        "sq": summary.sq,
-        "rms_gradient": summary.rms_gradient,
+        "min": map.min_height(),
+        "max": map.max_height(),
+        "mean": whole.mean(),
+        "sa": map.mean_absolute_height(),
+        "sq": map.rms_height(),
+        "sz": map.peak_to_valley(),
+        "rms_gradient": whole.rms_gradient(),
         "notes": measured.notes,
+        "warnings": doubts(whole),
     })
 }
 
 /// Lines for people.
-fn print(
-    options: &Options,
-    measured: &MeasuredSurface,
-    summary: &Summary,
-    surface: Option<&(Topography, Topography)>,
-) -> Result<(), Failure> {
+fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result<(), Failure> {
     let length = |value: f64| quantity(value, "m", 5);
     say!("file          {}", options.file.display());
     say!("found         {measured}");
@@ -121,31 +118,66 @@ fn print(
     for note in &measured.notes {
         say!("note          {note}");
     }
+    if measured.missing > 0 {
+        say!(
+            "figures       of all nodes, the {} missing ones filled from those around them",
+            measured.missing
+        );
+    }
+    let map = whole.surface.map();
     say!(
-        "heights       {} to {}, mean {}, Sq {}",
-        length(summary.min),
-        length(summary.max),
-        length(summary.mean),
-        length(summary.sq)
+        "heights       {} to {}, mean {}",
+        length(map.min_height()),
+        length(map.max_height()),
+        length(whole.mean())
     );
-    if let Some(gradient) = summary.rms_gradient {
+    let roughness = |map: &HeightMap| {
+        format!(
+            "Sa {}, Sq {}, Sz {}",
+            length(map.mean_absolute_height()),
+            length(map.rms_height()),
+            length(map.peak_to_valley())
+        )
+    };
+    say!("roughness     {}", roughness(map));
+    if let Some(gradient) = whole.rms_gradient() {
         say!("rms gradient  {gradient:.4}");
     }
-    let Some((surface, levelled)) = surface else {
-        say!("no statistics: the file does not give the size of the surface; give it with --side");
-        return Ok(());
+    let failed = |error| Failure::new("no figures without the tilt", error);
+    let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
+    let tilt = map.rms_height().powi(2) - levelled.map().rms_height().powi(2);
+    // What a difference of squares leaves of rounding is no tilt.
+    let tilt = if tilt > 1e-12 * map.rms_height().powi(2) {
+        tilt.sqrt()
+    } else {
+        0.0
     };
-    let tilt = surface.map().rms_height().powi(2) - levelled.map().rms_height().powi(2);
     say!(
-        "tilt          {} rms; without it Sq {}",
-        length(tilt.max(0.0).sqrt()),
-        length(levelled.map().rms_height())
+        "tilt          {} rms; without it {}",
+        length(tilt),
+        roughness(levelled.map())
     );
     say!(
-        "shape         Ssk {:.3}, Sku {:.3} (normal: 0, 3)",
+        "shape         skewness Ssk {:.3}, kurtosis Sku {:.3} (normal: 0, 3), without the tilt",
         levelled.map().skewness(),
         levelled.map().kurtosis()
     );
+    if whole.has_size {
+        spectrum(&levelled);
+    } else {
+        say!(
+            "no gradients and waves: the file does not give the size of the surface; give it with --side"
+        );
+    }
+    for doubt in doubts(whole) {
+        say!("warning       {doubt}");
+    }
+    Ok(())
+}
+
+/// The self-affine spectrum that fits.
+fn spectrum(levelled: &Topography) {
+    let length = |value: f64| quantity(value, "m", 5);
     // Measured maps do not repeat: without a window their borders make a power law of their own.
     let windowed = levelled.window(Window::Hann);
     if let Ok(fit) = windowed.and_then(|windowed| windowed.fit_self_affine()) {
@@ -166,8 +198,4 @@ fn print(
             say!("spectrum      not that of a self-affine surface");
         }
     }
-    for doubt in Doubt::of_surface(surface) {
-        say!("warning       {doubt}");
-    }
-    Ok(())
 }

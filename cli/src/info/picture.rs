@@ -3,62 +3,48 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use asperity::Grid;
-use asperity::io::MeasuredSurface;
 use asperity::patches::{Bins, Histogram};
-use asperity::surface::{RadialBins, Topography, Window};
+use asperity::surface::{RadialBins, Topography, Trend, Window};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, Series, Style};
 use asperity_cli::field_map::{FieldMap, Scale};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
-use super::summary::Summary;
+use super::summary::Whole;
 
 /// Bins of the distribution of heights.
 const BINS: usize = 80;
 
-/// The heights as a map, missing nodes left white.
-pub(super) fn map(
-    measured: &MeasuredSurface,
-    summary: &Summary,
-    directory: &Path,
-) -> Result<PathBuf, Failure> {
-    let (nx, ny) = measured.heights.shape();
-    let (grid, length_unit) = match measured.grid() {
-        Ok(grid) => (grid, "m"),
-        // Of unknown size: counted in cells.
-        Err(_) => {
-            let grid = Grid::new(nx, ny, 1.0, 1.0);
-            (
-                grid.map_err(|error| Failure::new("no map", error))?,
-                "cells",
-            )
-        }
-    };
+/// The heights as a map, the highest bright, missing nodes left white.
+pub(super) fn map(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
+    let (grid, heights) = (whole.surface.grid(), whole.surface.map());
+    let (nx, ny) = grid.shape();
+    let mean = whole.mean();
     FieldMap {
-        grid: &grid,
-        length_unit,
-        values: &measured.heights.map(|height| height - summary.mean),
-        range: (summary.min - summary.mean, summary.max - summary.mean),
-        scale: Scale::Linear,
+        grid,
+        // Of unknown size: counted in cells.
+        length_unit: if whole.has_size { "m" } else { "cells" },
+        values: &whole.shown.add_scalar(-mean),
+        range: (heights.min_height() - mean, heights.max_height() - mean),
+        scale: Scale::Relief,
         contours: &[],
         label: ("height above the mean", "m"),
     }
     .write(
         &directory.join("surface_map.png"),
-        &format!("{nx} × {ny} nodes, Sq = {}", quantity(summary.sq, "m", 4)),
+        &format!(
+            "{nx} × {ny} nodes, Sq = {}",
+            quantity(heights.rms_height(), "m", 4)
+        ),
     )
 }
 
 /// The distribution of heights, and the power spectrum of the surface without its tilt.
-pub(super) fn statistics(
-    measured: &MeasuredSurface,
-    summary: &Summary,
-    levelled: Option<&Topography>,
-    directory: &Path,
-) -> Result<PathBuf, Failure> {
-    let charts = [distribution(measured, summary), levelled.and_then(spectrum)];
+pub(super) fn statistics(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
+    let levelled = whole.surface.level(Trend::Plane).ok();
+    let levelled = levelled.filter(|_| whole.has_size);
+    let charts = [distribution(whole), levelled.as_ref().and_then(spectrum)];
     let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     let columns = charts.len();
     if charts.is_empty() {
@@ -70,10 +56,10 @@ pub(super) fn statistics(
 }
 
 /// The distribution of heights beside the normal one of the same Sq; `None` of heights that are all the same.
-fn distribution(measured: &MeasuredSurface, summary: &Summary) -> Option<Chart> {
-    let Summary { mean, sq, .. } = *summary;
-    let present = measured.heights.iter().filter(|height| height.is_finite());
-    let heights = present.map(|height| height - mean);
+fn distribution(whole: &Whole) -> Option<Chart> {
+    let map = whole.surface.map();
+    let (mean, sq) = (map.mean_height(), map.rms_height());
+    let heights = map.matrix().iter().map(|height| height - mean);
     let histogram = Histogram::new(heights, Bins::Linear(BINS)).ok()?;
     let middles = histogram.edges().windows(2);
     let middles = middles.map(|edges| 0.5 * (edges[0] + edges[1]));
@@ -91,8 +77,8 @@ fn distribution(measured: &MeasuredSurface, summary: &Summary) -> Option<Chart> 
         x: Axis::linear(
             "height above the mean",
             "m",
-            summary.min - mean,
-            summary.max - mean,
+            map.min_height() - mean,
+            map.max_height() - mean,
         ),
         y: Axis::plain("probability density × Sq", 0.0, 1.1 * highest),
         series: vec![

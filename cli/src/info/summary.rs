@@ -1,53 +1,58 @@
-//! The numbers of a measured surface, of the nodes that are there.
+//! What is known of a measured surface.
 
+use asperity::Grid;
 use asperity::io::MeasuredSurface;
+use asperity::surface::Topography;
+use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
-/// What is known of a surface before anything is done to it. Lengths in metres.
-pub(super) struct Summary {
-    pub(super) min: f64,
-    pub(super) max: f64,
-    pub(super) mean: f64,
-    pub(super) sq: f64,
-    /// From forward differences between nodes that are both there, `None` without a cell.
-    pub(super) rms_gradient: Option<f64>,
+use crate::reading::Reading;
+
+/// A measured surface without holes, prepared as the command line asks. All figures are of this one.
+pub(super) struct Whole {
+    /// On cells of 1 m where the file does not give the size: heights have figures all the same.
+    pub(super) surface: Topography,
+    /// Whether the size is known.
+    pub(super) has_size: bool,
+    /// Heights for the picture, NaN at nodes that are missing and stay so.
+    pub(super) shown: DMatrix<f64>,
 }
 
-impl Summary {
-    /// Of the nodes that are there; NaN if none is.
-    pub(super) fn of(measured: &MeasuredSurface) -> Self {
-        let heights = &measured.heights;
-        let present = || heights.iter().copied().filter(|height| height.is_finite());
-        let count = present().count() as f64;
-        let mean = present().sum::<f64>() / count;
-        let variance = present().map(|height| (height - mean).powi(2)).sum::<f64>() / count;
-        Self {
-            min: present().reduce(f64::min).unwrap_or(f64::NAN),
-            max: present().reduce(f64::max).unwrap_or(f64::NAN),
-            mean,
-            sq: variance.sqrt(),
-            rms_gradient: measured.cell.map(|cell| rms_gradient(heights, cell)),
-        }
+impl Whole {
+    pub(super) fn of(measured: &MeasuredSurface, reading: &Reading) -> Result<Self, Failure> {
+        let failed = |error| Failure::new("no figures of these heights", error);
+        let filled = measured.clone().fill_missing().map_err(failed)?;
+        let (nx, ny) = filled.heights.shape();
+        let has_size = filled.cell.is_some();
+        let grid = match has_size {
+            true => filled.grid(),
+            false => Grid::new(nx, ny, 1.0, 1.0),
+        };
+        let surface = grid.and_then(|grid| Topography::new(grid, filled.heights));
+        let surface = surface.and_then(|surface| reading.prepare(surface));
+        let surface = surface.map_err(failed)?;
+        let is_shown = |height, found: f64| match found.is_nan() && !reading.fills() {
+            true => f64::NAN,
+            false => height,
+        };
+        Ok(Self {
+            shown: surface.heights().zip_map(&measured.heights, is_shown),
+            surface,
+            has_size,
+        })
     }
-}
 
-/// The square root of the mean squares of both slopes.
-fn rms_gradient(heights: &DMatrix<f64>, (dx, dy): (f64, f64)) -> f64 {
-    let (nx, ny) = heights.shape();
-    let mean_square = |pairs: &mut dyn Iterator<Item = f64>| {
-        let (mut sum, mut count) = (0.0, 0_usize);
-        for slope in pairs.filter(|slope| slope.is_finite()) {
-            sum += slope * slope;
-            count += 1;
-        }
-        sum / count.max(1) as f64
-    };
-    let at = |ix: usize, iy: usize| heights[(ix, iy)];
-    let mut along_x = (0..ny)
-        .flat_map(|iy| (1..nx).map(move |ix| (ix, iy)))
-        .map(|(ix, iy)| (at(ix, iy) - at(ix - 1, iy)) / dx);
-    let mut along_y = (1..ny)
-        .flat_map(|iy| (0..nx).map(move |ix| (ix, iy)))
-        .map(|(ix, iy)| (at(ix, iy) - at(ix, iy - 1)) / dy);
-    (mean_square(&mut along_x) + mean_square(&mut along_y)).sqrt()
+    /// Mean height \[m\], 0 where only rounding is left of it.
+    pub(super) fn mean(&self) -> f64 {
+        let map = self.surface.map();
+        let mean = map.mean_height();
+        let is_rounding = mean.abs() < 1e-12 * map.peak_to_valley();
+        if is_rounding { 0.0 } else { mean }
+    }
+
+    /// Without unit, `None` where the size is not known.
+    pub(super) fn rms_gradient(&self) -> Option<f64> {
+        let gradient = self.surface.map().rms_gradient(self.surface.grid());
+        gradient.ok().filter(|_| self.has_size)
+    }
 }

@@ -38,10 +38,10 @@ impl Followed {
             patches: PatchHistory::new(&contact, boundary, connectivity).collect(),
             tree: MergeTree::new(&contact, boundary, connectivity),
             passages: [
-                passage("a patch along x", found.contact_x),
-                passage("a patch along y", found.contact_y),
-                passage("no channel along x", found.leak_x),
-                passage("no channel along y", found.leak_y),
+                passage("percolates along x", found.contact_x),
+                passage("percolates along y", found.contact_y),
+                passage("seals along x", found.leak_x),
+                passage("seals along y", found.leak_y),
             ],
         })
     }

@@ -27,8 +27,10 @@ use crate::values::{fraction, positive};
 use followed::Followed;
 use moment::Moment;
 
-/// Contact patches along a path: percolation, leakage, mergers, activation and distributions, from its record
+/// Contact patches along a path, from its record: when it percolates and seals, and which patches carry
 ///
+/// Prints when one patch leads all the way along x or y, when the last channel through the gap closes, and for one state the
+/// largest patch and the narrowest place of the widest channel, which any leak has to pass.
 /// Writes patches.csv, patches.png, activation.png (the load at which each node touched: every contact map in one),
 /// merge_tree.png and distributions.png.
 #[derive(Debug, Args)]
@@ -84,7 +86,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let carries = events.any(|state| state.load > 0.0);
     match &followed {
         Ok(followed) => {
-            words::print_passages(followed);
+            words::print_passages(&options.record, &record, followed);
             outcome.written(table::write(&record, followed, &out.join("patches.csv")));
             if carries {
                 outcome.written(charts::draw(&record, followed, &out.join("patches.png")));
@@ -101,6 +103,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     match Moment::new(&record, state, connectivity) {
         Ok(moment) => {
             words::print_moment(&moment);
+            let channels = words::print_channels(&record, &moment, connectivity);
+            outcome.note(channels.map_err(|error| Failure::new("no channels", error)));
             let name = out.join("distributions.png");
             outcome.written(distributions::draw(&record, &moment, &name));
         }

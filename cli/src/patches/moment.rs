@@ -3,6 +3,7 @@
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
 use asperity::record::LoadingRecord;
 use asperity::{ContactRule, LoadingState};
+use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -16,8 +17,8 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
     };
     let missed = |what: String| {
         Failure::request(format!(
-            "the path has no state at {what}: it ends at {:.6e} N, with {} of {} nodes in contact",
-            last.load,
+            "the path has no state at {what}: it ends at {}, with {} of {} nodes in contact",
+            quantity(last.load, "N", 6),
             last.contact_nodes,
             record.grid().nodes()
         ))
@@ -28,7 +29,7 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
             ContactRule::SmallestGap => record.states().iter().find(|s| s.load >= load).copied(),
             _ => history.at_load(load),
         };
-        return found.ok_or_else(|| missed(format!("{load} N")));
+        return found.ok_or_else(|| missed(quantity(load, "N", 6)));
     }
     if let Some(fraction) = options.at_area_fraction {
         let found = history.at_area_fraction(fraction);

@@ -1,10 +1,16 @@
 //! What is printed.
 
-use asperity::patches::Connectivity;
+use std::path::Path;
+
+use asperity::kernel::KernelOrigin;
+use asperity::patches::{Connectivity, constriction};
 use asperity::record::LoadingRecord;
-use asperity::{Boundary, LoadingState};
-use asperity_cli::number::quantity;
+use asperity::surface::{Axis, Topography};
+use asperity::{Boundary, Doubt, Error, LoadingState};
+use asperity_cli::number::{area, quantity};
 use asperity_cli::say;
+
+use crate::resolution::Resolution;
 
 use super::followed::Followed;
 use super::moment::Moment;
@@ -25,12 +31,14 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
         record.states().len()
     );
     say!("patches: nodes in contact with {joined} in common; channels lead across {channels}");
-    say!("\"along x\" and \"along y\" are {all_the_way}");
+    say!(
+        "contact percolates where one patch leads {all_the_way}, and seals where no channel does any more"
+    );
     say!();
 }
 
-/// When contact percolates, and when leakage ends.
-pub(super) fn print_passages(followed: &Followed) {
+/// When contact percolates and when it seals, and how to see what the path has not reached.
+pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Followed) {
     for passage in &followed.passages {
         match &passage.state {
             Some(state) => say!(
@@ -42,7 +50,67 @@ pub(super) fn print_passages(followed: &Followed) {
             None => say!("{:18} not on this path", passage.name),
         }
     }
+    let is_missing = followed
+        .passages
+        .iter()
+        .any(|passage| passage.state.is_none());
+    let can_go_on = matches!(
+        record.kernel().origin,
+        KernelOrigin::Boussinesq { .. }
+            | KernelOrigin::PeriodicBoussinesq { .. }
+            | KernelOrigin::Spectral { .. }
+    );
+    let reached = record
+        .states()
+        .last()
+        .map_or(0.0, |state| state.contact_area_fraction);
+    if is_missing && can_go_on && reached < 1.0 {
+        // Random surfaces percolate and seal at some 40 to 55 % contact.
+        let further = if reached < 0.5 { 0.6 } else { 1.0 };
+        let file = file.display();
+        say!(
+            "the path ends at {:.2} % contact; to see more: asperity path --resume {file} --record {file} --max-area-fraction \
+             {further}, and then this command again",
+            100.0 * reached
+        );
+    }
     say!();
+}
+
+/// The narrowest place of the widest channel, and what looks wrong.
+pub(super) fn print_channels(
+    record: &LoadingRecord,
+    moment: &Moment,
+    connectivity: Connectivity,
+) -> Result<(), Error> {
+    let (grid, boundary) = (record.grid(), record.kernel().boundary);
+    for (name, axis) in [("x", Axis::X), ("y", Axis::Y)] {
+        let on = (&grid, boundary);
+        match constriction(&moment.gap, &moment.contact_map, on, connectivity, axis)? {
+            Some(narrowest) => say!(
+                "the widest channel along {name} is narrowest at node ({}, {}), where the gap is {}",
+                narrowest.node.0,
+                narrowest.node.1,
+                quantity(narrowest.gap, "m", 4)
+            ),
+            None => say!("no channel along {name}: the contact seals"),
+        }
+    }
+    let resolution = Resolution::of(&moment.contact_map, &grid, boundary)?;
+    say!("mesh: {resolution}");
+    let mut doubts = Doubt::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
+    doubts.extend(resolution.doubt());
+    if let KernelOrigin::Boussinesq { e_star }
+    | KernelOrigin::PeriodicBoussinesq { e_star }
+    | KernelOrigin::Spectral { e_star } = record.kernel().origin
+    {
+        doubts.extend(Doubt::of_modulus(e_star));
+        doubts.extend(Doubt::of_pressure(moment.pressure.max(), e_star));
+    }
+    for doubt in doubts {
+        say!("warning: {doubt}");
+    }
+    Ok(())
 }
 
 /// The patches of one state.
@@ -59,9 +127,9 @@ pub(super) fn print_moment(moment: &Moment) {
         count => format!("{count} patches"),
     };
     say!(
-        "{count}; the largest has {} nodes, {:.4e} m², {:.2} % of the contact, and carries {} ({:.2} %) at a mean of {}",
+        "{count}; the largest has {} nodes, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean of {}",
         patch.nodes,
-        patch.area,
+        area(patch.area, 4),
         percent(patch.area, state.contact_area),
         quantity(carried.load, "N", 4),
         percent(carried.load, state.load),

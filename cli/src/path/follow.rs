@@ -3,13 +3,16 @@
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::Write as _;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::LoadingState;
+use asperity::patches::ContactEdge;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::options::Options;
+use super::interrupt::Interrupt;
+use super::job::Job;
 use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
@@ -29,25 +32,26 @@ pub(super) struct Followed {
 impl Followed {
     /// Begins with the states that there are already.
     pub(super) fn new(
-        begun: &[LoadingState],
+        job: &Job,
         mut file: PathFile,
-        options: &Options,
+        save_every: Option<NonZeroUsize>,
     ) -> Result<Self, Failure> {
-        for state in begun {
+        for state in job.begun() {
             file.write(state)?;
         }
-        let every = options.save_every.map(usize::from);
+        let record = job.record().map(Path::to_path_buf);
         Ok(Self {
-            states: begun.to_vec(),
+            states: job.begun().to_vec(),
             file,
-            saves: options.record.clone().zip(every),
+            saves: record.zip(save_every.map(usize::from)),
         })
     }
 
-    /// Runs the path to its end, writing each state as it comes.
+    /// Runs the path to its end, or until it is asked to stop, writing each state as it comes.
     pub(super) fn follow(
         &mut self,
         solver: &mut Solver,
+        interrupt: &Interrupt,
         progress: impl Fn(&LoadingState) -> Progress,
     ) -> Result<(), Failure> {
         let bar = ProgressBar::new(100);
@@ -59,7 +63,11 @@ impl Followed {
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut ended = Ok(());
-        while let (Ok(()), Some(state)) = (&ended, solver.next()) {
+        interrupt.wait();
+        while ended.is_ok()
+            && !interrupt.is_asked()
+            && let Some(state) = solver.next()
+        {
             ended = state
                 .map_err(|error| Failure::new("the path broke off", error))
                 .and_then(|state| {
@@ -100,6 +108,8 @@ impl Followed {
 /// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
 /// are whole lines.
 pub(super) struct PathFile {
+    /// The edge of the contact, for its corrected area.
+    edge: ContactEdge,
     name: PathBuf,
     part: PathBuf,
     output: File,
@@ -110,7 +120,7 @@ pub(super) struct PathFile {
 
 impl PathFile {
     /// Begins the file in a directory, in place of one that may be there from another path.
-    pub(super) fn create(directory: &Path) -> Result<Self, Failure> {
+    pub(super) fn create(directory: &Path, edge: ContactEdge) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
             match fs::remove_file(&name) {
@@ -121,11 +131,12 @@ impl PathFile {
         };
         let output = begin().map_err(|error| Failure::writing(&part, error))?;
         Ok(Self {
+            edge,
             name,
             part,
             output,
             lines: "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                    contact_stiffness,interfacial_stiffness\n"
+                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error\n"
                 .to_string(),
             waiting: 0,
         })
@@ -134,6 +145,9 @@ impl PathFile {
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
     fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
         let (ix, iy) = state.node;
+        self.edge
+            .follow(state.event, state.node)
+            .map_err(|error| Failure::writing(&self.part, error))?;
         // Empty where there is none: on a periodic half-space.
         let printed = |stiffness: Option<f64>| {
             stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
@@ -141,7 +155,7 @@ impl PathFile {
         // Writing to a text cannot fail.
         let _ = writeln!(
             self.lines,
-            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{}",
+            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e}",
             state.step,
             state.approach,
             state.load,
@@ -150,6 +164,8 @@ impl PathFile {
             state.mean_gap,
             printed(state.contact_stiffness),
             printed(state.interfacial_stiffness),
+            self.edge.corrected_area(),
+            state.approach_error,
         );
         self.waiting += 1;
         if self.waiting == STRIDE {

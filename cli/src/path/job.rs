@@ -1,32 +1,30 @@
 //! What to compute: the surface, the half-space and where to stop.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::kernel::KernelOrigin;
+use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
-use asperity::surface::{Amplitude, HeightMap, SelfAffine, Topography};
+use asperity::surface::{HeightMap, Topography};
 use asperity::updater::Handover;
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    Boundary, ContactRule, ContactTarget, Doubt, Grid, InfluenceKernel, LoadingSolver, LoadingState,
 };
+use serde_json::{Value, json};
 
 use super::Solver;
-use super::options::{AREA_FRACTION, Options, Updater};
+use super::options::{AREA_FRACTION, Options, Updater, no_room};
+use super::parts::Parts;
 use super::progress::{Progress, total};
+use super::source::{Generated, fingerprint, generate, read, source_of};
+use crate::elasticity::Bodies;
 use crate::ensemble::Expected;
-use asperity_cli::half_space::{Periodic, half_space};
+use crate::settings::Settings;
+use asperity_cli::half_space::{Periodic, boundary, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
-
-/// Side \[m\] and nodes a side of the generated surface, and its seed, if not given.
-const SIDE: f64 = 1e-2;
-const NODES: usize = 256;
-const SEED: u64 = 1;
-
-/// E* of two bodies of steel, if there is no surface and no material \[Pa\].
-const STEEL_ON_STEEL: f64 = 0.5 * 210e9 / (1.0 - 0.3 * 0.3);
 
 /// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
 const BYTES_A_NODE: f64 = 1000.0;
@@ -36,7 +34,7 @@ pub(super) struct Job {
     surface: Topography,
     name: String,
     rms_gradient: f64,
-    e_star: f64,
+    bodies: Bodies,
     periodic: Option<Periodic>,
     rule: ContactRule,
     updater: Updater,
@@ -44,7 +42,10 @@ pub(super) struct Job {
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
     /// What there is of the path already.
-    begun: Option<LoadingRecord>,
+    begun: Option<History>,
+    /// Where its record goes.
+    record: Option<PathBuf>,
+    settings: Settings,
 }
 
 impl Job {
@@ -53,28 +54,43 @@ impl Job {
         if let Some(file) = &options.resume {
             return Self::resumed(file, options);
         }
-        let e_star = match &options.surface {
-            Some(_) => options.elasticity.required()?,
-            None => options.elasticity.e_star()?.unwrap_or(STEEL_ON_STEEL),
-        };
-        let (surface, name, rms_gradient) = match &options.surface {
+        let bodies = options.bodies()?;
+        let (surface, name, source) = match &options.surface {
+            Some(file)
+                if options
+                    .record
+                    .as_ref()
+                    .is_some_and(|kept| is_same(kept, file)) =>
+            {
+                return Err(Failure::request(format!(
+                    "--record would replace the surface {}: give another file",
+                    file.display()
+                )));
+            }
             Some(file) => read(file, options)?,
             None => generate(options)?,
         };
-        let otherwise = [ContactTarget::AreaFraction(AREA_FRACTION)];
-        let targets = options.targets(surface.grid(), &otherwise);
+        let grid = *surface.grid();
         Ok(Self {
-            surface,
             name,
-            rms_gradient,
-            e_star,
+            rms_gradient: rms_gradient(&surface)?,
             periodic: options.periodic,
             rule: options.rule.into(),
             updater: options.updater,
             memory_budget: options.memory_budget,
-            targets,
+            targets: targets(options, &grid),
             begun: None,
+            record: options.record.clone(),
+            settings: settings(options, (&bodies, &grid), source)?,
+            bodies,
+            surface,
         })
+    }
+
+    /// What the path of a generated surface is of, without the surface.
+    pub(super) fn expected_settings(options: &Options) -> Result<Settings, Failure> {
+        let Generated { spectrum, grid } = Generated::new(options)?;
+        settings(options, (&options.bodies()?, &grid), source_of(&spectrum))
     }
 
     /// The path of a record.
@@ -88,29 +104,75 @@ impl Job {
             _ => return Err(failed(asperity::Error::ForeignKernel)),
         };
         let heights = record.heights().matrix().clone();
-        let surface = options
+        options
             .reading
-            .untouched()
-            .and_then(|()| Topography::new(record.grid(), heights).map_err(failed))?;
-        let rms_gradient = surface.map().rms_gradient(surface.grid()).map_err(failed)?;
-        Ok(Self {
-            name: format!("{}, {} states", file.display(), record.states().len()),
-            rms_gradient,
-            e_star,
+            .only_sides("the surface of a record: it is as it is")?;
+        let surface = Topography::new(record.grid(), heights).map_err(failed)?;
+        let grid = *surface.grid();
+        let targets = options.targets(&grid, &record.settings().targets);
+        let (history, passed) = record
+            .history()
+            .ending_at(&grid, &targets)
+            .map_err(failed)?;
+        let kept = match (&options.record, passed) {
+            (Some(kept), Some(_)) if is_same(kept, file) => {
+                return Err(Failure::request(format!(
+                    "{} goes beyond what is asked for, and would lose that: give --record another file",
+                    file.display()
+                )));
+            }
+            (Some(kept), _) => Some(kept.clone()),
+            (None, Some(_)) => None,
+            (None, None) => Some(file.to_path_buf()),
+        };
+        if let (Some(_), Some(last)) = (passed, record.states().last()) {
+            eprintln!(
+                "note: {} goes on to {}; what is asked for lies before that, and is read from it",
+                file.display(),
+                quantity(last.load, "N", 4)
+            );
+        }
+        let source = json!({
+            "record": file.display().to_string(),
+            "heights_md5": fingerprint(&surface),
+        });
+        let bodies = Bodies::of_modulus(e_star, "composite modulus of the record");
+        let parts = Parts {
+            bodies: &bodies,
             periodic,
             rule: record.settings().rule,
             updater: options.updater,
+            targets: &targets,
+        };
+        Ok(Self {
+            name: format!("{}, {} states", file.display(), record.states().len()),
+            rms_gradient: rms_gradient(&surface)?,
+            settings: parts.settings(&grid, source)?,
+            periodic,
+            rule: parts.rule,
+            updater: options.updater,
             memory_budget: options.memory_budget,
-            targets: options.targets(surface.grid(), &record.settings().targets),
+            targets,
+            bodies,
             surface,
-            begun: Some(record),
+            begun: Some(history),
+            record: kept,
         })
     }
 
     /// The events that the path had already, in a record.
     pub(super) fn begun(&self) -> &[LoadingState] {
-        let record = self.begun.as_ref();
-        record.map_or(&[], |record| record.history().events())
+        self.begun.as_ref().map_or(&[], History::events)
+    }
+
+    /// Where its record goes, if anywhere.
+    pub(super) fn record(&self) -> Option<&Path> {
+        self.record.as_deref()
+    }
+
+    /// Everything that determines the path.
+    pub(super) fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The path, at its beginning or where it was interrupted.
@@ -127,17 +189,19 @@ impl Job {
         }
         match &self.begun {
             None => builder.build(),
-            Some(record) => builder.resume(record.history()),
+            Some(history) => builder.resume(history),
         }
-        .map_err(|error| Failure::new("the path cannot begin", error))
+        .map_err(|error| {
+            no_room(
+                "the path cannot begin".to_string(),
+                error,
+                (self.updater, kernel.boundary(), self.memory_budget),
+            )
+        })
     }
 
     pub(super) fn grid(&self) -> Grid {
         *self.surface.grid()
-    }
-
-    pub(super) fn surface(&self) -> &Topography {
-        &self.surface
     }
 
     pub(super) fn heights(&self) -> &HeightMap {
@@ -145,7 +209,18 @@ impl Job {
     }
 
     pub(super) fn e_star(&self) -> f64 {
-        self.e_star
+        self.bodies.e_star
+    }
+
+    pub(super) fn boundary(&self) -> Boundary {
+        boundary(self.periodic)
+    }
+
+    /// What looks wrong before anything is computed.
+    pub(super) fn doubts(&self) -> Vec<Doubt> {
+        let mut doubts = Doubt::of_surface(&self.surface);
+        doubts.extend(Doubt::of_modulus(self.e_star()));
+        doubts
     }
 
     pub(super) fn rule(&self) -> ContactRule {
@@ -192,7 +267,7 @@ impl Job {
         let pressure = |load: f64| load / grid.nominal_area();
         let share = |target: &ContactTarget| match *target {
             ContactTarget::AreaFraction(fraction) => fraction,
-            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star)
+            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star())
                 .map_or(1.0, |law| law.persson(pressure(load))),
             // Not more than all.
             _ => 1.0,
@@ -212,7 +287,7 @@ impl Job {
     }
 
     fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
-        half_space(self.periodic, self.grid(), self.e_star)
+        half_space(self.periodic, self.grid(), self.e_star())
             .map_err(|error| Failure::new("no such half-space", error))
     }
 }
@@ -224,9 +299,11 @@ impl fmt::Display for Job {
         writeln!(f, "surface    {}", self.name)?;
         writeln!(
             f,
-            "grid       {nx} x {ny} nodes on {} x {}",
+            "grid       {nx} x {ny} nodes on {} x {}, cells of {} x {}",
             quantity(lx, "m", 6),
-            quantity(ly, "m", 6)
+            quantity(ly, "m", 6),
+            quantity(self.grid().dx(), "m", 4),
+            quantity(self.grid().dy(), "m", 4)
         )?;
         writeln!(
             f,
@@ -234,11 +311,12 @@ impl fmt::Display for Job {
             quantity(self.heights().rms_height(), "m", 5),
             self.rms_gradient.abs()
         )?;
+        writeln!(f, "bodies     {}", self.bodies)?;
         match self.periodic {
             None => writeln!(f, "half-space free")?,
             Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
         }
-        write!(f, "loading    E* {}", quantity(self.e_star, "Pa", 6))?;
+        write!(f, "loading    {}", in_words(self.rule))?;
         for target in &self.targets {
             match *target {
                 ContactTarget::Load(load) => write!(f, ", to {}", quantity(load, "N", 6))?,
@@ -254,71 +332,49 @@ impl fmt::Display for Job {
                 _ => {}
             }
         }
-        writeln!(f, ", rule {:?}", self.rule)
+        writeln!(f)
     }
 }
 
-/// A surface, its name and its rms gradient.
-type Made = (Topography, String, f64);
-
-/// The surface of a file.
-fn read(file: &Path, options: &Options) -> Result<Made, Failure> {
-    let surface = options.reading.surface(file)?;
-    let name = file.display().to_string();
-    let rms_gradient = surface
-        .map()
-        .rms_gradient(surface.grid())
-        .map_err(|error| Failure::new(format!("cannot use {name}"), error))?;
-    Ok((surface, name, rms_gradient))
+/// How a rule orders the nodes.
+fn in_words(rule: ContactRule) -> &'static str {
+    match rule {
+        ContactRule::FirstContact => "nodes in the exact order in which they touch",
+        ContactRule::ApproximateOrder => "nodes nearly in the order in which they touch",
+        ContactRule::SmallestGap => "smallest gap next, as in Zhang et al. (2020), not exact",
+    }
 }
 
-/// The surface of the paper's Table 1, with its short cut-off moved to two cells if the grid cannot
-/// carry it.
-fn generate(options: &Options) -> Result<Made, Failure> {
-    let nodes = options.nodes.unwrap_or(NODES);
-    let seed = options.seed.unwrap_or(SEED);
-    let side = options.reading.side.unwrap_or(SIDE);
-    let side_y = options.reading.side_y.unwrap_or(side);
-    let failed = |error: asperity::Error| {
-        Failure::new(
-            format!("cannot put the surface on {nodes} x {nodes} nodes"),
-            error,
-        )
-    };
-    let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
-    let boundary = match options.periodic {
-        None => Boundary::Free,
-        Some(_) => Boundary::Periodic,
-    };
-    LoadingSolver::check_room(&grid, boundary, options.memory_budget).map_err(failed)?;
-    let mut surface = SelfAffine::zhang2020(seed);
-    let two_cells = 2.0 * grid.dx().max(grid.dy());
-    let wanted = surface.short_cutoff_wavelength();
-    if two_cells > surface.rolloff_wavelength() {
-        return Err(Failure::request(format!(
-            "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
-            quantity(surface.rolloff_wavelength(), "m", 5),
-            quantity(two_cells, "m", 5)
-        )));
+/// Everything that the command line says of a path that begins.
+fn settings(
+    options: &Options,
+    (bodies, grid): (&Bodies, &Grid),
+    source: Value,
+) -> Result<Settings, Failure> {
+    Parts {
+        bodies,
+        periodic: options.periodic,
+        rule: options.rule.into(),
+        updater: options.updater,
+        targets: &targets(options, grid),
     }
-    if two_cells > wanted * (1.0 + 1e-9) {
-        eprintln!(
-            "note: {nodes} nodes a side cannot carry the short cut-off wavelength of {}; \
-             it is {}, two cells, instead",
-            quantity(wanted, "m", 5),
-            quantity(two_cells, "m", 5)
-        );
-        surface = SelfAffine::new(
-            surface.hurst(),
-            surface.rolloff_wavelength(),
-            two_cells,
-            Amplitude::RmsHeight(50e-6),
-            seed,
-        )
-        .map_err(failed)?;
+    .settings(grid, source)
+}
+
+fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
+    options.targets(grid, &[ContactTarget::AreaFraction(AREA_FRACTION)])
+}
+
+/// From differences of the heights, whatever the surface is from: a record knows nothing else.
+fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {
+    let gradient = surface.map().rms_gradient(surface.grid());
+    gradient.map_err(|error| Failure::new("no gradient of the surface", error))
+}
+
+/// Whether two names are of one file that is there.
+fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => false,
     }
-    let heights = Topography::sample(&surface, grid).map_err(failed)?;
-    let rms_gradient = surface.spectrum(&grid).map_err(failed)?.rms_gradient();
-    let name = format!("self-affine, Table 1 of Zhang et al. (2020), seed {seed}");
-    Ok((heights, name, rms_gradient))
 }

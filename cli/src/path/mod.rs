@@ -1,30 +1,39 @@
 //! `asperity path`: from a rough surface to its whole loading path.
 //!
-//! Writes `path.csv` with one line for each state, `loading_curve.svg` and
+//! Writes `settings.json`, `path.csv` with one line for each state, `loading_curve.svg` and
 //! `contact_map.png`, the record of the path if it is asked for, and prints a short table. If the path ends with
-//! an error, everything up to there is written all the same, and the exit code is 1.
+//! an error, everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and
+//! `path.csv` are written, and the exit code is 130.
 
 mod curves;
 mod fields;
 mod follow;
+mod interrupt;
 mod job;
 mod map;
 mod options;
+mod parts;
 mod progress;
+mod source;
 mod table;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use asperity::patches::ContactEdge;
 use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
-use asperity::{Doubt, LoadingSolver, LoadingState};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity::{LoadingSolver, LoadingState};
+use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::say;
+use clap::ValueEnum;
 use nalgebra::DMatrix;
 
+use crate::ensemble::Member;
+use crate::settings::Settings;
 use follow::{Followed, PathFile};
+use interrupt::Interrupt;
 use job::Job;
 pub(crate) use options::Options;
 
@@ -33,50 +42,97 @@ type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 
 /// Follows one path, or that of each seed.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    let interrupt = Interrupt::listen()?;
     if options.ensemble.seeds.is_none() {
-        return follow_one(options);
+        return follow_one(options, &interrupt)?.finish();
     }
-    let (members, there) = options.ensemble.members(&options.out);
-    say!("{} paths to follow, {there} are there", members.len());
+    let there = options.ensemble.there(&options.out)?;
+    // What is there must be what would be computed now.
+    for seed in &there {
+        let member = Member::new(*seed, &options.out);
+        let expected = Job::expected_settings(&options.of(&member))?;
+        let name = member.folder.display().to_string();
+        let found = Settings::read(&member.folder)?;
+        expected
+            .check_same("this command", (&name, &found), false)
+            .map_err(|failure| failure.with_advice("give another --out, or remove that folder"))?;
+    }
+    let missing = options.ensemble.count() - there.len() as u128;
+    say!("{missing} paths to follow, {} are there", there.len());
+    let seeds = options.ensemble.seeds_of_task();
+    let mut members = seeds
+        .filter(|seed| !there.contains(seed))
+        .map(|seed| Member::new(seed, &options.out));
     if options.ensemble.dry_run {
-        if let Some(first) = members.first() {
-            say!("{}", Job::new(&options.of(first))?.expected());
+        if let Some(first) = members.next() {
+            say!("{}", Job::new(&options.of(&first))?.expected());
         }
         return Ok(());
     }
-    for member in &members {
-        follow_one(&options.of(member))?;
+    members.try_for_each(|member| {
+        match follow_one(&options.of(&member), &interrupt) {
+            Err(failure) if failure.code() == interrupt::EXIT_CODE => {
+                member.abandon()?;
+                let seed = member.seed;
+                Err(Failure::with_code(
+                    format!("interrupted at seed {seed}: the same command goes on with it, and skips what is there"),
+                    interrupt::EXIT_CODE,
+                ))
+            }
+            done => done,
+        }?
+        .finish_quietly()?;
         member.finish()?;
-    }
-    Ok(())
+        say!("\nwrote {}", member.folder.display());
+        Ok(())
+    })
 }
 
 /// Does one job and writes its files.
-fn follow_one(options: &Options) -> Result<(), Failure> {
+fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
-    for doubt in Doubt::of_surface(job.surface()) {
+    for doubt in job.doubts() {
         eprintln!("warning: {doubt}");
+    }
+    // What cannot be written is said before the work.
+    std::fs::create_dir_all(&options.out)
+        .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
+    if let Some(record) = job.record() {
+        outcome::check_place(record)?;
     }
     let mut solver = job.solver()?;
     panel::register_font()?;
+    let settings = job.settings().write(&options.out)?;
+    let file = PathFile::create(&options.out, ContactEdge::new(job.grid(), job.boundary()))?;
 
-    std::fs::create_dir_all(&options.out)
-        .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
     let start = Instant::now();
-    let file = PathFile::create(&options.out)?;
-    let mut followed = Followed::new(job.begun(), file, options)?;
-    let ended = followed.follow(&mut solver, |state| job.progress(state));
+    let mut followed = Followed::new(&job, file, options.save_every)?;
+    let ended = followed.follow(&mut solver, interrupt, |state| job.progress(state));
+    let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
     let (states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
 
     // Each of these is tried whatever became of the others: nothing computed is lost.
     let mut outcome = Outcome::default();
+    outcome.written(Ok(settings));
     outcome.note(ended);
+    if is_interrupted {
+        let place = options.out.join("interrupted.npz");
+        let name = job.record().unwrap_or(&place);
+        outcome.written(save(name, &solver, &states, &[]));
+        outcome.written(file.finish());
+        outcome.finish()?;
+        return Err(interrupted(options, name, states.len()));
+    }
+    // First without the fields, which take time and memory.
+    let record = job.record();
+    let mut kept = record.map(|name| save(name, &solver, &states, &[]));
+    outcome.written(file.finish());
     match fields::of(&mut solver) {
         Ok(fields) => {
-            if let Some(name) = &options.record {
-                outcome.written(save(name, &solver, &states, &fields));
+            if let (Some(name), Some(Ok(_))) = (record, &kept) {
+                kept = Some(save(name, &solver, &states, &fields));
             }
             if let Some(format) = options.fields {
                 let written = fields::write(&fields, &job.grid(), format, &options.out);
@@ -85,11 +141,29 @@ fn follow_one(options: &Options) -> Result<(), Failure> {
         }
         Err(failure) => outcome.note(Err(failure)),
     }
+    if let Some(kept) = kept {
+        outcome.written(kept);
+    }
     outcome.note(table::print(&job, &mut solver, &states, seconds));
-    outcome.written(file.finish());
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
-    outcome.finish()
+    Ok(outcome)
+}
+
+/// How to go on with a path that was interrupted.
+fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
+    let updater = match options.updater.to_possible_value() {
+        Some(value) if value.get_name() != "auto" => format!(" --updater {}", value.get_name()),
+        _ => String::new(),
+    };
+    let record = record.display();
+    Failure::with_code(
+        format!(
+            "interrupted: {states} states in {record}; go on with `asperity path --resume {record}{updater} --out {}`",
+            options.out.display()
+        ),
+        interrupt::EXIT_CODE,
+    )
 }
 
 /// Writes the record of the path so far, and fields of its last state.

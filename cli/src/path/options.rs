@@ -4,24 +4,33 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
-use asperity::{ContactRule, ContactTarget, Grid};
-use asperity_cli::half_space::Periodic;
-use clap::{Args, Parser, ValueEnum};
+use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid, LoadingSolver};
+use asperity_cli::half_space::{Periodic, boundary};
+use asperity_cli::outcome::Failure;
+use clap::{ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
-use crate::elasticity::Elasticity;
+use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::reading::Reading;
+use crate::room;
 use crate::values::{bytes, fraction, positive};
 
-/// The exact loading path of a rough surface: one state of contact for each node that touches
+/// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
 ///
-/// Writes path.csv, loading_curve.svg and contact_map.png, and prints a short table.
+/// Prints a table of states at loads spread over the path, and how well the last one solves the equations. Writes path.csv (a
+/// line for each state), loading_curve.svg and contact_map.png.
 ///
-/// Without --surface, a self-affine surface with the spectrum of Zhang, Zhang & Jin (2020), Table 1:
-/// rms height 50 µm, Hurst exponent 0.8, roll-off at 2.5 mm, short cut-off at 78.125 µm; both bodies
-/// are steel unless the command line says otherwise.
+/// The model is an elastic half-space without friction and adhesion and a rigid rough surface of small slopes; both bodies may
+/// be elastic, then E* has both. With one pressure in each cell of the grid it solves that problem to rounding; of long paths
+/// approach_error says what is left. What the grid does not resolve, no solver brings back: corrected_contact_area says
+/// how much area is due to the mesh, and a warning comes where patches or waves are a few cells.
+///
+/// Without --surface it generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst exponent
+/// 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wave that the grid
+/// resolves. Of their mesh, and with their shortest wave, it is --nodes 512 --short-cutoff 78.125e-6.
 #[derive(Debug, Clone, Parser)]
+#[command(group(ArgGroup::new("kept").multiple(true)))]
 pub(crate) struct Options {
     /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
     /// rows of an image are y; an array of NumPy is [ix, iy]
@@ -32,7 +41,7 @@ pub(crate) struct Options {
     pub(super) reading: Reading,
 
     #[command(flatten)]
-    pub(super) elasticity: Elasticity,
+    elasticity: Elasticity,
 
     /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
     /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and
@@ -59,8 +68,12 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S")]
     pub(super) seed: Option<u64>,
 
+    /// Shortest wave of the generated surface [default: eight cells, which resolve it, but no less than 78.125 µm]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    pub(super) short_cutoff: Option<f64>,
+
     /// Keep the path in this file, which numpy.load opens and --resume goes on from
-    #[arg(long, value_name = "FILE.npz")]
+    #[arg(long, value_name = "FILE.npz", group = "kept")]
     pub(super) record: Option<PathBuf>,
 
     /// Write pressure and gap of the last state
@@ -68,11 +81,12 @@ pub(crate) struct Options {
     pub(super) fields: Option<Format>,
 
     /// Write the record each time so many states have been added to it, and not only at the end
-    #[arg(long, value_name = "STATES", requires = "record")]
+    #[arg(long, value_name = "STATES", requires = "kept")]
     pub(super) save_every: Option<NonZeroUsize>,
 
-    /// Go on with the path of a record, to where it was to end unless another end is given
-    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["surface", "nodes", "seed", "side", "side_y", "e_star", "material", "periodic", "rule"])]
+    /// Go on with the path of a record, to where it was to end unless another end is given; the record grows with it, unless
+    /// --record names another file. What lies before the end of the record is read from it
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Bytes that the path may hold at most, 2e9 say [default: three quarters of the memory]
@@ -122,6 +136,28 @@ impl Options {
         }
     }
 
+    /// What surrounds the nominal area.
+    pub(super) fn boundary(&self) -> Boundary {
+        boundary(self.periodic)
+    }
+
+    /// The bodies: a generated surface is of steel if nothing is said of them.
+    pub(super) fn bodies(&self) -> Result<Bodies, Failure> {
+        match &self.surface {
+            Some(_) => self.elasticity.required(),
+            None => self.elasticity.or_steel(),
+        }
+    }
+
+    /// What there is no room for.
+    pub(super) fn no_room(&self, what: String, error: Error) -> Failure {
+        no_room(
+            what,
+            error,
+            (self.updater, self.boundary(), self.memory_budget),
+        )
+    }
+
     /// Where the path ends, whichever comes first: at `otherwise` if nothing is said.
     pub(super) fn targets(&self, grid: &Grid, otherwise: &[ContactTarget]) -> Vec<ContactTarget> {
         let ends = &self.ends;
@@ -138,6 +174,20 @@ impl Options {
             targets.extend(otherwise);
         }
         targets
+    }
+}
+
+/// What there is no room for, with the largest grid for which there is; with a factor alone that depends on where the path ends.
+pub(super) fn no_room(
+    what: String,
+    error: Error,
+    (updater, boundary, budget): (Updater, Boundary, Option<usize>),
+) -> Failure {
+    match updater {
+        Updater::Cholesky => Failure::new(what, error),
+        Updater::Auto | Updater::Iterative => room::failure(what, error, |grid| {
+            LoadingSolver::check_room_to_full_contact(grid, boundary, budget)
+        }),
     }
 }
 

@@ -1,10 +1,13 @@
 //! The short table, and how exact the last state is.
 
 use asperity::loading::{History, LoadingEnd};
-use asperity::{ContactRule, Doubt, LoadingState};
+use asperity::patches::ContactEdge;
+use asperity::{Certificate, ContactRule, Doubt, Error, LoadingState};
 
 use super::Solver;
 use super::job::Job;
+use crate::columns::{Column, print as print_columns};
+use crate::resolution::Resolution;
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::say;
@@ -27,74 +30,131 @@ pub(super) fn print(
         say!("ended by: {}", reason(end));
     }
     say!();
-    let rms_height = job.heights().rms_height();
-    let (length, approach, gap) = if rms_height > 0.0 {
-        (rms_height, "approach/Sq", "mean gap/Sq")
-    } else {
-        (1.0, "approach [m]", "mean gap [m]")
-    };
-    say!(
-        "{:>8} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}",
-        "nodes",
-        "load [N]",
-        "p_mean/E*",
-        "A/A0",
-        approach,
-        gap,
-        "K [N/m]",
-        "K_i [N/m]",
-        "p_max/E*"
-    );
+    let corrected = corrected_areas(job, states)
+        .map_err(|error| Failure::new("no corrected contact area", error))?;
+    let rows = rows(job.rule(), states, last);
     let mut failed = Ok(());
-    for state in rows(job.rule(), states, last) {
-        let greatest = match solver.pressure_at(&state) {
+    let mut greatest = Vec::new();
+    for state in &rows {
+        greatest.push(match solver.pressure_at(state) {
             Ok(pressure) => pressure.iter().copied().fold(0.0, f64::max),
             Err(error) => {
                 failed = Err(Failure::new("no pressure for the table", error));
                 f64::NAN
             }
-        };
-        say!(
-            "{:>8} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.4e} {:>12} {:>12} {:>12.4e}",
-            state.contact_nodes,
-            state.load,
-            state.mean_pressure() / job.e_star(),
-            state.contact_area_fraction,
-            state.approach / length,
-            state.mean_gap / length,
-            printed(state.contact_stiffness),
-            printed(state.interfacial_stiffness),
-            greatest / job.e_star(),
-        );
+        });
     }
+    table(job, &rows, &greatest, &corrected);
     failed?;
-    for doubt in doubts(job, solver)? {
-        say!("\nwarning: {doubt}");
+    let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
+        .map_err(|error| Failure::new("no patches of the last state", error))?;
+    say!("mesh: at the last state {resolution}");
+    if let Some(doubt) = resolution.doubt() {
+        say!("warning: {doubt}");
     }
-
+    for doubt in doubts(job, solver)? {
+        say!("warning: {doubt}");
+    }
     let certificate = solver
         .certificate()
         .map_err(|error| Failure::new("no certificate", error))?;
-    let length = quantity(certificate.length, "m", 4);
+    exactness(&certificate, last);
+    solver
+        .verify()
+        .map_err(|error| Failure::new("the last state is no state of contact", error))
+}
+
+/// The corrected contact area \[m²\] after each event.
+fn corrected_areas(job: &Job, states: &[LoadingState]) -> Result<Vec<f64>, Error> {
+    let mut edge = ContactEdge::new(job.grid(), job.boundary());
+    let events = states.iter().map(|state| {
+        edge.follow(state.event, state.node)?;
+        Ok(edge.corrected_area())
+    });
+    events.collect()
+}
+
+/// Rows with the greatest pressure of each, and the legend.
+fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) {
+    let nominal = job.grid().nominal_area();
+    let column =
+        |name: &'static str, unit: &'static str, quantity: &dyn Fn(&LoadingState) -> f64| {
+            Column::new(name, unit, rows.iter().map(quantity))
+        };
+    let area = |state: &LoadingState| {
+        corrected
+            .get(state.step - 1)
+            .map_or(f64::NAN, |a| a / nominal)
+    };
+    let stiffness = |stiffness: Option<f64>| stiffness.unwrap_or(f64::NAN);
+    let mut columns = vec![
+        column("load", "N", &|state| state.load),
+        column("pressure", "Pa", &|state| state.mean_pressure()),
+        Column::new("greatest", "Pa", greatest.iter().copied()),
+        Column::area("area", rows.iter().map(|state| state.contact_area)),
+        Column::percent("area", rows.iter().map(|state| state.contact_area_fraction)),
+        Column::percent("corrected", rows.iter().map(area)),
+        column("approach", "m", &|state| state.approach),
+        column("mean gap", "m", &|state| state.mean_gap),
+        column("K", "N/m", &|state| stiffness(state.contact_stiffness)),
+        column("K_i", "N/m", &|state| {
+            stiffness(state.interfacial_stiffness)
+        }),
+    ];
+    // A periodic half-space has no contact stiffness.
+    let has_k = rows.iter().any(|state| state.contact_stiffness.is_some());
+    columns.retain(|column| has_k || column.name() != "K");
+    print_columns(&columns);
     say!();
-    say!("certificate of the last state, from its pressure alone (0 would be exact):");
+    say!("pressure: load over nominal area; greatest: the greatest pressure of a cell");
     say!(
-        "  least pressure in contact   {:>10.1e} of the mean pressure there",
-        certificate.least_pressure
+        "area: cells in contact; corrected: without what they count too much along the edges of patches (somewhat too small)"
     );
+    match job.periodic() {
+        None => say!("approach: since first touch; K: contact stiffness, d load/d approach"),
+        Some(_) => say!("approach: of the mean planes, since first touch"),
+    }
+    say!("K_i: interfacial stiffness, -d load/d mean gap");
+    say!();
+}
+
+/// How well the last state solves its equations.
+fn exactness(certificate: &Certificate, last: &LoadingState) {
+    let gap = |relative: f64| quantity(relative * certificate.length, "m", 2);
+    let pressure = last.load / last.contact_area;
+    say!();
     say!(
-        "  least gap out of contact    {:>10.1e} of {length}",
-        certificate.least_gap
+        "solution: what is left of the equations of the last state on this grid, from its pressure alone (0 is exact):"
     );
-    say!(
-        "  greatest gap in contact     {:>10.1e} of {length}",
-        certificate.greatest_contact_gap
-    );
-    say!(
-        "  sum of pressures less load  {:>10.1e} of the load",
-        certificate.load_error
-    );
-    Ok(())
+    let left = [
+        (
+            "greatest gap in contact",
+            gap(certificate.greatest_contact_gap),
+        ),
+        // There is none in full contact.
+        (
+            "least gap out of contact",
+            match certificate.least_gap.is_finite() {
+                true => gap(certificate.least_gap),
+                false => "-".to_string(),
+            },
+        ),
+        (
+            "least pressure in contact",
+            quantity(certificate.least_pressure * pressure, "Pa", 2),
+        ),
+        (
+            "sum of pressures less load",
+            quantity(certificate.load_error * last.load, "N", 2),
+        ),
+        (
+            "estimated error of the approach",
+            quantity(last.approach_error, "m", 2),
+        ),
+    ];
+    for (what, value) in left {
+        say!("  {what:32} {value}");
+    }
 }
 
 /// What looks wrong with the end of the path.
@@ -108,7 +168,7 @@ fn doubts(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
         (solver.end(), job.missed(solver.state()))
     {
         doubts.push(format!(
-            "the path ended before {target}. If that was not to be expected, look at the units: E* is {} in Pa",
+            "the path ended before {target}. If that was not to be expected, look at the units: E* is {} Pa",
             scientific(job.e_star(), 3)
         ));
     }
@@ -128,11 +188,6 @@ fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<
         rows.extend(state.filter(|state| rows.last() != Some(state)));
     }
     rows
-}
-
-/// A stiffness, or nothing where there is none.
-fn printed(stiffness: Option<f64>) -> String {
-    stiffness.map_or_else(|| "-".to_string(), |stiffness| format!("{stiffness:.4e}"))
 }
 
 /// Why a path has ended, in words.

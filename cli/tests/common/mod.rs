@@ -57,3 +57,12 @@ pub fn limited(folder: &Path, limit: &str, arguments: &[&OsStr]) -> std::io::Res
 pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
+
+/// A refusal by the program itself, not by a signal.
+pub fn is_refused(output: &Output, words: &[&str]) {
+    let said = said(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for word in words {
+        assert!(said.contains(word), "{word} is not in: {said}");
+    }
+}

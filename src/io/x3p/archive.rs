@@ -5,6 +5,7 @@ use std::io::{Cursor, Read};
 use md5::{Digest, Md5};
 use zip::ZipArchive;
 
+use crate::io::archive::incomplete;
 use crate::io::fault::Fault;
 
 /// How many times longer than the whole archive a member may be.
@@ -32,8 +33,7 @@ pub(super) struct Archive<'a> {
 impl<'a> Archive<'a> {
     /// Opens an archive that holds a description: of several, the one in the fewest folders.
     pub(super) fn open(file: &'a [u8]) -> Result<Self, Fault> {
-        let zip = ZipArchive::new(Cursor::new(file))
-            .map_err(|error| Fault::malformed(error.to_string()))?;
+        let zip = ZipArchive::new(Cursor::new(file)).map_err(incomplete)?;
         let folder = zip
             .file_names()
             .filter_map(|name| name.ok().map(|name| forward(&name)))

@@ -1,6 +1,7 @@
 //! Patches against flood fills of every state, against another program, and of made contacts.
 
 mod counted;
+mod edges;
 mod flood;
 mod made;
 mod paths;

@@ -114,6 +114,12 @@ impl ConjugateGradient {
         Ok(state)
     }
 
+    /// Bytes held on a grid of so many nodes with so many of them in contact.
+    pub(crate) fn bytes_of(nodes: usize, contact: usize) -> usize {
+        let fixed = nodes.saturating_mul(BYTES_A_NODE);
+        fixed.saturating_add(contact.saturating_mul(BYTES_A_CONTACT_NODE))
+    }
+
     /// `Ok` if a path on these cells needs no factor.
     ///
     /// # Errors
@@ -244,8 +250,7 @@ impl LinearUpdater for ConjugateGradient {
 
     /// Not before the grid is known, by [`make_room`](Self::make_room).
     fn bytes(&self, contact: usize, _watched: usize) -> usize {
-        let fixed = self.nodes.saturating_mul(BYTES_A_NODE);
-        fixed.saturating_add(contact.saturating_mul(BYTES_A_CONTACT_NODE))
+        Self::bytes_of(self.nodes, contact)
     }
 
     fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {

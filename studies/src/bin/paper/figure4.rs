@@ -182,7 +182,7 @@ fn draw(maps: &[Map], name: &Path) -> Result<PathBuf, Failure> {
             text_rise: 0.2,
         };
         let axis = Axis::plain_logarithmic("p / E*h′", SHADES.0, SHADES.1);
-        bar.colour_bar(area, &axis)
+        bar.colour_bar(area, &axis, shade)
     })
 }
 

@@ -13,7 +13,7 @@ use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style
 use asperity_cli::outcome::Failure;
 
 /// What the file holds, in SI units and with E* = 1 Pa.
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 12] = [
     "step",
     "ix",
     "iy",
@@ -24,11 +24,26 @@ const COLUMNS: [&str; 10] = [
     "mean_gap",
     "contact_stiffness",
     "interfacial_stiffness",
+    "corrected_contact_area",
+    "approach_error",
 ];
 /// Agreement with the surface: the file has all digits, sums of heights may round.
 const SAME: f64 = 1e-9;
 
-type Row = (usize, usize, usize, f64, f64, f64, f64, f64, f64, f64);
+type Row = (
+    usize,
+    usize,
+    usize,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+);
 
 /// The path of Table 1, seed 1, to full contact.
 pub(crate) struct WholePath {

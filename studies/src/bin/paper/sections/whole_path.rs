@@ -31,7 +31,7 @@ pub(crate) fn whole_path(path: &WholePath, prefix: &str) -> String {
          ([theory.md](theory.md#11-without-a-factor)) has every event of the paper's mesh: Table 1's spectrum, seed 1, \
          {} × {} nodes, all {nodes} of them from first touch to full contact at W = {} A₀E\\*.\n\n\
          ```text\n\
-         cargo run --release -- path --nodes {} --max-area-fraction 1\n\
+         cargo run --release -- path --nodes {} --short-cutoff 78.125e-6 --e-star 1 --max-area-fraction 1\n\
          cargo run --release -p asperity-studies --bin paper -- --nodes {} --whole-path out/path.csv --report \
          docs/validation.md --reuse\n\
          ```\n\n{}\n\n\

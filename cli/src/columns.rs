@@ -1,0 +1,85 @@
+//! Columns of numbers, each in the unit that suits it.
+
+use asperity_cli::number::{area_unit, prefixed, significant};
+use asperity_cli::say;
+
+/// Significant digits.
+const DIGITS: usize = 4;
+/// Characters between two columns.
+const BETWEEN: usize = 2;
+
+/// A quantity of every row, in one unit.
+pub(crate) struct Column {
+    name: &'static str,
+    unit: String,
+    cells: Vec<String>,
+}
+
+impl Column {
+    /// In an SI prefix that suits the greatest value.
+    pub(crate) fn new(
+        name: &'static str,
+        unit: &str,
+        values: impl Iterator<Item = f64> + Clone,
+    ) -> Self {
+        Self::made(name, prefixed(unit, greatest(values.clone())), values)
+    }
+
+    /// An area.
+    pub(crate) fn area(name: &'static str, values: impl Iterator<Item = f64> + Clone) -> Self {
+        let (scale, unit) = area_unit(greatest(values.clone()));
+        Self::made(name, (scale, unit.to_string()), values)
+    }
+
+    /// A fraction.
+    pub(crate) fn percent(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
+        Self::made(name, (0.01, "%".to_string()), values)
+    }
+
+    fn made(
+        name: &'static str,
+        (scale, unit): (f64, String),
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        let cell = |value: f64| match value.is_nan() {
+            true => "-".to_string(),
+            false => significant(value / scale, DIGITS),
+        };
+        Self {
+            name,
+            unit,
+            cells: values.map(cell).collect(),
+        }
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        self.name
+    }
+
+    fn width(&self) -> usize {
+        let texts = self.cells.iter().map(String::as_str);
+        let widths = texts.chain([self.name, &self.unit]);
+        widths.map(|text| text.chars().count()).max().unwrap_or(0)
+    }
+}
+
+fn greatest(values: impl Iterator<Item = f64>) -> f64 {
+    let finite = values.filter(|value| value.is_finite());
+    finite.map(f64::abs).fold(0.0, f64::max)
+}
+
+/// Prints columns under their names and units.
+pub(crate) fn print(columns: &[Column]) {
+    let line = |cell: &dyn Fn(&Column) -> Option<&str>| {
+        let cells = columns.iter().map(|column| {
+            let width = column.width() + BETWEEN;
+            format!("{:>width$}", cell(column).unwrap_or_default())
+        });
+        say!("{}", cells.collect::<String>());
+    };
+    line(&|column| Some(column.name));
+    line(&|column| Some(&column.unit));
+    for row in 0..columns.first().map_or(0, |column| column.cells.len()) {
+        line(&|column| column.cells.get(row).map(String::as_str));
+    }
+}

@@ -1,0 +1,38 @@
+//! The nodes in contact, coloured by pressure.
+
+use std::path::{Path, PathBuf};
+
+use asperity::{ContactState, Grid};
+use asperity_cli::field_map::{FieldMap, Scale};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+use nalgebra::DMatrix;
+
+/// Draws a state of contact.
+pub(crate) fn draw(
+    grid: &Grid,
+    state: &ContactState,
+    pressure: &DMatrix<f64>,
+    contact_map: &DMatrix<bool>,
+    name: &Path,
+) -> Result<PathBuf, Failure> {
+    let caption = format!(
+        "{} nodes in contact, A/A₀ = {:.4} %, W = {}",
+        state.contact_nodes,
+        100.0 * state.contact_area_fraction,
+        quantity(state.load, "N", 4)
+    );
+    // Below zero are pressures that only the paper's rule gives.
+    let greatest = pressure.iter().copied().fold(0.0, f64::max);
+    let in_contact = |pressure: f64, is_in| if is_in { pressure } else { f64::NAN };
+    FieldMap {
+        grid,
+        length_unit: "m",
+        values: &pressure.zip_map(contact_map, in_contact),
+        range: (0.0, greatest),
+        scale: Scale::Linear,
+        contours: &[],
+        label: ("pressure", "Pa"),
+    }
+    .write(name, &caption)
+}

@@ -1,0 +1,55 @@
+//! What a path is of, for `settings.json`.
+
+use asperity::{ContactRule, ContactTarget, Grid};
+use asperity_cli::half_space::Periodic;
+use asperity_cli::outcome::Failure;
+use clap::ValueEnum;
+use serde_json::{Map, Value, json};
+
+use super::options::Updater;
+use crate::elasticity::Bodies;
+use crate::settings::Settings;
+
+/// What a path is of besides its surface.
+pub(super) struct Parts<'a> {
+    pub(super) bodies: &'a Bodies,
+    pub(super) periodic: Option<Periodic>,
+    pub(super) rule: ContactRule,
+    pub(super) updater: Updater,
+    pub(super) targets: &'a [ContactTarget],
+}
+
+impl Parts<'_> {
+    /// Everything that determines the path on a surface from this source.
+    pub(super) fn settings(&self, grid: &Grid, surface: Value) -> Result<Settings, Failure> {
+        let plain = |value: Result<Value, serde_json::Error>| {
+            value.map_err(|error| Failure::new("cannot write the settings", error))
+        };
+        let updater = self.updater.to_possible_value();
+        let (sides, cell) = (grid.sides(), (grid.dx(), grid.dy()));
+        let settings = [
+            ("surface", surface),
+            (
+                "grid",
+                json!({"nodes": grid.shape(), "sides": sides, "cell": cell}),
+            ),
+            ("e_star", json!(self.bodies.e_star)),
+            ("bodies", json!(self.bodies.elastic)),
+            (
+                "half_space",
+                match self.periodic {
+                    None => json!("free"),
+                    Some(kernel) => json!(format!("periodic, {} kernel", kernel.name())),
+                },
+            ),
+            ("rule", plain(serde_json::to_value(self.rule))?),
+            (
+                "updater",
+                json!(updater.map_or_else(String::new, |value| value.get_name().to_string())),
+            ),
+            ("targets", plain(serde_json::to_value(self.targets))?),
+        ];
+        let settings = settings.map(|(name, value)| (name.to_string(), value));
+        Ok(Settings::new(Map::from_iter(settings)))
+    }
+}

@@ -1,0 +1,91 @@
+//! Options for what the model leaves out: a sentence that says so.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+/// What the model is.
+const MODEL: &str = "The model is linear elastic, without friction and without adhesion: two bodies, flat but for \
+                     their roughness, press on each other normally";
+
+/// Parts of the names that such options have, and what the program does of it.
+const LEFT_OUT: [(&[&str], &str); 8] = [
+    (
+        &["friction", "shear", "tangential", "slip", "stick"],
+        "the contact is frictionless, and the load normal",
+    ),
+    (
+        &["plastic", "hardness", "yield"],
+        "nothing yields, however high the pressure; compare the greatest pressure with the hardness",
+    ),
+    (
+        &["adhesi", "surface-energy", "cohesi", "jkr", "dmt"],
+        "nothing pulls: pressures are not negative",
+    ),
+    (
+        &["viscoel", "creep", "relax", "rate", "frequency"],
+        "time plays no part: only the modulus at the rate of loading can be given, by --e-star or --material",
+    ),
+    (
+        &["temperature", "thermal", "heat"],
+        "temperature plays no part",
+    ),
+    (&["wear"], "surfaces do not wear"),
+    (
+        &["lubric", "viscosity", "fluid", "leak"],
+        "there is nothing between the surfaces",
+    ),
+    (
+        &["unload"],
+        "unloading needs no option: elastic contact without friction goes back through the same states",
+    ),
+];
+
+/// What to say of a command line that asks for such a thing.
+pub(crate) fn left_out(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    let asks = |names: &[&str]| names.iter().any(|name| option.contains(name));
+    let is_unknown = error.kind() == ErrorKind::UnknownArgument;
+    let (_, sentence) = LEFT_OUT
+        .iter()
+        .find(|(names, _)| is_unknown && asks(names))?;
+    Some(format!(
+        "error: there is no {option}: {sentence}.\n{MODEL}.\n"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Debug, Parser)]
+    struct Known {
+        #[arg(long)]
+        _nodes: Option<usize>,
+    }
+
+    #[test]
+    fn what_the_model_leaves_out_is_said() {
+        let said = |option: &str| {
+            let error = Known::try_parse_from(["asperity", option, "0.3"]).err();
+            error.and_then(|error| left_out(&error))
+        };
+        for (option, word) in [
+            ("--friction", "friction"),
+            ("--friction-coefficient", "normal"),
+            ("--plastic", "yields"),
+            ("--hardness", "yields"),
+            ("--work-of-adhesion", "pulls"),
+            ("--viscoelastic", "time"),
+            ("--temperature", "temperature"),
+        ] {
+            let said = said(option).unwrap_or_default();
+            assert!(said.contains(word) && said.contains(option), "{said}");
+            assert!(said.contains("linear elastic"), "{said}");
+        }
+        // Another mistake, and none.
+        assert_eq!((said("--node"), said("--nonsense")), (None, None));
+    }
+}

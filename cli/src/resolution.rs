@@ -1,0 +1,60 @@
+//! How well the grid resolves a contact.
+
+use std::fmt;
+
+use asperity::patches::{Connectivity, ContactEdge, Patches};
+use asperity::{Boundary, Doubt, Error, Grid};
+use asperity_cli::number::area;
+use nalgebra::DMatrix;
+
+/// The patches of a contact, and what cells count too much along their edges.
+pub(crate) struct Resolution {
+    patches: usize,
+    contact_nodes: usize,
+    /// Areas \[m²\].
+    area: f64,
+    pub(crate) corrected_area: f64,
+}
+
+impl Resolution {
+    pub(crate) fn of(
+        contact_map: &DMatrix<bool>,
+        grid: &Grid,
+        boundary: Boundary,
+    ) -> Result<Self, Error> {
+        let edge = ContactEdge::of(contact_map, *grid, boundary)?;
+        let found = Patches::new(contact_map, grid, boundary, Connectivity::Four)?;
+        Ok(Self {
+            patches: found.patches().len(),
+            contact_nodes: edge.contact_nodes(),
+            area: edge.contact_nodes() as f64 * grid.cell_area(),
+            corrected_area: edge.corrected_area(),
+        })
+    }
+
+    pub(crate) fn doubt(&self) -> Option<Doubt> {
+        Doubt::of_patches(self.patches, self.contact_nodes)
+    }
+}
+
+impl fmt::Display for Resolution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.patches == 0 {
+            return write!(f, "no patch");
+        }
+        let plural = if self.patches == 1 {
+            "patch"
+        } else {
+            "patches"
+        };
+        write!(
+            f,
+            "{} {plural} of {:.1} nodes on average; cells count {}, corrected {} ({:.1} % less)",
+            self.patches,
+            self.contact_nodes as f64 / self.patches as f64,
+            area(self.area, 4),
+            area(self.corrected_area, 4),
+            100.0 * (1.0 - self.corrected_area / self.area)
+        )
+    }
+}

@@ -1,0 +1,183 @@
+//! Many paths: what is there is skipped only if it is the same, and only paths of one kind are gathered.
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+use std::time::{Duration, Instant};
+
+use common::{Scratch, asperity, is_refused, said};
+
+type Done = Result<(), Box<dyn Error>>;
+
+fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    Ok(asperity(folder, &words).output()?)
+}
+
+#[test]
+fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
+    let folder = Scratch::new("ensemble-same")?;
+    let line = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..2 --out runs";
+    assert!(run(&folder.0, line)?.status.success());
+    let first = fs::read(folder.join("runs/seed_1/path.csv"))?;
+    // The same: one more is followed, two are skipped.
+    let more = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..3 --out runs";
+    let done = run(&folder.0, more)?;
+    let told = String::from_utf8(done.stdout)?;
+    assert!(told.contains("1 paths to follow, 2 are there"), "{told}");
+    for (other, words) in [
+        ("--max-area-fraction 0.2", &["targets", "0.2", "0.1"][..]),
+        (
+            "--max-area-fraction 0.1 --periodic love",
+            &["half_space", "free", "Love"],
+        ),
+        (
+            "--max-area-fraction 0.1 --e-star 1e9",
+            &["e_star", "1000000000"],
+        ),
+        ("--max-area-fraction 0.1 --side 2e-2", &["grid.sides"]),
+        (
+            "--max-area-fraction 0.1 --short-cutoff 2e-3",
+            &["surface.short_cutoff_wavelength is 0.002", "0.0025"],
+        ),
+        (
+            "--max-area-fraction 0.1 --material 70e9,0.33",
+            &["bodies", "[[70000000000.0,0.33]]", "[[210000000000.0,0.3]]"],
+        ),
+        ("--max-area-fraction 0.1 --rule smallest-gap", &["rule"]),
+        ("--max-area-fraction 0.1 --updater iterative", &["updater"]),
+        (
+            "--max-area-fraction 0.1 --nodes 16",
+            &["grid.nodes", "[16,16]", "[32,32]"],
+        ),
+    ] {
+        let nodes = if other.contains("--nodes") {
+            ""
+        } else {
+            "--nodes 32"
+        };
+        for dry in ["", "--dry-run"] {
+            let line = format!("path {nodes} {other} --seeds 1..4 --out runs {dry}");
+            let done = run(&folder.0, &line)?;
+            is_refused(&done, words);
+            is_refused(&done, &["runs/seed_1", "--out"]);
+        }
+    }
+    assert!(!folder.join("runs/seed_4").exists());
+    assert_eq!(fs::read(folder.join("runs/seed_1/path.csv"))?, first);
+    // Without settings nobody can tell.
+    fs::remove_file(folder.join("runs/seed_2/settings.json"))?;
+    is_refused(&run(&folder.0, more)?, &["seed_2", "settings.json"]);
+    is_refused(
+        &run(&folder.0, "gather runs")?,
+        &["seed_2", "settings.json"],
+    );
+    Ok(())
+}
+
+#[test]
+fn mixtures_are_not_gathered() -> Done {
+    let folder = Scratch::new("ensemble-mixture")?;
+    for line in [
+        "path --nodes 32 --seeds 1..2 --out runs",
+        "path --nodes 32 --seeds 3..3 --periodic love --out others",
+    ] {
+        assert!(run(&folder.0, line)?.status.success());
+    }
+    assert!(run(&folder.0, "gather runs")?.status.success());
+    fs::remove_file(folder.join("runs/gather.csv"))?;
+    fs::rename(folder.join("others/seed_3"), folder.join("runs/seed_3"))?;
+    let done = run(&folder.0, "gather runs")?;
+    is_refused(&done, &["seed_3", "seed_1", "half_space", "free", "Love"]);
+    assert!(!said(&done).contains("surface.seed"), "{}", said(&done));
+    assert!(!folder.join("runs/gather.csv").exists());
+    Ok(())
+}
+
+/// However many seeds there are, those that are there are counted at once.
+#[test]
+fn all_seeds_there_are_can_be_asked_for() -> Done {
+    let folder = Scratch::new("ensemble-all")?;
+    let line = "path --nodes 32 --seeds 0..18446744073709551615 --dry-run --out runs";
+    let start = Instant::now();
+    let done = run(&folder.0, line)?;
+    assert!(done.status.success(), "{}", said(&done));
+    assert!(start.elapsed() < Duration::from_secs(20));
+    let told = String::from_utf8(done.stdout)?;
+    assert!(
+        told.contains("18446744073709551616 paths to follow, 0 are there"),
+        "{told}"
+    );
+    for (task, count) in [
+        ("--seeds 1..1000000000000 --task 3/7", "142857142857 paths"),
+        ("--seeds 1..10 --task 0/3", "4 paths"),
+        ("--seeds 1..10 --task 1/3", "3 paths"),
+        ("--seeds 1..2 --task 5/7", "0 paths"),
+        (
+            "--seeds 18446744073709551615..18446744073709551615 --task 1/2",
+            "0 paths",
+        ),
+    ] {
+        let done = run(
+            &folder.0,
+            &format!("path --nodes 32 {task} --dry-run --out runs"),
+        )?;
+        let told = String::from_utf8(done.stdout)?;
+        assert!(told.starts_with(count), "{task}: {told}");
+    }
+    Ok(())
+}
+
+/// The file says all that determines a path: of a generated surface, of one from a file, and of a record.
+#[test]
+fn settings_lie_beside_every_path() -> Done {
+    let folder = Scratch::new("ensemble-settings")?;
+    fs::copy(common::data("selfaffine_48.npy"), folder.join("input.npy"))?;
+    for (line, words) in [
+        (
+            "path --nodes 32 --seed 7 --short-cutoff 2e-3 --periodic spectral --max-load 3 --record r.npz",
+            &[
+                "\"seed\": 7",
+                "\"hurst\": 0.8",
+                "\"half_space\": \"periodic, spectral kernel\"",
+                "\"Load\": 3.0",
+                "\"rule\": \"FirstContact\"",
+                "\"updater\": \"auto\"",
+                "\"e_star\": 230769230769.2",
+                "\"short_cutoff_wavelength\": 0.002\n",
+                "\"program\": \"asperity ",
+            ][..],
+        ),
+        (
+            "path --surface input.npy --side 1e-2 --material steel --against glass --level plane --max-load 1e-3",
+            &[
+                "\"file\": \"input.npy\"",
+                "\"heights_md5\": \"",
+                "\"level\": \"plane\"",
+                "\"free\"",
+                "0.22",
+            ],
+        ),
+        (
+            "path --resume r.npz --max-load 4",
+            &[
+                "\"record\": \"r.npz\"",
+                "\"heights_md5\": \"",
+                "spectral",
+                "\"Load\": 4.0",
+            ],
+        ),
+    ] {
+        let done = run(&folder.0, line)?;
+        assert!(done.status.success(), "{line}: {}", said(&done));
+        let text = fs::read_to_string(folder.join("out/settings.json"))?;
+        for word in words {
+            assert!(text.contains(word), "{word} is not in {text}");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,355 @@
+//! Records of the program: gone on from, read, and interrupted.
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use common::{Scratch, asperity, is_refused, said};
+
+type Done = Result<(), Box<dyn Error>>;
+
+fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    Ok(asperity(folder, &words).output()?)
+}
+
+/// What the program prints if all goes well.
+fn printed(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
+    let done = run(folder, line)?;
+    assert!(done.status.success(), "{line}: {}", said(&done));
+    Ok(String::from_utf8(done.stdout)?)
+}
+
+/// The numbers of every line of a file of states.
+fn states(file: &Path) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
+    let text = fs::read_to_string(file)?;
+    let numbers = |line: &str| {
+        let cells = line.split(',');
+        let numbers: Result<Vec<f64>, _> = cells.map(str::parse).collect();
+        Ok(numbers?)
+    };
+    text.lines().skip(1).map(numbers).collect()
+}
+
+/// The 64 x 64 numbers of a field, behind its header.
+fn field(file: &Path) -> Result<Vec<f64>, Box<dyn Error>> {
+    let bytes = fs::read(file)?;
+    let (_, values) = bytes.split_at(bytes.len() - 64 * 64 * 8);
+    let values = values.as_chunks().0.iter().copied();
+    Ok(values.map(f64::from_le_bytes).collect())
+}
+
+/// Step and node are the same, the columns behind them to what the crate promises of them.
+fn are_alike(found: &Path, expected: &Path) -> Done {
+    let (found, expected) = (states(found)?, states(expected)?);
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        assert_eq!(found[..3], expected[..3]);
+        for (column, (a, b)) in found.iter().zip(expected).enumerate().skip(3) {
+            // Mean gaps are small differences of the first one.
+            let scale = if column == 7 { 1e-4 } else { b.abs() };
+            assert!((a - b).abs() <= 1e-10 * scale, "{column}: {a} {b}");
+        }
+    }
+    Ok(())
+}
+
+const PATH: &str = "path --nodes 64 --updater cholesky";
+
+/// What a record holds is read from it: the same states, table, fields and picture as of a path that was to end there. The
+/// record stays as it is.
+#[test]
+fn targets_that_lie_behind_are_read_from_the_record() -> Done {
+    let folder = Scratch::new("records-behind")?;
+    let whole = format!("{PATH} --max-area-fraction 0.3 --record r.npz --out whole");
+    printed(&folder.0, &whole)?;
+    let record = fs::read(folder.join("r.npz"))?;
+    for (k, target) in [
+        "--max-load 1",
+        "--max-load 12345",
+        "--mean-pressure 1e8",
+        "--max-approach 1e-4",
+        "--min-mean-gap 1e-4",
+        "--max-area-fraction 0.0123",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let (read, fresh) = (format!("read_{k}"), format!("fresh_{k}"));
+        let line =
+            format!("path --updater cholesky --resume r.npz {target} --fields npy --out {read}");
+        let told = printed(&folder.0, &line)?;
+        let line = format!("{PATH} {target} --fields npy --out {fresh}");
+        let expected = printed(&folder.0, &line)?;
+        let end = |text: &str| {
+            let line = text.lines().find(|line| line.starts_with("ended by"));
+            line.map(str::to_string)
+        };
+        assert!(end(&told).is_some());
+        assert_eq!(end(&told), end(&expected), "{target}");
+        let (read, fresh) = (folder.join(&read), folder.join(&fresh));
+        are_alike(&read.join("path.csv"), &fresh.join("path.csv"))?;
+        for (name, size) in [("pressure.npy", 1e9), ("gap.npy", 1e-4)] {
+            let (found, expected) = (field(&read.join(name))?, field(&fresh.join(name))?);
+            let pairs = found.iter().zip(&expected);
+            let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error <= 1e-9 * size, "{target} {name}: {error:e}");
+        }
+        assert_eq!(fs::read(folder.join("r.npz"))?, record, "{target}");
+    }
+    // It would lose what lies beyond.
+    let done = run(&folder.0, "path --resume r.npz --max-load 1 --record r.npz")?;
+    is_refused(&done, &["r.npz", "another file"]);
+    assert_eq!(fs::read(folder.join("r.npz"))?, record);
+    printed(
+        &folder.0,
+        "path --resume r.npz --max-load 1 --record short.npz",
+    )?;
+    assert!(fs::read(folder.join("short.npz"))?.len() < record.len());
+    Ok(())
+}
+
+/// Without another name for it the record grows, and what is printed of the surface is what was printed of it before.
+#[test]
+fn a_record_grows_with_its_path() -> Done {
+    let folder = Scratch::new("records-grow")?;
+    let first = run(
+        &folder.0,
+        &format!("{PATH} --max-area-fraction 0.1 --record r.npz --out first"),
+    )?;
+    assert!(first.status.success(), "{}", said(&first));
+    let short = fs::read(folder.join("r.npz"))?.len();
+    let again = run(
+        &folder.0,
+        "path --updater cholesky --resume r.npz --out again",
+    )?;
+    let lines = |output: &Output| {
+        let said = said(output);
+        let lines = said.lines();
+        let lines = lines.filter(|line| !line.starts_with("surface") && !line.starts_with("note"));
+        // A record knows the composite modulus of its bodies, and not the bodies.
+        let lines = lines.map(|line| match line.split_once(": E*") {
+            Some((bodies, e_star)) if bodies.starts_with("bodies") => e_star,
+            _ => line,
+        });
+        lines.map(str::to_string).collect::<Vec<_>>()
+    };
+    // 10 % of the area, although no number of nodes is 10 % of 4096; gradients of the same differences.
+    assert_eq!(lines(&again), lines(&first));
+    printed(
+        &folder.0,
+        "path --updater cholesky --resume r.npz --max-area-fraction 0.2 --out more",
+    )?;
+    assert!(fs::read(folder.join("r.npz"))?.len() > short);
+    printed(
+        &folder.0,
+        &format!("{PATH} --max-area-fraction 0.2 --out whole"),
+    )?;
+    are_alike(
+        &folder.join("more/path.csv"),
+        &folder.join("whole/path.csv"),
+    )?;
+    // What was read from another record, into another one.
+    let long = fs::read(folder.join("r.npz"))?;
+    printed(
+        &folder.0,
+        "path --resume r.npz --max-area-fraction 0.25 --record longer.npz",
+    )?;
+    assert_eq!(fs::read(folder.join("r.npz"))?, long);
+    assert!(fs::read(folder.join("longer.npz"))?.len() > long.len());
+    Ok(())
+}
+
+/// A path that breaks off for want of memory leaves its record, all files and the fields of its last state.
+#[test]
+fn a_small_budget_loses_nothing() -> Done {
+    let folder = Scratch::new("records-budget")?;
+    for (line, budget) in [
+        ("path --nodes 128 --periodic love", "5e6"),
+        ("path --nodes 96", "5e6"),
+    ] {
+        let line = format!(
+            "{line} --max-area-fraction 0.4 --memory-budget {budget} --record out/r.npz --fields npy"
+        );
+        let done = run(&folder.0, &line)?;
+        is_refused(&done, &["the budget is 5 MB"]);
+        assert!(
+            !said(&done).contains("values, but found"),
+            "{}",
+            said(&done)
+        );
+        let out = folder.join("out");
+        for name in [
+            "r.npz",
+            "path.csv",
+            "settings.json",
+            "pressure.npy",
+            "gap.npy",
+            "contact_map.png",
+            "loading_curve.svg",
+        ] {
+            assert!(out.join(name).is_file(), "{name}");
+        }
+        let told = String::from_utf8(done.stdout)?;
+        assert!(
+            told.contains("ended by: the memory budget") && !told.contains("NaN"),
+            "{told}"
+        );
+        let states = fs::read_to_string(out.join("path.csv"))?.lines().count() - 1;
+        assert!(
+            states > 100 && told.contains(&format!("{states} states in")),
+            "{told}"
+        );
+        fs::remove_dir_all(out)?;
+    }
+    Ok(())
+}
+
+/// Waits until a path has begun, sends it a signal, and waits for its end.
+#[cfg(unix)]
+fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    let mut process = asperity(folder, &words)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    let begun = || {
+        let part = folder.join("out/path.csv.part");
+        fs::metadata(part).is_ok_and(|file| file.len() > 10_000)
+    };
+    while !begun() {
+        assert!(process.try_wait()?.is_none(), "it has ended too early");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    for signal in signals {
+        let sent = Command::new("kill")
+            .arg(signal)
+            .arg(process.id().to_string())
+            .status()?;
+        assert!(sent.success());
+    }
+    Ok(process.wait_with_output()?)
+}
+
+/// The first Ctrl-C keeps the path, and says how to go on.
+#[cfg(unix)]
+#[test]
+fn interrupted_paths_go_on() -> Done {
+    let folder = Scratch::new("records-interrupted")?;
+    const LONG: &str = "path --nodes 128 --max-area-fraction 0.3 --updater cholesky";
+    printed(&folder.0, &format!("{LONG} --out whole"))?;
+    for (options, record) in [
+        ("--record kept.npz", "kept.npz"),
+        ("", "out/interrupted.npz"),
+    ] {
+        let done = signalled(&folder.0, &format!("{LONG} {options}"), &["-INT"])?;
+        let said = said(&done);
+        assert_eq!(done.status.code(), Some(130), "{said}");
+        let states = fs::read_to_string(folder.join("out/path.csv"))?
+            .lines()
+            .count()
+            - 1;
+        assert!(states < 4915, "it was at its end");
+        let told = format!(
+            "{states} states in {record}; go on with `asperity path --resume {record} --updater cholesky --out out`"
+        );
+        assert!(said.contains(&told), "{said}");
+        let again = format!("path --resume {record} --updater cholesky --out out");
+        printed(&folder.0, &again)?;
+        are_alike(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
+        fs::remove_dir_all(folder.join("out"))?;
+    }
+    // What a batch system sends does the same.
+    let done = signalled(&folder.0, &format!("{LONG} --record term.npz"), &["-TERM"])?;
+    assert_eq!(done.status.code(), Some(130), "{}", said(&done));
+    assert!(folder.join("term.npz").is_file());
+    Ok(())
+}
+
+/// What cannot be done is said at once, and nothing is ignored.
+#[test]
+fn what_cannot_be_done_is_said_before_the_work() -> Done {
+    let folder = Scratch::new("records-refused")?;
+    printed(&folder.0, "path --nodes 32 --record r.npz --out first")?;
+    let record = fs::read(folder.join("r.npz"))?;
+    fs::write(folder.join("cut.npz"), &record[..record.len() / 2])?;
+    fs::write(folder.join("text.npz"), "no archive")?;
+    let measured = fs::read(common::data("surface_files/missing_f64.x3p"))?;
+    fs::write(folder.join("cut.x3p"), &measured[..measured.len() / 2])?;
+    fs::create_dir(folder.join("folder"))?;
+    fs::copy(common::data("selfaffine_48.npy"), folder.join("input.npy"))?;
+    for (line, words) in [
+        (
+            "path --surface input.npy --side 1e-2 --e-star 1 --record input.npy",
+            &["--record would replace the surface"][..],
+        ),
+        ("path --nodes 32 --record nowhere/r.npz", &["nowhere/r.npz"]),
+        ("path --nodes 32 --record folder", &["folder"]),
+        ("path --nodes 32 --fill", &["--fill", "generated"]),
+        ("path --nodes 32 --level plane", &["--level"]),
+        (
+            "path --resume r.npz --height-unit nm",
+            &["--height-unit", "record"],
+        ),
+        ("path --resume r.npz --channel Height", &["--channel"]),
+        (
+            "path --resume cut.npz",
+            &["cut.npz", "no complete zip archive", "cut off"],
+        ),
+        (
+            "path --resume text.npz",
+            &["text.npz", "no complete zip archive"],
+        ),
+        ("patches cut.npz", &["cut.npz", "cut off"]),
+        ("info cut.x3p", &["cut.x3p", "cut off"]),
+        (
+            "path --nodes 32768 --memory-budget 1e9",
+            &[
+                "216.5 GB",
+                "the budget is 1 GB",
+                "the largest square grid that fits",
+            ],
+        ),
+        (
+            "path --nodes 100000",
+            &["the largest square grid that fits"],
+        ),
+    ] {
+        let done = run(&folder.0, line)?;
+        is_refused(&done, words);
+        assert!(!said(&done).contains("EOCD"), "{}", said(&done));
+        assert!(!folder.join("out/path.csv").exists(), "{line}");
+    }
+    for (line, word) in [
+        ("path --resume r.npz --seed 2", "--seed"),
+        ("path --resume r.npz --short-cutoff 1e-3", "--short-cutoff"),
+        ("path --resume r.npz --seeds 1..2", "--seeds"),
+        ("path --resume r.npz --periodic love", "--periodic"),
+        ("path --nodes 32 --save-every 10", "--record"),
+        ("path --friction 0.3", "frictionless"),
+        ("load --hardness 1e9", "nothing yields"),
+    ] {
+        let done = run(&folder.0, line)?;
+        assert_eq!(done.status.code(), Some(2), "{line}");
+        assert!(said(&done).contains(word), "{}", said(&done));
+    }
+    // The largest grid that is told is one that fits to full contact, and one with a tenth more nodes a side is not.
+    let done = run(&folder.0, "path --nodes 4000 --memory-budget 10e6")?;
+    let text = said(&done);
+    let told = text.split(" at any load has ").nth(1);
+    let side = told.and_then(|rest| rest.split(' ').next());
+    let side: usize = side.ok_or("no side")?.parse()?;
+    assert!(side > 64, "{side}");
+    let line = |side: usize| {
+        format!("path --nodes {side} --memory-budget 10e6 --max-area-fraction 1 --out largest")
+    };
+    assert!(run(&folder.0, &line(side))?.status.success(), "{side}");
+    let larger = run(&folder.0, &line(side + side / 10))?;
+    is_refused(&larger, &["the budget is 10 MB"]);
+    Ok(())
+}

@@ -1,0 +1,287 @@
+//! What the program says: assumptions, doubts, and figures of the mesh.
+#![allow(clippy::float_cmp)]
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use common::{Scratch, asperity, data, said};
+
+type Done = Result<(), Box<dyn Error>>;
+
+/// The program with the words of a line, which has to succeed.
+fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    let done = asperity(folder, &words).output()?;
+    assert!(done.status.success(), "{line}: {}", said(&done));
+    Ok(done)
+}
+
+fn printed(done: &Output) -> String {
+    String::from_utf8_lossy(&done.stdout).into_owned()
+}
+
+/// A folder with a surface of 48 × 48 nodes.
+fn with_surface(name: &str) -> std::io::Result<Scratch> {
+    let folder = Scratch::new(name)?;
+    fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    Ok(folder)
+}
+
+/// The numbers of a column of a file.
+fn column(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    let text = fs::read_to_string(file)?;
+    let mut lines = text.lines();
+    let header = lines.next().ok_or("no header")?;
+    let place = header.split(',').position(|other| other == name);
+    let place = place.ok_or_else(|| format!("no column {name}"))?;
+    let cells = lines.map(|line| line.split(',').nth(place).unwrap_or_default());
+    Ok(cells.map(str::parse).collect::<Result<_, _>>()?)
+}
+
+#[test]
+fn both_bodies_are_said_and_assumed_to_be_the_same() -> Done {
+    let folder = Scratch::new("bodies")?;
+    let steel = "steel (210 GPa, 0.30) against rigid: E* 230.8 GPa";
+    let assumed = run(&folder.0, "path --nodes 16 --out assumed")?;
+    assert!(said(&assumed).contains(&format!("assumed: {steel}")));
+    let named = run(&folder.0, "path --nodes 16 --material steel --out named")?;
+    assert!(said(&named).contains(&format!("bodies     {steel}")));
+    let table = |name: &str| fs::read(folder.join(name).join("path.csv"));
+    assert_eq!(table("assumed")?, table("named")?);
+    let both = "path --nodes 16 --material 70e9,0.33 --against rubber --out both";
+    assert!(said(&run(&folder.0, both)?).contains("E = 70 GPa, ν = 0.33 against rubber (2 MPa"));
+    Ok(())
+}
+
+/// Every state has its corrected area: one cell less its four sides at first touch, and what `patches` finds
+/// at all others.
+#[test]
+fn the_area_of_every_state_is_corrected() -> Done {
+    let folder = Scratch::new("corrected")?;
+    let line = "path --nodes 32 --max-area-fraction 0.3 --record path.npz";
+    let words = printed(&run(&folder.0, line)?);
+    assert!(
+        words.contains("corrected") && words.contains("mesh: at the last state"),
+        "{words}"
+    );
+    run(&folder.0, "patches path.npz --out patches")?;
+    let file = folder.join("out/path.csv");
+    let found = column(&file, "corrected_contact_area")?;
+    let shares = column(
+        &folder.join("patches/patches.csv"),
+        "corrected_area_fraction",
+    )?;
+    assert_eq!(found.len(), shares.len());
+    for (area, share) in found.iter().zip(shares) {
+        assert!(
+            (area / (1e-4 * share) - 1.0).abs() < 1e-12,
+            "{area} {share}"
+        );
+    }
+    let cell = 1e-4 / (32.0 * 32.0);
+    let factor = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
+    assert!((found[0] / (cell * (1.0 - 4.0 * factor)) - 1.0).abs() < 1e-12);
+    assert!(
+        column(&file, "approach_error")?
+            .iter()
+            .all(|error| *error >= 0.0)
+    );
+    Ok(())
+}
+
+/// The generated surface is resolved, unless somebody wants its shortest wave shorter.
+#[test]
+fn what_the_grid_does_not_resolve_is_said() -> Done {
+    let folder = Scratch::new("resolved")?;
+    let waves = "waves shorter than four cells";
+    let resolved = run(&folder.0, "path --nodes 64 --max-area-fraction 0.2")?;
+    assert!(!said(&resolved).contains(waves), "{}", said(&resolved));
+    assert!(
+        !printed(&resolved).contains("not resolved"),
+        "{}",
+        printed(&resolved)
+    );
+    let coarse = "path --nodes 64 --max-area-fraction 0.02 --short-cutoff 312.5e-6";
+    let coarse = run(&folder.0, coarse)?;
+    assert!(said(&coarse).contains(waves), "{}", said(&coarse));
+    assert!(
+        printed(&coarse).contains("not resolved"),
+        "{}",
+        printed(&coarse)
+    );
+    Ok(())
+}
+
+#[test]
+fn units_that_were_mistaken_are_said_in_every_command() -> Done {
+    let folder = with_surface("mistaken")?;
+    let all = |options: &str| -> Result<Vec<String>, Box<dyn Error>> {
+        let path = format!("path --surface rough.npy {options} --max-area-fraction 0.01");
+        let load = format!("load --surface rough.npy {options} --load 1e-9");
+        [path, load]
+            .iter()
+            .map(|line| Ok(said(&run(&folder.0, line)?)))
+            .collect()
+    };
+    for words in all("--side 1e-2 --material 210,0.3")? {
+        assert!(words.contains("is softer than rubber"), "{words}");
+        assert!(words.contains("it is 2.308e11 Pa"), "{words}");
+        assert!(
+            words.contains("E = 210 Pa, ν = 0.30 against rigid"),
+            "{words}"
+        );
+    }
+    let tiny = "--side 1e-2 --height-unit nm";
+    for words in all(&format!("{tiny} --material steel"))? {
+        assert!(words.contains("less than a tenth of an atom"), "{words}");
+    }
+    let seen = run(&folder.0, &format!("info rough.npy {tiny}"))?;
+    assert!(printed(&seen).contains("less than a tenth of an atom"));
+    let of_no_size = run(&folder.0, "info rough.npy --height-unit nm")?;
+    assert!(printed(&of_no_size).contains("less than a tenth of an atom"));
+    let seen = run(&folder.0, &format!("info rough.npy {tiny} --json"))?;
+    assert!(printed(&seen).contains(r#""warnings":["#) && printed(&seen).contains("an atom"));
+    Ok(())
+}
+
+#[test]
+fn pressures_that_nothing_bears_are_said() -> Done {
+    let folder = with_surface("pressures")?;
+    let line = "load --surface rough.npy --side 1e-2 --material steel --load 1e99";
+    let words = said(&run(&folder.0, line)?);
+    assert!(
+        words.contains("warning: the greatest pressure is"),
+        "{words}"
+    );
+    assert!(words.contains("the contact is full"), "{words}");
+    run(&folder.0, "path --nodes 64 --record path.npz")?;
+    let words = printed(&run(&folder.0, "patches path.npz --out seen")?);
+    assert!(
+        words.contains("warning: the greatest pressure is"),
+        "{words}"
+    );
+    Ok(())
+}
+
+#[test]
+fn assumed_units_and_sides_are_said() -> Done {
+    let folder = with_surface("assumed")?;
+    let metres = "its heights are assumed to be in m";
+    let square = "cells are assumed to be square: the side along y is 1e-2 m";
+    let words = printed(&run(&folder.0, "info rough.npy --side 1e-2")?);
+    assert!(words.contains(metres) && words.contains(square), "{words}");
+    let load = "load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7";
+    let words = said(&run(&folder.0, load)?);
+    assert!(words.contains(metres) && words.contains(square), "{words}");
+    let known = "info rough.npy --side 1e-2 --side-y 1e-2 --height-unit m";
+    let words = printed(&run(&folder.0, known)?);
+    assert!(!words.contains("assumed"), "{words}");
+    Ok(())
+}
+
+/// A mean pressure is a load, and the table has what the lines for programs have.
+#[test]
+fn loads_are_given_as_mean_pressures_too() -> Done {
+    let folder = with_surface("mean-pressure")?;
+    let line = "load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7 --mean-pressure 1e-3";
+    let done = run(&folder.0, line)?;
+    let lines = printed(&done);
+    assert_eq!(lines.lines().count(), 2);
+    let file = folder.join("out/load.csv");
+    for (name, place) in [
+        ("load", 0),
+        ("contact_area", 0),
+        ("corrected_contact_area", 1),
+    ] {
+        let value = column(&file, name)?[place];
+        let line = lines.lines().nth(place).ok_or("no line")?;
+        assert!(line.contains(&format!("{name}={value:e} ")), "{line}");
+    }
+    for (found, expected) in column(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4]) {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
+    }
+    let fractions = column(&file, "contact_area_fraction")?;
+    let areas = column(&file, "contact_area")?;
+    assert!((fractions[1] * 1e-4 / areas[1] - 1.0).abs() < 1e-12);
+    for k in 0..2 {
+        assert!(
+            fs::read(folder.join(&format!("out/contact_map_{k}.png")))?.starts_with(b"\x89PNG")
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn info_prepares_the_surface_as_it_is_told() -> Done {
+    let folder = with_surface("prepared")?;
+    fs::copy(
+        data("surface_files/missing_f64.x3p"),
+        folder.join("holes.x3p"),
+    )?;
+    let number = |line: &str, name: &str| -> Result<f64, Box<dyn Error>> {
+        let text = printed(&run(&folder.0, line)?);
+        let after = text
+            .split(&format!("\"{name}\":"))
+            .nth(1)
+            .ok_or("no such figure")?;
+        Ok(after.split([',', '}']).next().ok_or("no number")?.parse()?)
+    };
+    let rough = "info rough.npy --side 1e-2 --json";
+    let (min, max) = (number(rough, "min")?, number(rough, "max")?);
+    let inverted = format!("{rough} --invert");
+    assert_eq!(
+        (number(&inverted, "min")?, number(&inverted, "max")?),
+        (-max, -min)
+    );
+    let (sq, level) = (number(rough, "sq")?, format!("{rough} --level quadratic"));
+    assert!(number(&level, "sq")? < sq);
+    let (sa, sz) = (number(rough, "sa")?, number(rough, "sz")?);
+    assert!(sa < sq && sq < sz && (sz / (max - min) - 1.0).abs() < 1e-12);
+    // Holes: one population, of which nothing contradicts anything.
+    let words = printed(&run(&folder.0, "info holes.x3p")?);
+    assert!(
+        words.contains("of all nodes, the 2 missing ones filled"),
+        "{words}"
+    );
+    let holes = "info holes.x3p --json";
+    for name in ["min", "max", "sq", "sa", "sz", "rms_gradient"] {
+        assert_eq!(
+            number(holes, name)?,
+            number(&format!("{holes} --fill"), name)?
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn patches_say_what_to_run_and_where_a_leak_passes() -> Done {
+    let folder = Scratch::new("channels")?;
+    run(
+        &folder.0,
+        "path --nodes 32 --periodic love --max-area-fraction 0.1 --record p.npz",
+    )?;
+    let words = printed(&run(&folder.0, "patches p.npz")?);
+    assert!(
+        words.contains("seals along x      not on this path"),
+        "{words}"
+    );
+    assert!(
+        words.contains("the widest channel along x is narrowest at node"),
+        "{words}"
+    );
+    let command = words.split("asperity path ").nth(1).ok_or("no command")?;
+    let command = command.split(", and then").next().ok_or("no end")?;
+    run(&folder.0, &format!("path {command}"))?;
+    let words = printed(&run(&folder.0, "patches p.npz")?);
+    assert!(words.contains("seals along x      from state"), "{words}");
+    assert!(
+        words.contains("no channel along x: the contact seals"),
+        "{words}"
+    );
+    Ok(())
+}
