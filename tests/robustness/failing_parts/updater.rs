@@ -216,8 +216,13 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         let spoilt = self.call("solve", |inner| {
             inner.solve(problem, contact, request, solution)
         })?;
-        if let Some(fault) = spoilt {
-            spoil_solution(fault, solution);
+        match spoilt {
+            // An empty answer has nothing to spoil.
+            Some(fault) if request.count == 0 && !matches!(fault, Fault::Length(1..)) => {
+                self.struck.set(None);
+            }
+            Some(fault) => spoil_solution(fault, solution),
+            None => {}
         }
         Ok(())
     }
