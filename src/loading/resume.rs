@@ -1,7 +1,7 @@
 //! A path that goes on where an earlier one stopped.
 
 use super::history::History;
-use super::snapshot::Snapshot;
+use super::snapshot::{Snapshot, not_on_path};
 use super::solver::LoadingSolver;
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
@@ -116,12 +116,5 @@ fn not_a_path(
     (quantity, value): (&'static str, usize),
     expected: &'static str,
 ) -> Error {
-    Error::NotOnPath {
-        step: state.step,
-        load: state.load,
-        approach: state.approach,
-        quantity,
-        value: value as f64,
-        expected,
-    }
+    not_on_path(state, quantity, value as f64, expected)
 }

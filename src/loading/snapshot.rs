@@ -23,7 +23,7 @@ fn allowed(state: &LoadingState) -> f64 {
 }
 
 /// What a state would be on this path, and is not.
-fn not_on_path(
+pub(super) fn not_on_path(
     state: &LoadingState,
     quantity: &'static str,
     value: f64,

@@ -16,7 +16,6 @@ const OF_TIME: f64 = 2.0;
 /// The error of a load at a given approach is estimated as so many times what its window lacks at the end, and what the errors of
 /// events so far make of it.
 const OF_LOAD: f64 = 3.0;
-
 /// The load at the window's end is that of an approach which is off by this part of the mean spacing of events.
 const OF_END: f64 = 1e-5;
 
