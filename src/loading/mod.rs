@@ -52,8 +52,8 @@
 //! # Ties
 //!
 //! Nodes that touch at once join one by one, in the order of their indices, with a factor and without: so do the nodes that symmetry
-//! maps to each other. At once is within 10⁻¹³ of the approach with an exact updater, and within 10⁻⁹ of it with another one. Late on a
-//! path, where gaps hardly close, rounding may take a few such nodes further apart.
+//! maps to each other. At once are, with an exact updater, gaps below 10⁻¹³ of the approach when the first of them closes, and events
+//! within 10⁻⁹ of the approach with another one.
 
 mod builder;
 mod corrected;

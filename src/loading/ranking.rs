@@ -2,19 +2,21 @@
 
 use std::time::Instant;
 
+use super::gap_field::Line;
 use super::run::{LoadingRun, TOLERANCE};
+use super::scales::ties_from;
 use crate::Error;
 use crate::updater::LinearUpdater;
 
-/// (time, node) of the nodes out of contact: when each would touch if no other did.
+/// (time, node) of the nodes out of contact, whatever the time is that decides.
 pub(super) type Ranking = Vec<(f64, usize)>;
 
-/// Ranks the nodes out of contact by the time at which they would touch if no other did, after
-/// checking that contact still grows.
+/// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after
+/// checking that contact still grows. Returns when the first would touch.
 pub(super) fn rank<U: LinearUpdater>(
     run: &mut LoadingRun<U>,
     ranking: &mut Ranking,
-) -> Result<(), Error> {
+) -> Result<f64, Error> {
     let start = Instant::now();
     let least = -TOLERANCE * run.greatest_rate();
     let rates = run.contact.order().iter().zip(&run.field.solution().rate);
@@ -23,20 +25,25 @@ pub(super) fn rank<U: LinearUpdater>(
             return Err(run.not_monotone("pressure per unit of approach", node, y2));
         }
     }
-    fill(run, ranking, true)?;
+    let (approach, mut first) = (run.front.approach(), f64::INFINITY);
+    fill(run, ranking, true, |line| {
+        first = first.min(line.touches());
+        ties_from(approach, line.gap, line.closing)
+    })?;
     run.timings.choice += start.elapsed();
-    Ok(())
+    Ok(first)
 }
 
-/// Surveys all gaps at the front, and ranks them. With `check` an overlap is an error.
+/// Surveys all gaps at the front, and ranks them by a time. With `check` an overlap is an error.
 pub(super) fn fill<U: LinearUpdater>(
     run: &mut LoadingRun<U>,
     ranking: &mut Ranking,
     check: bool,
+    mut time: impl FnMut(&Line) -> f64,
 ) -> Result<(), Error> {
     ranking.clear();
     ranking.reserve(run.problem.grid().nodes());
-    run.survey(check, |line| ranking.push((line.touches(), line.node)))
+    run.survey(check, |line| ranking.push((time(&line), line.node)))
 }
 
 #[cfg(test)]
@@ -53,7 +60,8 @@ mod tests {
         run.solve_field(2.0, 1.0)?;
         run.front.place_at(2.0);
         let mut ranking = Ranking::new();
-        rank(&mut run, &mut ranking)?;
+        let first = rank(&mut run, &mut ranking)?;
+        assert!(rate != 0.25 || (first - 1.0).abs() < 1e-12, "{first}");
         Ok(ranking)
     }
 

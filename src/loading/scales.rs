@@ -5,8 +5,8 @@ use crate::updater::LinearUpdater;
 
 /// Events closer than this, relative to the approach, are ties: the lowest index comes first.
 const TIE: f64 = 1e-9;
-/// The same with an exact updater: well above the rounding of a ratio of two solutions (3·10⁻¹⁴ on symmetric surfaces of
-/// 128 × 128 nodes), and below what a state may be off.
+/// The same with an exact updater, of gaps: those that are as small as this part of the approach when one of them closes close with
+/// it. Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state may be off.
 const EXACT_TIE: f64 = 1e-13;
 /// The same relative to the greatest initial gap: rounding of heights.
 const ROUNDING: f64 = 1e-14;
@@ -18,6 +18,16 @@ const UNWATCHED: f64 = 100.0;
 /// Up to which approach events tie with one at some approach, with an exact updater.
 pub(super) fn ties_until(approach: f64) -> f64 {
     approach + EXACT_TIE * approach
+}
+
+/// When a gap that closes from an approach on, `gap − t closing`, falls to a tie, with an exact updater. Rounding leaves a part of the
+/// approach in a gap; the time at which a gap that closes slowly is zero may be off by far more.
+pub(super) fn ties_from(approach: f64, gap: f64, closing: f64) -> f64 {
+    if closing > 0.0 {
+        (gap - EXACT_TIE * approach) / (closing + EXACT_TIE)
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Lengths of a window.

@@ -1,13 +1,8 @@
 //! The watched nodes and the events among them.
 
 use super::gap_field::Line;
-use super::scales::ties_until;
+use super::scales::ties_from;
 use crate::updater::{Schur, Touched};
-
-/// Until when events tie with one at some time, in a window that began at an approach.
-pub(super) fn time_of_ties(approach: f64, time: f64) -> f64 {
-    time.max(ties_until(approach + time) - approach)
-}
 
 /// A watched node that touches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,24 +105,25 @@ impl Window {
         None
     }
 
-    /// The open node whose gap closes first, and when: of those that touch at once the one of the lowest index.
+    /// When the first gap of the open nodes closes, and of the nodes that touch with it the one of the lowest index.
     fn first_contact(&mut self) -> Option<(usize, f64)> {
         self.start();
         let open = (0..self.nodes.len()).filter(|&position| self.open[position]);
-        let times = open.map(|position| {
-            let [gap, rate, _] = self.lines[position];
-            let time = if rate > 0.0 {
-                gap / rate
-            } else {
-                f64::INFINITY
-            };
-            (position, time)
+        let lines = open.map(|position| {
+            let [gap, closing, _] = self.lines[position];
+            let node = self.nodes[position];
+            (position, Line { node, gap, closing })
         });
-        let earliest = times.clone().map(|(_, time)| time);
-        let latest = time_of_ties(self.approach, earliest.fold(f64::INFINITY, f64::min));
-        times
-            .filter(|(_, time)| *time <= latest)
-            .min_by_key(|&(position, _)| self.nodes[position])
+        let times = lines.clone().map(|(_, line)| line.touches());
+        let earliest = times.fold(f64::INFINITY, f64::min);
+        let touches = |line: &Line| {
+            ties_from(self.approach, line.gap, line.closing) <= earliest
+                || line.touches() <= earliest
+        };
+        lines
+            .filter(|(_, line)| touches(line))
+            .min_by_key(|(_, line)| line.node)
+            .map(|(position, _)| (position, earliest))
     }
 
     /// Puts the lines together, unless that is done.
@@ -266,12 +262,19 @@ mod tests {
     }
 
     /// Node 9 seems to touch first, by less than a tie: node 8 comes first all the same, and both at times that do not fall.
+    /// However slowly they close, it is their gaps that tell.
     #[test]
     fn rounding_does_not_order_ties() -> Result<(), crate::Error> {
         let alone = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
-        let lines = [(5.0, 1.0), (1.0, 1.0), (1.0 - 1e-12, 1.0)];
+        let fast = [(5.0, 1.0), (1.0, 1.0), (1.0 - 1e-12, 1.0)];
+        let slow = [(5.0, 1.0), (1e-3, 1e-3), (1e-3 - 1e-12, 1e-3)];
         // 10⁻¹³ of the approach, 1 and 21.
-        for (approach, order) in [(0.0, [9, 8]), (20.0, [8, 9])] {
+        for (approach, lines, order) in [
+            (0.0, fast, [9, 8]),
+            (20.0, fast, [8, 9]),
+            (0.0, slow, [9, 8]),
+            (20.0, slow, [8, 9]),
+        ] {
             let mut window = window(alone, lines, 4.0)?;
             window.approach = approach;
             assert_eq!(window.play(3), None);

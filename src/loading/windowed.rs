@@ -7,8 +7,9 @@ use super::cost::{automatic_window, watched_for};
 use super::gap_field::Line;
 use super::ranking::rank;
 use super::run::LoadingRun;
+use super::scales::ties_until;
 use super::state::ContactEvent;
-use super::window::{Window, time_of_ties};
+use super::window::Window;
 use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
 
@@ -61,9 +62,9 @@ impl Windowed {
             // It has just been handed over.
             return self.corrected.produce(run, most_nodes);
         }
-        rank(run, &mut self.ranking)?;
+        let first = rank(run, &mut self.ranking)?;
         let start = Instant::now();
-        let (size, horizon) = self.choose(size, self.multiple(run), run.front.approach());
+        let (size, horizon) = self.choose(size, self.multiple(run), [run.front.approach(), first]);
         run.timings.choice += start.elapsed();
         let (problem, approach) = (&run.problem, run.front.approach());
         let chosen: Vec<Line> = self.ranking[..size]
@@ -112,15 +113,17 @@ impl Windowed {
     }
 
     /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
-    /// number, `size` or a little less, and the horizon: until then none of the others touches, nor one of a lower index at
-    /// once with one that is watched.
-    fn choose(&mut self, mut size: usize, multiple: usize, approach: f64) -> (usize, f64) {
-        let first = self.ranking.iter().map(|(time, _)| *time);
-        let first = first.fold(f64::INFINITY, f64::min);
-        let tied = time_of_ties(approach, first);
+    /// number, `size` or a little less, and the horizon: until then none of the others ties with one that is watched. The first
+    /// node touches at `first` after an approach.
+    fn choose(
+        &mut self,
+        mut size: usize,
+        multiple: usize,
+        [approach, first]: [f64; 2],
+    ) -> (usize, f64) {
         // So that of more nodes that touch at once than can be watched those of the lowest indices are.
         for (time, _) in &mut self.ranking {
-            if *time <= tied {
+            if *time <= first {
                 *time = first;
             }
         }
@@ -151,13 +154,11 @@ impl Windowed {
                 front += 1;
             }
         }
-        let until = if horizon > first {
-            // What ties with another node waits for it.
-            2.0 * horizon - time_of_ties(approach, horizon)
-        } else {
-            tied
-        };
-        (size, if until.is_nan() { horizon } else { until })
+        if horizon <= first {
+            // The others have higher indices; those that are watched touch here, but for what rounds.
+            horizon = ties_until(approach + first) - approach;
+        }
+        (size, horizon)
     }
 
     /// Checks the contact after the window from a solution there, and takes back its last events as long as

@@ -18,6 +18,7 @@ mod window_tests;
 use nalgebra::DMatrix;
 
 use super::front::Front;
+use super::gap_field::Line;
 use super::ranking::{Ranking, fill};
 use super::run::LoadingRun;
 use super::scales::Scales;
@@ -150,7 +151,7 @@ impl Corrected {
     fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         run.front.renew_load(problem, contact, field);
-        fill(run, &mut self.ranking, false)?;
+        fill(run, &mut self.ranking, false, Line::touches)?;
         self.ranked = Some((run.contact.revision(), run.front.approach()));
         Ok(())
     }
