@@ -66,17 +66,15 @@ mod tests {
     }
 
     /// Node 1 has sunk by 2 and sinks by 3/4 for each metre, node 3 by 1 and 1/4, and node 4 not at all: gaps of 4, 8 and 1 over
-    /// what is left of 1.
+    /// what is left of 1. They tie from when on their gaps are 10⁻¹³ of the approach.
     #[test]
     fn nodes_are_ranked_by_their_times() -> Result<(), Error> {
         let ranking = ranked(0.25)?;
-        for ((found, node), expected) in
-            ranking
-                .into_iter()
-                .zip([(16.0, 1), (8.0 / 0.75, 3), (1.0, 4)])
-        {
+        let expected = [(16.0, 0.25, 1), (8.0 / 0.75, 0.75, 3), (1.0, 1.0, 4)];
+        for ((found, node), (touches, closing, expected)) in ranking.into_iter().zip(expected) {
+            let time = touches - 1e-13 * (2.0 + touches) / closing;
             assert!(
-                (found - expected.0).abs() < 1e-12 && node == expected.1,
+                (found - time).abs() < 1e-13 && node == expected,
                 "{found} {node}"
             );
         }
