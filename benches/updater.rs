@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
     UpdaterProfile,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
@@ -32,7 +32,7 @@ struct Window {
     /// The contact before it.
     contact: ContactSequence,
     watched: Vec<usize>,
-    touched: Touched,
+    touched: WindowFactor,
     /// The contact after it.
     grown: ContactSequence,
 }
@@ -58,7 +58,7 @@ impl LinearUpdater for Capture {
                 updater: self.inner.clone(),
                 contact: contact.clone(),
                 watched: nodes.to_vec(),
-                touched: Touched::default(),
+                touched: WindowFactor::default(),
                 grown: contact.clone(),
             });
         }
@@ -69,7 +69,7 @@ impl LinearUpdater for Capture {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), asperity::Error> {
         if let Some(window) = self.window.as_mut().filter(|_| !self.complete) {
             window.touched = touched.clone();

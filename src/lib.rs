@@ -88,7 +88,7 @@ mod problem;
 pub mod record;
 pub mod reference;
 #[cfg(test)]
-mod row;
+mod test_chain;
 mod scale;
 pub mod surface;
 pub mod updater;

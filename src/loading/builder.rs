@@ -2,19 +2,21 @@
 
 use std::collections::VecDeque;
 
-use super::front::Front;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
 use super::paper::Paper;
+use super::phase::Phase;
+use super::refined::Refined;
 use super::releases::Releases;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings, Memory};
+use super::scalars::PathScalars;
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
-use crate::updater::{ConjugateGradient, Handover, LinearUpdater, Touched};
+use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
@@ -68,7 +70,7 @@ impl LoadingSolver {
         let bytes =
             |contact| fixed.saturating_add(ConjugateGradient::bytes_of(grid.nodes(), contact));
         // With the window of the last nodes.
-        let needed = bytes(grid.nodes()).saturating_add(Touched::bytes(8));
+        let needed = bytes(grid.nodes()).saturating_add(WindowFactor::bytes(8));
         if needed <= budget {
             return Ok(());
         }
@@ -128,7 +130,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 
     /// How many nodes to watch at a time. By default as many as make an event cheapest; states do not
     /// depend on it, except by rounding. With 1 every node costs one convolution and one row of the factor,
-    /// as in the paper. An updater that is not exact watches eight at least, to tell them apart; a kernel of
+    /// as in the paper. Without a factor it is eight at least, to tell them apart; a kernel of
     /// [`ContactGrowth::Unknown`] is always followed one event at a time.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
@@ -212,19 +214,19 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             (_, ContactGrowth::Unknown) => Procedure::Stepwise(Stepwise::default()),
             (rule, _) => {
                 let settles = rule == ContactRule::FirstContact;
-                Procedure::Windowed(Windowed::new(growth, self.window_size, settles))
+                let refined = Refined::new(self.window_size, settles);
+                Procedure::Windows(Windowed::new(growth, self.window_size), refined)
             }
         };
         // Before first touch.
         let unloaded = ContactState::new(&grid, 0, 0.0, 0.0, f64::INFINITY);
-        let last = matches!(procedure, Procedure::Windowed(_)).then_some(unloaded);
+        let last = matches!(procedure, Procedure::Windows(..)).then_some(unloaded);
         let mut run = LoadingRun {
             contact: ContactSequence::new(problem.grid()),
             releases: Releases::default(),
             field: GapField::new(&problem),
-            front: Front::new(&problem),
+            scalars: PathScalars::new(&problem),
             problem,
-            updater: self.updater,
             queue: VecDeque::new(),
             memory: Memory {
                 budget,
@@ -233,12 +235,14 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             last,
             timings: LoadingTimings::default(),
         };
-        run.updater
-            .make_room(&run.problem, run.memory.left())
-            .map_err(|error| run.memory.in_all(error))?;
+        let mut phase = Phase::new(self.updater);
+        let handed_over_at = phase.hand_over(&mut run)?.then_some(0);
+        phase.make_room(&run)?;
         Ok(LoadingSolver {
             run,
+            phase,
             procedure,
+            handed_over_at,
             rule: self.rule,
             limits,
             state: None,
@@ -294,7 +298,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
 ///
 /// [`Error::MemoryBudget`] if they exceed the budget.
 fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, Error> {
-    let needed = LoadingRun::<Handover>::bytes_on(grid, boundary);
+    let needed = LoadingRun::bytes_on(grid, boundary);
     if needed <= budget {
         return Ok(needed);
     }
@@ -308,21 +312,21 @@ fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row;
-    use crate::updater::{RecursiveCholesky, Touched};
+    use crate::test_chain;
+    use crate::updater::{RecursiveCholesky, WindowFactor};
 
     /// What the grid leaves of a budget is the updater's: a factor needs room for one window.
     #[test]
     fn the_updater_has_what_the_grid_leaves() -> Result<(), Error> {
-        let (surface, kernel) = (row::surface(&[0.0; 9])?, row::kernel(9)?);
-        let fixed = LoadingRun::<Handover>::bytes_on(&row::grid(9)?, Boundary::Free);
-        let window = RecursiveCholesky::new().bytes(64, 64) + Touched::bytes(64);
+        let (surface, kernel) = (test_chain::surface(&[0.0; 9])?, test_chain::kernel(9)?);
+        let fixed = LoadingRun::bytes_on(&test_chain::grid(9)?, Boundary::Free);
+        let window = RecursiveCholesky::new().bytes(64, 64) + WindowFactor::bytes(64);
         for (budget, handed_over_at) in [(fixed + window, None), (fixed + window - 1, Some(0))] {
             let builder = LoadingSolver::builder(&surface, &kernel).memory_budget(budget);
             assert_eq!(builder.build()?.updater().handed_over_at(), handed_over_at);
         }
         for (budget, has_room) in [(fixed, true), (fixed - 1, false)] {
-            let found = LoadingSolver::check_room(&row::grid(9)?, Boundary::Free, Some(budget));
+            let found = LoadingSolver::check_room(&test_chain::grid(9)?, Boundary::Free, Some(budget));
             assert_eq!(found.is_ok(), has_room);
         }
         Ok(())
@@ -332,7 +336,7 @@ mod tests {
     #[test]
     fn limits_of_a_path() -> Result<(), Error> {
         use ContactTarget::{Approach, Load};
-        let (surface, kernel) = (row::surface(&[0.0; 9])?, row::kernel(9)?);
+        let (surface, kernel) = (test_chain::surface(&[0.0; 9])?, test_chain::kernel(9)?);
         let path = LoadingSolver::builder(&surface, &kernel)
             .max_load(9.0)
             .max_approach(1.0)

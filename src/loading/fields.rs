@@ -62,7 +62,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of the updater.
     pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
         match self.state {
-            Some(state) => Ok(Snapshot::of(&mut self.run, &state)?.pressure),
+            Some(state) => Ok(Snapshot::of(&self.run, &mut self.phase, &state)?.pressure),
             None => Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny())),
         }
     }
@@ -81,9 +81,9 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
     pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         self.check_reached(state)?;
-        let snapshot = Snapshot::of(&mut self.run, state)?;
+        let snapshot = Snapshot::of(&self.run, &mut self.phase, state)?;
         let keeps_conditions = self.keeps_conditions();
-        snapshot.recognise(&mut self.run, state, keeps_conditions)?;
+        snapshot.recognise(&mut self.run, &self.phase, state, keeps_conditions)?;
         Ok(snapshot.pressure)
     }
 
@@ -114,7 +114,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         pressure: &DMatrix<f64>,
         load: f64,
     ) -> Result<DMatrix<f64>, Error> {
-        let uniform = self.run.front.uniform_displacement(load);
+        let uniform = self.run.scalars.uniform_displacement(load);
         let field = self.run.field.displace(pressure.as_slice())?.iter();
         let (nx, ny) = pressure.shape();
         Ok(DMatrix::from_iterator(nx, ny, field.map(|u| u - uniform)))
@@ -166,7 +166,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let pressure = self.pressure()?;
         let state = self.state.map(|state| state.contact);
         let run = &mut self.run;
-        let approach = state.map_or(0.0, |state| run.front.own_approach(&state));
+        let approach = state.map_or(0.0, |state| run.scalars.own_approach(&state));
         let reported = state.map_or(0.0, |state| state.approach);
         let gaps = run.field.displace(pressure.as_slice())?;
         let gaps = gaps.iter().zip(run.problem.initial_gap());
@@ -192,8 +192,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         let keeps_conditions = self.keeps_conditions();
         let certificate = self.certificate()?;
-        let snapshot = Snapshot::of(&mut self.run, &state)?;
-        snapshot.recognise(&mut self.run, &state, keeps_conditions)?;
+        let snapshot = Snapshot::of(&self.run, &mut self.phase, &state)?;
+        snapshot.recognise(&mut self.run, &self.phase, &state, keeps_conditions)?;
         snapshot.check_gaps(&self.run, &state, &certificate, keeps_conditions)
     }
 }
@@ -205,7 +205,7 @@ mod tests {
 
     /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.
     fn path() -> Result<(LoadingSolver, Vec<LoadingState>), Error> {
-        let (surface, kernel) = (row::surface(&[0.0, 9.0, 1.0, 9.0])?, row::kernel(4)?);
+        let (surface, kernel) = (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
         let builder = LoadingSolver::builder(&surface, &kernel).until(ContactTarget::Approach(3.0));
         let mut path = builder.build()?;
         assert!(path.contact_order().is_empty() && !path.contact_map().iter().any(|is_in| *is_in));

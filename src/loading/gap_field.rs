@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
-use crate::updater::{LinearUpdater, Solution, SolveRequest};
+use crate::updater::{Iterations, LinearUpdater, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// The solution on a contact at an approach δ and the displacements of all nodes, which together give
@@ -13,8 +13,7 @@ use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 pub(super) struct GapField {
     convolution: Convolution,
     pressure: [Vec<f64>; 2],
-    displacement: [Vec<f64>; 2],
-    solution: Solution,
+    solved: Solved,
     /// The contact that solution and displacements belong to.
     revision: Option<u64>,
     /// The approach that they belong to.
@@ -22,18 +21,17 @@ pub(super) struct GapField {
     time: Duration,
 }
 
-/// The gap of a node out of contact.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
-    pub(super) node: usize,
-    /// a: the gap now.
+/// The gap of a node out of contact as the approach grows and no other node joins: `gap − t closing`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GapLine {
+    /// The gap now.
     pub(super) gap: f64,
-    /// b: how fast it closes with the approach.
+    /// How fast it closes with the approach.
     pub(super) closing: f64,
 }
 
-impl Line {
-    /// When the node would touch if no other did.
+impl GapLine {
+    /// When the node would touch.
     pub(super) fn touches(&self) -> f64 {
         if self.closing > 0.0 {
             self.gap / self.closing
@@ -49,8 +47,10 @@ impl GapField {
         Self {
             convolution: problem.convolution(),
             pressure: [field(), field()],
-            displacement: [field(), field()],
-            solution: Solution::default(),
+            solved: Solved {
+                displacement: [field(), field()],
+                ..Solved::default()
+            },
             revision: None,
             approach: 0.0,
             time: Duration::ZERO,
@@ -72,53 +72,62 @@ impl GapField {
         self.revision == Some(contact.revision()) && self.approach == approach
     }
 
-    /// Solves on the contact at an approach, for rates that serve over a span of it, and computes all displacements.
-    pub(super) fn solve<U: LinearUpdater>(
+    /// Solves on the contact at an approach, and computes all displacements.
+    pub(super) fn solve<U: LinearUpdater + ?Sized>(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
         updater: &mut U,
+        approach: f64,
+    ) -> Result<(), Error> {
+        self.revision = None;
+        let Solved {
+            solution,
+            displacement: [u, u_rate],
+        } = &mut self.solved;
+        solve(problem, contact, updater, (contact.len(), approach), solution)?;
+        let values = [&solution.pressure, &solution.rate];
+        for (field, values) in self.pressure.iter_mut().zip(values) {
+            field.fill(0.0);
+            for (&node, &value) in contact.order().iter().zip(values) {
+                field[node] = value;
+            }
+        }
+        let start = Instant::now();
+        let [p, p_rate] = &self.pressure;
+        self.convolution.apply_two([p, p_rate], [u, u_rate])?;
+        self.time += start.elapsed();
+        self.belong_to(contact, approach);
+        Ok(())
+    }
+
+    /// Moves iterations to the contact at an approach, with a rate that serves over a span of it.
+    pub(super) fn advance(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        iterations: &mut dyn Iterations,
         [approach, span]: [f64; 2],
     ) -> Result<(), Error> {
         self.revision = None;
-        let request = SolveRequest {
-            count: contact.len(),
-            approach,
-            span,
-            gap_error: 0.0,
-        };
-        solve(problem, contact, request, updater, &mut self.solution)?;
-        let [u, rate] = &mut self.solution.displacement;
-        if u.is_empty() {
-            let Solution { pressure, rate, .. } = &self.solution;
-            for (field, values) in self.pressure.iter_mut().zip([pressure, rate]) {
-                field.fill(0.0);
-                for (&node, &value) in contact.order().iter().zip(values) {
-                    field[node] = value;
-                }
-            }
-            let start = Instant::now();
-            let ([p1, p2], [u1, u2]) = (&self.pressure, &mut self.displacement);
-            self.convolution.apply_two([p1, p2], [u1, u2])?;
-            self.time += start.elapsed();
-        } else {
-            let [own, own_rate] = &mut self.displacement;
-            std::mem::swap(own, u);
-            std::mem::swap(own_rate, rate);
-        }
+        iterations.advance(problem, contact, approach, span, &mut self.solved)?;
+        self.belong_to(contact, approach);
+        Ok(())
+    }
+
+    fn belong_to(&mut self, contact: &ContactSequence, approach: f64) {
         self.revision = Some(contact.revision());
         self.approach = approach;
-        Ok(())
     }
 
     /// The solution on the contact.
     pub(super) fn solution(&self) -> &Solution {
-        &self.solution
+        &self.solved.solution
     }
 
     /// What a solution leaves of the contact conditions at a node in contact: its gap, and the rate of that.
     pub(super) fn left_at(&self, problem: &Problem, node: usize) -> [f64; 2] {
-        let [u, rate] = &self.displacement;
+        let [u, rate] = &self.solved.displacement;
         let gap = problem.initial_gap()[node] + u[node] - self.approach;
         [gap, rate[node] - 1.0]
     }
@@ -129,32 +138,31 @@ impl GapField {
         contact: &'a ContactSequence,
         approach: f64,
     ) -> impl Iterator<Item = (usize, f64)> + Clone + 'a {
-        let Solution { pressure, rate, .. } = &self.solution;
+        let Solution { pressure, rate } = &self.solved.solution;
         let time = approach - self.approach;
         let values = pressure.iter().zip(rate);
         let values = values.map(move |(p, y2)| p + time * y2);
         contact.order().iter().copied().zip(values)
     }
 
-    /// The gaps out of contact from an approach on.
+    /// The nodes out of contact, and their gaps from an approach on.
     pub(super) fn lines<'a>(
         &'a self,
         problem: &'a Problem,
         contact: &'a ContactSequence,
         approach: f64,
-    ) -> impl Iterator<Item = Line> + 'a {
+    ) -> impl Iterator<Item = (usize, GapLine)> + 'a {
         let nodes = 0..problem.initial_gap().len();
         let out = nodes.filter(|&node| !contact.contains(node));
-        out.map(move |node| self.line(problem, node, approach))
+        out.map(move |node| (node, self.line(problem, node, approach)))
     }
 
     /// The gap of a node from an approach on.
-    pub(super) fn line(&self, problem: &Problem, node: usize, approach: f64) -> Line {
-        let [u, rate] = &self.displacement;
+    pub(super) fn line(&self, problem: &Problem, node: usize, approach: f64) -> GapLine {
+        let [u, rate] = &self.solved.displacement;
         let closing = 1.0 - rate[node];
         let gap = problem.initial_gap()[node] + u[node] - self.approach;
-        Line {
-            node,
+        GapLine {
             gap: gap - (approach - self.approach) * closing,
             closing,
         }
@@ -163,7 +171,8 @@ impl GapField {
     /// Follows a contact whose last nodes, from the one at `first` on, have changed places; `order[k]` is where
     /// the node at `first + k` was before, from `first` on.
     pub(super) fn rearrange(&mut self, contact: &ContactSequence, first: usize, order: &[usize]) {
-        for values in [&mut self.solution.pressure, &mut self.solution.rate] {
+        let Solution { pressure, rate } = &mut self.solved.solution;
+        for values in [pressure, rate] {
             let before = values[first..].to_vec();
             for (value, &place) in values[first..].iter_mut().zip(order) {
                 *value = before[place];
@@ -181,48 +190,28 @@ impl GapField {
     pub(super) fn displace(&mut self, pressure: &[f64]) -> Result<&[f64], Error> {
         self.revision = None;
         self.convolution
-            .apply(pressure, &mut self.displacement[0])?;
-        Ok(&self.displacement[0])
+            .apply(pressure, &mut self.solved.displacement[0])?;
+        Ok(&self.solved.displacement[0])
     }
 }
 
-/// Solves on the first nodes of a contact, and checks that there is a value for each.
-pub(super) fn solve<U: LinearUpdater>(
+/// Solves on the first `count` nodes of a contact at an approach, and checks that there is a value for each.
+pub(super) fn solve<U: LinearUpdater + ?Sized>(
     problem: &Problem,
     contact: &ContactSequence,
-    request: SolveRequest,
     updater: &mut U,
+    (count, approach): (usize, f64),
     solution: &mut Solution,
 ) -> Result<(), Error> {
-    for field in &mut solution.displacement {
-        field.clear();
-    }
-    updater.solve(problem, contact, request, solution)?;
-    let Solution {
-        pressure,
-        rate,
-        displacement: [u, u_rate],
-    } = solution;
-    let everywhere = |u: &Vec<f64>| {
-        if u.is_empty() {
-            0
-        } else {
-            problem.initial_gap().len()
-        }
-    };
-    let checked = [
-        ("pressures", &*pressure, request.count),
-        ("displacements", u, everywhere(u)),
-        ("pressures per unit of approach", rate, request.count),
-        ("displacements per unit of approach", u_rate, everywhere(u)),
-    ];
-    // A rate that was not asked for may be anything.
-    let asked = if request.span > 0.0 { 4 } else { 2 };
-    for (quantity, values, expected) in checked.into_iter().take(asked) {
-        if values.len() != expected {
+    updater.solve(problem, contact, count, approach, solution)?;
+    for (quantity, values) in [
+        ("pressures", &solution.pressure),
+        ("pressures per unit of approach", &solution.rate),
+    ] {
+        if values.len() != count {
             return Err(Error::Updater(UpdaterError::UpdaterMismatch {
                 quantity,
-                expected,
+                expected: count,
                 found: values.len(),
             }));
         }
@@ -233,7 +222,7 @@ pub(super) fn solve<U: LinearUpdater>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::updater::Dense;
 
     fn near(found: &[f64], expected: &[f64]) {
@@ -248,7 +237,7 @@ mod tests {
     /// by 1/2 and 1/4.
     #[test]
     fn gaps_are_lines() -> Result<(), Error> {
-        let run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         for (ahead, gaps) in [(0.0, [2.25, 5.5]), (2.0, [1.25, 4.0])] {
             let lines: Vec<Line> = field.lines(problem, contact, 3.0 + ahead).collect();
@@ -287,7 +276,7 @@ mod tests {
     /// after another field to none.
     #[test]
     fn what_is_known_belongs_to_a_contact() -> Result<(), Error> {
-        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0, 2.0], &[0, 2, 4], 3.0)?;
+        let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0, 2.0], &[0, 2, 4], 3.0)?;
         assert!(run.field.belongs_to(&run.contact, 3.0));
         assert!(!run.field.belongs_to(&run.contact, 3.5));
         // A convolution takes some time.
@@ -334,7 +323,7 @@ mod tests {
             &mut self,
             _: &Problem,
             _: &ContactSequence,
-            _: &crate::updater::Touched,
+            _: &crate::updater::WindowFactor,
         ) -> Result<(), Error> {
             Ok(())
         }
@@ -360,7 +349,7 @@ mod tests {
     /// are asked for.
     #[test]
     fn there_is_a_value_for_each_node() -> Result<(), Error> {
-        let problem = crate::row::problem(&[0.0; 4])?;
+        let problem = crate::test_chain::problem(&[0.0; 4])?;
         let contact = ContactSequence::with_order(problem.grid(), [0, 2])?;
         for (lengths, with_rate, without) in [
             ([2, 2, 0, 0], true, true),

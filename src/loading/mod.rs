@@ -56,33 +56,36 @@
 //! within 10⁻⁹ of the approach with another one.
 
 mod builder;
-mod corrected;
 mod cost;
 mod fields;
-mod front;
 mod gap_field;
 mod history;
 mod limits;
 mod paper;
+mod phase;
 mod ranking;
+mod refined;
 mod releases;
 mod resume;
-#[cfg(test)]
-mod row;
 mod rule;
 mod run;
-mod scales;
+mod scalars;
 mod snapshot;
 mod solver;
 mod state;
 mod stepwise;
 mod sum;
+#[cfg(test)]
+mod test_chain;
+mod tolerances;
 mod window;
 mod windowed;
 
 pub use builder::LoadingBuilder;
 pub use history::History;
 pub use limits::LoadingEnd;
+#[doc(hidden)]
+pub use phase::{event_seconds, last_factor};
 pub(crate) use resume::replay;
 pub use rule::ContactRule;
 pub use run::LoadingTimings;

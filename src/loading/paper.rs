@@ -1,9 +1,10 @@
 //! The paper's procedure: the node with the smallest gap, one at a time.
 
-use super::gap_field::Line;
+use super::gap_field::GapLine;
+use super::phase::Phase;
 use super::run::LoadingRun;
-use super::scales::Scales;
 use super::state::ContactEvent;
+use super::tolerances::WindowTolerances;
 use super::window::Window;
 use crate::Error;
 use crate::updater::LinearUpdater;
@@ -19,41 +20,41 @@ impl Paper {
     /// Computes one state.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        phase: &mut Phase<U>,
     ) -> Result<(), Error> {
-        run.affordable(1)?;
-        run.renew_field(run.front.approach())?;
-        let mut smallest: Option<Line> = None;
-        run.survey(false, |line| {
-            if smallest.is_none_or(|smallest| line.gap < smallest.gap) {
-                smallest = Some(line);
+        let approach = run.scalars.approach();
+        phase.renew_field(run, approach)?;
+        let mut smallest: Option<(usize, GapLine)> = None;
+        run.survey(false, |node, line| {
+            if smallest.is_none_or(|(_, smallest)| line.gap < smallest.gap) {
+                smallest = Some((node, line));
             }
         })?;
-        let Some(line) = smallest else {
+        let Some((node, line)) = smallest else {
             return Ok(());
         };
-        run.watch(&mut self.window, std::iter::once(line), f64::INFINITY)?;
         // It may go back to an approach at which the node touches.
         let time = line.gap / line.closing;
         if !time.is_finite() {
             return Err(run.not_finite());
         }
-        let touched = self.window.touch(0, time);
-        touched.map_err(|bad| run.not_positive_definite(bad))?;
-        run.join(&self.window)?;
+        phase.admit(run, &mut self.window, (node, time))?;
         let contact_nodes = run.contact.len();
-        run.front.advance(run.front.approach() + time);
-        for event in self.window.events() {
-            run.front
-                .touch(event.unit_stiffness, event.closing, contact_nodes);
+        run.scalars.advance(approach + time);
+        if let Phase::Factor { .. } = phase {
+            for increments in self.window.increments() {
+                run.scalars.touch(*increments, contact_nodes);
+            }
+        } else {
+            phase.renew_field(run, approach + time)?;
+            run.scalars.renew_stiffness(run.field.solution());
+            run.survey(false, |_, _| {})?;
         }
-        let (front, event) = (run.front, (run.steps(), ContactEvent::Touch, line.node));
-        let error = Scales::of(run).overlap(front.approach()) / line.closing.abs();
-        run.enqueue_at(
-            &front,
-            event,
-            contact_nodes,
-            front.reported_error(error, 0.0),
-        )
+        let (scalars, event) = (run.scalars, (run.steps(), ContactEvent::Touch, node));
+        let tolerances = WindowTolerances::of(run, phase.tolerance());
+        let error = tolerances.overlap(scalars.approach()) / line.closing.abs();
+        let error = scalars.reported_error(error, 0.0);
+        run.enqueue_at(&scalars, event, contact_nodes, error)
     }
 }

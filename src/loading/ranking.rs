@@ -2,21 +2,17 @@
 
 use std::time::Instant;
 
-use super::gap_field::Line;
+use super::gap_field::GapLine;
 use super::run::{LoadingRun, TOLERANCE};
-use super::scales::ties_from;
+use super::tolerances::ties_from;
 use crate::Error;
-use crate::updater::LinearUpdater;
 
 /// (time, node) of the nodes out of contact, whatever the time is that decides.
 pub(super) type Ranking = Vec<(f64, usize)>;
 
 /// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after
 /// checking that contact still grows. Returns when the first would touch.
-pub(super) fn rank<U: LinearUpdater>(
-    run: &mut LoadingRun<U>,
-    ranking: &mut Ranking,
-) -> Result<f64, Error> {
+pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, Error> {
     let start = Instant::now();
     let least = -TOLERANCE * run.greatest_rate();
     let rates = run.contact.order().iter().zip(&run.field.solution().rate);
@@ -25,36 +21,36 @@ pub(super) fn rank<U: LinearUpdater>(
             return Err(run.not_monotone("pressure per unit of approach", node, y2));
         }
     }
-    let (approach, mut first) = (run.front.approach(), f64::INFINITY);
+    let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
     fill(run, ranking, true, |line| {
         first = first.min(line.touches());
-        ties_from(approach, line.gap, line.closing)
+        ties_from(approach, *line)
     })?;
     run.timings.choice += start.elapsed();
     Ok(first)
 }
 
-/// Surveys all gaps at the front, and ranks them by a time. With `check` an overlap is an error.
-pub(super) fn fill<U: LinearUpdater>(
-    run: &mut LoadingRun<U>,
+/// Looks at all gaps at the present approach, and ranks them by a time. With `check` an overlap is an error.
+pub(super) fn fill(
+    run: &mut LoadingRun,
     ranking: &mut Ranking,
     check: bool,
-    mut time: impl FnMut(&Line) -> f64,
+    mut time: impl FnMut(&GapLine) -> f64,
 ) -> Result<(), Error> {
     ranking.clear();
     ranking.reserve(run.problem.grid().nodes());
-    run.survey(check, |line| ranking.push((time(&line), line.node)))
+    run.survey(check, |node, line| ranking.push((time(&line), node)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
 
     /// Nodes 0 and 2 are in contact, with rates of 1/2 and another one.
     fn ranked(rate: f64) -> Result<Ranking, Error> {
-        let given = row::Altered::given(vec![1.0; 2], vec![0.5, rate]);
-        let mut run = row::run(&[0.0, 4.0, 0.0, 9.0, 3.0], given)?;
+        let given = test_chain::Altered::given(vec![1.0; 2], vec![0.5, rate]);
+        let mut run = test_chain::run(&[0.0, 4.0, 0.0, 9.0, 3.0], given)?;
         run.contact.push(0)?;
         run.contact.push(2)?;
         run.solve_field(2.0, 1.0)?;

@@ -5,7 +5,7 @@ use super::snapshot::{Snapshot, not_on_path};
 use super::solver::LoadingSolver;
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
-use crate::updater::{LinearUpdater, join_all};
+use crate::updater::LinearUpdater;
 use crate::{Error, Grid};
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -21,7 +21,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let events = history.events().iter();
         self.state = events.last().copied();
         if let Some(state) = &self.state {
-            run.front.place_at(run.front.own_approach(state));
+            run.scalars.place_at(run.scalars.own_approach(state));
             run.last = run.last.map(|_| state.contact);
         }
         run.contact = contact;
@@ -35,23 +35,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             return Ok(());
         };
         let keeps_conditions = self.keeps_conditions();
-        let run = &mut self.run;
+        let (run, phase) = (&mut self.run, &mut self.phase);
         let order = run.contact.order().to_vec();
-        let grid = run.problem.grid();
-        run.contact = ContactSequence::new(grid);
-        join_all(
-            &mut run.updater,
-            &run.problem,
-            &mut run.contact,
-            &order,
-            run.memory.left(),
-        )
-        .map_err(|error| run.memory.in_all(error))?;
-        let approach = run.front.approach();
-        run.renew_field(approach)?;
-        run.front.renew_load(&run.problem, &run.contact, &run.field);
-        let snapshot = Snapshot::of(run, &last)?;
-        snapshot.recognise(run, &last, keeps_conditions)
+        if phase.restore(run, &order)? {
+            self.handed_over_at = Some(order.len());
+        }
+        phase.renew_field(run, run.scalars.approach())?;
+        run.scalars
+            .renew_load(&run.problem, &run.contact, &run.field);
+        let snapshot = Snapshot::of(run, phase, &last)?;
+        snapshot.recognise(run, phase, &last, keeps_conditions)
     }
 }
 

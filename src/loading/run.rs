@@ -3,14 +3,14 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::front::Front;
-use super::gap_field::{self, GapField, Line};
+use super::gap_field::{GapField, GapLine};
 use super::releases::Releases;
+use super::scalars::PathScalars;
 use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::{ContactSequence, ContactState};
-use crate::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
+use crate::updater::{Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
@@ -48,9 +48,22 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// What the updater may hold.
+    /// What updater and iterations may hold.
     pub(super) fn left(&self) -> usize {
         self.budget.saturating_sub(self.fixed)
+    }
+
+    /// `Ok` if `needed` bytes beside the fixed ones are within the budget; `fit` nodes in contact are.
+    pub(super) fn check(&self, needed: usize, fit: usize) -> Result<(), Error> {
+        let needed = needed.saturating_add(self.fixed);
+        if needed <= self.budget {
+            return Ok(());
+        }
+        Err(Error::MemoryBudget {
+            needed,
+            budget: self.budget,
+            nodes_that_fit: fit,
+        })
     }
 
     /// An error of the updater, which knows only of what is left to it, in terms of the whole.
@@ -70,15 +83,14 @@ impl Memory {
     }
 }
 
-/// The rooms of a path: each holds one thing, and procedures go from one to the next.
+/// A path under way, apart from what solves on its contact.
 #[derive(Debug)]
-pub(super) struct LoadingRun<U> {
+pub(super) struct LoadingRun {
     pub(super) problem: Problem,
     pub(super) contact: ContactSequence,
     pub(super) releases: Releases,
-    pub(super) updater: U,
     pub(super) field: GapField,
-    pub(super) front: Front,
+    pub(super) scalars: PathScalars,
     /// States that are computed and not yielded yet.
     pub(super) queue: VecDeque<LoadingState>,
     pub(super) memory: Memory,
@@ -87,30 +99,72 @@ pub(super) struct LoadingRun<U> {
     pub(super) timings: LoadingTimings,
 }
 
-impl<U: LinearUpdater> LoadingRun<U> {
+/// Where a path was before a step that may fail or be contradicted: [`LoadingRun::roll_back`] goes back there.
+#[derive(Debug, Clone, Copy)]
+#[must_use]
+pub(super) struct Mark {
+    /// Nodes in contact.
+    pub(super) count: usize,
+    pub(super) scalars: PathScalars,
+}
+
+impl Mark {
+    /// The same with the last nodes of the contact left out.
+    pub(super) fn without_last(mut self, nodes: usize) -> Self {
+        self.count = self.count.saturating_sub(nodes);
+        self
+    }
+}
+
+impl LoadingRun {
     /// Number of events so far, those in the queue included.
     pub(super) fn steps(&self) -> usize {
         self.releases.steps(self.contact.len())
     }
 
+    /// Begins a step.
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            count: self.contact.len(),
+            scalars: self.scalars,
+        }
+    }
+
+    /// Takes a step back, or the nodes of its last events if the mark says so. Whoever solves on the contact goes back by `cut`.
+    pub(super) fn roll_back(
+        &mut self,
+        mark: &Mark,
+        cut: impl FnOnce(&Problem, &ContactSequence) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        self.contact.truncate(mark.count);
+        self.scalars = mark.scalars;
+        cut(&self.problem, &self.contact)
+    }
+
     /// Makes the gap field that of the present contact at an approach.
-    pub(super) fn renew_field(&mut self, approach: f64) -> Result<(), Error> {
+    pub(super) fn renew_field<U: LinearUpdater>(
+        &mut self,
+        updater: &mut U,
+        approach: f64,
+    ) -> Result<(), Error> {
         if self.field.belongs_to(&self.contact, approach) {
             return Ok(());
         }
-        self.solve_field(approach, f64::INFINITY)
+        self.field
+            .solve(&self.problem, &self.contact, updater, approach)?;
+        self.timings.convolution = self.field.time();
+        self.check_closed(approach)
     }
 
-    /// Solves on the present contact at an approach, for rates that serve over a span.
-    pub(super) fn solve_field(&mut self, approach: f64, span: f64) -> Result<(), Error> {
-        let at = [approach, span];
+    /// Moves iterations to the present contact at an approach, with a rate that serves over a span.
+    pub(super) fn advance_field(
+        &mut self,
+        iterations: &mut dyn Iterations,
+        approach: f64,
+        span: f64,
+    ) -> Result<(), Error> {
         self.field
-            .solve(&self.problem, &self.contact, &mut self.updater, at)?;
-        self.timings.convolution = self.field.time();
-        if self.updater.profile().exact {
-            self.check_closed(approach)?;
-        }
-        Ok(())
+            .advance(&self.problem, &self.contact, iterations, [approach, span])
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n roundings of
@@ -118,7 +172,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
     fn check_closed(&self, approach: f64) -> Result<(), Error> {
         let own = self.problem.table().self_influence();
         let sum = |values: &[f64]| own * values.iter().map(|value| value.abs()).sum::<f64>();
-        let Solution { pressure, rate, .. } = self.field.solution();
+        let Solution { pressure, rate } = self.field.solution();
         let lengths = [
             self.problem.greatest_gap() + approach.abs() + sum(pressure),
             1.0 + sum(rate),
@@ -146,40 +200,54 @@ impl<U: LinearUpdater> LoadingRun<U> {
 
     /// Visits all gaps out of contact, and takes the mean gap from them. With `check` an overlap is an
     /// error.
-    pub(super) fn survey(&mut self, check: bool, mut visit: impl FnMut(Line)) -> Result<(), Error> {
-        let approach = self.front.approach();
+    pub(super) fn survey(
+        &mut self,
+        check: bool,
+        mut visit: impl FnMut(usize, GapLine),
+    ) -> Result<(), Error> {
+        let approach = self.scalars.approach();
         let least = -TOLERANCE * (self.problem.greatest_gap() + approach);
         let (mut mean_gap, mut closing) = (Sum::default(), Sum::default());
-        for line in self.field.lines(&self.problem, &self.contact, approach) {
+        for (node, line) in self.field.lines(&self.problem, &self.contact, approach) {
             if line.gap.is_nan() {
                 return Err(self.not_finite());
             }
             if check && line.gap < least {
-                return Err(self.not_monotone("gap", line.node, line.gap));
+                return Err(self.not_monotone("gap", node, line.gap));
             }
             closing.add(line.closing);
             mean_gap.add(line.gap);
-            visit(line);
+            visit(node, line);
         }
-        self.front.renew_gap(mean_gap, closing);
+        self.scalars.renew_gap(mean_gap, closing);
         Ok(())
     }
 
-    /// Opens a window on nodes.
-    pub(super) fn watch(
-        &mut self,
-        window: &mut Window,
-        lines: impl Iterator<Item = Line>,
-        horizon: f64,
-    ) -> Result<(), Error> {
-        let (nodes, schur) = window.open(lines, (horizon, self.front.approach()));
-        self.watch_nodes(nodes, schur)
+    /// The gap of a node from the present approach on.
+    pub(super) fn line(&self, node: usize) -> GapLine {
+        self.field
+            .line(&self.problem, node, self.scalars.approach())
     }
 
-    /// The Schur complement of watched nodes.
-    pub(super) fn watch_nodes(&mut self, nodes: &[usize], schur: &mut Schur) -> Result<(), Error> {
-        self.updater
-            .watch(&self.problem, &self.contact, nodes, schur)?;
+    /// Opens a window on nodes at the present approach.
+    pub(super) fn watch<U: LinearUpdater>(
+        &mut self,
+        updater: &mut U,
+        window: &mut Window,
+        nodes: impl Iterator<Item = usize>,
+        horizon: f64,
+    ) -> Result<(), Error> {
+        let lines = nodes.map(|node| (node, self.line(node)));
+        let (nodes, schur) = window.open((self.scalars.approach(), horizon), lines);
+        updater.watch(&self.problem, &self.contact, nodes, schur)?;
+        self.check_complement(nodes, schur)?;
+        window.begin();
+        self.timings.windows += 1;
+        Ok(())
+    }
+
+    /// `Ok` if a Schur complement is one of so many nodes, and finite.
+    pub(super) fn check_complement(&self, nodes: &[usize], schur: &Schur) -> Result<(), Error> {
         if schur.size() != nodes.len() {
             return Err(Error::Updater(UpdaterError::UpdaterMismatch {
                 quantity: "the Schur complement",
@@ -196,25 +264,24 @@ impl<U: LinearUpdater> LoadingRun<U> {
         {
             return Err(self.not_finite());
         }
-        self.timings.windows += 1;
         Ok(())
     }
 
     /// Lets the nodes of a window's events join the contact.
-    pub(super) fn join(&mut self, window: &Window) -> Result<(), Error> {
-        let before = self.contact.len();
+    pub(super) fn join<U: LinearUpdater>(
+        &mut self,
+        updater: &mut U,
+        window: &Window,
+    ) -> Result<(), Error> {
+        let mark = self.mark();
         let joined = window
-            .events()
-            .iter()
-            .try_for_each(|event| self.contact.push(event.node))
-            .and_then(|()| {
-                self.updater
-                    .join(&self.problem, &self.contact, window.touched())
-            });
+            .touched()
+            .try_for_each(|node| self.contact.push(node))
+            .and_then(|()| updater.join(&self.problem, &self.contact, window.factor()));
         joined.map_err(|error| {
             // The updater may have taken them in: both go back, for the fields of the states up to there. One that cannot
             // says so when it is asked for them.
-            let _ = self.truncate(before);
+            let _ = self.roll_back(&mark, |problem, contact| updater.truncate(problem, contact));
             self.memory.in_all(error)
         })
     }
@@ -235,12 +302,6 @@ impl<U: LinearUpdater> LoadingRun<U> {
         Ok(())
     }
 
-    /// Cuts the contact to its first `count` nodes.
-    pub(super) fn truncate(&mut self, count: usize) -> Result<(), Error> {
-        self.contact.truncate(count);
-        self.updater.truncate(&self.problem, &self.contact)
-    }
-
     /// Puts the node that left last back to where it was. What the updater holds is another contact.
     pub(super) fn take_back_release(&mut self) -> Result<(), Error> {
         match self.releases.pop() {
@@ -249,7 +310,7 @@ impl<U: LinearUpdater> LoadingRun<U> {
         }
     }
 
-    /// Puts the state at the front into the queue, after something happened to a node there.
+    /// Puts the present state into the queue, after something happened to a node there.
     pub(super) fn enqueue(
         &mut self,
         step: usize,
@@ -257,21 +318,21 @@ impl<U: LinearUpdater> LoadingRun<U> {
         node: usize,
         contact_nodes: usize,
     ) -> Result<(), Error> {
-        let front = self.front;
-        self.enqueue_at(&front, (step, event, node), contact_nodes, 0.0)
+        let scalars = self.scalars;
+        self.enqueue_at(&scalars, (step, event, node), contact_nodes, 0.0)
     }
 
     /// Puts a state into the queue, after something happened to a node there; the approach that it reports may be off by
     /// `error`.
     pub(super) fn enqueue_at(
         &mut self,
-        front: &Front,
+        scalars: &PathScalars,
         (step, event, node): (usize, ContactEvent, usize),
         contact_nodes: usize,
         error: f64,
     ) -> Result<(), Error> {
-        let mut contact = front.state(contact_nodes);
-        if !front.is_sound(&contact) {
+        let mut contact = scalars.state(contact_nodes);
+        if !scalars.is_sound(&contact) {
             return Err(Error::NotFinite { step });
         }
         if let Some(last) = &mut self.last {
@@ -288,37 +349,6 @@ impl<U: LinearUpdater> LoadingRun<U> {
         Ok(())
     }
 
-    /// Solves on the contact after `step` events at an approach, and returns it.
-    pub(super) fn solve_at(
-        &mut self,
-        step: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<Vec<usize>, Error> {
-        let nodes = self.releases.contact_at(self.contact.order(), step);
-        let request = SolveRequest::exact(nodes.len(), approach);
-        if self.releases.is_prefix(step) {
-            let (problem, contact) = (&self.problem, &self.contact);
-            gap_field::solve(problem, contact, request, &mut self.updater, solution)?;
-            return Ok(nodes);
-        }
-        // Nodes of that contact have left the updater since.
-        let own = self.updater.bytes(self.contact.len(), 0);
-        let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
-        let needed = self.memory.fixed.saturating_add(own);
-        let needed = needed.saturating_add(rebuilt);
-        if needed > self.memory.budget {
-            return Err(Error::MemoryBudget {
-                needed,
-                budget: self.memory.budget,
-                nodes_that_fit: self.contact.len(),
-            });
-        }
-        let (mut updater, contact) = RecursiveCholesky::of(&self.problem, &nodes)?;
-        updater.solve(&self.problem, &contact, request, solution)?;
-        Ok(nodes)
-    }
-
     /// Bytes that a path on a grid holds whatever the number of nodes in contact.
     pub(super) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
         let ranking = grid.nodes() * size_of::<(f64, usize)>();
@@ -328,26 +358,21 @@ impl<U: LinearUpdater> LoadingRun<U> {
             + GapField::bytes_on(grid, boundary)
     }
 
-    /// The greatest window up to `size` that stays within the memory budget.
-    pub(super) fn affordable(&self, mut size: usize) -> Result<usize, Error> {
-        let (count, budget) = (self.contact.len(), self.memory.budget);
+    /// The greatest window up to `size` that stays within the memory budget beside an updater.
+    pub(super) fn affordable<U: LinearUpdater>(
+        &self,
+        updater: &U,
+        mut size: usize,
+    ) -> Result<usize, Error> {
+        let count = self.contact.len();
         loop {
-            let needed = self
-                .updater
+            let needed = updater
                 .bytes(count + size, size)
-                .saturating_add(Touched::bytes(size))
-                .saturating_add(self.memory.fixed);
-            if needed <= budget {
-                return Ok(size);
+                .saturating_add(WindowFactor::bytes(size));
+            match self.memory.check(needed, count) {
+                Err(_) if size > 1 => size /= 2,
+                checked => return checked.map(|()| size),
             }
-            if size <= 1 {
-                return Err(Error::MemoryBudget {
-                    needed,
-                    budget,
-                    nodes_that_fit: count,
-                });
-            }
-            size /= 2;
         }
     }
 
@@ -366,25 +391,25 @@ impl<U: LinearUpdater> LoadingRun<U> {
         rates.copied().fold(0.0, f64::max)
     }
 
-    /// That a quantity of a node has the wrong sign at the front.
+    /// That a quantity of a node has the wrong sign at the present approach.
     pub(super) fn not_monotone(&self, quantity: &'static str, node: usize, value: f64) -> Error {
         let (ix, iy) = self.problem.grid().coordinates(node);
         Error::NotMonotone {
             quantity,
             ix,
             iy,
-            approach: self.front.approach(),
+            approach: self.scalars.approach(),
             value,
         }
     }
 
-    /// That a node cannot touch, in a window that began at the front.
+    /// That a node cannot touch, in a window that began at the present approach.
     pub(super) fn not_positive_definite(&self, bad: BadPivot) -> Error {
         let (ix, iy) = self.problem.grid().coordinates(bad.node);
         Error::NotPositiveDefinite {
             ix,
             iy,
-            approach: self.front.approach() + bad.time,
+            approach: self.scalars.approach() + bad.time,
             pivot: bad.pivot,
         }
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::phase::Phase;
 use super::run::LoadingRun;
 use super::state::LoadingState;
 use crate::Error;
@@ -52,12 +53,13 @@ pub(super) struct Snapshot {
 impl Snapshot {
     /// The solution at a state of this path.
     pub(super) fn of<U: LinearUpdater>(
-        run: &mut LoadingRun<U>,
+        run: &LoadingRun,
+        phase: &mut Phase<U>,
         state: &LoadingState,
     ) -> Result<Self, Error> {
         let mut solution = Solution::default();
-        let approach = run.front.own_approach(state);
-        let nodes = run.solve_at(state.step, approach, &mut solution)?;
+        let approach = run.scalars.own_approach(state);
+        let nodes = phase.solve_at(run, (state.step, approach), &mut solution)?;
         let grid = run.problem.grid();
         let (nx, ny) = grid.shape();
         let mut pressure = DMatrix::zeros(nx, ny);
@@ -77,7 +79,8 @@ impl Snapshot {
     /// a state has; the latter only if the path keeps the conditions of contact.
     pub(super) fn recognise<U: LinearUpdater>(
         &self,
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        phase: &Phase<U>,
         state: &LoadingState,
         keeps_conditions: bool,
     ) -> Result<(), Error> {
@@ -101,7 +104,7 @@ impl Snapshot {
         let least = least.fold(f64::INFINITY, f64::min);
         let allowed_tension = (allowed * self.pressure.max())
             .max(rounding / cell_area)
-            .max(self.pressure_error(run));
+            .max(self.pressure_error(run, phase.tolerance()));
         if least < -allowed_tension {
             return refused("least pressure in contact", least, "no tension");
         }
@@ -114,9 +117,9 @@ impl Snapshot {
 
     /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere if the path
     /// keeps the conditions of contact: [`recognise`](Self::recognise) looks at the node that touches next alone.
-    pub(super) fn check_gaps<U: LinearUpdater>(
+    pub(super) fn check_gaps(
         &self,
-        run: &LoadingRun<U>,
+        run: &LoadingRun,
         state: &LoadingState,
         certificate: &Certificate,
         keeps_conditions: bool,
@@ -139,33 +142,25 @@ impl Snapshot {
     }
 
     /// What gaps at a state may be off by.
-    fn allowed_gap<U: LinearUpdater>(&self, run: &LoadingRun<U>, state: &LoadingState) -> f64 {
+    fn allowed_gap(&self, run: &LoadingRun, state: &LoadingState) -> f64 {
         allowed(state) * (run.problem.greatest_gap() + self.approach.abs())
     }
 
     /// What pressures may be off by where gaps in contact are closed to a tolerance τ of the approach only:
     /// `|C⁻¹r| ≤ √n τ δ / λ`, with the least eigenvalue λ. On long cells in a large gauge that is far more than τ of the
-    /// pressure. 0 with an exact updater, and where λ is not known.
-    fn pressure_error<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> f64 {
-        let profile = run.updater.profile();
-        if profile.exact {
-            return 0.0;
-        }
+    /// pressure. 0 with a factor, and where λ is not known.
+    fn pressure_error(&self, run: &LoadingRun, tolerance: f64) -> f64 {
         let least = run.field.least_eigenvalue();
-        if least <= 0.0 {
+        if tolerance == 0.0 || least <= 0.0 {
             return 0.0;
         }
         let length = self.approach.max(run.problem.least_length());
-        (self.nodes.len() as f64).sqrt() * profile.tolerance * length / least
+        (self.nodes.len() as f64).sqrt() * tolerance * length / least
     }
 
     /// The gap of the node that touches next, which is the first to overlap; of all nodes out of contact if
     /// the next one is not known.
-    fn worst_overlap<U: LinearUpdater>(
-        &self,
-        run: &mut LoadingRun<U>,
-        step: usize,
-    ) -> Result<f64, Error> {
+    fn worst_overlap(&self, run: &mut LoadingRun, step: usize) -> Result<f64, Error> {
         let gap = run.problem.initial_gap();
         if step < run.steps() {
             let next = run.releases.contact_at(run.contact.order(), step + 1);
@@ -199,7 +194,7 @@ impl Snapshot {
 mod tests {
     use super::*;
     use crate::contact::ContactState;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::loading::state::ContactEvent;
     use crate::updater::Dense;
 
@@ -223,7 +218,7 @@ mod tests {
         }
 
         fn refused_with(&self, updater: impl LinearUpdater) -> Result<Option<&'static str>, Error> {
-            let mut run = row::run(self.gaps, updater)?;
+            let mut run = test_chain::run(self.gaps, updater)?;
             for &node in self.contact {
                 run.contact.push(node)?;
             }
@@ -341,7 +336,7 @@ mod tests {
         for (least, refused) in [(2.8e-3, None), (2.9e-3, refused)] {
             let pressures = [(0, 1.0), (2, -least)];
             let case = pulled(&pressures);
-            let found = case.refused_with(row::Altered::inexact(1e-3))?;
+            let found = case.refused_with(test_chain::Altered::inexact(1e-3))?;
             assert_eq!(found, refused, "{least:e}");
         }
         Ok(())
@@ -383,7 +378,7 @@ mod tests {
     /// Pressures by node, the approach, and the stiffness 2 · (1/4 + 1/4).
     #[test]
     fn snapshots_are_solutions() -> Result<(), Error> {
-        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         let contact = ContactState::new(&run.problem.grid(), 2, 3.0, 2.5, 0.0);
         let state = LoadingState::new(2, ContactEvent::Touch, (2, 0), contact);
         let found = Snapshot::of(&mut run, &state)?;

@@ -4,6 +4,8 @@ use std::iter::FusedIterator;
 
 use super::limits::{Limits, LoadingEnd};
 use super::paper::Paper;
+use super::phase::Phase;
+use super::refined::Refined;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
@@ -41,8 +43,12 @@ use crate::{Error, Grid, Problem};
 /// ```
 #[derive(Debug)]
 pub struct LoadingSolver<U = Handover> {
-    pub(super) run: LoadingRun<U>,
+    pub(super) run: LoadingRun,
+    /// What solves on the contact.
+    pub(super) phase: Phase<U>,
     pub(super) procedure: Procedure,
+    /// Nodes in contact when the factor was given up.
+    pub(super) handed_over_at: Option<usize>,
     pub(super) rule: ContactRule,
     pub(super) limits: Limits,
     /// The state yielded last.
@@ -55,7 +61,8 @@ pub struct LoadingSolver<U = Handover> {
 /// How events are found, chosen once.
 #[derive(Debug)]
 pub(super) enum Procedure {
-    Windowed(Windowed),
+    /// In windows: exact ones while there is a factor, and refined ones with iterations.
+    Windows(Windowed, Refined),
     Stepwise(Stepwise),
     Paper(Paper),
 }
@@ -129,13 +136,21 @@ impl<U: LinearUpdater> LoadingSolver<U> {
 
     /// Computes at least one more state, unless the path is at its end.
     fn produce(&mut self) -> Result<(), Error> {
-        let run = &mut self.run;
+        let (run, phase) = (&mut self.run, &mut self.phase);
         let most_nodes = self.limits.most_nodes().min(run.problem.grid().nodes());
-        match &mut self.procedure {
-            Procedure::Stepwise(stepwise) => stepwise.produce(run, most_nodes),
-            _ if run.contact.len() >= most_nodes => Ok(()),
-            Procedure::Windowed(windowed) => {
-                let failure = windowed.produce(run, most_nodes)?;
+        let is_enough = run.contact.len() >= most_nodes;
+        if !is_enough && phase.hand_over(run)? {
+            self.handed_over_at = Some(run.contact.len());
+        }
+        match (&mut self.procedure, phase) {
+            (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
+            _ if is_enough => Ok(()),
+            (Procedure::Paper(paper), phase) => paper.produce(run, phase),
+            (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
+                refined.produce(run, &mut **iterations, most_nodes)
+            }
+            (Procedure::Windows(windowed, _), Phase::Factor { updater, .. }) => {
+                let failure = windowed.produce(run, updater, most_nodes)?;
                 if run.queue.is_empty() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
                     return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));
@@ -143,7 +158,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 self.failure = failure;
                 Ok(())
             }
-            Procedure::Paper(paper) => paper.produce(run),
         }
     }
 }
@@ -208,10 +222,19 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.run.problem.grid()
     }
 
-    /// The updater.
+    /// The updater; `None` where the path goes on, or has begun, without a factor.
     #[must_use]
-    pub fn updater(&self) -> &U {
-        &self.run.updater
+    pub fn updater(&self) -> Option<&U> {
+        match &self.phase {
+            Phase::Factor { updater, .. } => Some(updater),
+            Phase::Iterations(_) => None,
+        }
+    }
+
+    /// Number of nodes in contact when the factor of [`Handover`] was given up, `None` while it is in use.
+    #[must_use]
+    pub fn handed_over_at(&self) -> Option<usize> {
+        self.handed_over_at
     }
 
     /// Where the time went so far, besides the updater.
@@ -237,20 +260,20 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let run = &self.run;
-        run.memory
-            .fixed
-            .saturating_add(run.updater.bytes(run.contact.len(), 0))
+        let (nodes, contact) = (run.problem.grid().nodes(), run.contact.len());
+        let own = self.phase.bytes(nodes, contact, 0);
+        run.memory.fixed.saturating_add(own)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row;
+    use crate::test_chain;
 
     /// Two of four nodes are in contact at the approach 2, under 2 (1/2 + 1/4) N.
     fn path() -> Result<LoadingSolver, Error> {
-        let (surface, kernel) = (row::surface(&[0.0, 9.0, 1.0, 9.0])?, row::kernel(4)?);
+        let (surface, kernel) = (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
         let mut path = LoadingSolver::builder(&surface, &kernel)
             .max_approach(2.0)
             .build()?;
@@ -322,7 +345,7 @@ mod tests {
         assert_eq!(path.bytes(), path.run.memory.fixed + updater);
         assert_eq!(
             (path.grid(), path.rule()),
-            (row::grid(4)?, ContactRule::FirstContact)
+            (test_chain::grid(4)?, ContactRule::FirstContact)
         );
         Ok(())
     }

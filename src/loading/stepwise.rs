@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use super::phase::Phase;
 use super::run::LoadingRun;
-use super::scales::{Scales, ties_until};
+use super::tolerances::{WindowTolerances, ties_until};
 use super::state::ContactEvent;
 use super::window::Window;
 use crate::Error;
@@ -44,11 +45,12 @@ impl Stepwise {
     /// Computes one state, unless there is none with at most `most_nodes` in contact.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        phase: &mut Phase<U>,
         most_nodes: usize,
     ) -> Result<(), Error> {
         if !self.has_begun {
-            self.survey(run)?;
+            self.survey(run, phase)?;
             self.has_begun = true;
         }
         let enough = run.contact.len() >= most_nodes;
@@ -62,17 +64,18 @@ impl Stepwise {
         self.count_tie(run, next.approach)?;
         let step = run.steps() + 1;
         if next.event == ContactEvent::Touch {
-            self.touch(run, next)?;
+            let time = next.approach - run.scalars.approach();
+            phase.admit(run, &mut self.window, (next.node, time))?;
         } else {
-            Self::release(run, step, next.node)?;
+            Self::release(run, phase, step, next.node)?;
         }
-        run.front.advance(next.approach);
+        run.scalars.advance(next.approach);
         let contact_nodes = run.contact.len();
         let event = (step, next.event, next.node);
-        let checked = self.survey(run).and_then(|()| {
-            let front = run.front;
-            let error = front.reported_error(next.error, 0.0);
-            run.enqueue_at(&front, event, contact_nodes, error)
+        let checked = self.survey(run, phase).and_then(|()| {
+            let scalars = run.scalars;
+            let error = scalars.reported_error(next.error, 0.0);
+            run.enqueue_at(&scalars, event, contact_nodes, error)
         });
         // The order of contact must be that of the states before; the updater stays without the node. One
         // that touched may stay where it is: behind all others.
@@ -83,8 +86,8 @@ impl Stepwise {
     }
 
     /// Refuses to go on without end at one approach.
-    fn count_tie<U>(&mut self, run: &LoadingRun<U>, approach: f64) -> Result<(), Error> {
-        if approach > run.front.approach() {
+    fn count_tie(&mut self, run: &LoadingRun, approach: f64) -> Result<(), Error> {
+        if approach > run.scalars.approach() {
             self.tied = 0;
         }
         self.tied += 1;
@@ -99,58 +102,44 @@ impl Stepwise {
 
     /// Takes a node out of the contact.
     fn release<U: LinearUpdater>(
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        phase: &mut Phase<U>,
         step: usize,
         node: usize,
     ) -> Result<(), Error> {
         let position = run.contact.remove(node)?;
         // First, so that earlier contacts are known even if the updater panics.
         run.releases.push(step, node, position);
-        let released = run
-            .updater
-            .release(&run.problem, &run.contact, node, position);
+        let released = phase.release(&run.problem, &run.contact, (node, position));
         if released.is_err() {
             run.take_back_release()?;
         }
         released
     }
 
-    /// Adds a node to the contact.
-    fn touch<U: LinearUpdater>(
+    /// Solves at the present approach, checks the conditions of contact there, and finds the next event.
+    fn survey<U: LinearUpdater>(
         &mut self,
-        run: &mut LoadingRun<U>,
-        next: Upcoming,
+        run: &mut LoadingRun,
+        phase: &mut Phase<U>,
     ) -> Result<(), Error> {
-        run.affordable(1)?;
-        let line = run
-            .field
-            .line(&run.problem, next.node, run.front.approach());
-        run.watch(&mut self.window, std::iter::once(line), f64::INFINITY)?;
-        let time = next.approach - run.front.approach();
-        let touched = self.window.touch(0, time);
-        touched.map_err(|bad| run.not_positive_definite(bad))?;
-        run.join(&self.window)
-    }
-
-    /// Solves at the front, checks the conditions of contact there, and finds the next event.
-    fn survey<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
         self.upcoming = None;
-        let approach = run.front.approach();
-        run.renew_field(approach)?;
-        let overlap = Scales::of(run).overlap(approach);
+        let approach = run.scalars.approach();
+        phase.renew_field(run, approach)?;
+        let overlap = WindowTolerances::of(run, phase.tolerance()).overlap(approach);
         if let Some((node, value)) = run.negative_pressure(approach, overlap) {
             return Err(run.not_monotone("pressure", node, value));
         }
-        run.front.renew_stiffness(run.field.solution());
+        run.scalars.renew_stiffness(run.field.solution());
         let start = Instant::now();
         self.touches.clear();
         self.touches.reserve(run.problem.grid().nodes());
-        run.survey(true, |line| {
+        run.survey(true, |node, line| {
             if line.closing > LEAST_RATE {
                 self.touches.push(Upcoming {
                     approach: approach + line.gap / line.closing,
                     error: overlap / line.closing,
-                    node: line.node,
+                    node,
                     event: ContactEvent::Touch,
                 });
             }
@@ -162,9 +151,9 @@ impl Stepwise {
 
     /// The next event: of all that would come first, or within rounding of it, the one of the node of lowest
     /// index.
-    fn first_event<U: LinearUpdater>(&self, run: &LoadingRun<U>, overlap: f64) -> Option<Upcoming> {
-        let front = run.front.approach();
-        let Solution { pressure, rate, .. } = run.field.solution();
+    fn first_event(&self, run: &LoadingRun, overlap: f64) -> Option<Upcoming> {
+        let front = run.scalars.approach();
+        let Solution { pressure, rate } = run.field.solution();
         // What y₂ has to be below for a node to lose its pressure.
         let slowest = -LEAST_RATE * run.greatest_rate();
         let tension = overlap / run.problem.table().self_influence();
@@ -196,14 +185,14 @@ impl Stepwise {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::updater::Dense;
 
     /// Twenty events for each of five nodes and one more, all at one approach.
     #[test]
     fn events_at_one_approach_come_to_an_end() -> Result<(), Error> {
-        let mut run = row::run(&[0.0; 5], Dense)?;
-        run.front.place_at(1.0);
+        let mut run = test_chain::run(&[0.0; 5], Dense)?;
+        run.scalars.place_at(1.0);
         let mut stepwise = Stepwise::default();
         for _ in 0..120 {
             stepwise.count_tie(&run, 1.0)?;
@@ -243,11 +232,11 @@ mod tests {
         rate: [f64; 2],
     ) -> Result<Option<(ContactEvent, usize, f64, f64)>, Error> {
         let (pressure, rate) = (pressure.to_vec(), rate.to_vec());
-        let mut run = row::run(&[0.0; 6], row::Altered::given(pressure, rate))?;
+        let mut run = test_chain::run(&[0.0; 6], test_chain::Altered::given(pressure, rate))?;
         run.contact.push(3)?;
         run.contact.push(5)?;
         run.solve_field(2.0, 1.0)?;
-        run.front.place_at(2.0);
+        run.scalars.place_at(2.0);
         let stepwise = Stepwise {
             touches: touches.to_vec(),
             ..Stepwise::default()
@@ -300,7 +289,7 @@ mod tests {
     /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
     #[test]
     fn events_come_one_at_a_time() -> Result<(), Error> {
-        let mut run = row::run(&[0.0, 1.25, 1.0, 9.0], row::Altered::inexact(1e-6))?;
+        let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0], test_chain::Altered::inexact(1e-6))?;
         let mut stepwise = Stepwise::default();
         for _ in 0..4 {
             stepwise.produce(&mut run, 3)?;

@@ -1,16 +1,14 @@
-//! Events in windows, of kernels whose contact only grows.
+//! Events in windows, of kernels whose contact only grows, with an updater.
 
 use std::time::Instant;
 
-use super::corrected::Corrected;
 use super::cost::{automatic_window, watched_for};
-use super::gap_field::Line;
-use super::ranking::rank;
+use super::ranking::{Ranking, rank};
 use super::run::LoadingRun;
-use super::scales::ties_until;
+use super::tolerances::ties_until;
 use super::state::ContactEvent;
 use super::window::Window;
-use crate::updater::LinearUpdater;
+use crate::updater::{LinearUpdater, WindowCost};
 use crate::{ContactGrowth, Error};
 
 /// How far below zero a gap may lie at the end of a window before events are taken back, as a multiple of the greatest gap that
@@ -28,20 +26,16 @@ pub(super) struct Windowed {
     size: Option<usize>,
     window: Window,
     /// The nodes out of contact by the time at which they would touch.
-    ranking: Vec<(f64, usize)>,
-    /// What goes on when the updater is not exact.
-    corrected: Corrected,
+    ranking: Ranking,
 }
 
 impl Windowed {
-    /// Where the updater is not exact, near ties are settled if `settles` says so.
-    pub(super) fn new(growth: ContactGrowth, size: Option<usize>, settles: bool) -> Self {
+    pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
         Self {
             growth,
             size,
             window: Window::default(),
-            ranking: Vec::new(),
-            corrected: Corrected::new(size, settles),
+            ranking: Ranking::new(),
         }
     }
 
@@ -49,29 +43,20 @@ impl Windowed {
     /// after them.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        updater: &mut U,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
-        if !run.updater.profile().exact {
-            return self.corrected.produce(run, most_nodes);
-        }
-        let count = run.contact.len();
-        let size = run.affordable(self.next_size(run, most_nodes))?;
-        run.renew_field(run.front.approach())?;
-        if !run.updater.profile().exact {
-            // It has just been handed over.
-            return self.corrected.produce(run, most_nodes);
-        }
+        let (count, approach) = (run.contact.len(), run.scalars.approach());
+        let cost = updater.window_cost();
+        let size = run.affordable(updater, self.next_size(run, cost, most_nodes))?;
+        run.renew_field(updater, approach)?;
         let first = rank(run, &mut self.ranking)?;
         let start = Instant::now();
-        let (size, horizon) = self.choose(size, self.multiple(run), [run.front.approach(), first]);
+        let (size, horizon) = self.choose(size, self.multiple(cost), [approach, first]);
         run.timings.choice += start.elapsed();
-        let (problem, approach) = (&run.problem, run.front.approach());
-        let chosen: Vec<Line> = self.ranking[..size]
-            .iter()
-            .map(|&(_, node)| run.field.line(problem, node, approach))
-            .collect();
-        run.watch(&mut self.window, chosen.into_iter(), horizon)?;
+        let chosen = self.ranking[..size].iter().map(|&(_, node)| node);
+        run.watch(updater, &mut self.window, chosen, horizon)?;
 
         let start = Instant::now();
         let bad_pivot = self.window.play(most_nodes - count);
@@ -81,9 +66,9 @@ impl Windowed {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
-        run.join(&self.window)?;
+        run.join(updater, &self.window)?;
         if self.growth == ContactGrowth::Monotone {
-            self.verify(run)?;
+            self.verify(run, updater)?;
         }
         if self.window.events().len() < played {
             failure = None;
@@ -95,20 +80,20 @@ impl Windowed {
     }
 
     /// How many nodes to watch.
-    fn next_size<U: LinearUpdater>(&self, run: &LoadingRun<U>, most_nodes: usize) -> usize {
+    fn next_size(&self, run: &LoadingRun, cost: WindowCost, most_nodes: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
         let size = self.size.unwrap_or_else(|| {
-            automatic_window(count, nodes, run.updater.profile().cost)
+            automatic_window(count, nodes, cost)
                 .min(watched_for(most_nodes - count))
         });
         size.min(nodes - count)
     }
 
     /// Nodes that were not watched before come in multiples of this.
-    fn multiple<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> usize {
+    fn multiple(&self, cost: WindowCost) -> usize {
         match self.size {
             Some(_) => 1,
-            None => run.updater.profile().cost.multiple.max(1),
+            None => cost.multiple.max(1),
         }
     }
 
@@ -167,14 +152,18 @@ impl Windowed {
     /// check.
     ///
     /// The next window needs the same solution and the same displacements, and finds them.
-    fn verify<U: LinearUpdater>(&mut self, run: &mut LoadingRun<U>) -> Result<(), Error> {
-        let start = run.front.approach();
+    fn verify<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+    ) -> Result<(), Error> {
+        let start = run.scalars.approach();
         // When the first contradiction was is an estimate, which must not make the search long if it keeps
         // failing.
         let mut fewest = 1;
         while let [_, .., last] = self.window.events() {
             let end = start + last.time;
-            run.renew_field(end)?;
+            run.renew_field(updater, end)?;
             let Some(until) = contradiction(run, end) else {
                 return Ok(());
             };
@@ -184,33 +173,31 @@ impl Windowed {
             let dropped = later.max(fewest).min(events.len() - 1);
             fewest *= 2;
             self.window.truncate(events.len() - dropped);
-            run.truncate(run.contact.len() - dropped)?;
+            let mark = run.mark().without_last(dropped);
+            run.roll_back(&mark, |problem, contact| updater.truncate(problem, contact))?;
             run.timings.taken_back += dropped;
         }
         Ok(())
     }
 
     /// Turns the events of the window, which began with `count` nodes in contact, into states.
-    fn enqueue<U: LinearUpdater>(
-        &self,
-        run: &mut LoadingRun<U>,
-        count: usize,
-    ) -> Result<(), Error> {
-        let start = run.front.approach();
-        for (k, event) in self.window.events().iter().enumerate() {
+    fn enqueue(&self, run: &mut LoadingRun, count: usize) -> Result<(), Error> {
+        let start = run.scalars.approach();
+        let events = self.window.events().iter();
+        for (k, (event, increments)) in events.zip(self.window.increments()).enumerate() {
             let contact_nodes = count + k + 1;
-            run.front.advance(start + event.time);
-            run.front
-                .touch(event.unit_stiffness, event.closing, contact_nodes);
-            run.front.clamp_mean_gap();
+            run.scalars.advance(start + event.time);
+            run.scalars.touch(*increments, contact_nodes);
+            run.scalars.clamp_mean_gap();
             let step = run.releases.steps(contact_nodes);
-            run.enqueue(step, ContactEvent::Touch, event.node, contact_nodes)?;
+            let node = self.window.node(event.position);
+            run.enqueue(step, ContactEvent::Touch, node, contact_nodes)?;
         }
         Ok(())
     }
 
     /// The path cannot go on although nodes are left: none of their gaps closes.
-    pub(super) fn growth_stopped<U: LinearUpdater>(&self, run: &LoadingRun<U>) -> Error {
+    pub(super) fn growth_stopped(&self, run: &LoadingRun) -> Error {
         let node = self.ranking.iter().map(|&(_, node)| node).min();
         run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
     }
@@ -218,7 +205,7 @@ impl Windowed {
 
 /// Whether a pressure or a gap at an approach is negative, beyond rounding. Returns the approach until which none was, as far as the
 /// rates tell.
-fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option<f64> {
+fn contradiction(run: &LoadingRun, approach: f64) -> Option<f64> {
     if run.negative_pressure(approach, 0.0).is_some() {
         return Some(f64::NEG_INFINITY);
     }
@@ -228,8 +215,8 @@ fn contradiction<U: LinearUpdater>(run: &LoadingRun<U>, approach: f64) -> Option
     let overlap = -ROUNDINGS * left.fold(least, f64::max);
     let lines = run.field.lines(&run.problem, &run.contact, approach);
     lines
-        .filter(|line| line.gap < overlap)
-        .map(|line| {
+        .filter(|(_, line)| line.gap < overlap)
+        .map(|(_, line)| {
             if line.closing > 0.0 {
                 approach + line.gap / line.closing
             } else {

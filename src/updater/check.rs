@@ -1,6 +1,6 @@
 //! Holds an updater to what a path asks of it.
 
-use super::{Dense, LinearUpdater, Schur, Solution, SolveRequest, Touched};
+use super::{Dense, LinearUpdater, Method, Schur, Solution, WindowFactor};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
@@ -11,10 +11,8 @@ const MOST: usize = 150;
 /// Greatest difference from a dense solution, relative to the greatest value: influence matrices of so
 /// few nodes lose some three digits.
 const TOLERANCE: f64 = 1e-9;
-/// How much more than its gaps the pressures of a solution may be off, relatively.
+/// How much more than its gaps the pressures of a solution by iterations may be off, relatively.
 const LOST: f64 = 1e3;
-/// The same for Schur complements of an updater that says it is not exact.
-const ROUNDED: f64 = 1e-3;
 
 /// What [`check`] found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,8 +106,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         updater.watch(problem, contact, watched, &mut schur)?;
         Dense.watch(problem, contact, watched, &mut expected)?;
         check_length("the Schur complement", watched.len(), schur.size())?;
-        let exact = updater.profile().exact;
-        let tolerance = if exact { TOLERANCE } else { ROUNDED };
+        let tolerance = tolerance(*updater);
         let own = problem.table().self_influence();
         for j in 0..watched.len() {
             for i in j..watched.len() {
@@ -127,7 +124,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         // Not in the order in which they are watched.
         let joining = watched.len().saturating_sub(1).max(1);
         let positions: Vec<usize> = (0..joining).rev().collect();
-        let touched = Touched::of(expected, &positions)?;
+        let touched = WindowFactor::of(expected, &positions)?;
         for &position in &positions {
             contact.push(watched[position])?;
         }
@@ -141,10 +138,10 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let (problem, contact) = (self.problem, &self.contact);
         // All nodes so far would be under pressure.
         let approach = problem.greatest_gap();
-        let request = SolveRequest::exact(count, approach);
-        self.updater.solve(problem, contact, request, &mut found)?;
-        Dense.solve(problem, contact, request, &mut expected)?;
-        let tolerance = TOLERANCE.max(LOST * self.updater.profile().tolerance);
+        self.updater
+            .solve(problem, contact, count, approach, &mut found)?;
+        Dense.solve(problem, contact, count, approach, &mut expected)?;
+        let tolerance = tolerance(self.updater);
         for (quantity, found, expected) in [
             ("pressures", &found.pressure, &expected.pressure),
             (
@@ -187,6 +184,14 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
                 done.and_then(|()| self.solution(count)).map(|()| true)
             }
         }
+    }
+}
+
+/// What the answers of an updater may be off by.
+fn tolerance(updater: &(impl LinearUpdater + ?Sized)) -> f64 {
+    match updater.method() {
+        Method::Iterations(iterations) => TOLERANCE.max(LOST * iterations.tolerance()),
+        Method::Factor | Method::FactorWhileItPays => TOLERANCE,
     }
 }
 
@@ -294,7 +299,7 @@ mod tests {
             &mut self,
             problem: &Problem,
             contact: &ContactSequence,
-            touched: &Touched,
+            touched: &WindowFactor,
         ) -> Result<(), Error> {
             self.inner.join(problem, contact, touched)
         }
@@ -349,7 +354,7 @@ mod tests {
             &mut self,
             problem: &Problem,
             contact: &ContactSequence,
-            touched: &Touched,
+            touched: &WindowFactor,
         ) -> Result<(), Error> {
             self.0.join(problem, contact, touched)
         }

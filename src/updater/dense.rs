@@ -2,14 +2,14 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-use super::{LinearUpdater, Schur, Solution, SolveRequest, Touched};
+use super::{LinearUpdater, Schur, Solution, WindowFactor};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
 /// Assembles and factors the whole influence matrix of the contact whenever it is asked.
 ///
 /// O(n³) for every call: for testing other updaters, see [`check`](super::check). It keeps nothing, shares
-/// no code with [`RecursiveCholesky`](super::RecursiveCholesky), and ignores the factor in [`Touched`].
+/// no code with [`RecursiveCholesky`](super::RecursiveCholesky), and ignores the factor in [`WindowFactor`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Dense;
 
@@ -67,7 +67,7 @@ impl LinearUpdater for Dense {
         Ok(())
     }
 
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &WindowFactor) -> Result<(), Error> {
         Ok(())
     }
 
@@ -75,18 +75,19 @@ impl LinearUpdater for Dense {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let Some(contact) = contact.order().get(..request.count) else {
+        let Some(contact) = contact.order().get(..count) else {
             return Err(Error::LengthMismatch {
                 expected: contact.len(),
-                found: request.count,
+                found: count,
             });
         };
         problem.check_nodes(contact)?;
         let rhs = DMatrix::from_fn(contact.len(), 2, |i, c| match c {
-            0 => request.approach - problem.initial_gap()[contact[i]],
+            0 => approach - problem.initial_gap()[contact[i]],
             _ => 1.0,
         });
         let solved = Self::factor(problem, contact)?.solve(&rhs);
@@ -120,13 +121,13 @@ impl LinearUpdater for Dense {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row;
+    use crate::test_chain;
 
     /// With node 0 in contact, C = 4 and 1 beside it: nodes 1 and 3 have the Schur complement (4 − 1/4, 0; 0, 4), and the row
     /// sums 6 − 5/4 and 5.
     #[test]
     fn complements_of_nodes_in_a_row() -> Result<(), Error> {
-        let problem = row::problem(&[0.0, 1.0, 2.0, 3.0])?;
+        let problem = test_chain::problem(&[0.0, 1.0, 2.0, 3.0])?;
         let contact = ContactSequence::with_order(problem.grid(), [0])?;
         let mut schur = Schur::default();
         Dense.watch(&problem, &contact, &[1, 3], &mut schur)?;
@@ -140,7 +141,8 @@ mod tests {
         Dense.solve(
             &problem,
             &contact,
-            SolveRequest::exact(1, 3.0),
+            1,
+            3.0,
             &mut solution,
         )?;
         assert_eq!(
@@ -151,7 +153,8 @@ mod tests {
             Dense.solve(
                 &problem,
                 &contact,
-                SolveRequest::exact(2, 3.0),
+                2,
+                3.0,
                 &mut solution
             ),
             Err(Error::LengthMismatch {

@@ -1,14 +1,13 @@
 //! A contact that is known as a whole, joined block by block.
 
-use super::{LinearUpdater, Schur, Touched};
+use super::{LinearUpdater, Schur, WindowFactor};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
 /// Nodes that join at a time: so many that a factor grows at the speed of a matrix product.
 pub(crate) const JOINED: usize = 256;
 
-/// Lets nodes join a contact and its updater in their order, within `budget` bytes. An updater that is not exact
-/// learns of the rest when it is asked to solve.
+/// Lets nodes join a contact and its updater in their order, within `budget` bytes.
 ///
 /// # Errors
 ///
@@ -21,26 +20,22 @@ pub(crate) fn join_all(
     budget: usize,
 ) -> Result<(), Error> {
     for block in nodes.chunks(JOINED) {
-        if updater.profile().exact {
-            let needed = updater
-                .bytes(contact.len() + block.len(), block.len())
-                .saturating_add(Touched::bytes(block.len()));
-            if needed > budget {
-                return Err(Error::MemoryBudget {
-                    needed,
-                    budget,
-                    nodes_that_fit: contact.len(),
-                });
-            }
-            let mut schur = Schur::default();
-            updater.watch(problem, contact, block, &mut schur)?;
-            let positions: Vec<usize> = (0..block.len()).collect();
-            let touched = Touched::of(schur, &positions)?;
-            block.iter().try_for_each(|&node| contact.push(node))?;
-            updater.join(problem, contact, &touched)?;
-        } else {
-            block.iter().try_for_each(|&node| contact.push(node))?;
+        let needed = updater
+            .bytes(contact.len() + block.len(), block.len())
+            .saturating_add(WindowFactor::bytes(block.len()));
+        if needed > budget {
+            return Err(Error::MemoryBudget {
+                needed,
+                budget,
+                nodes_that_fit: contact.len(),
+            });
         }
+        let mut schur = Schur::default();
+        updater.watch(problem, contact, block, &mut schur)?;
+        let positions: Vec<usize> = (0..block.len()).collect();
+        let factor = WindowFactor::of(schur, &positions)?;
+        block.iter().try_for_each(|&node| contact.push(node))?;
+        updater.join(problem, contact, &factor)?;
     }
     Ok(())
 }
@@ -48,14 +43,14 @@ pub(crate) fn join_all(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row;
+    use crate::test_chain;
     use crate::updater::Dense;
 
     /// 300 nodes join in blocks of 256 and 44: of a dense updater 16 (256 + 256)² bytes and then 16 (300 + 44)², with 16 · 256²
     /// and 16 · 44² for the window.
     #[test]
     fn contacts_join_within_a_budget() -> Result<(), Error> {
-        let problem = row::problem(&[0.0; 300])?;
+        let problem = test_chain::problem(&[0.0; 300])?;
         let nodes: Vec<usize> = (0..300).rev().collect();
         let joined = |budget| {
             let mut contact = ContactSequence::new(problem.grid());

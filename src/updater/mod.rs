@@ -11,48 +11,42 @@
 //! | [`ConjugateGradient`] | in proportion to the grid | iterations by fast Fourier transform; the same events, and states nearly as exact |
 //! | [`Handover`] | a budget | the default: a factor while it pays and fits, iterations afterwards |
 //! | [`Dense`] | 16n² bytes | for tests: assembles and factors everything anew |
+//!
+//! Every updater answers exactly. Iterations offer a path more than that, cheap Schur complements that are nearly
+//! exact: with [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
 
 mod check;
 mod cholesky;
 mod conjugate_gradient;
 mod dense;
 mod handover;
+mod iterations;
 mod join;
 mod schur;
 mod solution;
-mod touched;
+mod window_factor;
 
 pub use check::{UpdaterReport, check};
 pub use cholesky::{CholeskyTimings, RecursiveCholesky};
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
+pub use iterations::Method;
+pub(crate) use iterations::{Iterations, Solved};
 pub(crate) use join::{JOINED, join_all};
 pub use schur::Schur;
-pub use solution::{Solution, SolveRequest};
-pub use touched::Touched;
+pub use solution::Solution;
+pub use window_factor::WindowFactor;
 
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
-/// What a path should know of an updater.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct UpdaterProfile {
-    /// Whether Schur complements are exact to rounding in double precision. If they are not, solutions
-    /// must still be, to the tolerance below: the path then corrects every window by the solution at its
-    /// end.
-    pub exact: bool,
-    /// Greatest gap in contact that a solution may leave, relative to the approach.
-    pub tolerance: f64,
-    /// What the work of a window costs.
-    pub cost: WindowCost,
-}
-
-/// What the work of a window costs, in nanoseconds: from it the path chooses how many nodes to watch.
+/// What the work of a window costs with a factor, in nanoseconds: from it the path chooses how many nodes to watch.
 ///
 /// They are constants and not measurements, so that the same input gives the same windows, and the same
 /// bits, on every run. States do not depend on them; only time does, and not by much near the best window.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[doc(hidden)]
 pub struct WindowCost {
     /// A solution on n contact nodes, per n².
     pub solve: f64,
@@ -92,7 +86,7 @@ impl Default for WindowCost {
 ///
 /// ```
 /// use asperity::contact::ContactSequence;
-/// use asperity::updater::{self, LinearUpdater, Schur, Solution, SolveRequest, Touched};
+/// use asperity::updater::{self, LinearUpdater, Schur, Solution, WindowFactor};
 /// use asperity::{Boussinesq, Error, Grid, LoadingSolver, Problem, SelfAffine};
 /// use nalgebra::{DMatrix, DVector};
 ///
@@ -134,7 +128,7 @@ impl Default for WindowCost {
 ///         Ok(())
 ///     }
 ///
-///     fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+///     fn join(&mut self, _: &Problem, _: &ContactSequence, _: &WindowFactor) -> Result<(), Error> {
 ///         Ok(())
 ///     }
 ///
@@ -142,12 +136,13 @@ impl Default for WindowCost {
 ///         &mut self,
 ///         problem: &Problem,
 ///         contact: &ContactSequence,
-///         request: SolveRequest,
+///         count: usize,
+///         approach: f64,
 ///         solution: &mut Solution,
 ///     ) -> Result<(), Error> {
-///         let contact = &contact.order()[..request.count];
+///         let contact = &contact.order()[..count];
 ///         let gap = contact.iter().map(|&node| problem.initial_gap()[node]);
-///         let overlap = DVector::from_iterator(contact.len(), gap.map(|gap| request.approach - gap));
+///         let overlap = DVector::from_iterator(contact.len(), gap.map(|gap| approach - gap));
 ///         let rhs = [overlap, DVector::from_element(contact.len(), 1.0)];
 ///         let solved = solve(problem, contact, DMatrix::from_columns(&rhs))?;
 ///         solution.pressure = solved.column(0).iter().copied().collect();
@@ -196,11 +191,7 @@ pub trait LinearUpdater {
     ) -> Result<(), Error>;
 
     /// Takes note of the nodes that joined, the last ones of `contact`. They are among the nodes of the
-    /// last call of [`watch`](Self::watch), of whose Schur complement `touched` holds the Cholesky factor.
-    ///
-    /// If the updater is not exact, the path may put the nodes that joined last into another order before it
-    /// calls `watch` again, and before it solves on a part of them; and more nodes may join than `touched`
-    /// knows of, which is empty then, if too many touch at one approach to be watched.
+    /// last call of [`watch`](Self::watch); `factor` is the Cholesky factor of their part of its Schur complement.
     ///
     /// # Errors
     ///
@@ -209,15 +200,15 @@ pub trait LinearUpdater {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        factor: &WindowFactor,
     ) -> Result<(), Error>;
 
-    /// Solves on the first nodes of `contact`: on all of them while the path advances, on fewer for an
-    /// earlier state. A later call must not depend on that. A path begins with a solution on no node, a
-    /// [`count`](SolveRequest::count) of 0: pressures and rates are empty then.
+    /// Solves on the first `count` nodes of `contact` at an approach δ \[m\], in the gauge of the kernel: on all nodes while
+    /// the path advances, on fewer for an earlier state. Later answers must not depend on such a call. A path begins with a
+    /// solution on no node, a `count` of 0: pressures and rates are empty then.
     ///
-    /// A path holds an [exact](UpdaterProfile::exact) updater to its answer: where that does not close the gaps in
-    /// contact to rounding, the path ends with [`UpdaterError::ContactNotClosed`].
+    /// A path checks the answer: if it does not close the gaps in contact to rounding, the path ends with
+    /// [`UpdaterError::ContactNotClosed`].
     ///
     /// # Errors
     ///
@@ -226,12 +217,13 @@ pub trait LinearUpdater {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error>;
 
     /// Forgets the last nodes: `contact` has been cut. Called only if the end of a window contradicts its
-    /// last events, which takes a kernel whose growth is not convex or an updater that is not exact.
+    /// last events, which takes a kernel whose growth is not convex, or if the updater could not let them join.
     ///
     /// # Errors
     ///
@@ -262,16 +254,6 @@ pub trait LinearUpdater {
         Err(UpdaterError::ReleaseNotSupported { ix, iy }.into())
     }
 
-    /// How exact the updater is, and what its work costs; by default exact, at the cost of a factor in
-    /// double precision.
-    fn profile(&self) -> UpdaterProfile {
-        UpdaterProfile {
-            exact: true,
-            tolerance: 1e-12,
-            cost: WindowCost::default(),
-        }
-    }
-
     /// Bytes this updater holds when `contact` nodes are in contact and `watched` are watched.
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         let _ = (contact, watched);
@@ -289,62 +271,88 @@ pub trait LinearUpdater {
         let _ = (problem, bytes);
         Ok(())
     }
+
+    /// What the work of a window costs; by default that of a factor in double precision.
+    #[doc(hidden)]
+    fn window_cost(&self) -> WindowCost {
+        WindowCost::default()
+    }
+
+    /// How a path uses the updater; by default for all that it asks.
+    #[doc(hidden)]
+    fn method(&self) -> Method {
+        Method::Factor
+    }
 }
 
+/// Forwards every verb to another updater.
+macro_rules! forward_verbs {
+    ($inner:ident) => {
+        fn watch(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+            schur: &mut Schur,
+        ) -> Result<(), Error> {
+            self.$inner().watch(problem, contact, nodes, schur)
+        }
+
+        fn join(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            factor: &WindowFactor,
+        ) -> Result<(), Error> {
+            self.$inner().join(problem, contact, factor)
+        }
+
+        fn solve(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            count: usize,
+            approach: f64,
+            solution: &mut Solution,
+        ) -> Result<(), Error> {
+            self.$inner()
+                .solve(problem, contact, count, approach, solution)
+        }
+
+        fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+            self.$inner().truncate(problem, contact)
+        }
+
+        fn release(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            node: usize,
+            position: usize,
+        ) -> Result<(), Error> {
+            self.$inner().release(problem, contact, node, position)
+        }
+
+        fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
+            self.$inner().make_room(problem, bytes)
+        }
+    };
+}
+use forward_verbs;
+
 impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        (**self).watch(problem, contact, nodes, schur)
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &Touched,
-    ) -> Result<(), Error> {
-        (**self).join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        request: SolveRequest,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        (**self).solve(problem, contact, request, solution)
-    }
-
-    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        (**self).truncate(problem, contact)
-    }
-
-    fn release(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        node: usize,
-        position: usize,
-    ) -> Result<(), Error> {
-        (**self).release(problem, contact, node, position)
-    }
-
-    fn profile(&self) -> UpdaterProfile {
-        (**self).profile()
-    }
+    forward_verbs!(as_mut);
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (**self).bytes(contact, watched)
     }
 
-    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        (**self).make_room(problem, bytes)
+    fn window_cost(&self) -> WindowCost {
+        (**self).window_cost()
+    }
+
+    fn method(&self) -> Method {
+        (**self).method()
     }
 }
 

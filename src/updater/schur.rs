@@ -18,7 +18,6 @@ pub struct Schur {
     size: usize,
     matrix: Vec<f64>,
     row_sums: Vec<f64>,
-    displacements: Option<Vec<[f64; 2]>>,
 }
 
 impl Schur {
@@ -43,20 +42,7 @@ impl Schur {
         self.size = size;
         self.matrix.resize(numbers, 0.0);
         self.row_sums.resize(size, 0.0);
-        self.displacements = None;
         Ok(())
-    }
-
-    /// Displacements of the watched nodes under the pressure of the last solution and under its rate, if the
-    /// updater knows them better than those of the solution; by default it does not.
-    #[must_use]
-    pub fn displacements(&self) -> Option<&[[f64; 2]]> {
-        self.displacements.as_deref()
-    }
-
-    /// Says that the updater knows better, by watched node.
-    pub fn set_displacements(&mut self, displacements: Vec<[f64; 2]>) {
-        self.displacements = Some(displacements);
     }
 
     /// The Schur complement S, of which only the lower triangle means anything.
@@ -79,6 +65,11 @@ impl Schur {
     /// The reduced row sums σ to write to.
     pub fn row_sums_mut(&mut self) -> &mut [f64] {
         &mut self.row_sums
+    }
+
+    /// `S_ij`, from the lower triangle.
+    pub(crate) fn entry(&self, i: usize, j: usize) -> f64 {
+        self.matrix[i.max(j) + self.size * i.min(j)]
     }
 
     /// The columns of S as stored.

@@ -1,7 +1,7 @@
 //! A surface, a kernel and an updater of one's own.
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, Touched};
+use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, WindowFactor};
 use asperity::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface};
 use nalgebra::{DMatrix, DVector};
 
@@ -141,7 +141,7 @@ impl LinearUpdater for Bordering {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         assert_eq!(self.inverse.nrows() + touched.len(), contact.len());
         self.grow(problem, contact.order());

@@ -5,7 +5,7 @@ use asperity::contact::ContactSequence;
 use asperity::kernel::{self, KernelTable};
 use asperity::loading::History;
 use asperity::updater::{
-    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
@@ -167,7 +167,7 @@ impl LinearUpdater for Forgetful {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.0.join(problem, contact, touched)
     }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use asperity::contact::ContactSequence;
 use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
     UpdaterProfile,
 };
 use asperity::{Error, Grid, LoadingSolver, Problem};
@@ -54,7 +54,7 @@ impl LinearUpdater for Rounded {
 
     /// The factor must be that of the exact complement, in whatever order the path decides: it is made anew
     /// at every solution.
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &WindowFactor) -> Result<(), Error> {
         Ok(())
     }
 
@@ -71,7 +71,7 @@ impl LinearUpdater for Rounded {
         let mut schur = Schur::default();
         inner.watch(problem, &joined, nodes, &mut schur)?;
         let positions: Vec<usize> = (0..nodes.len()).collect();
-        let touched = Touched::of(schur, &positions)?;
+        let touched = WindowFactor::of(schur, &positions)?;
         for &node in nodes {
             joined.push(node)?;
         }

@@ -3,7 +3,7 @@
 use asperity::contact::ContactSequence;
 use asperity::loading::{LoadingEnd, LoadingSolver};
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched};
+use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor};
 use asperity::{
     Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface, UpdaterError,
 };
@@ -194,7 +194,7 @@ impl LinearUpdater for Malformed {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.inner.join(problem, contact, touched)
     }

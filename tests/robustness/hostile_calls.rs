@@ -9,7 +9,7 @@ use asperity::kernel::{self, KernelTable};
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{
     ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
-    SolveRequest, Touched,
+    SolveRequest, WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
@@ -172,7 +172,7 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                 other.resize(*size).unwrap();
                 other.matrix_mut().fill_with_identity();
                 let given = if own { schur.clone() } else { other };
-                let Ok(touched) = Touched::of(given, positions) else {
+                let Ok(touched) = WindowFactor::of(given, positions) else {
                     continue;
                 };
                 for &position in positions {

@@ -3,7 +3,7 @@
 use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
     UpdaterProfile,
 };
 use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Problem, Spectral};
@@ -66,7 +66,7 @@ impl LinearUpdater for Lying {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), asperity::Error> {
         if self.lies("join nothing") {
             return Ok(());

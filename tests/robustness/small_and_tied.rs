@@ -5,7 +5,7 @@ use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
     ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
-    SolveRequest, Touched, UpdaterProfile,
+    SolveRequest, WindowFactor, UpdaterProfile,
 };
 use asperity::{
     Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,
@@ -34,7 +34,7 @@ impl LinearUpdater for Seam {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.inner.join(problem, contact, touched)
     }

@@ -11,7 +11,7 @@ fn contact(nodes: usize, is_in: &[usize]) -> NodeSet {
 #[test]
 fn few_nodes_are_inverted_exactly() -> Result<(), Error> {
     let table = crate::KernelTable::from_fn(
-        row::grid(9)?,
+        test_chain::grid(9)?,
         crate::Boundary::Free,
         crate::ContactGrowth::Monotone,
         // Twice that of the other rows: units matter.
@@ -42,7 +42,7 @@ fn few_nodes_are_inverted_exactly() -> Result<(), Error> {
 /// Patterns of 18 numbers of four bytes, the index of what they were made of, contact nodes, and four fields of the grid.
 #[test]
 fn bytes_are_those_held() -> Result<(), Error> {
-    let mut inverse: SparseInverse = SparseInverse::new(&row::kernel(30)?);
+    let mut inverse: SparseInverse = SparseInverse::new(&test_chain::kernel(30)?);
     let is_in: Vec<usize> = (0..30).filter(|node| node % 4 != 1).collect();
     inverse.update(&contact(30, &is_in));
     assert!(inverse.patterns.len() > 2 && inverse.index.capacity() >= inverse.patterns.len());

@@ -1,6 +1,6 @@
 use super::*;
 use crate::convolution::Convolution;
-use crate::loading::row;
+use crate::loading::test_chain;
 use crate::updater::Dense;
 
 /// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a convolution, all
@@ -20,7 +20,7 @@ fn bytes_of_the_grid_add_up() -> Result<(), Error> {
 /// k nodes watched beside three in contact take 16 (3 + 2 k)² bytes of a dense updater, and 16 k² of the window.
 #[test]
 fn windows_are_halved_until_they_fit() -> Result<(), Error> {
-    let mut run = row::solved(&[0.0; 9], &[0, 1, 2], 1.0)?;
+    let mut run = test_chain::solved(&[0.0; 9], &[0, 1, 2], 1.0)?;
     let fixed = run.memory.fixed;
     let needed = |k: usize| 16 * ((3 + 2 * k).pow(2) + k * k);
     for (budget, size) in [
@@ -48,7 +48,7 @@ fn windows_are_halved_until_they_fit() -> Result<(), Error> {
 /// A contact before the last release is factored anew, beside the updater as it is.
 #[test]
 fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
-    let mut run = row::solved(&[0.0, 9.0, 1.0, 9.0, 2.0], &[0, 2], 3.0)?;
+    let mut run = test_chain::solved(&[0.0, 9.0, 1.0, 9.0, 2.0], &[0, 2], 3.0)?;
     // 0, 2 and 4 touch, and 2 leaves as the fourth event; then it touches again.
     run.contact.remove(2)?;
     run.contact.push(4)?;
@@ -78,7 +78,7 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
 /// Gaps of 0, 1, 2 and 5 m at the approach δ, before any contact: a mean of 2 − δ. An overlap of 10⁻¹⁰ (5 + δ) m is rounding.
 #[test]
 fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
-    let mut run = row::run(&[0.0, 1.0, 2.0, 5.0], Dense)?;
+    let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0], Dense)?;
     run.front.place_at(0.5);
     let mut seen = Vec::new();
     run.survey(false, |line| seen.push((line.node, line.gap, line.closing)))?;
@@ -100,7 +100,7 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
         run.survey(false, |_| ())?;
     }
     // Node 3 alone is out of contact, and the greatest gap is that of node 2: 10⁻¹⁰ (5 + 3) m.
-    let mut run = row::run(&[0.0, 1.0, 5.0, 3.0], Dense)?;
+    let mut run = test_chain::run(&[0.0, 1.0, 5.0, 3.0], Dense)?;
     for node in 0..3 {
         run.contact.push(node)?;
     }
@@ -122,13 +122,13 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
         (7.9e-10, 4e-10, false),
         (8.1e-10, 4e-10, true),
     ] {
-        let run = row::solved(&[0.0, 8.0, 4.0 + x], &[0, 2], 4.0)?;
+        let run = test_chain::solved(&[0.0, 8.0, 4.0 + x], &[0, 2], 4.0)?;
         let found = run.negative_pressure(4.0, overlap);
         assert_eq!(found.map(|(node, _)| node), is_found.then_some(2), "{x:e}");
         // A hundredth further it is pressure.
         assert!(run.negative_pressure(4.01, overlap).is_none());
     }
-    let mut run = row::run(&[0.0, 8.0], row::Altered::given(vec![f64::NAN], vec![1.0]))?;
+    let mut run = test_chain::run(&[0.0, 8.0], test_chain::Altered::given(vec![f64::NAN], vec![1.0]))?;
     run.contact.push(0)?;
     run.solve_field(1.0, 1.0)?;
     assert!(run.negative_pressure(1.0, 0.0).is_some());
@@ -139,15 +139,15 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
 #[test]
 fn the_greatest_rate_is_found() -> Result<(), Error> {
     for (contact, rate) in [(&[0, 3, 4][..], 0.25), (&[3, 4], 0.2), (&[], 0.0)] {
-        let run = row::solved(&[0.0; 6], contact, 1.0)?;
+        let run = test_chain::solved(&[0.0; 6], contact, 1.0)?;
         assert!((run.greatest_rate() - rate).abs() < 1e-15);
     }
     Ok(())
 }
 
 /// Dense solutions whose pressures and rates are too large by a part.
-fn off(pressure: f64, rate: f64) -> row::Altered {
-    row::Altered::solutions(move |solution| {
+fn off(pressure: f64, rate: f64) -> test_chain::Altered {
+    test_chain::Altered::solutions(move |solution| {
         let parts = [pressure, rate];
         for (values, part) in [&mut solution.pressure, &mut solution.rate]
             .into_iter()
@@ -170,7 +170,7 @@ fn solutions_close_the_contact() -> Result<(), Error> {
         (0.0, -2.1e-10, Some("rate of the gap")),
         (f64::NAN, 0.0, Some("gap")),
     ] {
-        let mut run = row::run(&[0.0, 4.0, 4.0], off(pressure, rate))?;
+        let mut run = test_chain::run(&[0.0, 4.0, 4.0], off(pressure, rate))?;
         run.contact.push(0)?;
         match (run.solve_field(2.0, f64::INFINITY), refused) {
             (Ok(()), None) => {}
@@ -191,7 +191,7 @@ fn solutions_close_the_contact() -> Result<(), Error> {
 
 #[test]
 fn errors_say_where_the_path_is() -> Result<(), Error> {
-    let mut run = row::run(&[0.0; 6], Dense)?;
+    let mut run = test_chain::run(&[0.0; 6], Dense)?;
     run.contact.push(3)?;
     run.front.place_at(1.5);
     let bad = BadPivot {

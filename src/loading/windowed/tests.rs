@@ -1,5 +1,5 @@
 use super::*;
-use crate::loading::row;
+use crate::loading::test_chain;
 use crate::updater::{Dense, Schur};
 
 fn windowed(size: Option<usize>) -> Windowed {
@@ -95,7 +95,7 @@ fn the_next_nodes_are_chosen() -> Result<(), Error> {
 
 #[test]
 fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
-    let mut run = row::run(&[0.0; 100], Dense)?;
+    let mut run = test_chain::run(&[0.0; 100], Dense)?;
     assert_eq!(windowed(Some(7)).next_size(&run, 100), 7);
     assert_eq!(windowed(Some(1000)).next_size(&run, 100), 100);
     // Four to have three of them touch.
@@ -121,41 +121,41 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
         );
     };
     near(
-        contradiction(&row::solved(&[0.0, 0.6, 9.0, 9.0], &[0], 1.0)?, 1.0),
+        contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 9.0], &[0], 1.0)?, 1.0),
         0.8,
     );
     near(
-        contradiction(&row::solved(&[0.0, 0.6, 9.0, 0.5], &[0], 1.0)?, 1.0),
+        contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 0.5], &[0], 1.0)?, 1.0),
         0.5,
     );
     // From a solution at the approach 1 to one at 1.5.
     near(
-        contradiction(&row::solved(&[0.0, 9.0, 9.0, 1.25], &[0], 1.0)?, 1.5),
+        contradiction(&test_chain::solved(&[0.0, 9.0, 9.0, 1.25], &[0], 1.0)?, 1.5),
         1.25,
     );
     assert_eq!(
-        contradiction(&row::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0),
+        contradiction(&test_chain::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0),
         None
     );
     // A millionth of a metre is left at node 0, so that eight of them are what rounds.
     for (overlap, is_one) in [(7.99e-6, false), (8.01e-6, true)] {
-        let given = row::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
-        let mut run = row::run(&[0.0, 9.0, 1.0 - overlap], given)?;
+        let given = test_chain::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
+        let mut run = test_chain::run(&[0.0, 9.0, 1.0 - overlap], given)?;
         run.contact.push(0)?;
         run.solve_field(1.0, 1.0)?;
         assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
     }
     // Where next to nothing is left it is eight times 2⁻⁵² of 9 + 1 m, 1.8·10⁻¹⁴ m.
     for (overlap, is_one) in [(1e-14, false), (3e-14, true)] {
-        let run = row::solved(&[0.0, 9.0, 1.0 - overlap], &[0], 1.0)?;
+        let run = test_chain::solved(&[0.0, 9.0, 1.0 - overlap], &[0], 1.0)?;
         assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
     }
     // When tension began is not known, nor when a gap overlapped that does not close: between two nodes that push it down
     // by 3/4 m each for each metre.
-    let tension = row::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
+    let tension = test_chain::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
     assert_eq!(contradiction(&tension, 1.0), Some(f64::NEG_INFINITY));
-    let given = row::Altered::given(vec![1.0; 2], vec![0.75; 2]);
-    let mut run = row::run(&[0.0, 1.5, 0.0, 9.0], given)?;
+    let given = test_chain::Altered::given(vec![1.0; 2], vec![0.75; 2]);
+    let mut run = test_chain::run(&[0.0, 1.5, 0.0, 9.0], given)?;
     run.contact.push(0)?;
     run.contact.push(2)?;
     run.solve_field(4.0, 1.0)?;
@@ -170,7 +170,7 @@ fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun<Dense>, usize), E
     let gaps = [
         0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher,
     ];
-    let mut run = row::run(&gaps, Dense)?;
+    let mut run = test_chain::run(&gaps, Dense)?;
     run.contact.push(0)?;
     run.front.place_at(0.5);
     let mut windowed = windowed(Some(8));
@@ -200,7 +200,7 @@ fn events_behind_a_contradiction_are_taken_back() -> Result<(), Error> {
 /// cell area of 2 m².
 #[test]
 fn events_become_states() -> Result<(), Error> {
-    let mut run = row::run(&[0.0, 20.0, 1.0, 20.0, 1.25], Dense)?;
+    let mut run = test_chain::run(&[0.0, 20.0, 1.0, 20.0, 1.25], Dense)?;
     run.front.place_at(0.5);
     let mut windowed = windowed(Some(8));
     open(&mut windowed, &[(2, 0.5), (4, 0.75)])?;
@@ -224,7 +224,7 @@ fn events_become_states() -> Result<(), Error> {
 
 #[test]
 fn the_first_node_that_is_left_is_named() -> Result<(), Error> {
-    let run = row::run(&[0.0; 9], Dense)?;
+    let run = test_chain::run(&[0.0; 9], Dense)?;
     let mut windowed = windowed(None);
     windowed.ranking = vec![(1.0, 5), (3.0, 3), (2.0, 8)];
     assert!(matches!(

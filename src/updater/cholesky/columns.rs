@@ -12,7 +12,7 @@ use super::operations;
 use super::panels::{Panels, ROWS};
 use super::products::subtract_transposed;
 use crate::parallel;
-use crate::updater::Touched;
+use crate::updater::WindowFactor;
 
 /// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
 /// that there are several to share among threads: each block reads all of L.
@@ -227,7 +227,7 @@ impl Columns {
 
     /// Appends to the factor the rows of the nodes that touched, and their rows of R to the columns
     /// of those that did not (at `untouched`, ascending).
-    pub(super) fn commit(&mut self, factor: &mut Panels, touched: &Touched, untouched: &[usize]) {
+    pub(super) fn commit(&mut self, factor: &mut Panels, touched: &WindowFactor, untouched: &[usize]) {
         let before = self.rows;
         let width = untouched.len();
         let mut values = self.room(before + touched.len(), width);

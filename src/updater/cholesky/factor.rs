@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::columns::Columns;
 use super::panels::{Panels, Rotations, remove};
 use crate::contact::ContactSequence;
-use crate::updater::{Schur, Touched, check_count};
+use crate::updater::{Schur, WindowFactor, check_count};
 use crate::{Error, Problem};
 
 /// Where a Cholesky updater spent its time.
@@ -105,7 +105,7 @@ impl Factor {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         check_count(self.watched.len(), touched.watched())?;
         check_count(self.len() + touched.len(), contact.len())?;

@@ -11,7 +11,7 @@ pub use factor::CholeskyTimings;
 
 use std::time::Instant;
 
-use super::{JOINED, LinearUpdater, Schur, Solution, SolveRequest, Touched, check_count, join_all};
+use super::{JOINED, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 use factor::Factor;
@@ -66,7 +66,7 @@ impl RecursiveCholesky {
     /// Bytes held at most while [`Self::of`] factors `contact` nodes.
     pub(crate) fn bytes_of(contact: usize) -> usize {
         let updater = Self::new().bytes(contact, JOINED);
-        updater.saturating_add(Touched::bytes(JOINED))
+        updater.saturating_add(WindowFactor::bytes(JOINED))
     }
 
     /// Where the time went so far.
@@ -104,7 +104,7 @@ impl LinearUpdater for RecursiveCholesky {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.factor.join(problem, contact, touched)?;
         let positions = touched.positions().iter();
@@ -120,20 +120,21 @@ impl LinearUpdater for RecursiveCholesky {
         &mut self,
         _problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
         check_count(self.factor.len(), contact.len())?;
         let start = Instant::now();
-        let Some(border) = self.border.get(..request.count) else {
-            return check_count(self.border.len(), request.count);
+        let Some(border) = self.border.get(..count) else {
+            return check_count(self.border.len(), count);
         };
-        let Solution { pressure, rate, .. } = solution;
+        let Solution { pressure, rate } = solution;
         pressure.clear();
         pressure.extend(
             border
                 .iter()
-                .map(|[gap, unit, _]| request.approach * unit - gap),
+                .map(|[gap, unit, _]| approach * unit - gap),
         );
         rate.clear();
         rate.extend(border.iter().map(|[_, unit, _]| unit));

@@ -4,7 +4,7 @@ use super::local::Local;
 use crate::Problem;
 use crate::contact::ContactSequence;
 use crate::krylov::add_scaled;
-use crate::updater::Solution;
+use crate::updater::{Solution, Solved};
 
 /// Pressures of the grid and the displacements that they cause.
 #[derive(Debug, Clone, Default)]
@@ -21,8 +21,8 @@ pub(super) struct Field {
 pub(super) struct Equilibrium {
     pub(super) count: usize,
     pub(super) approach: f64,
-    /// How much further the approach may go with the rate.
-    pub(super) span: f64,
+    /// How far the approach may go on with the rate.
+    pub(super) serves: f64,
     pub(super) load: Field,
     pub(super) rate: Field,
 }
@@ -75,6 +75,21 @@ impl Equilibrium {
         }
     }
 
+    /// The pressures on its contact, the first nodes of a sequence, and all displacements, as they are.
+    pub(super) fn write(&self, contact: &ContactSequence, solved: &mut Solved) {
+        let values = |field: &Field| {
+            let nodes = contact.order()[..self.count].iter();
+            nodes
+                .map(|&node| field.pressure.get(node).copied().unwrap_or(0.0))
+                .collect()
+        };
+        solved.solution.pressure = values(&self.load);
+        solved.solution.rate = values(&self.rate);
+        let [u, u_rate] = &mut solved.displacement;
+        u.clone_from(&self.load.displacement);
+        u_rate.clone_from(&self.rate.displacement);
+    }
+
     /// The pressure at another approach, as long as no node joins.
     pub(super) fn load_at(&self, approach: f64) -> Field {
         let (time, load, rate) = (approach - self.approach, &self.load, &self.rate);
@@ -104,7 +119,7 @@ impl Equilibrium {
         ]
     }
 
-    /// `x_jᵀ r` for what is left on the contact near a watched node.
+    /// `x_jᵀ r` for what is left on the contact near a proposed node.
     pub(super) fn left_near(&self, problem: &Problem, local: &Local) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for (&node, x) in local.contact.iter().zip(&local.weights) {
@@ -203,7 +218,7 @@ mod tests {
     /// Nodes 0 and 2 of four in a row are solved at the approach 3, and node 1 not: what is left is 3 − 0 − 2.5, 3 − 1 − 1.5 and
     /// 3 − 2 − 1.125, and of rates 1/2, 3/4 and 0.
     fn solved() -> Result<(Problem, ContactSequence, Equilibrium), crate::Error> {
-        let problem = crate::row::problem(&[0.0, 1.0, 2.0, 9.0])?;
+        let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 9.0])?;
         let contact = ContactSequence::with_order(problem.grid(), [0, 2, 1])?;
         let of = |pressure: [f64; 4], displacement: [f64; 4]| Field {
             pressure: pressure.to_vec(),

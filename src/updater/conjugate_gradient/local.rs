@@ -335,7 +335,7 @@ mod tests {
     /// Beside a node alone x = 1/4. Of the neighbours 0 and 1 it is (−1, 4)/15 for node 2.
     #[test]
     fn local_solutions_of_nodes_in_a_row() -> Result<(), Error> {
-        let problem = row::problem(&[0.0; 5])?;
+        let problem = test_chain::problem(&[0.0; 5])?;
         let neighbourhood = Neighbourhood::new(&problem);
         let cases = [
             (1, vec![0, 2], vec![0.25, 0.25]),

@@ -4,23 +4,23 @@ mod equilibrium;
 mod galerkin;
 mod instants;
 mod local;
+mod proposed;
 mod row_sums;
+mod solutions;
 mod solver;
-mod state;
 #[cfg(test)]
 mod tests;
 mod tolerances;
-mod watched;
 
 use super::{
-    LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile, WindowCost, check_count,
+    Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
 use crate::krylov::check_cells;
 use crate::parallel::inside;
 use crate::{Error, Problem};
-use state::State;
-use tolerances::Criteria;
+use solutions::Solutions;
+use tolerances::{Aim, Criteria};
 
 /// Bytes held at most for each node of the grid, and in addition for each one in contact. Measured on grids from
 /// 20 × 20 to 96 × 96: 315 to 470, and 390 to 800; see `tests/robustness/memory_peaks.rs`.
@@ -31,31 +31,31 @@ const BYTES_A_CONTACT_NODE: usize = 1000;
 /// get large and reach the computation or storage limitation", as the paper has it).
 ///
 /// No factor is kept, and nothing else that grows faster than the grid: a path to full contact on 512 × 512
-/// nodes takes some 300 MB instead of 219 GB.
+/// nodes takes some 300 MB instead of 275 GB.
 ///
-/// * A solution is exact to the [tolerance](Self::with_tolerance): gaps in contact are zero to 10⁻¹⁰ of the
-///   approach. It starts from the last one, and from what the watched nodes did to the contact near them.
-/// * A Schur complement is not exact. Inside a window it acts on what has changed since the window began
-///   only, and there the contact near a node answers for nearly all of it. With the local solutions
-///   `x_j = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
+/// A solution is exact to the [tolerance](Self::with_tolerance): gaps in contact are zero to 10⁻¹⁰ of the
+/// approach. It starts from the last one, and from what nodes that joined did to the contact near them. An exact
+/// [Schur complement](LinearUpdater::watch) takes a solution for each of its nodes.
 ///
-///   ```math
-///   \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
-///   ```
+/// A path does not need that: it takes Schur complements that are nearly exact, and corrects them by what the
+/// next solution shows (see [`loading`](crate::loading)). Inside a window a Schur complement acts on what has changed since the
+/// window began only, and there the contact near a node answers for nearly all of it. With the local solutions
+/// `x_j = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
 ///
-///   exceeds S by the square of the error of x. The path corrects it by what the next solution shows; see
-///   [`loading`](crate::loading).
+/// ```math
+/// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
+/// ```
+///
+/// exceeds S by the square of the error of x.
 ///
 /// Cells of a periodic half-space may be [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as wide: on longer ones
-/// [`watch`](LinearUpdater::watch) is an [`Error::OutOfRange`], but a solution on a known contact is not.
+/// a path is an [`Error::OutOfRange`], but a solution on a known contact is not.
 ///
 /// Memory: some twenty fields of the grid.
 #[derive(Debug, Clone)]
 pub struct ConjugateGradient {
     criteria: Criteria,
-    state: Option<State>,
-    /// Nodes of the grid, once they are known.
-    nodes: usize,
+    solutions: Option<Solutions>,
 }
 
 impl Default for ConjugateGradient {
@@ -65,8 +65,7 @@ impl Default for ConjugateGradient {
                 tolerance: 1e-10,
                 max_iterations: 5000,
             },
-            state: None,
-            nodes: 0,
+            solutions: None,
         }
     }
 }
@@ -107,11 +106,17 @@ impl ConjugateGradient {
     ///
     /// [`Error::GridMismatch`] for a problem on another grid than the one before, and
     /// [`Error::NodeOutOfGrid`] for a contact that is not one of it.
-    fn state(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<&mut State, Error> {
+    fn solutions(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+    ) -> Result<&mut Solutions, Error> {
         problem.check_nodes(contact.order())?;
-        let state = self.state.get_or_insert_with(|| State::new(problem));
-        state.grid().check_shape(problem.grid().shape())?;
-        Ok(state)
+        let solutions = self
+            .solutions
+            .get_or_insert_with(|| Solutions::new(problem));
+        solutions.grid().check_shape(problem.grid().shape())?;
+        Ok(solutions)
     }
 
     /// Bytes held on a grid of so many nodes with so many of them in contact.
@@ -119,47 +124,14 @@ impl ConjugateGradient {
         let fixed = nodes.saturating_mul(BYTES_A_NODE);
         fixed.saturating_add(contact.saturating_mul(BYTES_A_CONTACT_NODE))
     }
+}
 
-    /// `Ok` if a path on these cells needs no factor.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] otherwise.
-    pub(super) fn check_cells(problem: &Problem) -> Result<(), Error> {
-        let expected = "at most 10 without a factor; a path with one takes any";
-        check_cells(
-            &problem.grid(),
-            problem.boundary(),
-            (Self::MAX_ASPECT, expected),
-        )
+impl Iterations for ConjugateGradient {
+    fn tolerance(&self) -> f64 {
+        self.criteria.tolerance
     }
 
-    /// `Ok` if a budget in bytes is enough for a grid with so many nodes in contact.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::MemoryBudget`] otherwise.
-    pub(super) fn check_room(
-        &mut self,
-        problem: &Problem,
-        budget: usize,
-        contact: usize,
-    ) -> Result<(), Error> {
-        self.nodes = problem.grid().nodes();
-        let needed = self.bytes(contact, 0);
-        if needed <= budget {
-            return Ok(());
-        }
-        let fixed = self.bytes(0, 0);
-        Err(Error::MemoryBudget {
-            needed,
-            budget,
-            nodes_that_fit: budget.saturating_sub(fixed) / BYTES_A_CONTACT_NODE,
-        })
-    }
-
-    /// Begins with a contact and the solution on it.
-    pub(super) fn take_over(
+    fn take_over(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
@@ -167,18 +139,112 @@ impl ConjugateGradient {
         solution: &Solution,
     ) -> Result<(), Error> {
         problem.check_nodes(contact.order())?;
-        let mut state = State::new(problem);
-        state.take_over(contact, approach, solution);
-        self.state = Some(state);
+        let mut solutions = Solutions::new(problem);
+        solutions.take_over(contact, approach, solution);
+        self.solutions = Some(solutions);
         Ok(())
     }
-}
 
-impl LinearUpdater for ConjugateGradient {
     /// # Errors
     ///
     /// [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is not positive
     /// definite, and [`Error::OutOfRange`] for periodic cells that are too long.
+    fn propose(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        problem.check_nodes(nodes)?;
+        Iterations::check_cells(self, problem)?;
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        check_count(solutions.count(), contact.len())?;
+        inside(|| {
+            let (complement, displacements) =
+                solutions.propose(criteria, problem, contact, nodes)?;
+            schur.clone_from(complement);
+            Ok(displacements)
+        })
+    }
+
+    fn advance(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        span: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let criteria = self.criteria;
+        let aim = if span < f64::INFINITY {
+            Aim::Span(span)
+        } else {
+            Aim::Exact
+        };
+        let solutions = self.solutions(problem, contact)?;
+        inside(|| solutions.advance(criteria, problem, contact, (approach, aim), solved))
+    }
+
+    fn probe(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        error: f64,
+    ) -> Result<Vec<f64>, Error> {
+        check_prefix(contact, count)?;
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        inside(|| solutions.probe(criteria, problem, contact, (count, approach), error))
+    }
+
+    fn solve_apart(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        check_prefix(contact, count)?;
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        let mut solved = Solved::default();
+        let at = (count, approach);
+        inside(|| solutions.solve_apart(criteria, problem, contact, at, &mut solved))?;
+        *solution = solved.solution;
+        Ok(())
+    }
+
+    fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        self.solutions(problem, contact)?.truncate(contact);
+        Ok(())
+    }
+
+    fn leave(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        self.solutions(problem, contact)?.keep(contact);
+        Ok(())
+    }
+
+    fn bytes(&self, nodes: usize, contact: usize) -> usize {
+        Self::bytes_of(nodes, contact)
+    }
+
+    fn check_cells(&self, problem: &Problem) -> Result<(), Error> {
+        let expected = "at most 10 without a factor; a path with one takes any";
+        check_cells(
+            &problem.grid(),
+            problem.boundary(),
+            (Self::MAX_ASPECT, expected),
+        )
+    }
+}
+
+/// Exact to the tolerance, at the cost of a solution for each watched node.
+impl LinearUpdater for ConjugateGradient {
     fn watch(
         &mut self,
         problem: &Problem,
@@ -187,11 +253,23 @@ impl LinearUpdater for ConjugateGradient {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
-        Self::check_cells(problem)?;
         let criteria = self.criteria;
-        let state = self.state(problem, contact)?;
-        check_count(state.count(), contact.len())?;
-        inside(|| state.watch(criteria, problem, contact, nodes, schur))
+        let solutions = self.solutions(problem, contact)?;
+        schur.resize(nodes.len())?;
+        let (table, sums) = (problem.table(), problem.row_sums());
+        for (j, &node) in nodes.iter().enumerate() {
+            let place = table.place(node);
+            let coupling = |other: usize| table.between(table.place(other), place);
+            let answer = inside(|| solutions.respond(criteria, problem, contact, coupling))?;
+            let mut matrix = schur.matrix_mut();
+            for (i, &other) in nodes.iter().enumerate().skip(j) {
+                matrix[(i, j)] = coupling(other) - answer.displacement[other];
+            }
+            let contact = contact.order().iter();
+            let explained: f64 = contact.map(|&i| sums[i] * answer.pressure[i]).sum();
+            schur.row_sums_mut()[j] = sums[node] - explained;
+        }
+        Ok(())
     }
 
     /// Nothing happens before the next solution, which finds the nodes in the contact.
@@ -199,13 +277,13 @@ impl LinearUpdater for ConjugateGradient {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        factor: &WindowFactor,
     ) -> Result<(), Error> {
-        let state = self.state(problem, contact)?;
-        let joined = contact.len().checked_sub(state.count());
+        let count = self.solutions(problem, contact)?.count();
+        let joined = contact.len().checked_sub(count);
         match joined {
-            Some(joined) if joined >= touched.len() => Ok(()),
-            _ => check_count(state.count() + touched.len(), contact.len()),
+            Some(joined) if joined >= factor.len() => Ok(()),
+            _ => check_count(count + factor.len(), contact.len()),
         }
     }
 
@@ -213,20 +291,22 @@ impl LinearUpdater for ConjugateGradient {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        if request.count > contact.len() {
-            return check_count(contact.len(), request.count);
+        if count < contact.len() {
+            return self.solve_apart(problem, contact, count, approach, solution);
         }
-        let criteria = self.criteria;
-        let state = self.state(problem, contact)?;
-        inside(|| state.solve(criteria, problem, contact, request, solution))
+        check_prefix(contact, count)?;
+        let mut solved = Solved::default();
+        self.advance(problem, contact, approach, f64::INFINITY, &mut solved)?;
+        *solution = solved.solution;
+        Ok(())
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        self.state(problem, contact)?.truncate(contact);
-        Ok(())
+        self.cut(problem, contact)
     }
 
     fn release(
@@ -236,24 +316,21 @@ impl LinearUpdater for ConjugateGradient {
         _node: usize,
         _position: usize,
     ) -> Result<(), Error> {
-        self.state(problem, contact)?.keep(contact);
-        Ok(())
+        self.leave(problem, contact)
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        UpdaterProfile {
-            exact: false,
-            tolerance: self.criteria.tolerance,
-            cost: WindowCost::default(),
-        }
-    }
-
-    /// Not before the grid is known, by [`make_room`](Self::make_room).
+    /// On a grid that is not known before the first call.
     fn bytes(&self, contact: usize, _watched: usize) -> usize {
-        Self::bytes_of(self.nodes, contact)
+        let nodes = self.solutions.as_ref();
+        Self::bytes_of(nodes.map_or(0, |known| known.grid().nodes()), contact)
     }
 
-    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        self.check_room(problem, bytes, 0)
+    fn method(&self) -> Method {
+        Method::Iterations(Box::new(self.clone()))
     }
+}
+
+/// `Ok` if a contact has `count` nodes.
+fn check_prefix(contact: &ContactSequence, count: usize) -> Result<(), Error> {
+    check_count(contact.len(), count.max(contact.len()))
 }

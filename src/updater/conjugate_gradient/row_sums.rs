@@ -5,7 +5,7 @@ use std::mem;
 use super::equilibrium::Field;
 use super::local::Local;
 use super::solver::{Equation, Solver};
-use super::watched::Watched;
+use super::proposed::Proposed;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::{Error, Problem};
@@ -14,7 +14,7 @@ use crate::{Error, Problem};
 /// exact at the ends of windows anyway, and local solutions know nearly all of what a residual leaves.
 const SUMS_TOLERANCE: f64 = 3e-3;
 /// The row sums are solved for when one node in so many is new in contact. Until then local solutions tell what
-/// those near a watched node make of it.
+/// those near a proposed node make of it.
 const STALE: usize = 200;
 /// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
 const SUMS_OPEN: f64 = 0.03;
@@ -39,12 +39,12 @@ impl RowSums {
         }
     }
 
-    /// Follows nodes that were watched and have joined since, and solves on the whole contact if what is known is
+    /// Follows nodes that were proposed and have joined since, and solves on the whole contact if what is known is
     /// no longer good enough. `open` says what part of the grid still closes.
     pub(super) fn follow(
         &mut self,
         (solver, directions): (&mut Solver, &mut Directions),
-        watched: &Watched,
+        proposed: &Proposed,
         max_iterations: usize,
         problem: &Problem,
         contact: &ContactSequence,
@@ -55,8 +55,8 @@ impl RowSums {
             if new == 0 {
                 return Ok(());
             }
-            // Nodes that joined without being watched are not in the start.
-            let follows = watched.carry_row_sums(contact, &mut self.start);
+            // Nodes that joined without being proposed are not in the start.
+            let follows = proposed.carry_row_sums(contact, &mut self.start);
             if follows && STALE * new < contact.len() && open > SUMS_OPEN {
                 return Ok(());
             }
@@ -77,7 +77,7 @@ impl RowSums {
         Ok(())
     }
 
-    /// What is left of the row sum of a watched node: `s_j − C_jI C_II⁻¹ s_I`.
+    /// What is left of the row sum of a proposed node: `s_j − C_jI C_II⁻¹ s_I`.
     pub(super) fn left_at(&self, problem: &Problem, local: &Local) -> f64 {
         let left = |node: usize| problem.row_sums()[node] - self.field.displacement[node];
         let near = local.contact.iter().zip(&local.weights);
@@ -102,14 +102,14 @@ impl RowSums {
 mod tests {
     use super::super::tests::problem;
     use super::*;
-    use crate::row;
+    use crate::test_chain;
     use crate::updater::Schur;
     use crate::updater::conjugate_gradient::local::Neighbourhood;
 
     /// Row sums in a row of four are 5, 6, 6 and 5. Of node 1 an answer to two nodes takes 1/4 each of what is left there.
     #[test]
     fn what_is_left_of_row_sums() -> Result<(), Error> {
-        let problem = row::problem(&[0.0; 4])?;
+        let problem = test_chain::problem(&[0.0; 4])?;
         let mut sums = RowSums::start(2, vec![1.0, 2.0, 3.0, 4.0]);
         sums.field.displacement = vec![4.0, 1.5, 4.0, 0.0];
         let local = Local {

@@ -82,7 +82,7 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     let mut schur = Schur::default();
     updater.watch(&problem, &contact, &nodes[60..70], &mut schur)?;
     let positions: Vec<usize> = (0..6).collect();
-    let touched = Touched::of(schur, &positions)?;
+    let touched = WindowFactor::of(schur, &positions)?;
     for &node in &nodes[60..66] {
         contact.push(node)?;
     }
@@ -135,7 +135,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     )?;
     let mut schur = Schur::default();
     updater.watch(&problem, &contact, &[70, 71, 72, 73, 74, 75], &mut schur)?;
-    let touched = Touched::of(schur, &[0, 1, 2, 3, 4, 5])?;
+    let touched = WindowFactor::of(schur, &[0, 1, 2, 3, 4, 5])?;
     for node in 70..73 {
         contact.push(node)?;
     }
@@ -166,7 +166,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     contact.truncate(59);
     assert!(
         updater
-            .join(&problem, &contact, &Touched::default())
+            .join(&problem, &contact, &WindowFactor::default())
             .is_err()
     );
     let mut schur = Schur::default();

@@ -1,7 +1,5 @@
 //! How exact solutions have to be.
 
-use crate::updater::SolveRequest;
-
 /// Residual of the rate, which is 1 in contact, where the solution itself is wanted: rounding.
 const LEAST_RATE_TOLERANCE: f64 = 1e-11;
 /// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
@@ -21,6 +19,28 @@ const ADJOINT: f64 = 30.0;
 const DRIFT: f64 = 0.25;
 /// Part of it that comes from the rate in a window: it comes again in each.
 const RATE_DRIFT: f64 = 0.1;
+/// What a solution is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Aim {
+    /// The gaps of proposed nodes, to this error \[m\]. No rate.
+    Gaps(f64),
+    /// A path that goes on with the solution over this span of the approach \[m\].
+    Span(f64),
+    /// The solution itself, as exact as iterations go.
+    Exact,
+}
+
+impl Aim {
+    /// How far the approach may go on with a solution.
+    pub(super) fn span(self) -> f64 {
+        match self {
+            Self::Gaps(_) => 0.0,
+            Self::Span(span) => span,
+            Self::Exact => f64::INFINITY,
+        }
+    }
+}
+
 /// When iterations end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
@@ -41,30 +61,30 @@ pub(super) struct Tolerances {
 
 impl Tolerances {
     /// For overlaps of up to `length`, and gaps that close at the rate `open` on average.
-    pub(super) fn of(criteria: Criteria, request: SolveRequest, length: f64, open: f64) -> Self {
-        let SolveRequest {
-            span, gap_error, ..
-        } = request;
+    pub(super) fn of(criteria: Criteria, aim: Aim, length: f64, open: f64) -> Self {
         let least = criteria.tolerance * length;
-        if span == f64::INFINITY {
-            return Self {
+        match aim {
+            Aim::Exact => Self {
                 load: least,
                 rate: LEAST_RATE_TOLERANCE,
                 drift: [f64::INFINITY; 2],
-            };
-        }
-        let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
-        let of_length = ADJOINT * OF_LENGTH * length / span;
-        let rate = RATE_TOLERANCE.min(OF_OPEN * open).min(of_length);
-        let drift = if span > 0.0 {
-            DRIFT * ADJOINT * least
-        } else {
-            f64::INFINITY
-        };
-        Self {
-            load: ADJOINT * gap_error.max(of_span).max(least),
-            rate: rate.max(LEAST_RATE_TOLERANCE),
-            drift: [drift, RATE_DRIFT * drift / span],
+            },
+            Aim::Gaps(error) => Self {
+                load: ADJOINT * error.max(least),
+                rate: LEAST_RATE_TOLERANCE,
+                drift: [f64::INFINITY; 2],
+            },
+            Aim::Span(span) => {
+                let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
+                let of_length = ADJOINT * OF_LENGTH * length / span;
+                let rate = RATE_TOLERANCE.min(OF_OPEN * open).min(of_length);
+                let drift = DRIFT * ADJOINT * least;
+                Self {
+                    load: ADJOINT * of_span.max(least),
+                    rate: rate.max(LEAST_RATE_TOLERANCE),
+                    drift: [drift, RATE_DRIFT * drift / span],
+                }
+            }
         }
     }
 }
@@ -73,18 +93,12 @@ impl Tolerances {
 mod tests {
     use super::*;
 
-    fn tolerances(span: f64, gap_error: f64, length: f64, open: f64) -> Tolerances {
+    fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
         let criteria = Criteria {
             tolerance: 1e-10,
             max_iterations: 1,
         };
-        let request = SolveRequest {
-            count: 1,
-            approach: 1.0,
-            span,
-            gap_error,
-        };
-        Tolerances::of(criteria, request, length, open)
+        Tolerances::of(criteria, aim, length, open)
     }
 
     fn check(found: Tolerances, load: f64, rate: f64, drift: [f64; 2]) {
@@ -106,34 +120,34 @@ mod tests {
     fn the_tightest_bound_counts() {
         let none = f64::INFINITY;
         // The solution itself: rounding.
-        check(tolerances(none, 0.0, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
-        // Without a rate; a window that goes nowhere asks for the tolerance times 30.
-        check(tolerances(0.0, 0.0, 2.0, 0.5), 6e-9, 1.5e-5, [none; 2]);
-        check(tolerances(0.0, 1e-6, 2.0, 0.5), 3e-5, 1.5e-5, [none; 2]);
+        check(tolerances(Aim::Exact, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
+        // Gaps, to the tolerance times 30 or an error times 30.
+        check(tolerances(Aim::Gaps(0.0), 2.0, 0.5), 6e-9, 1e-11, [none; 2]);
+        check(tolerances(Aim::Gaps(1e-6), 2.0, 0.5), 3e-5, 1e-11, [none; 2]);
         // A window of a hundredth of the length: 2e-6 of the span, and a quarter of 30 times the least.
         check(
-            tolerances(1e-2, 0.0, 1.0, 0.5),
+            tolerances(Aim::Span(1e-2), 1.0, 0.5),
             30.0 * 1e-8,
             1.5e-5,
             [7.5e-10, 7.5e-9],
         );
         // A shorter one.
         check(
-            tolerances(1e-3, 0.0, 1.0, 0.5),
+            tolerances(Aim::Span(1e-3), 1.0, 0.5),
             30.0 * 2e-9,
             1.5e-5,
             [7.5e-10, 7.5e-8],
         );
         // Gaps that hardly close: 1e-3 of the rate.
         check(
-            tolerances(1e-3, 0.0, 1.0, 1e-3),
+            tolerances(Aim::Span(1e-3), 1.0, 1e-3),
             30.0 * 2e-9,
             1e-6,
             [7.5e-10, 7.5e-8],
         );
         // A window that is long beside the length: 3e-7 of length over span.
         check(
-            tolerances(10.0, 0.0, 0.1, 0.5),
+            tolerances(Aim::Span(10.0), 0.1, 0.5),
             30.0 * 1e-9,
             3e-9,
             [7.5e-11, 7.5e-13],

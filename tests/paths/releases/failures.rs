@@ -6,7 +6,7 @@ use super::table::{Table, case};
 use asperity::contact::ContactSequence;
 use asperity::loading::ContactEvent;
 use asperity::updater::{
-    Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, Touched,
+    Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
 };
 use asperity::{Error, LoadingState, Problem, UpdaterError};
 use nalgebra::DVector;
@@ -35,7 +35,7 @@ impl LinearUpdater for GrowsOnly {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.0.join(problem, contact, touched)
     }
@@ -97,7 +97,7 @@ impl LinearUpdater for Spoiled {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.inner.join(problem, contact, touched)
     }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::panic::resume_unwind;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile};
+use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, WindowFactor, UpdaterProfile};
 use asperity::{Error, Problem};
 
 /// What happens at the call.
@@ -200,7 +200,7 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        touched: &Touched,
+        touched: &WindowFactor,
     ) -> Result<(), Error> {
         self.call("join", |inner| inner.join(problem, contact, touched))
             .map(drop)

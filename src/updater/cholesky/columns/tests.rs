@@ -187,7 +187,7 @@ fn nodes_that_touch_become_rows() {
         .copy_from(&nalgebra::DMatrix::from_fn(100, 100, dominant));
     // From both blocks, in no order.
     let positions = [70, 3, 99, 50];
-    let touched = Touched::of(schur, &positions).unwrap();
+    let touched = WindowFactor::of(schur, &positions).unwrap();
     let untouched: Vec<usize> = (0..100).filter(|p| !positions.contains(p)).collect();
     columns.commit(&mut factor, &touched, &untouched);
     assert_eq!(

@@ -223,7 +223,7 @@ fn sources_near_each_other_are_exact() -> Result<(), Error> {
 /// nodes 4 and 6, of the second node 6.
 #[test]
 fn nodes_that_answer_feel_nothing() -> Result<(), Error> {
-    let problem = crate::row::problem(&[0.0; 9])?;
+    let problem = crate::test_chain::problem(&[0.0; 9])?;
     let local = |node: usize, contact: &[u32]| Local {
         node,
         contact: contact.to_vec(),

@@ -1,16 +1,16 @@
-//! Paths on nodes in a row, whose numbers can be worked out by hand: see [`row`](crate::row).
+//! Paths on nodes in a row, whose numbers can be worked out by hand: see [`row`](crate::test_chain).
 
 use super::run::LoadingRun;
 use super::solver::LoadingSolver;
 use crate::contact::ContactSequence;
 use crate::updater::{
-    Dense, LinearUpdater, Schur, Solution, SolveRequest, Touched, UpdaterProfile,
+    Dense, LinearUpdater, Schur, Solution, SolveRequest, WindowFactor, UpdaterProfile,
 };
 use crate::{Error, Problem, row};
 
 /// The rooms of a path that has not begun.
 pub(super) fn run<U: LinearUpdater>(gaps: &[f64], updater: U) -> Result<LoadingRun<U>, Error> {
-    let (surface, kernel) = (row::surface(gaps)?, row::kernel(gaps.len())?);
+    let (surface, kernel) = (test_chain::surface(gaps)?, test_chain::kernel(gaps.len())?);
     let builder = LoadingSolver::builder(&surface, &kernel).updater(updater);
     Ok(builder.build()?.run)
 }
@@ -102,7 +102,7 @@ impl LinearUpdater for Altered {
         Ok(())
     }
 
-    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &Touched) -> Result<(), Error> {
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &WindowFactor) -> Result<(), Error> {
         Ok(())
     }
 

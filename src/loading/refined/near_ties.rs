@@ -2,17 +2,13 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
-
 use super::correction::Correction;
-use super::play::{Course, Played, play};
-use super::watched::Watched;
 use crate::Error;
-use crate::loading::front::Front;
-use crate::loading::gap_field;
-use crate::loading::run::LoadingRun;
-use crate::loading::scales::Scales;
-use crate::updater::{LinearUpdater, Solution, SolveRequest};
+use crate::loading::run::{LoadingRun, Mark};
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::gap_field::GapLine;
+use crate::loading::window::{Course, Window, WindowEvent};
+use crate::updater::Iterations;
 
 /// The error of a time is estimated as the greatest of
 /// * this many times the difference of the two corrections, by the Schur complement and by cubics,
@@ -42,29 +38,29 @@ const CONTRADICTED: f64 = 10.0;
 /// The events of a window in their final order.
 #[derive(Debug)]
 pub(super) struct Settled {
-    pub(super) events: Vec<Played>,
+    pub(super) events: Vec<WindowEvent>,
     /// Estimated error of each time, in the gauge of the kernel.
     pub(super) errors: Vec<f64>,
 }
 
-/// Settles what is too close to be told apart in a window, which began at the front `start`. `None` if a solution is far from
-/// what was expected there, unless the window is `certain`.
-pub(super) fn settle<U: LinearUpdater>(
-    run: &mut LoadingRun<U>,
-    scales: &Scales,
-    watched: &Watched,
-    correction: &Correction,
+/// Settles what is too close to be told apart in a window, which began at a mark. `None` if a solution is far from
+/// what was expected there, unless the window is `is_certain`.
+pub(super) fn settle(
+    run: &mut LoadingRun,
+    iterations: &mut dyn Iterations,
+    tolerances: &WindowTolerances,
+    (window, correction): (&Window, &Correction),
     settled: Settled,
-    (start, certain): (&Front, bool),
+    (mark, is_certain): (&Mark, bool),
 ) -> Result<Option<Settled>, Error> {
-    let mut ties = Ties {
-        watched,
+    let mut ties = NearTies {
+        window,
         correction,
-        scales,
-        count: run.contact.len() - settled.events.len(),
-        approach: start.approach(),
+        tolerances,
+        count: mark.count,
+        approach: mark.scalars.approach(),
         settled,
-        certain,
+        is_certain,
         asked: None,
     };
     let mut next = 0;
@@ -72,7 +68,7 @@ pub(super) fn settle<U: LinearUpdater>(
     while next < ties.settled.events.len() {
         next = match ties.run_from(next) {
             Some(last) if ties.is_orbit(next, last) => last + 1,
-            Some(last) => match ties.resolve(run, next, last)? {
+            Some(last) => match ties.resolve(run, iterations, next, last)? {
                 Some(next) => next,
                 None => return Ok(None),
             },
@@ -86,29 +82,33 @@ pub(super) fn settle<U: LinearUpdater>(
 /// what they were in the first pass, `joined` the positions of the nodes that joined, and the window ends after
 /// `time`.
 pub(super) fn second_pass(
-    watched: &Watched,
+    window: &Window,
     correction: &Correction,
-    (first, joined, time): (&[Played], &[usize], f64),
+    (first, joined, time): (&[WindowEvent], &[usize], f64),
 ) -> Settled {
     let end = time * (1.0 + 1e-9);
-    let at_most = watched.nodes.len();
-    let (mut events, _) = play(&correction.schur, &correction.courses, end, at_most);
+    let pass = |window: &Window| {
+        let mut window = window.clone();
+        window.play_until(end);
+        window.events().to_vec()
+    };
+    let mut events = pass(&correction.window);
     events.retain(|event| joined.contains(&event.position));
     for &position in joined {
         if !events.iter().any(|event| event.position == position) {
-            events.push(Played { position, time });
+            events.push(WindowEvent { position, time });
         }
     }
-    let (other, _) = play(&watched.schur, &correction.hermite, end, at_most);
+    let other = pass(&correction.by_courses);
     let count = events.len() as f64;
     let change = mean_change(first, &events, time);
-    let part = if correction.updated {
+    let part = if correction.is_updated {
         OF_CHANGE
     } else {
         OF_CHANGE_UNCORRECTED
     };
-    let error = |event: &Played| {
-        let [_, closing] = watched.lines[event.position];
+    let error = |event: &WindowEvent| {
+        let closing = window.course(event.position).line.closing;
         let of_rate = RATE_ERROR * event.time / closing;
         let changed = part * (distance(first, event, time) + change);
         let between = BETWEEN_CORRECTIONS * distance(&other, event, time);
@@ -121,36 +121,36 @@ pub(super) fn second_pass(
 }
 
 /// How far an event is from where a pass has it, in a window that ends after `time`.
-fn distance(pass: &[Played], event: &Played, time: f64) -> f64 {
+fn distance(pass: &[WindowEvent], event: &WindowEvent, time: f64) -> f64 {
     let found = pass.iter().find(|other| other.position == event.position);
     found.map_or(time, |found| (found.time - event.time).abs())
 }
 
 /// The mean distance of some events from where a pass has them.
-pub(super) fn mean_change(pass: &[Played], events: &[Played], time: f64) -> f64 {
+pub(super) fn mean_change(pass: &[WindowEvent], events: &[WindowEvent], time: f64) -> f64 {
     let changes = events.iter().map(|event| distance(pass, event, time));
     changes.sum::<f64>() / events.len() as f64
 }
 
 /// A window whose events are being settled.
-struct Ties<'a> {
-    watched: &'a Watched,
+struct NearTies<'a> {
+    window: &'a Window,
     correction: &'a Correction,
-    scales: &'a Scales,
+    tolerances: &'a WindowTolerances,
     /// Nodes in contact, and the approach, at the window's beginning.
     count: usize,
     approach: f64,
     settled: Settled,
     /// Whether no solution can contradict it.
-    certain: bool,
+    is_certain: bool,
     /// The event that the last solution was for, if it did not settle everything.
     asked: Option<usize>,
 }
 
-impl Ties<'_> {
+impl NearTies<'_> {
     /// The node of an event.
     fn node(&self, event: usize) -> usize {
-        self.watched.nodes[self.settled.events[event].position]
+        self.window.node(self.settled.events[event].position)
     }
 
     /// Whether an event and the next one are closer than their errors.
@@ -184,16 +184,16 @@ impl Ties<'_> {
     /// rate, and what joins first tells them apart: only ties count.
     fn are_images(&self, event: usize, other: usize) -> bool {
         let Settled { events, errors } = &self.settled;
-        let (watched, scales) = (self.watched, self.scales);
-        let [p, q] = [event, other].map(|event| events[event].position);
-        let ([a, b], [other_a, other_b]) = (watched.lines[p], watched.lines[q]);
-        let [own, other_own] = [p, q].map(|p| self.correction.schur[(p, p)]);
-        let gap = SAME_GAP * scales.tolerance * scales.length;
-        let way = (gap / b).min(errors[event] + errors[other]);
+        let tolerances = self.tolerances;
+        let places = [event, other].map(|event| events[event].position);
+        let [line, other_line] = places.map(|place| self.window.course(place).line);
+        let [own, other_own] = places.map(|p| self.correction.window.schur().entry(p, p));
+        let gap = SAME_GAP * tolerances.tolerance * tolerances.length;
+        let way = (gap / line.closing).min(errors[event] + errors[other]);
         let apart = if self.count == 0 { 0.0 } else { way };
-        (events[event].time - events[other].time).abs() <= apart.max(scales.tie)
-            && (a - other_a).abs() <= gap
-            && (b - other_b).abs() < SAME_RATE * b.max(1e-3)
+        (events[event].time - events[other].time).abs() <= apart.max(tolerances.tie)
+            && (line.gap - other_line.gap).abs() <= gap
+            && (line.closing - other_line.closing).abs() < SAME_RATE * line.closing.max(1e-3)
             && (own - other_own).abs() < SAME_PIVOT * own
     }
 
@@ -229,13 +229,13 @@ impl Ties<'_> {
             let times = orbit.iter().map(|&event| events[event].time);
             let time = times.sum::<f64>() / orbit.len() as f64;
             let error = orbit.iter().map(|&event| errors[event]).fold(0.0, f64::max);
-            let alike = |event| Played {
+            let alike = |event: usize| WindowEvent {
                 time,
                 ..events[event]
             };
             equal.extend(orbit.into_iter().map(|event| (alike(event), error)));
         }
-        let nodes = &self.watched.nodes;
+        let nodes = self.window.nodes();
         equal.sort_by(|(a, _), (b, _)| {
             let by_node = nodes[a.position].cmp(&nodes[b.position]);
             a.time.total_cmp(&b.time).then(by_node)
@@ -247,42 +247,51 @@ impl Ties<'_> {
 
     /// Settles a run of events by the exact gaps just before it, and returns from which event to go on; `None` if these gaps
     /// contradict what was expected.
-    fn resolve<U: LinearUpdater>(
+    fn resolve(
         &mut self,
-        run: &mut LoadingRun<U>,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
         first: usize,
         last: usize,
     ) -> Result<Option<usize>, Error> {
         let time = self.settled.events[first].time;
         let gap_error = self.sufficient_error(first, last);
-        let gaps = self.exact_gaps(run, first, last, gap_error)?;
         run.timings.ties += 1;
-        let Some((schur, rates)) = self.eliminated(first, last) else {
-            return Ok(Some(last + 1));
-        };
-        // Some may lie a little behind.
-        let lines = gaps.iter().zip(rates.iter());
-        let earliest = lines.clone().map(|(gap, rate)| gap / rate);
-        let back = 2.0 * earliest.fold(0.0, f64::min);
-        let courses: Vec<Course> = lines
-            .map(|(gap, rate)| Course([gap - back * rate, *rate, 0.0, 0.0]))
-            .collect();
-        let (played, _) = play(&schur, &courses, f64::INFINITY, courses.len());
-        if played.len() < courses.len() {
-            return Ok(Some(last + 1));
-        }
+        let gaps = self.exact_gaps(run, iterations, first, gap_error)?;
         let before: Vec<usize> = (first..=last)
             .map(|event| self.settled.events[event].position)
             .collect();
-        let mut events: Vec<Played> = played
+        let gaps: Vec<f64> = before.iter().map(|&p| gaps(self.window.node(p))).collect();
+        let Some(mut here) = self.eliminated(first, &before, &gaps)? else {
+            return Ok(Some(last + 1));
+        };
+        let rates: Vec<f64> = here.courses().map(|course| course.line.closing).collect();
+        // Some may lie a little behind.
+        let lines = gaps.iter().zip(&rates);
+        let earliest = lines.map(|(gap, rate)| gap / rate);
+        let back = 2.0 * earliest.fold(0.0, f64::min);
+        let moved: Vec<Course> = here
+            .courses()
+            .map(|Course { line, .. }| {
+                let gap = line.gap - back * line.closing;
+                GapLine { gap, ..*line }.into()
+            })
+            .collect();
+        here.set_courses(moved.into_iter());
+        here.play(before.len());
+        if here.events().len() < before.len() {
+            return Ok(Some(last + 1));
+        }
+        let mut events: Vec<WindowEvent> = here
+            .events()
             .iter()
-            .map(|event| Played {
+            .map(|event| WindowEvent {
                 position: before[event.position],
                 time: time + back + event.time,
             })
             .collect();
         let exact = gap_error == 0.0;
-        let is_open = !self.certain && self.asked != Some(first);
+        let is_open = !self.is_certain && self.asked != Some(first);
         if is_open && (first..=last).any(|event| self.is_contradicted(event, &events)) {
             return Ok(None);
         }
@@ -290,7 +299,7 @@ impl Ties<'_> {
             self.order_ties(&mut events);
         }
         let start = events[0].time;
-        let left = gap_error + 2.0 * self.scales.tolerance * (self.approach + time);
+        let left = gap_error + 2.0 * self.tolerances.tolerance * (self.approach + time);
         for (k, event) in events.iter().enumerate() {
             let place = before
                 .iter()
@@ -303,16 +312,16 @@ impl Ties<'_> {
         // Far behind the solution it may not be enough, or the solution was not exact enough.
         let again = (first + usize::from(exact)..last).find(|&event| {
             let spacing = self.settled.events[event + 1].time - self.settled.events[event].time;
-            (spacing > self.scales.tie || !exact) && self.is_close(event)
+            (spacing > self.tolerances.tie || !exact) && self.is_close(event)
         });
         self.asked = again;
         Ok(Some(again.unwrap_or(last + 1)))
     }
 
     /// Whether an event was expected far from where it is among those that were found.
-    fn is_contradicted(&self, event: usize, found: &[Played]) -> bool {
+    fn is_contradicted(&self, event: usize, found: &[WindowEvent]) -> bool {
         let Settled { events, errors } = &self.settled;
-        let most = CONTRADICTED * (errors[event] + self.scales.tie);
+        let most = CONTRADICTED * (errors[event] + self.tolerances.tie);
         distance(found, &events[event], f64::INFINITY) > most
     }
 
@@ -323,15 +332,15 @@ impl Ties<'_> {
         }
         let errors = &self.settled.errors[first..=last];
         let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
-        let lines = &self.watched.lines;
         let events = &self.settled.events[first..=last];
-        let rates = events.iter().map(|event| lines[event.position][1]);
+        let line = |event: &WindowEvent| self.window.course(event.position).line;
+        let rates = events.iter().map(|event| line(event).closing);
         OF_ERROR * least * rates.fold(f64::INFINITY, f64::min)
     }
 
     /// Events that are ties get the time of the first, and come in the order of their nodes.
-    fn order_ties(&self, events: &mut [Played]) {
-        let (nodes, tie) = (&self.watched.nodes, self.scales.tie);
+    fn order_ties(&self, events: &mut [WindowEvent]) {
+        let (nodes, tie) = (self.window.nodes(), self.tolerances.tie);
         for tied in events.chunk_by_mut(|a, b| b.time - a.time < tie) {
             let first = tied[0].time;
             tied.sort_by_key(|event| nodes[event.position]);
@@ -341,70 +350,40 @@ impl Ties<'_> {
         }
     }
 
-    /// The gaps of some events, all events before them done, at the time of the first.
-    fn exact_gaps<U: LinearUpdater>(
+    /// The gaps of all nodes, all events before one done, at the time of that.
+    fn exact_gaps<'r>(
         &self,
-        run: &mut LoadingRun<U>,
+        run: &'r mut LoadingRun,
+        iterations: &mut dyn Iterations,
         first: usize,
-        last: usize,
         gap_error: f64,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<impl Fn(usize) -> f64 + 'r, Error> {
         let events = 0..self.settled.events.len();
         let order: Vec<usize> = events.map(|event| self.node(event)).collect();
         run.rearrange(self.count, &order)?;
         let approach = self.approach + self.settled.events[first].time;
-        let request = SolveRequest {
-            count: self.count + first,
-            approach,
-            span: 0.0,
-            gap_error,
-        };
-        let mut solution = Solution::default();
         let (problem, contact) = (&run.problem, &run.contact);
-        gap_field::solve(problem, contact, request, &mut run.updater, &mut solution)?;
-        let displacement = |node: usize| match solution.displacement[0].get(node) {
-            Some(displacement) => *displacement,
-            None => {
-                let table = problem.table();
-                let place = table.place(node);
-                let pressures = contact.order().iter().zip(&solution.pressure);
-                pressures
-                    .map(|(&other, p)| table.between(place, table.place(other)) * p)
-                    .sum()
-            }
-        };
-        let gap = |event: usize| {
-            let node = self.node(event);
-            problem.initial_gap()[node] + displacement(node) - approach
-        };
-        Ok((first..=last).map(gap).collect())
+        let count = self.count + first;
+        let displacement = iterations.probe(problem, contact, count, approach, gap_error)?;
+        Ok(move |node: usize| problem.initial_gap()[node] + displacement[node] - approach)
     }
 
-    /// Schur complement and closing rates of some events, all events before them eliminated.
-    fn eliminated(&self, first: usize, last: usize) -> Option<(DMatrix<f64>, DVector<f64>)> {
-        let Correction { schur, courses, .. } = self.correction;
-        let events = &self.settled.events;
-        let time = events[first].time;
-        let (done, open) = (&events[..first], &events[first..=last]);
-        let between = |rows: &[Played], columns: &[Played]| {
-            DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
-                schur[(rows[i].position, columns[j].position)]
-            })
-        };
-        let closing = |events: &[Played]| {
-            let rates = events
-                .iter()
-                .map(|event| courses[event.position].closing(time));
-            DVector::from_iterator(events.len(), rates)
-        };
-        if done.is_empty() {
-            return Some((between(open, open), closing(open)));
+    /// The window of some nodes, all events before the one at `first` eliminated, at the time of that, when their gaps are `gaps`;
+    /// `None` if a pivot is not positive.
+    fn eliminated(
+        &self,
+        first: usize,
+        positions: &[usize],
+        gaps: &[f64],
+    ) -> Result<Option<Window>, Error> {
+        let mut window = self.correction.window.clone();
+        for event in &self.settled.events[..first] {
+            if window.touch(event.position, event.time).is_err() {
+                return Ok(None);
+            }
         }
-        let factor = between(done, done).cholesky()?;
-        let coupling = between(done, open);
-        let eliminated = between(open, open) - coupling.transpose() * factor.solve(&coupling);
-        let rates = closing(open) - coupling.transpose() * factor.solve(&closing(done));
-        Some((eliminated, rates))
+        let time = self.settled.events[first].time;
+        window.remaining(positions, time, gaps).map(Some)
     }
 }
 

@@ -1,13 +1,15 @@
 //! A window played anew with what the exact solution at its end shows.
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
-use super::play::Course;
+use crate::loading::run::LoadingRun;
+use crate::loading::window::{Course, Window};
+use crate::updater::Schur;
 
 /// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted.
 const LEAST_DETERMINANT: f64 = 1e-6;
 
-/// What the solution at the end says of a watched node.
+/// What the solution at a window's end says of a watched node.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AtEnd {
     /// Pressure and its rate: 0 if the node is out of contact.
@@ -16,22 +18,47 @@ pub(super) struct AtEnd {
     pub(super) gap: [f64; 2],
 }
 
-/// A Schur complement that explains the end of a window, and what courses then lack.
+/// What the present solution, at a window's end, says of the watched nodes.
+pub(super) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
+    let solution = run.field.solution();
+    let first = run.contact.len().saturating_sub(window.nodes().len());
+    let joined = &run.contact.order()[first..];
+    let at = |&node: &usize| match joined.iter().position(|other| *other == node) {
+        Some(place) => AtEnd {
+            pressure: [
+                solution.pressure[first + place],
+                solution.rate[first + place],
+            ],
+            gap: [0.0; 2],
+        },
+        None => {
+            let line = run.line(node);
+            AtEnd {
+                pressure: [0.0; 2],
+                gap: [line.gap, -line.closing],
+            }
+        }
+    };
+    window.nodes().iter().map(at).collect()
+}
+
+/// A window that explains its end.
 #[derive(Debug)]
 pub(super) struct Correction {
-    pub(super) schur: DMatrix<f64>,
-    pub(super) courses: Vec<Course>,
-    /// Courses corrected without the update, each by the cubic that makes its end right.
-    pub(super) hermite: Vec<Course>,
-    /// Whether the Schur complement was updated.
-    pub(super) updated: bool,
+    /// With a corrected Schur complement, and courses for what is still missing at the end.
+    pub(super) window: Window,
+    /// With the Schur complement as it was, and courses alone to make the end right.
+    pub(super) by_courses: Window,
+    /// Whether the Schur complement could be corrected: otherwise both are the same.
+    pub(super) is_updated: bool,
 }
 
 impl Correction {
-    /// The greatest part of a pivot that was taken off a Schur complement.
-    pub(super) fn left_out(&self, schur: &DMatrix<f64>) -> f64 {
-        let left = self.schur.diagonal().component_div(&schur.diagonal());
-        left.iter().fold(0.0, |most, left| (1.0 - left).max(most))
+    /// The greatest part of a pivot that was taken off the Schur complement.
+    pub(super) fn left_out(&self) -> f64 {
+        let size = self.window.nodes().len();
+        let left = |i| self.window.schur().entry(i, i) / self.by_courses.schur().entry(i, i);
+        (0..size).fold(0.0, |most, i| f64::max(1.0 - left(i), most))
     }
 }
 
@@ -47,61 +74,54 @@ impl Correction {
 /// definite; where rounding, or too large an error of S̃, spoils that, S̃ stays as it is. Whatever is still
 /// missing at the end is added to each gap as a cubic in time of zero value and slope at the
 /// beginning.
-pub(super) fn correct(
-    schur: &DMatrix<f64>,
-    lines: &[[f64; 2]],
-    ends: &[AtEnd],
-    time: f64,
-) -> Correction {
-    let hermite = complete(schur, lines, ends, time);
-    match nystrom(schur, &hermite, ends, time) {
-        Some(updated) => Correction {
-            courses: complete(&updated, lines, ends, time),
-            schur: updated,
-            hermite,
-            updated: true,
-        },
-        None => Correction {
-            schur: schur.clone(),
-            courses: hermite.clone(),
-            hermite,
-            updated: false,
-        },
+pub(super) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction {
+    let mut by_courses = window.clone();
+    complete(&mut by_courses, window, ends, time);
+    let mut updated = by_courses.clone();
+    let is_updated = update(&mut updated, ends, time);
+    if is_updated {
+        complete(&mut updated, window, ends, time);
+    }
+    Correction {
+        window: updated,
+        by_courses,
+        is_updated,
     }
 }
 
-/// Courses that end as they should under a Schur complement.
-fn complete(schur: &DMatrix<f64>, lines: &[[f64; 2]], ends: &[AtEnd], time: f64) -> Vec<Course> {
-    let course = |(i, ([a, b], end)): (usize, (&[f64; 2], &AtEnd))| {
-        let explained = |k: usize| -> f64 {
-            let row = ends.iter().enumerate();
-            row.map(|(j, other)| schur[(i, j)] * other.pressure[k])
-                .sum()
-        };
-        let gap = end.gap[0] - (a - time * b + explained(0));
-        let slope = end.gap[1] - (explained(1) - b);
-        Course([
-            *a,
-            *b,
-            (3.0 * gap - slope * time) / (time * time),
-            (slope * time - 2.0 * gap) / (time * time * time),
-        ])
+/// Bends the lines of a window so that they end as they should under the Schur complement of another one.
+fn complete(target: &mut Window, window: &Window, ends: &[AtEnd], time: f64) {
+    let explained = |schur: &Schur, i: usize, k: usize| -> f64 {
+        let row = ends.iter().enumerate();
+        row.map(|(j, other)| schur.entry(i, j) * other.pressure[k])
+            .sum()
     };
-    lines.iter().zip(ends).enumerate().map(course).collect()
+    let courses: Vec<Course> = window
+        .courses()
+        .zip(ends)
+        .enumerate()
+        .map(|(i, (Course { line, .. }, end))| {
+            let schur = target.schur();
+            let gap = end.gap[0] - (line.gap - time * line.closing + explained(schur, i, 0));
+            let slope = end.gap[1] - (explained(schur, i, 1) - line.closing);
+            let curve = [
+                (3.0 * gap - slope * time) / (time * time),
+                (slope * time - 2.0 * gap) / (time * time * time),
+            ];
+            Course { line: *line, curve }
+        })
+        .collect();
+    target.set_courses(courses.into_iter());
 }
 
-/// The updated Schur complement, if it is one.
-fn nystrom(
-    schur: &DMatrix<f64>,
-    courses: &[Course],
-    ends: &[AtEnd],
-    time: f64,
-) -> Option<DMatrix<f64>> {
+/// Updates the Schur complement of a window whose courses end as they should; false if the result would be none, and nothing has
+/// changed then.
+fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     let t = time;
     // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
-    let missing: Vec<Vector2<f64>> = courses
-        .iter()
-        .map(|Course([_, _, c2, c3])| {
+    let missing: Vec<Vector2<f64>> = window
+        .courses()
+        .map(|Course { curve: [c2, c3], .. }| {
             Vector2::new(-t * (c2 + t * c3), -t * (2.0 * c2 + 3.0 * t * c3))
         })
         .collect();
@@ -109,19 +129,21 @@ fn nystrom(
     for (end, v) in ends.iter().zip(&missing) {
         products += Vector2::new(end.pressure[0] / t, end.pressure[1]) * v.transpose();
     }
-    let inverse = inverse(0.5 * (products + products.transpose()))?;
-    let mut updated = schur.clone();
-    for (i, v) in missing.iter().enumerate() {
-        let row = v.transpose() * inverse;
-        for (j, other) in missing.iter().enumerate() {
-            updated[(i, j)] -= row[0] * other[0] + row[1] * other[1];
+    let Some(inverse) = inverse(0.5 * (products + products.transpose())) else {
+        return false;
+    };
+    let taken = |i: usize, j: usize| (missing[i].transpose() * inverse * missing[j])[0];
+    let size = missing.len();
+    if !(0..size).all(|i| window.schur().entry(i, i) - taken(i, i) > 0.0) {
+        return false;
+    }
+    let mut matrix = window.schur_mut().matrix_mut();
+    for j in 0..size {
+        for i in j..size {
+            matrix[(i, j)] -= taken(i, j);
         }
     }
-    updated
-        .diagonal()
-        .iter()
-        .all(|pivot| *pivot > 0.0)
-        .then_some(updated)
+    true
 }
 
 /// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;

@@ -1,14 +1,10 @@
 //! States of a window, pinned to the exact ones at both ends.
 
-use super::correction::Correction;
-use super::play::increments;
-use super::ties::Settled;
-use super::watched::Watched;
+use super::near_ties::Settled;
 use crate::Error;
-use crate::loading::front::Front;
-use crate::loading::run::LoadingRun;
+use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
-use crate::updater::LinearUpdater;
+use crate::loading::window::Window;
 
 /// What near ties take for the error of a time is exceeded by up to a hundredth of the events, by a factor of two: states say so many
 /// times as much.
@@ -19,22 +15,25 @@ const OF_LOAD: f64 = 3.0;
 /// The load at the window's end is that of an approach which is off by this part of the mean spacing of events.
 const OF_END: f64 = 1e-5;
 
-/// Queues the states of the events of a window from `start` to the front.
+/// Queues the states of the events of a corrected window, from a mark to the present approach.
 ///
 /// Stiffness and closing rate grow as the pivots say, all of them scaled so that they end where they should;
 /// load, mean gap and energy follow by integration, and what they lack at the end, a few parts in a million,
 /// is spread along the way.
-pub(super) fn enqueue<U: LinearUpdater>(
-    run: &mut LoadingRun<U>,
-    watched: &Watched,
-    correction: &Correction,
+pub(super) fn enqueue(
+    run: &mut LoadingRun,
+    mut window: Window,
     settled: &Settled,
-    (start, time): (&Front, f64),
+    (mark, time): (&Mark, f64),
 ) -> Result<(), Error> {
-    let closing: Vec<f64> = watched.lines.iter().map(|[_, b]| *b).collect();
-    let order = settled.events.iter().map(|event| event.position);
-    let steps = increments(&correction.schur, &closing, &watched.row_sums, order);
-    let missing = start.missing(&run.front);
+    let start = &mark.scalars;
+    for event in &settled.events {
+        window
+            .touch(event.position, event.time)
+            .map_err(|bad| run.not_positive_definite(bad))?;
+    }
+    let steps = window.increments();
+    let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
     let scaled = [0, 1].map(|k| {
         if total(k) == 0.0 {
@@ -43,33 +42,32 @@ pub(super) fn enqueue<U: LinearUpdater>(
             missing[k] / total(k)
         }
     });
-    let count = run.contact.len() - settled.events.len();
     let mut walked = *start;
-    let mut fronts = Vec::with_capacity(settled.events.len());
-    for (k, (event, step)) in settled.events.iter().zip(&steps).enumerate() {
+    let mut along = Vec::with_capacity(settled.events.len());
+    for (k, (event, step)) in settled.events.iter().zip(steps).enumerate() {
         walked.advance(start.approach() + event.time);
-        walked.touch(scaled[0] * step[0], scaled[1] * step[1], count + k + 1);
-        fronts.push(walked);
+        walked.touch([0, 1].map(|k| scaled[k] * step[k]), mark.count + k + 1);
+        along.push(walked);
     }
-    walked.advance(run.front.approach());
+    walked.advance(run.scalars.approach());
     // What the load may be off by: what is spread, and what the events so far would change of it.
     let spacing = time / settled.events.len() as f64;
     let mut load_error =
-        run.front.load_beyond(&walked).abs() + run.front.load_over(OF_END * spacing);
-    for (k, (mut front, event)) in fronts.into_iter().zip(&settled.events).enumerate() {
-        let contact_nodes = count + k + 1;
-        front.pin(&walked, &run.front, event.time / time);
-        front.clamp_mean_gap();
+        run.scalars.load_beyond(&walked).abs() + run.scalars.load_over(OF_END * spacing);
+    for (k, (mut scalars, event)) in along.into_iter().zip(&settled.events).enumerate() {
+        let contact_nodes = mark.count + k + 1;
+        scalars.pin(&walked, &run.scalars, event.time / time);
+        scalars.clamp_mean_gap();
         if contact_nodes == run.problem.grid().nodes() {
-            front.close();
+            scalars.close();
         }
         let step = run.releases.steps(contact_nodes);
-        let node = watched.nodes[event.position];
+        let node = window.node(event.position);
         let error = settled.errors[k];
-        load_error += front.load_of(scaled[0] * steps[k][0], error);
-        let error = front.reported_error(OF_TIME * error, OF_LOAD * load_error);
+        load_error += scalars.load_of(scaled[0] * steps[k][0], error);
+        let error = scalars.reported_error(OF_TIME * error, OF_LOAD * load_error);
         run.enqueue_at(
-            &front,
+            &scalars,
             (step, ContactEvent::Touch, node),
             contact_nodes,
             error,
@@ -84,14 +82,14 @@ mod tests {
 
     use super::super::play::Played;
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::updater::Dense;
 
     const GAPS: [f64; 6] = [0.0, 9.0, 1.5, 9.0, 2.5, 9.0];
 
     /// The path with some nodes in contact, and everything at the front known.
     fn at(contact: &[usize], approach: f64) -> Result<LoadingRun<Dense>, Error> {
-        let mut run = row::solved(&GAPS, contact, approach)?;
+        let mut run = test_chain::solved(&GAPS, contact, approach)?;
         run.front.renew_load(&run.problem, &run.contact, &run.field);
         run.survey(false, |_| ())?;
         Ok(run)

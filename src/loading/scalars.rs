@@ -1,4 +1,4 @@
-//! The front of the path: all scalars of a state, kept up to date at every event.
+//! The scalars of the path, kept up to date at every event.
 
 use super::gap_field::GapField;
 use super::sum::Sum;
@@ -7,13 +7,13 @@ use crate::kernel::Gauge;
 use crate::updater::Solution;
 use crate::{Grid, Problem};
 
-/// Where the last event left the path.
+/// Approach, load, energy, mean gap and stiffnesses where the last event left the path.
 ///
 /// Nothing else knows the gauge of a periodic kernel: the approach here is the one for which
 /// `gap = g + C p − δ` holds with the kernel as it is, and [`state`](Self::state) reports it free of the
 /// gauge.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Front {
+pub(super) struct PathScalars {
     grid: Grid,
     gauge: Gauge,
     /// Whether the approach is that of a distant point of the half-space.
@@ -28,7 +28,7 @@ pub(super) struct Front {
     closing: f64,
 }
 
-impl Front {
+impl PathScalars {
     pub(super) fn new(problem: &Problem) -> Self {
         Self {
             grid: problem.grid(),
@@ -101,7 +101,7 @@ impl Front {
     }
 
     /// Lets a node join that adds to stiffness and closing rate; `contact_nodes` are in contact then.
-    pub(super) fn touch(&mut self, unit_stiffness: f64, closing: f64, contact_nodes: usize) {
+    pub(super) fn touch(&mut self, [unit_stiffness, closing]: [f64; 2], contact_nodes: usize) {
         self.unit_stiffness += unit_stiffness;
         self.closing -= closing / self.grid.nodes() as f64;
         if contact_nodes == self.grid.nodes() {
@@ -189,7 +189,7 @@ impl Front {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq};
 
     fn sum(terms: &[f64]) -> Sum {
@@ -200,9 +200,9 @@ mod tests {
 
     /// Four cells of 2 m² whose gaps of 8 m in all close as the approach grows; then one node touches that adds 1/4 to
     /// `eᵀ C⁻¹ e`, and takes 1 off the closing rates.
-    fn touched() -> Result<Front, Error> {
-        let problem = crate::row::problem(&[0.0, 1.0, 2.0, 5.0])?;
-        let mut front = Front::new(&problem);
+    fn touched() -> Result<PathScalars, Error> {
+        let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;
+        let mut front = PathScalars::new(&problem);
         front.renew_gap(sum(&[0.0, 1.0, 2.0, 5.0]), sum(&[1.0; 4]));
         front.touch(0.25, 1.0, 1);
         Ok(front)
@@ -282,7 +282,7 @@ mod tests {
     /// metre further an eighth more each.
     #[test]
     fn a_solution_renews_load_and_energy() -> Result<(), Error> {
-        let mut run = row::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         for (approach, load, energy) in [(3.0, 2.5, 3.25), (3.5, 3.0, 0.875 * 3.5 + 0.625 * 2.5)] {
             run.front.place_at(approach);
             run.front.renew_load(&run.problem, &run.contact, &run.field);
@@ -308,7 +308,7 @@ mod tests {
         let problem = Problem::new(&surface, &PeriodicBoussinesq::new(grid, 1.0)?)?;
         let per_load = problem.table().gauge().unwrap_or_default() / 0.25;
         assert!(per_load > 0.0);
-        let mut front = Front::new(&problem);
+        let mut front = PathScalars::new(&problem);
         front.touch(1.0, 1.0, 1);
         front.advance(8.0);
         // W = 8/4, U = 8.
@@ -333,8 +333,8 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
         }
         let free = Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)?;
-        assert_eq!(Front::new(&free).uniform_displacement(3.0), 0.0);
-        assert_eq!(Front::new(&free).reported_error(1e-3, 1.0), 1e-3);
+        assert_eq!(PathScalars::new(&free).uniform_displacement(3.0), 0.0);
+        assert_eq!(PathScalars::new(&free).reported_error(1e-3, 1.0), 1e-3);
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Events that are settled by solutions.
 
 use super::*;
-use crate::loading::row;
+use crate::loading::test_chain;
 use crate::updater::Dense;
 
 /// The gap of node 2, or of node 4, closes at the approach 3, and the other one's later. Node 0 is in contact and reaches
@@ -13,7 +13,7 @@ fn settled(
 ) -> Result<(LoadingRun<Dense>, Settled), Error> {
     let initial = [0.0, 9.0, gaps[0], 9.0, gaps[1], 9.0];
     // At an approach at which the solution of the joined contact has been found.
-    let mut run = row::solved(&initial, &[0, 4, 2], 3.5)?;
+    let mut run = test_chain::solved(&initial, &[0, 4, 2], 3.5)?;
     let watched = alone(&[2, 4], &[[9.0, 0.5], [9.0, 1.0]]);
     let correction = correction(4.0 * &watched.schur, watched.courses());
     let mut start = run.front;
@@ -73,7 +73,7 @@ fn close_events_are_settled_by_their_gaps() -> Result<(), Error> {
 /// What cannot be settled stays as it is: a gap that does not close, and no factor of the events before.
 #[test]
 fn what_cannot_be_settled_stays() -> Result<(), Error> {
-    let mut run = row::solved(&[0.0, 9.0, 3.0, 9.0, 3.0], &[0, 2, 4], 3.5)?;
+    let mut run = test_chain::solved(&[0.0, 9.0, 3.0, 9.0, 3.0], &[0, 2, 4], 3.5)?;
     let watched = alone(&[2, 4], &[[9.0, 1.0], [8.0, 1.0]]);
     let mut start = run.front;
     start.place_at(1.0);
@@ -111,7 +111,7 @@ fn three_settled(
     (lines, step, error): ([[f64; 2]; 3], f64, f64),
 ) -> Result<(Option<Settled>, usize), Error> {
     let initial = [0.0, 9.0, first, 9.0, 3.03125, 9.0, 3.0625];
-    let mut run = row::solved(&initial, &[0, 2, 4, 6], 3.5)?;
+    let mut run = test_chain::solved(&initial, &[0, 2, 4, 6], 3.5)?;
     let watched = alone(&[2, 4, 6], &lines);
     let correction = correction(4.0 * &watched.schur, watched.courses());
     let mut start = run.front;
@@ -168,7 +168,7 @@ fn nothing_is_asked_of_an_orbit() -> Result<(), Error> {
 /// Node 1 sinks by 3/4 and 1/4 at the approach 3 if nodes 0 and 2, at 2 m, carry before it.
 #[test]
 fn gaps_are_those_with_all_events_before() -> Result<(), Error> {
-    let mut run = row::solved(&[0.0, 2.5, 2.0, 9.0], &[0, 2, 1], 3.5)?;
+    let mut run = test_chain::solved(&[0.0, 2.5, 2.0, 9.0], &[0, 2, 1], 3.5)?;
     let watched = alone(&[2, 1], &[[9.0, 1.0]; 2]);
     let correction = correction(4.0 * &watched.schur, watched.courses());
     let scales = scales(1.0, 0.0, 1e-9);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::loading::row;
+use crate::loading::test_chain;
 use crate::updater::Dense;
 
 fn scales(tolerance: f64) -> Scales {
@@ -62,7 +62,7 @@ fn contradictions_at_the_end_are_found() -> Result<(), Error> {
             2.0 - 1.04 * x,
             far,
         ];
-        let mut run = row::solved(&gaps, &[0], 1.0)?;
+        let mut run = test_chain::solved(&gaps, &[0], 1.0)?;
         let watched = Watched {
             nodes: vec![2, 4, 6],
             lines: vec![[1.0; 2]; 3],
@@ -95,7 +95,7 @@ fn contradictions_at_the_end_are_found() -> Result<(), Error> {
 #[test]
 fn what_is_allowed_is_no_contradiction() -> Result<(), Error> {
     let allowed = 200.0 / 4096.0;
-    let mut run = row::solved(&[0.0, 9.0, 2.0 + allowed, 9.0], &[0], 1.0)?;
+    let mut run = test_chain::solved(&[0.0, 9.0, 2.0 + allowed, 9.0], &[0], 1.0)?;
     let watched = Watched {
         nodes: vec![2],
         lines: vec![[1.0; 2]],
@@ -122,7 +122,7 @@ fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Erro
         (f64::INFINITY, 0.21, 0.21),
         (f64::INFINITY, f64::INFINITY, 0.1),
     ] {
-        let mut run = row::solved(&[0.0, 9.0, 1.25, 9.0, 1.5, 9.0], &[0], 1.0)?;
+        let mut run = test_chain::solved(&[0.0, 9.0, 1.25, 9.0, 1.5, 9.0], &[0], 1.0)?;
         let mut corrected = Corrected::new(None, true);
         corrected.rate_span = 0.1;
         let mut choice = Choice {
@@ -141,7 +141,7 @@ fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Erro
 /// Everything is known of the front after the beginning of a window, and found once.
 #[test]
 fn a_window_begins_with_a_solution() -> Result<(), Error> {
-    let mut run = row::run(&[0.0, 9.0, 1.25, 9.0], Dense)?;
+    let mut run = test_chain::run(&[0.0, 9.0, 1.25, 9.0], Dense)?;
     run.contact.push(0)?;
     run.front.place_at(1.0);
     let mut corrected = Corrected::new(None, true);
@@ -163,8 +163,8 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
 }
 
 /// A dense updater that may know displacements of watched nodes better: 1/2, and 1/4 of rates.
-fn knowing(knows: bool) -> row::Altered {
-    row::Altered::complements(move |schur| {
+fn knowing(knows: bool) -> test_chain::Altered {
+    test_chain::Altered::complements(move |schur| {
         if knows {
             schur.set_displacements(vec![[0.5, 0.25]; schur.size()]);
         }
@@ -179,7 +179,7 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
         (false, [[4.25, 0.75], [6.0, 1.0]]),
         (true, [[4.5, 0.75], [6.5, 0.75]]),
     ] {
-        let mut run = row::run(&[0.0, 5.0, 9.0, 7.0, 9.0], knowing(knows))?;
+        let mut run = test_chain::run(&[0.0, 5.0, 9.0, 7.0, 9.0], knowing(knows))?;
         run.contact.push(0)?;
         run.front.place_at(1.0);
         run.solve_field(1.0, f64::INFINITY)?;
@@ -207,7 +207,7 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
 #[test]
 fn windows_are_gone_through() -> Result<(), Error> {
     for (most, nodes, end) in [(9, 2, 3.1), (1, 1, 2.0)] {
-        let mut run = row::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0], &[0], 1.0)?;
+        let mut run = test_chain::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0], &[0], 1.0)?;
         run.front.renew_load(&run.problem, &run.contact, &run.field);
         let mut corrected = Corrected::new(None, true);
         corrected.survey(&mut run)?;
@@ -245,7 +245,7 @@ fn windows_are_gone_through() -> Result<(), Error> {
 /// and how long it was.
 #[test]
 fn windows_with_overlap_outside_are_taken_back() -> Result<(), Error> {
-    let mut run = row::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0, 1.25, 9.0], &[0], 1.0)?;
+    let mut run = test_chain::solved(&[0.0, 9.0, 1.5, 9.0, 2.5, 9.0, 1.25, 9.0], &[0], 1.0)?;
     run.front.renew_load(&run.problem, &run.contact, &run.field);
     let mut corrected = Corrected::new(None, true);
     corrected.survey(&mut run)?;
@@ -275,7 +275,7 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
     let coefficient =
         |di: isize, _: isize| [4.0, -1.0].get(di.unsigned_abs()).copied().unwrap_or(0.0);
     let kernel = crate::KernelTable::from_fn(
-        crate::row::grid(30)?,
+        crate::test_chain::grid(30)?,
         crate::Boundary::Free,
         crate::ContactGrowth::Monotone,
         coefficient,
@@ -285,9 +285,9 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
         gaps[2 * k] = 0.0625 * k as f64;
     }
     gaps[1] = 1.0;
-    let surface = crate::row::surface(&gaps)?;
+    let surface = crate::test_chain::surface(&gaps)?;
     let builder =
-        crate::LoadingSolver::builder(&surface, &kernel).updater(row::Altered::inexact(1e-6));
+        crate::LoadingSolver::builder(&surface, &kernel).updater(test_chain::Altered::inexact(1e-6));
     let mut run = builder.build()?.run;
     let mut corrected = Corrected::new(Some(8), true);
     assert!(corrected.produce(&mut run, 30)?.is_none());
@@ -308,7 +308,7 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
 #[test]
 fn contacts_at_the_end_are_mended() -> Result<(), Error> {
     for (thought, gap, order) in [(0.6, 2.6, &[0, 2][..]), (3.0, 1.8, &[0, 2, 4])] {
-        let mut run = row::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], row::Altered::inexact(1e-6))?;
+        let mut run = test_chain::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], test_chain::Altered::inexact(1e-6))?;
         run.contact.push(0)?;
         run.front.place_at(1.0);
         let mut corrected = Corrected::new(None, true);
@@ -334,7 +334,7 @@ fn contacts_at_the_end_are_mended() -> Result<(), Error> {
 fn windows_without_events_are_gone_through() -> Result<(), Error> {
     for (wrong, fails) in [(0, false), (1, false), (10, false), (11, true)] {
         let windows = std::cell::Cell::new(0);
-        let updater = row::Altered::estimates(1e-6, move |schur| {
+        let updater = test_chain::Altered::estimates(1e-6, move |schur| {
             let window = windows.replace(windows.get() + 1);
             if window < wrong {
                 // From the middle of 0.1 and 0.105 to the next one.
@@ -342,7 +342,7 @@ fn windows_without_events_are_gone_through() -> Result<(), Error> {
                 schur.set_displacements(vec![[approach - 2.4, 0.0]; schur.size()]);
             }
         });
-        let mut run = row::run(&[0.0, 2.5], updater)?;
+        let mut run = test_chain::run(&[0.0, 2.5], updater)?;
         run.contact.push(0)?;
         let found = Corrected::new(None, true).produce(&mut run, 2);
         if fails {
@@ -388,7 +388,7 @@ fn windows_have_fewer_events_where_more_is_left_out() -> Result<(), Error> {
 #[test]
 fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
     let gaps = [0.0, 9.0, 1.5, 9.0, 2.0, 9.0, 2.5, 9.0];
-    let mut run = row::solved(&gaps, &[0], 1.0)?;
+    let mut run = test_chain::solved(&gaps, &[0], 1.0)?;
     run.front.renew_load(&run.problem, &run.contact, &run.field);
     let mut corrected = Corrected::new(None, true);
     corrected.survey(&mut run)?;

@@ -4,7 +4,7 @@ use crate::{Error, row};
 /// Nodes 1 and 3 of a row are watched beside 0 and 2 in contact: x = (1/4, 1/4) and 1/4 of node 2, and
 /// S = (4 − 1/2, −1/4; −1/4, 4 − 1/4). Their gaps are 1 m and 3 m.
 fn watched() -> Result<(Problem, Watched), Error> {
-    let problem = row::problem(&[0.0, 1.0, 2.0, 3.0, 9.0])?;
+    let problem = test_chain::problem(&[0.0, 1.0, 2.0, 3.0, 9.0])?;
     let local = |node: usize, contact: &[u32]| Local {
         node,
         contact: contact.to_vec(),

@@ -13,7 +13,7 @@ use crate::parallel::vectorized;
 /// touched, and its forward-substituted column if it did not: eqs. (15)-(16) of the paper, for a block of
 /// nodes.
 #[derive(Debug, Clone, Default)]
-pub struct Touched {
+pub struct WindowFactor {
     watched: usize,
     positions: Vec<usize>,
     /// R, `watched` rows, one column for each event.
@@ -27,7 +27,7 @@ pub struct Touched {
 /// many events stays in the fastest cache.
 const BLOCK: usize = 32;
 
-impl Touched {
+impl WindowFactor {
     /// Lets the watched nodes at `positions` touch in that order, one after the other.
     ///
     /// # Errors
@@ -168,6 +168,28 @@ impl Touched {
         }
     }
 
+    /// `x ← (R Rᵀ)⁻¹ x` on all events.
+    pub(crate) fn solve_both<const N: usize>(&self, x: &mut [[f64; N]]) {
+        self.solve(x);
+        for t in (0..x.len()).rev() {
+            let column = self.column(t);
+            let (earlier, later) = x.split_at_mut(t + 1);
+            let here = &mut earlier[t];
+            for (&position, later) in self.positions[t + 1..].iter().zip(later) {
+                for (value, later) in here.iter_mut().zip(&*later) {
+                    *value -= column[position] * later;
+                }
+            }
+            *here = here.map(|value| value / column[self.positions[t]]);
+        }
+    }
+
+    /// Subtracts the events from the whole Schur complement, from which they have been subtracted in part. No event can follow.
+    pub(crate) fn finish(&mut self, schur: &mut Schur) {
+        schur.add_gram(-1.0, &self.factor[self.subtracted * self.watched..]);
+        self.subtracted = self.len();
+    }
+
     /// Column of event t of R.
     pub(crate) fn column(&self, event: usize) -> &[f64] {
         &self.factor[event * self.watched..(event + 1) * self.watched]
@@ -223,7 +245,7 @@ mod tests {
     fn the_factor_is_that_of_the_schur_complement() {
         // All positions, in an order without order.
         let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
-        let touched = Touched::of(schur(), &order).unwrap();
+        let touched = WindowFactor::of(schur(), &order).unwrap();
         for (last, &i) in order.iter().enumerate() {
             for (events, &j) in order.iter().enumerate() {
                 let both = 0..=last.min(events);
@@ -238,7 +260,7 @@ mod tests {
     #[test]
     fn positions_that_cannot_be_are_refused() {
         for positions in [vec![WATCHED], vec![3, 3]] {
-            assert!(Touched::of(schur(), &positions).is_err());
+            assert!(WindowFactor::of(schur(), &positions).is_err());
         }
     }
 
@@ -254,7 +276,7 @@ mod tests {
 
     #[test]
     fn factors_solve() {
-        let touched = Touched::of(two_by_two(), &[0, 1]).unwrap();
+        let touched = WindowFactor::of(two_by_two(), &[0, 1]).unwrap();
         assert_eq!(
             [
                 touched.factor(0, 0),
@@ -288,7 +310,7 @@ mod tests {
     #[test]
     fn events_that_are_forgotten_can_be_others() {
         let mut schur = two_by_two();
-        let mut touched = Touched::default();
+        let mut touched = WindowFactor::default();
         touched.reset(2, 2);
         assert!(touched.is_empty() && !touched.has_touched(1));
         touched.push(&mut schur, 1).unwrap();
@@ -314,7 +336,7 @@ mod tests {
         for (own, pivot) in [(1.0, 0.0), (0.5, -0.5), (f64::NAN, f64::NAN)] {
             let mut schur = two_by_two();
             schur.as_mut_slice()[3] = own;
-            let mut touched = Touched::default();
+            let mut touched = WindowFactor::default();
             touched.reset(2, 2);
             touched.push(&mut schur, 0).unwrap();
             let refused = touched.push(&mut schur, 1).unwrap_err();
@@ -331,9 +353,9 @@ mod tests {
     fn bytes_are_those_of_matrix_and_factor() {
         assert_eq!(
             [
-                Touched::bytes(0),
-                Touched::bytes(7),
-                Touched::bytes(usize::MAX)
+                WindowFactor::bytes(0),
+                WindowFactor::bytes(7),
+                WindowFactor::bytes(usize::MAX)
             ],
             [0, 784, usize::MAX]
         );

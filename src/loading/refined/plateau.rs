@@ -1,61 +1,56 @@
 //! Nodes that touch together, too many to be watched: a flat punch, a plateau.
 
-use super::Corrected;
+use super::Refined;
 use crate::Error;
 use crate::loading::run::LoadingRun;
-use crate::loading::scales::Scales;
 use crate::loading::state::ContactEvent;
-use crate::updater::{LinearUpdater, Touched};
+use crate::loading::tolerances::WindowTolerances;
+use crate::updater::Iterations;
 
-impl Corrected {
+impl Refined {
     /// Lets all nodes that touch at a time join, and those that are known to, up to `most`, in the order of their indices.
     /// Between them stiffness and closing rate change in equal steps.
-    pub(super) fn enter<U: LinearUpdater>(
+    pub(super) fn enter(
         &mut self,
-        run: &mut LoadingRun<U>,
-        scales: &Scales,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
         (time, known): (f64, &[usize]),
         most: usize,
     ) -> Result<(), Error> {
-        let mut start = run.front;
-        let approach = start.approach();
+        let mark = run.mark();
+        let approach = mark.scalars.approach() + time;
+        let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
         let together = |&&(other, node): &&(f64, usize)| {
-            let line = run.field.line(&run.problem, node, approach);
-            other <= time + scales.tie_of(line.closing) || known.contains(&node)
+            other <= time + tie_of(node) || known.contains(&node)
         };
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
         // What their times cannot be told apart by.
-        let error = group.iter().fold(scales.tie, |error, &node| {
-            let line = run.field.line(&run.problem, node, approach);
-            error.max(scales.tie_of(line.closing))
-        });
+        let error = group.iter().map(|&node| tie_of(node));
+        let error = error.fold(tolerances.tie, f64::max);
         group.sort_unstable();
         group.truncate(most);
-        let count = run.contact.len();
         for &node in &group {
             run.contact.push(node)?;
         }
-        start.advance(approach + time);
         self.last_span = self.last_span.max(time);
         // However little is left open by so many nodes: rates must be exact.
         self.rate_span = f64::INFINITY;
-        let entered = run
-            .updater
-            .join(&run.problem, &run.contact, &Touched::default())
-            .and_then(|()| run.solve_field(start.approach(), self.rate_span));
-        if let Err(error) = entered {
-            run.contact.truncate(count);
+        if let Err(error) = run.advance_field(iterations, approach, self.rate_span) {
+            let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
             return Err(error);
         }
-        run.front = start;
+        let mut start = mark.scalars;
+        start.advance(approach);
+        run.scalars.place_at(approach);
         self.survey(run)?;
-        let [stiffness, closing] = start.missing(&run.front);
+        let [stiffness, closing] = start.missing(&run.scalars);
         let error = start.reported_error(error, start.load_of(stiffness, error));
         let share = (group.len() as f64).recip();
         for (k, node) in group.into_iter().enumerate() {
-            let contact_nodes = count + k + 1;
-            start.touch(share * stiffness, share * closing, contact_nodes);
+            let contact_nodes = mark.count + k + 1;
+            start.touch([share * stiffness, share * closing], contact_nodes);
             start.clamp_mean_gap();
             let step = run.releases.steps(contact_nodes);
             let event = (step, ContactEvent::Touch, node);
@@ -68,7 +63,7 @@ impl Corrected {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::row;
+    use crate::loading::test_chain;
     use crate::updater::Dense;
 
     /// Node 0 is in contact at the approach 1, and nodes 2, 4 and 6 touch after one metre, nearly; node 8 after three.
@@ -80,7 +75,7 @@ mod tests {
     ) -> Result<(LoadingRun<Dense>, Corrected), Error> {
         let mut gaps = [9.0; 9];
         (gaps[0], gaps[2], gaps[4], gaps[6], gaps[8]) = (0.0, 2.0, 2.0, 2.0, 4.0);
-        let mut run = row::solved(&gaps, &[0], 1.0)?;
+        let mut run = test_chain::solved(&gaps, &[0], 1.0)?;
         run.front.renew_load(&run.problem, &run.contact, &run.field);
         run.survey(false, |_| ())?;
         let mut corrected = Corrected::new(None, true);

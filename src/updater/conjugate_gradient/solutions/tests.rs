@@ -139,7 +139,7 @@ fn row_sums_are_taken_back() -> Result<(), Error> {
 /// A solution of another updater is a start: pressures and rates of the nodes in contact, of which nothing else is known.
 #[test]
 fn solutions_are_taken_over() -> Result<(), Error> {
-    let problem = crate::row::problem(&[0.0, 1.0, 2.0])?;
+    let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0])?;
     let contact = ContactSequence::with_order(problem.grid(), [2, 0])?;
     let mut state = State::new(&problem);
     let solution = Solution {

@@ -1,10 +1,10 @@
-//! Which nodes to watch.
+//! Which nodes to watch, and how far their window goes.
 
-use super::Corrected;
+use super::Refined;
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
-use crate::loading::scales::Scales;
-use crate::updater::LinearUpdater;
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::window::WindowEvent;
 
 /// A window watches this part of the contact at most, as long as that is small.
 const PART: usize = 4;
@@ -15,24 +15,28 @@ pub(super) const FEWEST: usize = 8;
 /// Ties with the last watched node are watched too, up to so many times the window.
 const MOST_TIES: usize = 3;
 
+/// The window ends at its widest spacing behind this part of its events.
+const CUT: f64 = 0.85;
+
 /// The nodes to watch.
 #[derive(Debug)]
-pub(super) struct Choice {
+pub(super) struct Candidates {
     /// (time, node), in this order.
-    pub(super) watched: Ranking,
+    pub(super) nodes: Ranking,
+    /// No other node touches before this time.
     pub(super) horizon: f64,
     /// Set if more nodes touch at this time than can be watched.
     pub(super) group: Option<f64>,
 }
 
-impl Corrected {
+impl Refined {
     /// Chooses the nodes with the smallest times, and `extra` ones.
-    pub(super) fn choose<U: LinearUpdater>(
+    pub(super) fn choose(
         &mut self,
-        run: &LoadingRun<U>,
-        scales: &Scales,
+        run: &LoadingRun,
+        tolerances: &WindowTolerances,
         extra: &[usize],
-    ) -> Choice {
+    ) -> Candidates {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let wanted = self.most_events().saturating_mul(AHEAD);
         let wanted = wanted.min(run.contact.len() / PART);
@@ -41,26 +45,22 @@ impl Corrected {
         if ranking.len() <= size {
             let mut watched = ranking.clone();
             watched.sort_by(order);
-            return Choice {
-                watched,
+            return Candidates {
+                nodes: watched,
                 horizon: f64::INFINITY,
                 group: None,
             };
         }
         let (watched, next, others) = ranking.select_nth_unstable_by(size, order);
         let mut watched = watched.to_vec();
-        let approach = run.front.approach();
-        let tie_of = |node: usize| {
-            let line = run.field.line(&run.problem, node, approach);
-            scales.tie_of(line.closing)
-        };
+        let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
         let first = watched
             .iter()
             .map(|(time, _)| *time)
             .fold(f64::INFINITY, f64::min);
         let limit = next.0 + tie_of(next.1);
-        let mut choice = Choice {
-            watched: Vec::new(),
+        let mut candidates = Candidates {
+            nodes: Vec::new(),
             horizon: next.0,
             group: (first.is_finite() && next.0 <= first.max(0.0) + tie_of(next.1))
                 .then_some(first.max(0.0)),
@@ -71,7 +71,7 @@ impl Corrected {
             watched.extend(tied);
             let rest = others.iter().map(|(time, _)| *time);
             let rest = rest.filter(|time| *time > limit);
-            choice.horizon = rest.fold(f64::INFINITY, f64::min);
+            candidates.horizon = rest.fold(f64::INFINITY, f64::min);
         }
         if !extra.is_empty() {
             let is_new = |node: &usize| !watched.iter().any(|(_, other)| other == node);
@@ -80,19 +80,55 @@ impl Corrected {
             let rest = ranking
                 .iter()
                 .filter(|(_, node)| !watched.iter().any(|(_, other)| other == node));
-            choice.horizon = rest.map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
+            candidates.horizon = rest.map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
         }
         watched.sort_by(order);
-        choice.watched = watched;
-        choice
+        candidates.nodes = watched;
+        candidates
     }
+}
+
+/// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
+/// most of them.
+pub(super) fn cut(events: &[WindowEvent], horizon: f64, most: usize, tolerances: &WindowTolerances) -> (usize, f64) {
+    let count = events.len().min(most);
+    let next = |events_kept: usize| {
+        let last = events[events_kept - 1].time;
+        match events.get(events_kept) {
+            Some(event) => event.time,
+            None if horizon < f64::INFINITY => horizon.max(last),
+            None => 1.05 * last + 1e-12 * tolerances.length,
+        }
+    };
+    let spacing = |kept: &usize| next(*kept) - events[*kept - 1].time;
+    let widest = |range: std::ops::RangeInclusive<usize>| {
+        range
+            .rev()
+            .max_by(|a, b| spacing(a).total_cmp(&spacing(b)))
+            .unwrap_or(1)
+    };
+    let least = ((CUT * count as f64) as usize).clamp(1, count);
+    let mut kept = widest(least..=count);
+    if spacing(&kept) <= tolerances.tie {
+        kept = widest(1..=count);
+    }
+    (kept, 0.5 * (events[kept - 1].time + next(kept)))
+}
+
+/// So many events, and what ties with the last of them.
+pub(super) fn with_ties(events: &[WindowEvent], most: usize, tolerances: &WindowTolerances) -> usize {
+    let few = most.clamp(1, events.len());
+    let tied = events[few - 1..].windows(2);
+    few + tied
+        .take_while(|pair| pair[1].time - pair[0].time <= tolerances.tie)
+        .count()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Error;
-    use crate::loading::row;
+    use crate::loading::test_chain;
 
     /// Lengths of which ties alone matter: with no node in contact all gaps close at the rate 1.
     fn scales(tie: f64) -> Scales {
@@ -110,7 +146,7 @@ mod tests {
         tie: f64,
         extra: &[usize],
     ) -> Result<Choice, Error> {
-        let mut run = row::run(&[0.0; 100], crate::updater::Dense)?;
+        let mut run = test_chain::run(&[0.0; 100], crate::updater::Dense)?;
         for node in 60..60 + contact {
             run.contact.push(node)?;
         }
@@ -121,7 +157,7 @@ mod tests {
     }
 
     fn nodes(choice: &Choice) -> Vec<usize> {
-        choice.watched.iter().map(|&(_, node)| node).collect()
+        candidates.watched.iter().map(|&(_, node)| node).collect()
     }
 
     /// One time a metre: node k touches at k.
@@ -141,7 +177,7 @@ mod tests {
         ] {
             let choice = choose((60, 0), &times(count), 1e-9, &[])?;
             assert_eq!(nodes(&choice), (0..watched).collect::<Vec<_>>());
-            assert_eq!((choice.horizon, choice.group), (horizon, None), "{count}");
+            assert_eq!((candidates.horizon, candidates.group), (horizon, None), "{count}");
         }
         // A quarter of 40 nodes in contact, and of 38, but no more than the size.
         for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
@@ -158,15 +194,15 @@ mod tests {
         near.extend([8.75, 8.5, 20.0, 8.25]);
         let choice = choose((8, 0), &near, 0.5, &[])?;
         assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 10]);
-        assert_eq!((choice.horizon, choice.group), (8.75, None));
+        assert_eq!((candidates.horizon, candidates.group), (8.75, None));
         // Up to three times the window: 23 of them, not 24.
         for (ties, watched, horizon) in [(23, 32, 20.0), (24, 8, 8.0)] {
             let mut tied = times(9);
             tied.extend(vec![8.0; ties]);
             tied.push(20.0);
             let choice = choose((8, 0), &tied, 1e-9, &[])?;
-            assert_eq!((nodes(&choice).len(), choice.horizon), (watched, horizon));
-            assert_eq!(choice.group, None);
+            assert_eq!((nodes(&choice).len(), candidates.horizon), (watched, horizon));
+            assert_eq!(candidates.group, None);
         }
         Ok(())
     }
@@ -187,8 +223,8 @@ mod tests {
             let mut times = vec![others; 40];
             times[0] = first;
             let choice = choose((8, 0), &times, tie, &[])?;
-            assert_eq!(choice.group, group, "{first} {others}");
-            assert_eq!((nodes(&choice).len(), choice.horizon), (8, others));
+            assert_eq!(candidates.group, group, "{first} {others}");
+            assert_eq!((nodes(&choice).len(), candidates.horizon), (8, others));
         }
         Ok(())
     }
@@ -198,11 +234,11 @@ mod tests {
         // 3 is watched anyway, 9 is the next one behind, 11 is further away.
         let choice = choose((8, 0), &times(20), 1e-9, &[11, 3, 9])?;
         assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11]);
-        assert_eq!(choice.horizon, 10.0);
+        assert_eq!(candidates.horizon, 10.0);
         let all: Vec<usize> = (9..20).collect();
         let choice = choose((8, 0), &times(20), 1e-9, &all)?;
         assert_eq!(nodes(&choice), (0..20).collect::<Vec<_>>());
-        assert_eq!(choice.horizon, f64::INFINITY);
+        assert_eq!(candidates.horizon, f64::INFINITY);
         Ok(())
     }
 }

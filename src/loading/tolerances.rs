@@ -1,13 +1,13 @@
 //! Lengths below which nothing is told apart.
 
-use crate::loading::run::LoadingRun;
-use crate::updater::LinearUpdater;
+use super::gap_field::GapLine;
+use super::run::LoadingRun;
 
 /// Events closer than this, relative to the approach, are ties: the lowest index comes first.
 const TIE: f64 = 1e-9;
 /// The same with an exact updater, of gaps: those that are as small as this part of the approach when one of them closes close with
 /// it. Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state may be off.
-const EXACT_TIE: f64 = 1e-13;
+pub(super) const EXACT_TIE: f64 = 1e-13;
 /// The same relative to the greatest initial gap: rounding of heights.
 const ROUNDING: f64 = 1e-14;
 /// Bounds of the tolerance of rates.
@@ -20,19 +20,19 @@ pub(super) fn ties_until(approach: f64) -> f64 {
     approach + EXACT_TIE * approach
 }
 
-/// When a gap that closes from an approach on, `gap − t closing`, falls to a tie, with an exact updater. Rounding leaves a part of the
+/// When a gap that closes from an approach on falls to a tie, with an exact updater. Rounding leaves a part of the
 /// approach in a gap; the time at which a gap that closes slowly is zero may be off by far more.
-pub(super) fn ties_from(approach: f64, gap: f64, closing: f64) -> f64 {
-    if closing > 0.0 {
-        (gap - EXACT_TIE * approach) / (closing + EXACT_TIE)
+pub(super) fn ties_from(approach: f64, line: GapLine) -> f64 {
+    if line.closing > 0.0 {
+        (line.gap - EXACT_TIE * approach) / (line.closing + EXACT_TIE)
     } else {
         f64::INFINITY
     }
 }
 
-/// Lengths of a window.
+/// What the lengths in a window are good to, with solutions of a tolerance.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scales {
+pub(super) struct WindowTolerances {
     /// What errors are relative to: the approach at the window's beginning, or a part of the mean gap if that is
     /// greater.
     pub(super) length: f64,
@@ -42,17 +42,13 @@ pub(super) struct Scales {
     pub(super) tie: f64,
 }
 
-impl Scales {
-    pub(super) fn of<U: LinearUpdater>(run: &LoadingRun<U>) -> Self {
-        let length = run.front.approach().max(run.problem.least_length());
-        let profile = run.updater.profile();
+impl WindowTolerances {
+    /// At the present approach, of solutions that leave gaps of `tolerance` in contact, relative to the approach.
+    pub(super) fn of(run: &LoadingRun, tolerance: f64) -> Self {
+        let length = run.scalars.approach().max(run.problem.least_length());
         Self {
             length,
-            tolerance: if profile.exact {
-                0.0
-            } else {
-                profile.tolerance
-            },
+            tolerance,
             tie: (TIE * length).max(ROUNDING * run.problem.greatest_gap()),
         }
     }
@@ -86,23 +82,23 @@ mod tests {
     #[test]
     fn errors_of_gaps_become_errors_of_times() {
         for unit in [1.0, 1e-9] {
-            let scales = Scales {
+            let tolerances = WindowTolerances {
                 length: 2.0 * unit,
                 tolerance: 1e-10,
                 tie: 1e-9 * unit,
             };
             // 100 · 1e-10 · 2 over the rate.
             for (closing, time) in [(1.0, 2e-8), (0.25, 8e-8), (100.0, 1e-9), (0.0, 2e4)] {
-                let found = scales.tie_of(closing) / unit;
+                let found = tolerances.tie_of(closing) / unit;
                 assert!((found / time - 1.0).abs() < 1e-12, "{closing}: {found:e}");
             }
             // Solutions over a span: 1e-10 · 2 / span, between its bounds.
             for (span, rate) in [(1e-4, 2e-6), (1.0, 5e-7), (0.0, 1e-5)] {
-                let found = scales.rate_tolerance(span * unit);
+                let found = tolerances.rate_tolerance(span * unit);
                 assert!((found / rate - 1.0).abs() < 1e-12, "{span}: {found:e}");
             }
             for (approach, overlap) in [(1.0, 2e-8), (3.0, 3e-8)] {
-                let found = scales.overlap(approach * unit) / unit;
+                let found = tolerances.overlap(approach * unit) / unit;
                 assert!(
                     (found / overlap - 1.0).abs() < 1e-12,
                     "{approach}: {found:e}"

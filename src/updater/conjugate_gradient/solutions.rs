@@ -1,4 +1,4 @@
-//! The solutions on the contact, and the watched nodes.
+//! The solution of the path, the one before it, and solutions apart from them.
 
 use std::mem;
 
@@ -7,16 +7,16 @@ use super::instants::Instants;
 use super::local::Neighbourhood;
 use super::row_sums::RowSums;
 use super::solver::{Equation, Solver};
-use super::tolerances::{Criteria, Tolerances};
-use super::watched::Watched;
+use super::proposed::Proposed;
+use super::tolerances::{Aim, Criteria, Tolerances};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
-use crate::updater::{Schur, Solution, SolveRequest};
+use crate::updater::{Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
 
 /// What depends on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(super) struct Solutions {
     solver: Solver,
     neighbourhood: Neighbourhood,
     now: Equilibrium,
@@ -24,12 +24,12 @@ pub(super) struct State {
     before: Option<Equilibrium>,
     instants: Instants,
     sums: RowSums,
-    watched: Watched,
+    proposed: Proposed,
     /// Search directions of the last solution on the whole contact.
     directions: Directions,
 }
 
-impl State {
+impl Solutions {
     pub(super) fn new(problem: &Problem) -> Self {
         let nodes = problem.grid().nodes();
         Self {
@@ -39,7 +39,7 @@ impl State {
             before: None,
             instants: Instants::default(),
             sums: RowSums::start(0, vec![0.0; nodes]),
-            watched: Watched::default(),
+            proposed: Proposed::default(),
             directions: Directions::default(),
         }
     }
@@ -61,7 +61,7 @@ impl State {
         self.now = Equilibrium {
             count: contact.len(),
             approach,
-            span: 0.0,
+            serves: 0.0,
             load,
             rate,
         };
@@ -78,14 +78,15 @@ impl State {
         self.now.count
     }
 
-    pub(super) fn watch(
+    /// Proposes nodes out of contact: returns their Schur complement, and improves the displacements that the present solution and
+    /// its rate cause there.
+    pub(super) fn propose(
         &mut self,
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
         nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
+    ) -> Result<(&Schur, Vec<[f64; 2]>), Error> {
         self.solver.choose(contact, contact.len());
         self.solver.complete(&mut self.now.load)?;
         self.solver.complete(&mut self.now.rate)?;
@@ -94,61 +95,46 @@ impl State {
             let mut directions = mem::take(&mut self.directions);
             self.sums.follow(
                 (&mut self.solver, &mut directions),
-                &self.watched,
+                &self.proposed,
                 criteria.max_iterations,
                 problem,
                 contact,
                 self.now.rate.open(),
             )?;
         }
-        schur.resize(nodes.len())?;
         self.instants.clear();
-        let beside = (&self.neighbourhood, self.solver.set());
-        self.watched = Watched::new(problem, beside, nodes, contact.len(), schur);
-        self.watched.find_row_sums(|local| {
+        let beside = (&self.neighbourhood, &self.solver);
+        self.proposed = Proposed::new(problem, beside, (nodes, contact.len()), |local| {
             if periodic {
                 // All row sums are the same, so that y₂ explains them.
                 problem.row_sums()[local.node] * (1.0 - self.now.rate.displacement[local.node])
             } else {
                 self.sums.left_at(problem, local)
             }
-        });
-        schur
-            .row_sums_mut()
-            .copy_from_slice(self.watched.row_sums());
-        schur.set_displacements(self.watched.improved(problem, &self.now));
-        Ok(())
+        })?;
+        let displacements = self.proposed.improved(problem, &self.now);
+        Ok((self.proposed.complement(), displacements))
     }
 
-    pub(super) fn solve(
+    /// Moves the path's solution to the whole contact at an approach, unless it is there and serves the aim.
+    pub(super) fn advance(
         &mut self,
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
-        solution: &mut Solution,
+        (approach, aim): (f64, Aim),
+        solved: &mut Solved,
     ) -> Result<(), Error> {
-        let count = request.count;
-        let is_solved = self.now.count == count && self.now.load.is_known();
-        let is_here = self.now.approach == request.approach;
-        // The path must not notice questions, which are all that may be asked of a contact that is solved, at
-        // another approach or more exactly than the path needs.
-        let is_question = is_solved && (!is_here || request.span == f64::INFINITY);
-        let asked = if is_solved && is_here && request.span <= self.now.span {
-            None
-        } else if is_question {
+        let now = &self.now;
+        let is_here = now.count == contact.len() && now.load.is_known() && now.approach == approach;
+        if !(is_here && aim.span() <= now.serves) {
             let now = mem::take(&mut self.now);
-            let solved = self.solve_from(criteria, problem, contact, request, &now);
-            self.now = now;
-            Some(solved?.0)
-        } else if count == contact.len() && self.now.count <= count && request.span > 0.0 {
-            let now = mem::take(&mut self.now);
-            match self.solve_from(criteria, problem, contact, request, &now) {
-                Ok((solved, directions)) => {
-                    if now.count < count && now.load.is_known() {
+            match self.solve_from(criteria, problem, contact, (contact.len(), approach), aim, &now) {
+                Ok((equilibrium, directions)) => {
+                    if now.count < contact.len() && now.load.is_known() {
                         self.before = Some(now);
                     }
-                    self.now = solved;
+                    self.now = equilibrium;
                     self.directions = directions;
                 }
                 Err(error) => {
@@ -156,78 +142,109 @@ impl State {
                     return Err(error);
                 }
             }
-            None
-        } else {
-            Some(self.solve_prefix(criteria, problem, contact, request)?)
-        };
-        let solved = asked.as_ref().unwrap_or(&self.now);
-        let values = |field: &Field| {
-            let nodes = contact.order()[..count].iter();
-            nodes
-                .map(|&node| field.pressure.get(node).copied().unwrap_or(0.0))
-                .collect()
-        };
-        solution.pressure = values(&solved.load);
-        solution.rate = values(&solved.rate);
-        solution.displacement[0].clone_from(&solved.load.displacement);
-        solution.displacement[1].clone_from(&solved.rate.displacement);
-        if request.span < f64::INFINITY {
-            self.watched.improve(problem, contact, solved, solution);
-            solved.scale(problem, contact, solution);
+        }
+        self.now.write(contact, solved);
+        if aim != Aim::Exact {
+            self.proposed.improve(problem, contact, &self.now, solved);
+            self.now.scale(problem, contact, &mut solved.solution);
         }
         Ok(())
     }
 
-    /// Solves on a part of the contact: inside the last window from its beginning, and otherwise from nothing
-    /// and with nothing that the path uses.
-    fn solve_prefix(
+    /// Displacements with the first `count` nodes in contact, of which those before the last window are solved. What the path goes on
+    /// with stays as it is.
+    pub(super) fn probe(
         &mut self,
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
-    ) -> Result<Equilibrium, Error> {
-        let count = request.count;
+        at: (usize, f64),
+        error: f64,
+    ) -> Result<Vec<f64>, Error> {
         let before = self.before.take();
-        let within = |from: &&Equilibrium| {
-            request.span == 0.0 && from.count <= count && count <= self.now.count
-        };
-        let solved = match before.as_ref().filter(within) {
-            Some(from) => {
-                let solved = self.solve_from(criteria, problem, contact, request, from);
-                solved.map(|(solved, _)| solved)
-            }
-            None => {
-                let solved = Self::new(problem).solve_from(
-                    criteria,
-                    problem,
-                    contact,
-                    request,
-                    &Equilibrium::zero(problem.grid().nodes()),
-                );
-                solved.map(|(solved, _)| solved)
-            }
+        let aim = Aim::Gaps(error);
+        let within = |from: &&Equilibrium| from.count <= at.0 && at.0 <= self.now.count;
+        let found = match before.as_ref().filter(within) {
+            Some(from) => self.solve_from(criteria, problem, contact, at, aim, from),
+            None => Self::solve_from_nothing(criteria, problem, contact, at, aim),
         };
         self.before = before;
-        solved
+        let mut solved = Solved::default();
+        let (equilibrium, _) = found?;
+        equilibrium.write(contact, &mut solved);
+        self.proposed
+            .improve(problem, contact, &equilibrium, &mut solved);
+        let [displacement, _] = solved.displacement;
+        Ok(displacement)
     }
 
-    /// Solves for rate and pressure, in this order: the directions of the one serve the other, and are
-    /// returned. The rate stays empty if it is not asked for.
+    /// Solves exactly with the first `count` nodes in contact. What the path goes on with stays as it is.
+    pub(super) fn solve_apart(
+        &mut self,
+        criteria: Criteria,
+        problem: &Problem,
+        contact: &ContactSequence,
+        at: (usize, f64),
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let equilibrium = if self.now.count == at.0 && self.now.load.is_known() {
+            let now = mem::take(&mut self.now);
+            let found = self.solve_from(criteria, problem, contact, at, Aim::Exact, &now);
+            self.now = now;
+            found?.0
+        } else {
+            Self::solve_from_nothing(criteria, problem, contact, at, Aim::Exact)?.0
+        };
+        equilibrium.write(contact, solved);
+        Ok(())
+    }
+
+    /// Solves with nothing that the path uses.
+    fn solve_from_nothing(
+        criteria: Criteria,
+        problem: &Problem,
+        contact: &ContactSequence,
+        at: (usize, f64),
+        aim: Aim,
+    ) -> Result<(Equilibrium, Directions), Error> {
+        let nothing = Equilibrium::zero(problem.grid().nodes());
+        Self::new(problem).solve_from(criteria, problem, contact, at, aim, &nothing)
+    }
+
+    /// The displacements of all nodes under the pressures on the whole contact that displace it as `rhs` says.
+    pub(super) fn respond(
+        &mut self,
+        criteria: Criteria,
+        problem: &Problem,
+        contact: &ContactSequence,
+        rhs: impl Fn(usize) -> f64 + Sync + Send,
+    ) -> Result<Field, Error> {
+        self.solver.choose(contact, contact.len());
+        let nodes = contact.order();
+        let most = greatest(nodes.len(), 0.0, |k| rhs(nodes[k]).abs());
+        let equation = Equation {
+            rhs,
+            tolerance: criteria.tolerance * most.max(f64::MIN_POSITIVE),
+            most_drift: f64::INFINITY,
+            max_iterations: criteria.max_iterations,
+        };
+        let nothing = Field::zero(problem.grid().nodes());
+        let start = nothing.pressure.clone();
+        self.solver
+            .solve(&equation, start, &nothing, &mut Directions::default())
+    }
+
+    /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one serve the
+    /// other, and are returned. The rate stays empty if gaps are the aim.
     fn solve_from(
         &mut self,
         criteria: Criteria,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        (count, approach): (usize, f64),
+        aim: Aim,
         from: &Equilibrium,
     ) -> Result<(Equilibrium, Directions), Error> {
-        let SolveRequest {
-            count,
-            approach,
-            span,
-            ..
-        } = request;
         self.solver.choose(contact, count);
         let nodes = &contact.order()[..count];
         let joined = nodes.get(from.count..).unwrap_or_default();
@@ -235,22 +252,19 @@ impl State {
         let overlap = |node: usize| approach - gap[node];
         let least = problem.least_length();
         let length = greatest(count, least, |k| overlap(nodes[k]).abs());
-        let tolerances = Tolerances::of(criteria, request, length, from.rate.open());
+        let tolerances = Tolerances::of(criteria, aim, length, from.rate.open());
         let max_iterations = criteria.max_iterations;
-        let mut directions = if span > 0.0 {
-            Directions::keeping()
-        } else {
-            Directions::default()
-        };
-        let mut rate = Field::default();
-        if span > 0.0 {
+        let wants_rate = !matches!(aim, Aim::Gaps(_));
+        let (mut directions, mut rate) = (Directions::default(), Field::default());
+        if wants_rate {
+            directions = Directions::keeping();
             let equation = Equation {
                 rhs: |_| 1.0,
                 tolerance: tolerances.rate,
                 most_drift: tolerances.drift[1],
                 max_iterations,
             };
-            let (start, _) = self.watched.carried(&from.rate, joined, equation.rhs);
+            let (start, _) = self.proposed.carried(&from.rate, joined, equation.rhs);
             rate = self
                 .solver
                 .solve(&equation, start, &from.rate, &mut directions)?;
@@ -262,17 +276,17 @@ impl State {
             max_iterations,
         };
         let base = from.load_at(approach);
-        let (mut start, sum) = self.watched.carried(&base, joined, overlap);
-        let is_in_window = !joined.is_empty() && span < f64::INFINITY;
+        let (mut start, sum) = self.proposed.carried(&base, joined, overlap);
+        let is_in_window = !joined.is_empty() && aim != Aim::Exact;
         let carried = is_in_window.then(|| start.clone());
-        if span == 0.0 {
+        if !wants_rate {
             self.instants.complete(sum, &mut start);
         }
         let load = self
             .solver
             .solve(&equation, start, &base, &mut directions)?;
         if let Some(carried) = carried {
-            if span > 0.0 {
+            if wants_rate {
                 self.instants.clear();
             }
             self.instants.add(sum, &load.pressure, &carried);
@@ -280,7 +294,7 @@ impl State {
         let solved = Equilibrium {
             count,
             approach,
-            span,
+            serves: aim.span(),
             load,
             rate,
         };
@@ -307,7 +321,7 @@ impl State {
         self.before = None;
         self.instants.clear();
         self.directions = Directions::default();
-        self.watched = Watched::default();
+        self.proposed = Proposed::default();
         self.now.load.keep(left);
         self.now.rate.keep(left);
         self.now.count = left.len();

@@ -1,0 +1,411 @@
+//! Events in windows, without a factor: with Schur complements that are nearly exact.
+//!
+//! The order of events inside a window rests on small changes only, so that a Schur complement that is nearly
+//! right gives nearly the right order. The exact solution at the window's end, which the next window needs
+//! anyway, then corrects it, and the same events are played a second time. What is still closer than the
+//! remaining error is settled by one exact solution each.
+
+mod candidates;
+mod correction;
+mod near_ties;
+mod plateau;
+mod states;
+#[cfg(test)]
+mod window_tests;
+
+use super::gap_field::GapLine;
+use super::ranking::{Ranking, fill};
+use super::run::{LoadingRun, Mark};
+use super::tolerances::WindowTolerances;
+use super::window::{Window, WindowEvent};
+use crate::Error;
+use crate::updater::{Iterations, Schur, WindowFactor};
+use candidates::{Candidates, FEWEST, cut, with_ties};
+use near_ties::Settled;
+
+/// Nodes watched at a time: the error of the order grows with their number.
+const WATCHED: usize = 60;
+/// The same if near ties are not settled.
+const WATCHED_UNSETTLED: usize = 128;
+/// How often a contact that contradicts the conditions of contact is mended before the path gives up.
+const MOST_TRIES: usize = 10;
+/// What is left of a window that let a node overlap that was not watched.
+const SHORTER: f64 = 0.7;
+/// Events of a window times the part of a pivot that its Schur complement leaves out: windows have no more. Schur complements of
+/// square domains leave out 10⁻³, so that nothing is limited; those of a periodic strip of two rows 0.5, and each event has a
+/// solution of its own.
+const LEFT_OUT: f64 = 0.2;
+/// What was left out counts for the next windows too, each time by this part.
+const REMEMBERED: f64 = 0.8;
+/// What the end of a window may change of the times in it on average, over the mean spacing of events: 0.1 at worst on square domains.
+/// A window whose end changes more is taken back.
+const MOST_CHANGE: f64 = 0.3;
+/// Events that the solution at a window's end determines, whatever its Schur complement is.
+const CERTAIN: usize = 2;
+
+/// Finds events in windows that are corrected at their end.
+#[derive(Debug)]
+pub(super) struct Refined {
+    size: usize,
+    /// Whether events that are too close to be told apart get a solution of their own.
+    settles: bool,
+    /// The nodes out of contact, at the present approach.
+    ranking: Ranking,
+    /// The contact and approach that the ranking belongs to.
+    ranked: Option<(u64, f64)>,
+    /// How far the last window went, and the span that the rates at hand serve.
+    last_span: f64,
+    rate_span: f64,
+    /// The part of a pivot that Schur complements were off by lately, at worst.
+    left_out: f64,
+}
+
+/// How a window ended.
+enum Outcome {
+    /// With states, or with none where no node touches before its end.
+    Done,
+    /// Its end, or a solution in it, contradicted it: the next one has fewer events. Nothing has changed.
+    TakenBack,
+    /// Nodes overlap that were not watched: (when they would touch, node), and how long it was. Nothing has changed.
+    Overlap { outside: Ranking, time: f64 },
+}
+
+/// What a contact at a window's end contradicts.
+#[derive(Debug, Default)]
+struct Contradictions {
+    /// Positions of events whose node is under tension.
+    tension: Vec<usize>,
+    /// Positions of watched nodes that overlap.
+    overlap: Vec<usize>,
+    /// (when it would touch, node) of nodes that overlap and were not watched.
+    outside: Ranking,
+}
+
+impl Refined {
+    pub(super) fn new(size: Option<usize>, settles: bool) -> Self {
+        let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
+        Self {
+            size: size.unwrap_or(watched).max(FEWEST),
+            settles,
+            ranking: Vec::new(),
+            ranked: None,
+            last_span: 0.0,
+            rate_span: 0.0,
+            left_out: 0.0,
+        }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact.
+    pub(super) fn produce(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        most_nodes: usize,
+    ) -> Result<(), Error> {
+        let most = most_nodes - run.contact.len();
+        let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
+        let mut without_events = 0;
+        loop {
+            let tolerances = WindowTolerances::of(run, iterations.tolerance());
+            self.begin(run, iterations)?;
+            let mut candidates = self.choose(run, &tolerances, &extra);
+            self.improve_rates(run, iterations, &tolerances, &mut candidates, &extra)?;
+            if let Some(time) = candidates.group {
+                return self.enter(run, iterations, &tolerances, (time, &[]), most);
+            }
+            let window = self.propose(run, iterations, candidates, longest)?;
+            match self.follow(run, iterations, &tolerances, &window, most)? {
+                Outcome::Done if !run.queue.is_empty() => return Ok(()),
+                // Its nodes touch later than they seemed to: the next window begins where this one ends.
+                Outcome::Done if without_events < MOST_TRIES => {
+                    without_events += 1;
+                    longest = f64::INFINITY;
+                    extra.clear();
+                }
+                Outcome::Done => {
+                    return Err(run.not_monotone("gap or pressure", window.node(0), 0.0));
+                }
+                Outcome::TakenBack => {
+                    longest = f64::INFINITY;
+                    run.timings.taken_back += 1;
+                }
+                // The horizon was wrong: watch what overlapped as well, and not so far.
+                Outcome::Overlap { outside, time } => {
+                    longest = SHORTER * time;
+                    let room = self.size.saturating_sub(extra.len()).max(1);
+                    extra.extend(outside.into_iter().take(room).map(|(_, node)| node));
+                    run.timings.taken_back += 1;
+                }
+            }
+        }
+    }
+
+    /// Makes solution and ranking those of the present approach.
+    fn begin(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+    ) -> Result<(), Error> {
+        let approach = run.scalars.approach();
+        if !run.field.belongs_to(&run.contact, approach) {
+            if self.rate_span == 0.0 {
+                self.rate_span = f64::INFINITY;
+            }
+            run.advance_field(iterations, approach, self.rate_span)?;
+        }
+        if self.ranked != Some((run.contact.revision(), approach)) {
+            // The first window of this kind.
+            self.survey(run)?;
+        }
+        Ok(())
+    }
+
+    /// Takes all scalars from the solution at the present approach, and ranks the nodes out of contact.
+    fn survey(&mut self, run: &mut LoadingRun) -> Result<(), Error> {
+        let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
+        run.scalars.renew_load(problem, contact, field);
+        fill(run, &mut self.ranking, false, GapLine::touches)?;
+        self.ranked = Some((run.contact.revision(), run.scalars.approach()));
+        Ok(())
+    }
+
+    /// Solves for the rates once more if they have to serve much further than the last window did.
+    fn improve_rates(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        candidates: &mut Candidates,
+        extra: &[usize],
+    ) -> Result<(), Error> {
+        let furthest = if candidates.horizon < f64::INFINITY {
+            candidates.horizon
+        } else {
+            let times = candidates.nodes.iter().map(|(time, _)| *time);
+            times.filter(|time| time.is_finite()).fold(0.0, f64::max)
+        };
+        if furthest > 0.0
+            && tolerances.rate_tolerance(furthest)
+                < 0.5 * tolerances.rate_tolerance(self.rate_span)
+        {
+            self.rate_span = furthest;
+            run.advance_field(iterations, run.scalars.approach(), furthest)?;
+            self.survey(run)?;
+            *candidates = self.choose(run, tolerances, extra);
+        }
+        Ok(())
+    }
+
+    /// Opens a window on the candidates, with lines that are better known than those of the gap field.
+    fn propose(
+        &self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        candidates: Candidates,
+        longest: f64,
+    ) -> Result<Window, Error> {
+        let nodes: Vec<usize> = candidates.nodes.iter().map(|&(_, node)| node).collect();
+        let (approach, count) = (run.scalars.approach(), run.contact.len());
+        let (problem, contact) = (&run.problem, &run.contact);
+        let grown = iterations.bytes(problem.grid().nodes(), count + nodes.len());
+        let needed = grown.saturating_add(WindowFactor::bytes(nodes.len()));
+        run.memory.check(needed, count)?;
+        let mut schur = Schur::default();
+        let displacements = iterations.propose(problem, contact, &nodes, &mut schur)?;
+        let gap = problem.initial_gap();
+        let lines = nodes.iter().zip(displacements).map(|(&node, [u, rate])| {
+            let (gap, closing) = (gap[node] + u - approach, 1.0 - rate);
+            (node, GapLine { gap, closing })
+        });
+        let mut window = Window::default();
+        let (_, own) = window.open((approach, candidates.horizon.min(longest)), lines);
+        *own = schur;
+        run.check_complement(window.nodes(), window.schur())?;
+        window.begin();
+        run.timings.windows += 1;
+        Ok(window)
+    }
+
+    /// Goes through a window, and queues its states.
+    fn follow(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        window: &Window,
+        most: usize,
+    ) -> Result<Outcome, Error> {
+        let mut first = window.clone();
+        let bad = first.play(usize::MAX);
+        let events = first.events();
+        if events.is_empty() {
+            return Err(match bad {
+                Some(bad) => run.not_positive_definite(bad),
+                None => {
+                    let node = window.nodes().iter().min().copied();
+                    run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+                }
+            });
+        }
+        let kept = most.min(with_ties(events, self.most_events(), tolerances));
+        let (cut, time) = cut(events, window.horizon(), kept, tolerances);
+        let first = &events[..cut];
+        if time <= tolerances.tie {
+            // All of them touch at once. Their gaps are better known than those of the ranking.
+            let known: Vec<usize> = first.iter().map(|event| window.node(event.position)).collect();
+            self.enter(run, iterations, tolerances, (time, &known), most)?;
+            return Ok(Outcome::Done);
+        }
+        let mark = run.mark();
+        let mut joined: Vec<usize> = first.iter().map(|event| event.position).collect();
+        for _ in 0..MOST_TRIES {
+            let found = match self.go_to_end(run, iterations, tolerances, window, &joined, time) {
+                Ok(found) => found,
+                Err(error) => {
+                    let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
+                    return Err(error);
+                }
+            };
+            if found.is_empty() {
+                if joined.is_empty() {
+                    self.last_span = time;
+                    return Ok(Outcome::Done);
+                }
+                let at = (&mark, time);
+                let passed = self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
+                if let Some((window, settled)) = passed {
+                    self.finish(run, window, &settled, at)?;
+                    return Ok(Outcome::Done);
+                }
+            }
+            run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact))?;
+            if found.is_empty() {
+                return Ok(Outcome::TakenBack);
+            }
+            if !found.outside.is_empty() {
+                self.begin(run, iterations)?;
+                let outside = found.outside;
+                return Ok(Outcome::Overlap { outside, time });
+            }
+            joined.retain(|position| !found.tension.contains(position));
+            joined.extend(found.overlap);
+            run.timings.taken_back += 1;
+        }
+        let node = window.node(first[0].position);
+        Err(run.not_monotone("gap or pressure", node, 0.0))
+    }
+
+    /// Corrects a window by the solution at its end, and settles the events in it; `None` if the end, or a solution in between,
+    /// contradicts what was expected.
+    fn refine(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        window: &Window,
+        (first, joined): (&[WindowEvent], &[usize]),
+        (mark, time): (&Mark, f64),
+    ) -> Result<Option<(Window, Settled)>, Error> {
+        let ends = correction::at_end(window, run);
+        let correction = correction::correct(window, &ends, time);
+        let settled = near_ties::second_pass(window, &correction, (first, joined, time));
+        self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
+        let change = near_ties::mean_change(first, &settled.events, time);
+        let most_change = MOST_CHANGE * time / joined.len() as f64;
+        // Half of it, which may be all of it where events tie.
+        let half = joined.len() / 2;
+        let is_certain =
+            joined.len() <= CERTAIN || with_ties(first, half, tolerances) >= first.len();
+        let is_poor =
+            !is_certain && (change > most_change || joined.len() > 2 * self.most_events());
+        let settled = match is_poor {
+            true => None,
+            false if self.settles => {
+                let beginning = (mark, is_certain);
+                let windows = (window, &correction);
+                near_ties::settle(run, iterations, tolerances, windows, settled, beginning)?
+            }
+            false => Some(settled),
+        };
+        if settled.is_none() {
+            self.left_out = self.left_out.max(LEFT_OUT / half as f64);
+        }
+        Ok(settled.map(|settled| (correction.window, settled)))
+    }
+
+    /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with
+    /// their number.
+    fn most_events(&self) -> usize {
+        ((LEFT_OUT / self.left_out) as usize).max(1)
+    }
+
+    /// Lets nodes join, solves at the window's end, and looks for what contradicts them there.
+    fn go_to_end(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        window: &Window,
+        joined: &[usize],
+        time: f64,
+    ) -> Result<Contradictions, Error> {
+        for &position in joined {
+            run.contact.push(window.node(position))?;
+        }
+        let approach = run.scalars.approach() + time;
+        self.rate_span = time.max(self.last_span);
+        run.advance_field(iterations, approach, self.rate_span)?;
+        run.scalars.place_at(approach);
+        self.survey(run)?;
+        let overlap = -tolerances.overlap(approach);
+        let mut found = Contradictions::default();
+        let pressures = run.field.pressures(&run.contact, approach);
+        let first = run.contact.len() - joined.len();
+        for (&position, (_, pressure)) in joined.iter().zip(pressures.skip(first)) {
+            if pressure * window.schur().entry(position, position) < overlap {
+                found.tension.push(position);
+            }
+        }
+        for &(time, node) in &self.ranking {
+            if time >= 0.0 {
+                continue;
+            }
+            if run.line(node).gap < overlap {
+                match window.position(node) {
+                    Some(position) if !joined.contains(&position) => found.overlap.push(position),
+                    Some(_) => {}
+                    None => found.outside.push((time, node)),
+                }
+            }
+        }
+        found
+            .outside
+            .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Ok(found)
+    }
+
+    /// Queues the states of a corrected window that ends at the present approach.
+    fn finish(
+        &mut self,
+        run: &mut LoadingRun,
+        window: Window,
+        settled: &Settled,
+        (mark, time): (&Mark, f64),
+    ) -> Result<(), Error> {
+        self.last_span = time;
+        let events = settled.events.iter();
+        let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
+        run.rearrange(mark.count, &order)?;
+        self.ranked = Some((run.contact.revision(), run.scalars.approach()));
+        states::enqueue(run, window, settled, (mark, time))
+    }
+}
+
+impl Contradictions {
+    fn is_empty(&self) -> bool {
+        self.tension.is_empty() && self.overlap.is_empty() && self.outside.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests;
