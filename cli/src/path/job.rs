@@ -8,7 +8,6 @@ use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
 use asperity::surface::{HeightMap, Topography};
-use asperity::updater::Handover;
 use asperity::{
     Boundary, ContactRule, ContactTarget, Doubt, Grid, InfluenceKernel, LoadingSolver, LoadingState,
 };
@@ -277,7 +276,7 @@ impl Job {
         let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
         Expected {
             nodes: contact,
-            seconds: total(contact, |event| Handover::event_cost(grid.nodes(), event)),
+            seconds: total(contact, |event| asperity::loading::event_seconds(grid.nodes(), event)),
             bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
         }
     }

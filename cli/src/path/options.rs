@@ -231,7 +231,7 @@ impl Updater {
     pub(super) fn event_cost(self, nodes: usize, contact: usize) -> f64 {
         match self {
             Self::Cholesky => (contact as f64).powi(2),
-            Self::Auto | Self::Iterative => Handover::event_cost(nodes, contact),
+            Self::Auto | Self::Iterative => asperity::loading::event_seconds(nodes, contact),
         }
     }
 
@@ -240,7 +240,7 @@ impl Updater {
         match self {
             Self::Cholesky => contact,
             Self::Iterative => 0,
-            Self::Auto => contact.min(Handover::last_factor(nodes)),
+            Self::Auto => contact.min(asperity::loading::last_factor(nodes)),
         }
     }
 
