@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
-    UpdaterProfile,
+    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
+    UpdaterProfile, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
 use criterion::measurement::WallTime;

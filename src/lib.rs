@@ -87,10 +87,10 @@ pub mod patches;
 mod problem;
 pub mod record;
 pub mod reference;
-#[cfg(test)]
-mod test_chain;
 mod scale;
 pub mod surface;
+#[cfg(test)]
+mod test_chain;
 pub mod updater;
 
 pub use nalgebra;

@@ -326,7 +326,8 @@ mod tests {
             assert_eq!(builder.build()?.updater().handed_over_at(), handed_over_at);
         }
         for (budget, has_room) in [(fixed, true), (fixed - 1, false)] {
-            let found = LoadingSolver::check_room(&test_chain::grid(9)?, Boundary::Free, Some(budget));
+            let found =
+                LoadingSolver::check_room(&test_chain::grid(9)?, Boundary::Free, Some(budget));
             assert_eq!(found.is_ok(), has_room);
         }
         Ok(())

@@ -201,11 +201,14 @@ impl<U: LinearUpdater> LoadingSolver<U> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ContactTarget, row};
+    use crate::{ContactTarget, test_chain};
 
     /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.
     fn path() -> Result<(LoadingSolver, Vec<LoadingState>), Error> {
-        let (surface, kernel) = (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
+        let (surface, kernel) = (
+            test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?,
+            test_chain::kernel(4)?,
+        );
         let builder = LoadingSolver::builder(&surface, &kernel).until(ContactTarget::Approach(3.0));
         let mut path = builder.build()?;
         assert!(path.contact_order().is_empty() && !path.contact_map().iter().any(|is_in| *is_in));

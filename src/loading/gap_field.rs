@@ -85,7 +85,13 @@ impl GapField {
             solution,
             displacement: [u, u_rate],
         } = &mut self.solved;
-        solve(problem, contact, updater, (contact.len(), approach), solution)?;
+        solve(
+            problem,
+            contact,
+            updater,
+            (contact.len(), approach),
+            solution,
+        )?;
         let values = [&solution.pressure, &solution.rate];
         for (field, values) in self.pressure.iter_mut().zip(values) {
             field.fill(0.0);

@@ -5,8 +5,8 @@ use super::run::LoadingRun;
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
-    ConjugateGradient, Iterations, LinearUpdater, Method, RecursiveCholesky, Solution, WindowFactor,
-    join_all,
+    ConjugateGradient, Iterations, LinearUpdater, Method, RecursiveCholesky, Solution,
+    WindowFactor, join_all,
 };
 use crate::{Error, Problem};
 

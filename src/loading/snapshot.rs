@@ -194,8 +194,8 @@ impl Snapshot {
 mod tests {
     use super::*;
     use crate::contact::ContactState;
-    use crate::loading::test_chain;
     use crate::loading::state::ContactEvent;
+    use crate::loading::test_chain;
     use crate::updater::Dense;
 
     /// A snapshot of nodes in a row with these pressures, and whether it is that of a state under `load`; `contact` is what

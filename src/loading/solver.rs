@@ -273,7 +273,10 @@ mod tests {
 
     /// Two of four nodes are in contact at the approach 2, under 2 (1/2 + 1/4) N.
     fn path() -> Result<LoadingSolver, Error> {
-        let (surface, kernel) = (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
+        let (surface, kernel) = (
+            test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?,
+            test_chain::kernel(4)?,
+        );
         let mut path = LoadingSolver::builder(&surface, &kernel)
             .max_approach(2.0)
             .build()?;

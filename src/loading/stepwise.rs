@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::phase::Phase;
 use super::run::LoadingRun;
-use super::tolerances::{WindowTolerances, ties_until};
 use super::state::ContactEvent;
+use super::tolerances::{WindowTolerances, ties_until};
 use super::window::Window;
 use crate::Error;
 use crate::updater::{LinearUpdater, Solution};

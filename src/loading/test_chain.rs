@@ -1,91 +1,207 @@
-//! Paths on nodes in a row, whose numbers can be worked out by hand: see [`row`](crate::test_chain).
+//! Paths on nodes in a row, whose numbers can be worked out by hand: see [`test_chain`](crate::test_chain).
+
+use std::sync::Arc;
 
 use super::run::LoadingRun;
 use super::solver::LoadingSolver;
 use crate::contact::ContactSequence;
 use crate::updater::{
-    Dense, LinearUpdater, Schur, Solution, SolveRequest, WindowFactor, UpdaterProfile,
+    Dense, Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor,
 };
-use crate::{Error, Problem, row};
+use crate::{Error, Problem, test_chain};
 
-/// The rooms of a path that has not begun.
-pub(super) fn run<U: LinearUpdater>(gaps: &[f64], updater: U) -> Result<LoadingRun<U>, Error> {
+/// A path that has not begun.
+pub(super) fn run(gaps: &[f64]) -> Result<LoadingRun, Error> {
     let (surface, kernel) = (test_chain::surface(gaps)?, test_chain::kernel(gaps.len())?);
-    let builder = LoadingSolver::builder(&surface, &kernel).updater(updater);
+    let builder = LoadingSolver::builder(&surface, &kernel).updater(Dense);
     Ok(builder.build()?.run)
 }
 
-/// The rooms of a path with nodes in contact, solved at an approach.
-pub(super) fn solved(
-    gaps: &[f64],
-    contact: &[usize],
-    approach: f64,
-) -> Result<LoadingRun<Dense>, Error> {
-    let mut run = run(gaps, Dense)?;
+/// A path with nodes in contact, solved at an approach.
+pub(super) fn solved(gaps: &[f64], contact: &[usize], approach: f64) -> Result<LoadingRun, Error> {
+    let mut run = run(gaps)?;
     for &node in contact {
         run.contact.push(node)?;
     }
-    run.front.place_at(approach);
-    run.solve_field(approach, f64::INFINITY)?;
+    run.scalars.place_at(approach);
+    run.renew_field(&mut Dense, approach)?;
     Ok(run)
 }
 
-/// A dense updater whose answers are changed on their way.
+/// What is done to an answer on its way.
+type Alteration<T> = Arc<dyn Fn(&mut T) + Send + Sync>;
+/// A Schur complement, and the displacements of its nodes.
+pub(super) type Proposal = (Schur, Vec<[f64; 2]>);
+
+/// Dense solutions and Schur complements, as an updater and as iterations, whose answers are changed on their way.
+#[derive(Clone)]
 pub(super) struct Altered {
-    complement: Box<dyn Fn(&mut Schur)>,
-    solution: Box<dyn Fn(&mut Solution)>,
-    profile: UpdaterProfile,
+    proposal: Alteration<Proposal>,
+    solution: Alteration<Solution>,
+    tolerance: f64,
+    /// Whether a path takes it for iterations.
+    iterates: bool,
+    /// Displacements of all nodes under the last solution, and under its rate.
+    displacement: [Vec<f64>; 2],
 }
 
 impl Altered {
-    /// Nothing is changed; it is not exact, and leaves `tolerance`.
+    /// Iterations that leave `tolerance`; nothing is changed.
     pub(super) fn inexact(tolerance: f64) -> Self {
         Self {
-            complement: Box::new(|_| {}),
-            solution: Box::new(|_| {}),
-            profile: UpdaterProfile {
-                exact: false,
-                tolerance,
-                ..Dense.profile()
-            },
+            proposal: Arc::new(|_| {}),
+            solution: Arc::new(|_| {}),
+            tolerance,
+            iterates: true,
+            displacement: [Vec::new(), Vec::new()],
         }
     }
 
-    /// One answer to all questions, which says of itself that it is not exact.
+    /// Iterations with one answer to all questions.
     pub(super) fn given(pressure: Vec<f64>, rate: Vec<f64>) -> Self {
         Self {
-            solution: Box::new(move |solution| {
+            solution: Arc::new(move |solution| {
                 solution.pressure.clone_from(&pressure);
                 solution.rate.clone_from(&rate);
             }),
-            ..Self::inexact(Dense.profile().tolerance)
+            ..Self::inexact(1e-12)
         }
     }
 
-    /// Other solutions, which claim to be exact.
-    pub(super) fn solutions(solution: impl Fn(&mut Solution) + 'static) -> Self {
+    /// Iterations with other proposals.
+    pub(super) fn estimates(
+        tolerance: f64,
+        proposal: impl Fn(&mut Proposal) + Send + Sync + 'static,
+    ) -> Self {
         Self {
-            solution: Box::new(solution),
-            profile: Dense.profile(),
-            ..Self::inexact(0.0)
-        }
-    }
-
-    /// Other Schur complements, which do not claim to be exact.
-    pub(super) fn estimates(tolerance: f64, complement: impl Fn(&mut Schur) + 'static) -> Self {
-        Self {
-            complement: Box::new(complement),
+            proposal: Arc::new(proposal),
             ..Self::inexact(tolerance)
         }
     }
 
-    /// Other Schur complements, which claim to be exact.
-    pub(super) fn complements(complement: impl Fn(&mut Schur) + 'static) -> Self {
+    /// An updater with other solutions.
+    pub(super) fn solutions(solution: impl Fn(&mut Solution) + Send + Sync + 'static) -> Self {
         Self {
-            complement: Box::new(complement),
-            profile: Dense.profile(),
+            solution: Arc::new(solution),
+            iterates: false,
             ..Self::inexact(0.0)
         }
+    }
+
+    /// An updater with other Schur complements.
+    pub(super) fn complements(proposal: impl Fn(&mut Proposal) + Send + Sync + 'static) -> Self {
+        Self {
+            iterates: false,
+            ..Self::estimates(0.0, proposal)
+        }
+    }
+
+    /// The displacements of all nodes under pressures on the first nodes of a contact.
+    fn displace(problem: &Problem, contact: &ContactSequence, pressure: &[f64]) -> Vec<f64> {
+        let at = |node: usize| {
+            let carrying = contact.order().iter().zip(pressure);
+            let terms = carrying
+                .map(|(&other, p)| problem.coefficient(node, other).unwrap_or(f64::NAN) * p);
+            terms.sum()
+        };
+        (0..problem.grid().nodes()).map(at).collect()
+    }
+}
+
+impl std::fmt::Debug for Altered {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Altered").finish_non_exhaustive()
+    }
+}
+
+impl Iterations for Altered {
+    fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn take_over(
+        &mut self,
+        _: &Problem,
+        _: &ContactSequence,
+        _: f64,
+        _: &Solution,
+    ) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn propose(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let mut complement = Schur::default();
+        Dense.watch(problem, contact, nodes, &mut complement)?;
+        let [u, rate] = &self.displacement;
+        let known = nodes.iter().map(|&node| [u[node], rate[node]]).collect();
+        let mut proposal = (complement, known);
+        (self.proposal)(&mut proposal);
+        *schur = proposal.0;
+        Ok(proposal.1)
+    }
+
+    fn advance(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        _: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let count = contact.len();
+        self.solve_apart(problem, contact, count, approach, &mut solved.solution)?;
+        let Solution { pressure, rate } = &solved.solution;
+        self.displacement = [pressure, rate].map(|values| Self::displace(problem, contact, values));
+        solved.displacement.clone_from(&self.displacement);
+        Ok(())
+    }
+
+    fn probe(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        _: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let mut solution = Solution::default();
+        self.solve_apart(problem, contact, count, approach, &mut solution)?;
+        Ok(Self::displace(problem, contact, &solution.pressure))
+    }
+
+    fn solve_apart(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        Dense.solve(problem, contact, count, approach, solution)?;
+        (self.solution)(solution);
+        Ok(())
+    }
+
+    fn cut(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn leave(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn bytes(&self, _: usize, _: usize) -> usize {
+        0
+    }
+
+    fn check_cells(&self, _: &Problem) -> Result<(), Error> {
+        Ok(())
     }
 }
 
@@ -97,8 +213,10 @@ impl LinearUpdater for Altered {
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        Dense.watch(problem, contact, nodes, schur)?;
-        (self.complement)(schur);
+        let mut proposal = (Schur::default(), Vec::new());
+        Dense.watch(problem, contact, nodes, &mut proposal.0)?;
+        (self.proposal)(&mut proposal);
+        *schur = proposal.0;
         Ok(())
     }
 
@@ -110,19 +228,22 @@ impl LinearUpdater for Altered {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        Dense.solve(problem, contact, request, solution)?;
-        (self.solution)(solution);
-        Ok(())
+        self.solve_apart(problem, contact, count, approach, solution)
     }
 
     fn truncate(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
         Ok(())
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        self.profile
+    fn method(&self) -> Method {
+        if self.iterates {
+            Method::Iterations(Box::new(self.clone()))
+        } else {
+            Method::Factor
+        }
     }
 }

@@ -247,9 +247,8 @@ impl Window {
             .map(|(position, course)| (position, course.closes(now)));
         let (first, earliest) = times.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let tie = EXACT_TIE * (self.approach + earliest);
-        let tied = courses.filter(|(_, course)| {
-            course.gap(earliest) <= tie && course.closing(earliest) > 0.0
-        });
+        let tied = courses
+            .filter(|(_, course)| course.gap(earliest) <= tie && course.closing(earliest) > 0.0);
         let tied = tied.map(|(position, _)| position);
         let lowest = tied.chain([first]).min_by_key(|&k| self.nodes[k])?;
         Some((lowest, earliest))
@@ -278,7 +277,8 @@ impl Window {
         self.open[position] = false;
         let unit = own.line.closing * inverse;
         self.events.push(WindowEvent { position, time });
-        self.increments.push([unit * unit, own_sum * inverse * unit]);
+        self.increments
+            .push([unit * unit, own_sum * inverse * unit]);
         Ok(())
     }
 

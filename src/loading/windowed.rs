@@ -5,8 +5,8 @@ use std::time::Instant;
 use super::cost::{automatic_window, watched_for};
 use super::ranking::{Ranking, rank};
 use super::run::LoadingRun;
-use super::tolerances::ties_until;
 use super::state::ContactEvent;
+use super::tolerances::ties_until;
 use super::window::Window;
 use crate::updater::{LinearUpdater, WindowCost};
 use crate::{ContactGrowth, Error};
@@ -83,8 +83,7 @@ impl Windowed {
     fn next_size(&self, run: &LoadingRun, cost: WindowCost, most_nodes: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
         let size = self.size.unwrap_or_else(|| {
-            automatic_window(count, nodes, cost)
-                .min(watched_for(most_nodes - count))
+            automatic_window(count, nodes, cost).min(watched_for(most_nodes - count))
         });
         size.min(nodes - count)
     }

@@ -138,25 +138,13 @@ mod tests {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
         let mut solution = Solution::default();
-        Dense.solve(
-            &problem,
-            &contact,
-            1,
-            3.0,
-            &mut solution,
-        )?;
+        Dense.solve(&problem, &contact, 1, 3.0, &mut solution)?;
         assert_eq!(
             (&solution.pressure[..], &solution.rate[..]),
             (&[0.75][..], &[0.25][..])
         );
         assert!(matches!(
-            Dense.solve(
-                &problem,
-                &contact,
-                2,
-                3.0,
-                &mut solution
-            ),
+            Dense.solve(&problem, &contact, 2, 3.0, &mut solution),
             Err(Error::LengthMismatch {
                 expected: 1,
                 found: 2

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use asperity::contact::ContactSequence;
 use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
-    UpdaterProfile,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
+    UpdaterProfile, WindowFactor,
 };
 use asperity::{Error, Grid, LoadingSolver, Problem};
 

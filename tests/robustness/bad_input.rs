@@ -3,7 +3,9 @@
 use asperity::contact::ContactSequence;
 use asperity::loading::{LoadingEnd, LoadingSolver};
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor};
+use asperity::updater::{
+    LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
+};
 use asperity::{
     Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface, UpdaterError,
 };

@@ -3,8 +3,8 @@
 use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
-    UpdaterProfile,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
+    UpdaterProfile, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Problem, Spectral};
 use nalgebra::DMatrix;

@@ -5,7 +5,7 @@ use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
     ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
-    SolveRequest, WindowFactor, UpdaterProfile,
+    SolveRequest, UpdaterProfile, WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,

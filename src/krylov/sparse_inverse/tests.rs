@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Error, row};
+use crate::{Error, test_chain};
 
 fn contact(nodes: usize, is_in: &[usize]) -> NodeSet {
     let mut contact = NodeSet::new(nodes);

@@ -90,7 +90,12 @@ impl Refined {
 
 /// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
 /// most of them.
-pub(super) fn cut(events: &[WindowEvent], horizon: f64, most: usize, tolerances: &WindowTolerances) -> (usize, f64) {
+pub(super) fn cut(
+    events: &[WindowEvent],
+    horizon: f64,
+    most: usize,
+    tolerances: &WindowTolerances,
+) -> (usize, f64) {
     let count = events.len().min(most);
     let next = |events_kept: usize| {
         let last = events[events_kept - 1].time;
@@ -116,7 +121,11 @@ pub(super) fn cut(events: &[WindowEvent], horizon: f64, most: usize, tolerances:
 }
 
 /// So many events, and what ties with the last of them.
-pub(super) fn with_ties(events: &[WindowEvent], most: usize, tolerances: &WindowTolerances) -> usize {
+pub(super) fn with_ties(
+    events: &[WindowEvent],
+    most: usize,
+    tolerances: &WindowTolerances,
+) -> usize {
     let few = most.clamp(1, events.len());
     let tied = events[few - 1..].windows(2);
     few + tied
@@ -177,7 +186,11 @@ mod tests {
         ] {
             let choice = choose((60, 0), &times(count), 1e-9, &[])?;
             assert_eq!(nodes(&choice), (0..watched).collect::<Vec<_>>());
-            assert_eq!((candidates.horizon, candidates.group), (horizon, None), "{count}");
+            assert_eq!(
+                (candidates.horizon, candidates.group),
+                (horizon, None),
+                "{count}"
+            );
         }
         // A quarter of 40 nodes in contact, and of 38, but no more than the size.
         for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
@@ -201,7 +214,10 @@ mod tests {
             tied.extend(vec![8.0; ties]);
             tied.push(20.0);
             let choice = choose((8, 0), &tied, 1e-9, &[])?;
-            assert_eq!((nodes(&choice).len(), candidates.horizon), (watched, horizon));
+            assert_eq!(
+                (nodes(&choice).len(), candidates.horizon),
+                (watched, horizon)
+            );
             assert_eq!(candidates.group, None);
         }
         Ok(())

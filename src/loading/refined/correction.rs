@@ -121,9 +121,11 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
     let missing: Vec<Vector2<f64>> = window
         .courses()
-        .map(|Course { curve: [c2, c3], .. }| {
-            Vector2::new(-t * (c2 + t * c3), -t * (2.0 * c2 + 3.0 * t * c3))
-        })
+        .map(
+            |Course {
+                 curve: [c2, c3], ..
+             }| { Vector2::new(-t * (c2 + t * c3), -t * (2.0 * c2 + 3.0 * t * c3)) },
+        )
         .collect();
     let mut products = Matrix2::zeros();
     for (end, v) in ends.iter().zip(&missing) {

@@ -185,8 +185,7 @@ impl Refined {
             times.filter(|time| time.is_finite()).fold(0.0, f64::max)
         };
         if furthest > 0.0
-            && tolerances.rate_tolerance(furthest)
-                < 0.5 * tolerances.rate_tolerance(self.rate_span)
+            && tolerances.rate_tolerance(furthest) < 0.5 * tolerances.rate_tolerance(self.rate_span)
         {
             self.rate_span = furthest;
             run.advance_field(iterations, run.scalars.approach(), furthest)?;
@@ -252,7 +251,10 @@ impl Refined {
         let first = &events[..cut];
         if time <= tolerances.tie {
             // All of them touch at once. Their gaps are better known than those of the ranking.
-            let known: Vec<usize> = first.iter().map(|event| window.node(event.position)).collect();
+            let known: Vec<usize> = first
+                .iter()
+                .map(|event| window.node(event.position))
+                .collect();
             self.enter(run, iterations, tolerances, (time, &known), most)?;
             return Ok(Outcome::Done);
         }
@@ -262,7 +264,8 @@ impl Refined {
             let found = match self.go_to_end(run, iterations, tolerances, window, &joined, time) {
                 Ok(found) => found,
                 Err(error) => {
-                    let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
+                    let _ =
+                        run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
                     return Err(error);
                 }
             };
@@ -272,7 +275,8 @@ impl Refined {
                     return Ok(Outcome::Done);
                 }
                 let at = (&mark, time);
-                let passed = self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
+                let passed =
+                    self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
                 if let Some((window, settled)) = passed {
                     self.finish(run, window, &settled, at)?;
                     return Ok(Outcome::Done);

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::correction::Correction;
 use crate::Error;
+use crate::loading::gap_field::GapLine;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::tolerances::WindowTolerances;
-use crate::loading::gap_field::GapLine;
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::Iterations;
 

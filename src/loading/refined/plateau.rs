@@ -21,9 +21,8 @@ impl Refined {
         let mark = run.mark();
         let approach = mark.scalars.approach() + time;
         let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
-        let together = |&&(other, node): &&(f64, usize)| {
-            other <= time + tie_of(node) || known.contains(&node)
-        };
+        let together =
+            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
         // What their times cannot be told apart by.

@@ -286,8 +286,8 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
     }
     gaps[1] = 1.0;
     let surface = crate::test_chain::surface(&gaps)?;
-    let builder =
-        crate::LoadingSolver::builder(&surface, &kernel).updater(test_chain::Altered::inexact(1e-6));
+    let builder = crate::LoadingSolver::builder(&surface, &kernel)
+        .updater(test_chain::Altered::inexact(1e-6));
     let mut run = builder.build()?.run;
     let mut corrected = Corrected::new(Some(8), true);
     assert!(corrected.produce(&mut run, 30)?.is_none());
@@ -308,7 +308,10 @@ fn what_overlapped_is_watched_then() -> Result<(), Error> {
 #[test]
 fn contacts_at_the_end_are_mended() -> Result<(), Error> {
     for (thought, gap, order) in [(0.6, 2.6, &[0, 2][..]), (3.0, 1.8, &[0, 2, 4])] {
-        let mut run = test_chain::run(&[0.0, 9.0, 1.5, 9.0, gap, 9.0], test_chain::Altered::inexact(1e-6))?;
+        let mut run = test_chain::run(
+            &[0.0, 9.0, 1.5, 9.0, gap, 9.0],
+            test_chain::Altered::inexact(1e-6),
+        )?;
         run.contact.push(0)?;
         run.front.place_at(1.0);
         let mut corrected = Corrected::new(None, true);

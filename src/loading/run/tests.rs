@@ -128,7 +128,10 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
         // A hundredth further it is pressure.
         assert!(run.negative_pressure(4.01, overlap).is_none());
     }
-    let mut run = test_chain::run(&[0.0, 8.0], test_chain::Altered::given(vec![f64::NAN], vec![1.0]))?;
+    let mut run = test_chain::run(
+        &[0.0, 8.0],
+        test_chain::Altered::given(vec![f64::NAN], vec![1.0]),
+    )?;
     run.contact.push(0)?;
     run.solve_field(1.0, 1.0)?;
     assert!(run.negative_pressure(1.0, 0.0).is_some());

@@ -227,7 +227,12 @@ impl Columns {
 
     /// Appends to the factor the rows of the nodes that touched, and their rows of R to the columns
     /// of those that did not (at `untouched`, ascending).
-    pub(super) fn commit(&mut self, factor: &mut Panels, touched: &WindowFactor, untouched: &[usize]) {
+    pub(super) fn commit(
+        &mut self,
+        factor: &mut Panels,
+        touched: &WindowFactor,
+        untouched: &[usize],
+    ) {
         let before = self.rows;
         let width = untouched.len();
         let mut values = self.room(before + touched.len(), width);

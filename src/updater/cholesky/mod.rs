@@ -131,11 +131,7 @@ impl LinearUpdater for RecursiveCholesky {
         };
         let Solution { pressure, rate } = solution;
         pressure.clear();
-        pressure.extend(
-            border
-                .iter()
-                .map(|[gap, unit, _]| approach * unit - gap),
-        );
+        pressure.extend(border.iter().map(|[gap, unit, _]| approach * unit - gap));
         rate.clear();
         rate.extend(border.iter().map(|[_, unit, _]| unit));
         let panels = &self.factor.panels;

@@ -216,7 +216,7 @@ fn product(a: &[f32], b: &[f32]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq, row};
+    use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq, test_chain};
 
     fn flat(grid: Grid, periodic: bool) -> Result<Problem, Error> {
         let surface = HeightMap::new(nalgebra::DMatrix::zeros(grid.nx(), grid.ny()))?;

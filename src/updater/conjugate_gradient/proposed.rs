@@ -142,8 +142,8 @@ impl Proposed {
             for (i, (local, near)) in self.locals.iter().zip(&near).enumerate() {
                 if !factor.has_touched(i) {
                     let of_joined = places.iter().zip(&change);
-                    let of_joined =
-                        of_joined.map(|(&place, change)| self.complement.entry(i, place) * change[k]);
+                    let of_joined = of_joined
+                        .map(|(&place, change)| self.complement.entry(i, place) * change[k]);
                     displacement[local.node] += near[k] + of_joined.sum::<f64>();
                 }
             }

@@ -4,8 +4,8 @@ use std::mem;
 
 use super::equilibrium::Field;
 use super::local::Local;
-use super::solver::{Equation, Solver};
 use super::proposed::Proposed;
+use super::solver::{Equation, Solver};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
 use crate::{Error, Problem};

@@ -5,9 +5,9 @@ use std::mem;
 use super::equilibrium::{Equilibrium, Field};
 use super::instants::Instants;
 use super::local::Neighbourhood;
+use super::proposed::Proposed;
 use super::row_sums::RowSums;
 use super::solver::{Equation, Solver};
-use super::proposed::Proposed;
 use super::tolerances::{Aim, Criteria, Tolerances};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, greatest};
@@ -129,7 +129,14 @@ impl Solutions {
         let is_here = now.count == contact.len() && now.load.is_known() && now.approach == approach;
         if !(is_here && aim.span() <= now.serves) {
             let now = mem::take(&mut self.now);
-            match self.solve_from(criteria, problem, contact, (contact.len(), approach), aim, &now) {
+            match self.solve_from(
+                criteria,
+                problem,
+                contact,
+                (contact.len(), approach),
+                aim,
+                &now,
+            ) {
                 Ok((equilibrium, directions)) => {
                     if now.count < contact.len() && now.load.is_known() {
                         self.before = Some(now);

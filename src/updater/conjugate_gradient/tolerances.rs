@@ -123,7 +123,12 @@ mod tests {
         check(tolerances(Aim::Exact, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
         // Gaps, to the tolerance times 30 or an error times 30.
         check(tolerances(Aim::Gaps(0.0), 2.0, 0.5), 6e-9, 1e-11, [none; 2]);
-        check(tolerances(Aim::Gaps(1e-6), 2.0, 0.5), 3e-5, 1e-11, [none; 2]);
+        check(
+            tolerances(Aim::Gaps(1e-6), 2.0, 0.5),
+            3e-5,
+            1e-11,
+            [none; 2],
+        );
         // A window of a hundredth of the length: 2e-6 of the span, and a quarter of 30 times the least.
         check(
             tolerances(Aim::Span(1e-2), 1.0, 0.5),

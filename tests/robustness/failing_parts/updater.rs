@@ -4,7 +4,9 @@ use std::cell::Cell;
 use std::panic::resume_unwind;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, WindowFactor, UpdaterProfile};
+use asperity::updater::{
+    LinearUpdater, Schur, Solution, SolveRequest, UpdaterProfile, WindowFactor,
+};
 use asperity::{Error, Problem};
 
 /// What happens at the call.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Error, row};
+use crate::{Error, test_chain};
 
 /// Nodes 1 and 3 of a row are watched beside 0 and 2 in contact: x = (1/4, 1/4) and 1/4 of node 2, and
 /// S = (4 − 1/2, −1/4; −1/4, 4 − 1/4). Their gaps are 1 m and 3 m.
