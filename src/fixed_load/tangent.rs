@@ -7,7 +7,7 @@ use super::settings::Settings;
 use super::solution::FixedLoadSolution;
 use crate::Error;
 use crate::kernel::Gauge;
-use crate::krylov::{LinearSystem, NodeSet, dot, sum, sum_over};
+use crate::krylov::{Directions, Equation, Field, LinearSystem, NodeSet, sum_over};
 use crate::parallel::inside;
 
 /// The pressure per unit of approach, y₂, and its displacement, both on the whole grid and in the gauge
@@ -94,54 +94,52 @@ impl Tangent {
     /// Solves `C_II y₂ = e` on the contact set, from the tangent of another one if it is known.
     fn solve(&mut self, level: &mut Level, settings: &Settings) -> Result<Solved, Error> {
         let contact = &level.iterate.contact;
-        let ones = vec![1.0; contact.len()];
-        let mut y = Vec::new();
-        let mut residual = Vec::new();
-        let is_known = self.is_known();
-        if is_known {
-            contact.gather(&self.rate, &mut y);
-            contact.gather(&self.displacement, &mut residual);
-            for value in &mut residual {
-                *value = 1.0 - *value;
-            }
-        } else {
-            level.preconditioner.apply(&ones, &mut y);
-        }
         // Nodes that have left take their displacements with them.
         let places = contact.places();
         let mut rates = self.rate.iter().zip(places);
         let lost = rates.any(|(rate, place)| *rate != 0.0 && *place == NodeSet::NONE);
-        let mut equations = LinearSystem {
+        let known = std::mem::take(self);
+        let (mut y, mut base) = (Vec::new(), Field::default());
+        if known.is_known() {
+            contact.gather(&known.rate, &mut y);
+            if !lost {
+                base = Field {
+                    pressure: known.rate,
+                    displacement: known.displacement,
+                    drift: 0.0,
+                };
+            }
+        } else {
+            let ones = vec![1.0; contact.len()];
+            level.preconditioner.apply(&ones, &mut y);
+        }
+        let mut start = vec![0.0; level.gap.len()];
+        contact.scatter(&y, &mut start);
+        let equation = Equation {
+            rhs: |_| 1.0,
+            tolerance: settings.tolerance,
+            most_drift: f64::INFINITY,
+            max_iterations: settings.max_iterations,
+        };
+        let mut system = LinearSystem {
             operator: &mut level.operator,
             preconditioner: &mut level.preconditioner,
             contact,
-            tolerance: settings.tolerance,
-            max_iterations: settings.max_iterations,
         };
-        let stale = lost || !is_known;
-        if stale {
-            equations.residual(&ones, &y, &mut residual)?;
-        }
-        let outcome = equations.solve(&ones, &mut y, &mut residual)?;
-        if !outcome.converged {
-            return Err(Error::NoConvergence {
-                residual: outcome.residual,
-                tolerance: settings.tolerance,
-                iterations: outcome.iterations,
-            });
-        }
-        if stale || outcome.iterations > 0 {
-            self.displacement.clear();
-            self.displacement
-                .extend_from_slice(level.operator.displacement());
-        }
-        self.rate.clear();
-        self.rate.resize(level.gap.len(), 0.0);
-        contact.scatter(&y, &mut self.rate);
+        let (solved, iterations) =
+            system.solve(&equation, start, &base, &mut Directions::default())?;
+        let nodes = contact.nodes();
+        let left = |i: usize| {
+            let node = nodes[i] as usize;
+            solved.pressure[node] * (2.0 - solved.displacement[node])
+        };
+        // With the residual r, eᵀ C⁻¹ e = eᵀ y + yᵀ r up to the square of the error.
+        let unit_unit = sum_over(nodes.len(), left);
+        self.rate = solved.pressure;
+        self.displacement = solved.displacement;
         Ok(Solved {
-            iterations: outcome.iterations,
-            // With the residual r, eᵀ C⁻¹ e = eᵀ y + yᵀ r up to the square of the error.
-            unit_unit: sum(&y) + dot(&y, &residual),
+            iterations,
+            unit_unit,
         })
     }
 }

@@ -16,7 +16,9 @@ pub(crate) use cells::check_cells;
 pub(crate) use directions::Directions;
 pub(crate) use node_set::{Change, NodeSet};
 pub(crate) use operator::Operator;
-pub(crate) use pcg::LinearSystem;
+pub(crate) use pcg::{Equation, Field, LinearSystem};
+#[cfg(test)]
+pub(crate) use pcg::{SINGLE, worst};
 pub(crate) use preconditioner::Preconditioner;
 pub(crate) use sparse_inverse::SparseInverse;
 pub(crate) use vector::{Value, add_scaled, dot, greatest, sum, sum_over};

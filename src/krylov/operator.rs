@@ -130,9 +130,4 @@ impl Operator {
             }
         }
     }
-
-    /// Displacements computed last.
-    pub(crate) fn displacement(&self) -> &[f64] {
-        &self.displacement
-    }
 }

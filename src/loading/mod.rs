@@ -14,22 +14,22 @@
 //!
 //! | | who | what |
 //! |---|---|---|
-//! | 1 | `GapField` | solves on the contact and computes all gaps as lines `a − t b` |
-//! | 2 | `Windowed` | checks them, and chooses the nodes to watch and the horizon |
-//! | 3 | [`LinearUpdater`](crate::updater::LinearUpdater) | gives the Schur complement of the watched nodes |
-//! | 4 | `Window` | plays the events among them |
-//! | 5 | [`ContactSequence`](crate::contact::ContactSequence), the updater | take in the nodes that touched |
-//! | 6 | `Windowed` | where that is needed, checks the contact at the end, and takes the last events back |
-//! | 7 | `Front` | turns the events into states, which wait in a queue |
-//! | 8 | [`LoadingSolver`] | yields them up to the limits |
+//! | 1 | `Phase` | decides whether the path goes on with its updater, or gives up a factor for iterations |
+//! | 2 | `GapField` | solves on the contact and computes all gaps as lines `a − t b` |
+//! | 3 | `Windowed` | checks them, and chooses the nodes to watch and the horizon |
+//! | 4 | [`LinearUpdater`](crate::updater::LinearUpdater) | gives the Schur complement of the watched nodes |
+//! | 5 | `Window` | plays the events among them |
+//! | 6 | [`ContactSequence`](crate::contact::ContactSequence), the updater | take in the nodes that touched |
+//! | 7 | `Windowed` | where that is needed, checks the contact at the end, and takes the last events back |
+//! | 8 | `PathScalars` | turns the events into states, which wait in a queue |
+//! | 9 | [`LoadingSolver`] | yields them up to the limits |
 //!
 //! # Without a factor
 //!
-//! [`ConjugateGradient`](crate::updater::ConjugateGradient), to which the default updater hands over when a factor
-//! costs more, gives Schur complements that are nearly exact. The path then corrects each window by the exact
-//! solution at its end, plays its events a second time, and settles neighbours that are still too close by a
-//! solution of their own (`docs/theory.md`, section 11). Any updater is served alike that says of itself that it is
-//! not [exact](crate::updater::UpdaterProfile::exact).
+//! With [`ConjugateGradient`](crate::updater::ConjugateGradient), and once the default updater costs more than iterations, Schur
+//! complements are nearly exact. `Refined` then takes the place of `Windowed`: it plays a `Window` of such a complement, solves at
+//! its end, corrects it by that solution, plays the same events a second time, and settles neighbours that are still too close by a
+//! solution of their own (`docs/theory.md`, section 11).
 //!
 //! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a periodic
 //!   half-space it is the approach in the gauge that is computed with,

@@ -3,18 +3,8 @@
 use super::local::Local;
 use crate::Problem;
 use crate::contact::ContactSequence;
-use crate::krylov::add_scaled;
+use crate::krylov::{Field, add_scaled};
 use crate::updater::{Solution, Solved};
-
-/// Pressures of the grid and the displacements that they cause.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Field {
-    pub(super) pressure: Vec<f64>,
-    /// Empty if it is not known.
-    pub(super) displacement: Vec<f64>,
-    /// What changes in single precision may have spoilt of the displacements.
-    pub(super) drift: f64,
-}
 
 /// The pressure at an approach and its rate, on the first `count` nodes of a contact.
 #[derive(Debug, Clone, Default)]
@@ -28,26 +18,6 @@ pub(super) struct Equilibrium {
 }
 
 impl Field {
-    pub(super) fn zero(nodes: usize) -> Self {
-        Self {
-            pressure: vec![0.0; nodes],
-            displacement: vec![0.0; nodes],
-            drift: 0.0,
-        }
-    }
-
-    /// Pressures whose displacements are not known.
-    pub(super) fn of(pressure: Vec<f64>) -> Self {
-        Self {
-            pressure,
-            ..Self::default()
-        }
-    }
-
-    pub(super) fn is_known(&self) -> bool {
-        !self.displacement.is_empty()
-    }
-
     /// What the displacements leave of 1 on average: the mean closing rate of the gaps if this is a rate.
     pub(super) fn open(&self) -> f64 {
         let nodes = self.displacement.len().max(1) as f64;

@@ -1,10 +1,11 @@
 //! The proposed nodes, and what their Schur complement says of them once some have joined.
 
-use super::equilibrium::{Equilibrium, Field};
+use super::equilibrium::Equilibrium;
 use super::galerkin;
 use super::local::{self, Local, Neighbourhood};
 use super::solver::Solver;
 use crate::contact::ContactSequence;
+use crate::krylov::Field;
 use crate::updater::{Schur, Solved, WindowFactor};
 use crate::{Error, Problem, parallel};
 

@@ -2,12 +2,11 @@
 
 use std::mem;
 
-use super::equilibrium::Field;
 use super::local::Local;
 use super::proposed::Proposed;
-use super::solver::{Equation, Solver};
+use super::solver::Solver;
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, greatest};
+use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::{Error, Problem};
 
 /// Residual of the row sums relative to the greatest one: the rate of the mean gap, which depends on them, is

@@ -2,15 +2,15 @@
 
 use std::mem;
 
-use super::equilibrium::{Equilibrium, Field};
+use super::equilibrium::Equilibrium;
 use super::instants::Instants;
 use super::local::Neighbourhood;
 use super::proposed::Proposed;
 use super::row_sums::RowSums;
-use super::solver::{Equation, Solver};
+use super::solver::Solver;
 use super::tolerances::{Aim, Criteria, Tolerances};
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, greatest};
+use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::{Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
 
