@@ -88,7 +88,8 @@ pub(crate) fn peers(report: &Report) -> String {
          `studies/src/bin/paper/peers.py`, which says how.\n\n\
          | program | half-space | tolerance | W/A₀E\\* | nodes, theirs | ours | greatest p/E\\*, theirs | ours | difference |\n\
          |---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         aspher's tolerance is one of all gaps together, and a greatest pressure may be off by some times that: these numbers \
+         The tolerance of aspher applies to all gaps together, and a greatest pressure may be \
+         wrong by several times that: these numbers \
          are only a rough check, without a verdict. The section \"Other programs\" below judges 195 states, solved to 10⁻¹¹.",
     )
 }

@@ -46,7 +46,7 @@ impl Convergence {
              * **Mean gap**: the greatest error at any event, from first touch to full contact. Second order: {gap:.2} (Love) and \
              {spectral_gap:.2} (spectral) times amplitude × (cell / wavelength)² on the finest grid.\n\
              * **Area**: the greatest error just before a row of nodes touches, between 10 and 90 % of the load of full contact. \
-             First order, as everything that is counted in cells: short by {area:.2} (Love) and {spectral_area:.2} (spectral) cells \
+             First order, as everything that is counted in cells: too small by {area:.2} (Love) and {spectral_area:.2} (spectral) cells \
              over the wavelength. Then two rows touch at once, one at each edge, and it is {:.2} and {:.2} too much.\n\
              * **Stiffness**: the greatest relative error in the same range. The stiffness \
              follows the contact area and is therefore of first order too. It is constant between \
