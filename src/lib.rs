@@ -1,9 +1,10 @@
-//! The exact elastic loading of rough surfaces: the whole path from first touch to full contact, one state for each
-//! node that joins.
+//! Elastic contact of rough surfaces by the boundary element method: the exact loading path from first touch to full
+//! contact, event by event, and single loads.
 //!
-//! A rigid rough surface is pressed without friction into an elastic half-space. Between two events, at which a node
-//! touches, everything is linear in the approach, so that the path is found by linear algebra alone: no load steps, and
-//! tangent stiffnesses with every state.
+//! A rigid rough surface is pressed without friction into an elastic half-space. The surface is a grid of rectangular
+//! cells with a uniform pressure on each. An event is the instant at which one more node of the grid touches. Between two
+//! events all quantities are linear in the approach, so that linear algebra alone gives the path, without load steps, and
+//! every state has its exact tangent stiffnesses.
 //!
 //! ```
 //! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
@@ -25,50 +26,49 @@
 //!
 //! # Where to find it
 //!
-//! | question | answer |
+//! | task | items |
 //! |---|---|
-//! | the path, all of it | [`LoadingSolver`], an iterator of [`LoadingState`]; read it with [`loading::History`] |
-//! | one load, or a sweep of loads | [`FixedLoadSolver`] |
-//! | patches, percolation, leakage, distributions | [`patches`] |
-//! | a file of my instrument | [`io::read_surface`], [`surface::Topography`] |
-//! | my surface as numbers | [`HeightMap`], the trait [`Surface`] |
-//! | keep a path, and go on from it | [`record`] |
-//! | patches, percolation, leakage | [`patches`] |
-//! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
-//! | which half-space | [`Boussinesq`] for a measured or finite body, where the edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
-//! | my own body | the trait [`InfluenceKernel`], and [`kernel::check()`] |
-//! | memory and time | [`updater`], and the trait [`LinearUpdater`] |
-//! | closed forms to compare with | [`reference`](mod@reference) |
+//! | follow the loading path | [`LoadingSolver`], an iterator of [`LoadingState`]; [`loading::History`] reads it at any load |
+//! | solve for one load, or for a sweep of loads | [`FixedLoadSolver`] |
+//! | contact patches, percolation, leakage, distributions | [`patches`] |
+//! | read the file of an instrument | [`io::read_surface`], [`surface::Topography`] |
+//! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
+//! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
+//! | save a path and continue it | [`record`] |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
+//! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
+//! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
+//! | compare with closed forms | [`reference`](mod@reference) |
 //!
 //! # Conventions
 //!
-//! * **Units**: any coherent set; the documentation gives SI. `E* = E / (1 − ν²)` against a rigid body, or
+//! * **Units**: any coherent system; the documentation uses SI. `E* = E / (1 − ν²)` against a rigid body, or
 //!   `1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂` ([`composite_modulus`]); no factor 2.
-//! * **Heights** are positive towards the half-space: the highest node touches first. Only differences count. Two rough
-//!   bodies are one with the sum of their heights ([`Surface::plus`]).
+//! * **Heights** are positive towards the half-space: the highest node touches first. Only differences of heights matter.
+//!   Two rough bodies are equivalent to one body with the sum of their heights ([`Surface::plus`]).
 //! * **Pressure** is positive in compression and never negative. **Displacement** is positive into the half-space,
 //!   **gap** positive where the surfaces are apart.
-//! * **Approach** δ is measured from first touch: 0 there, and growing.
-//! * **State n** is the instant at which the n-th node touches; its own pressure is still zero. Stiffnesses are
-//!   derivatives on further loading: `contact_stiffness` is dW/dδ (`None` where no distant point stays put, as under a
-//!   periodic half-space), `interfacial_stiffness` is −dW/d(mean gap).
-//! * **Area** is counted in cells, and a fraction of the nominal area runs from 0 to 1.
+//! * **Approach** δ is measured from first touch, where it is 0, and grows with the load.
+//! * **State n** is the instant at which the n-th node touches; the pressure on that node is still zero. Stiffnesses are
+//!   derivatives on further loading: `contact_stiffness` is dW/dδ (`None` on a periodic half-space, which has no distant
+//!   point at rest), `interfacial_stiffness` is −dW/d(mean gap).
+//! * **Area** is counted in cells. A fraction of the nominal area runs from 0 to 1.
 //! * **Arrays** are nx × ny [`nalgebra`] matrices: element `[(ix, iy)]` is the node at `x = (ix + ½) dx`,
 //!   `y = (iy + ½) dy`. x is the first index; an image `[row, column]` must be transposed.
-//! * **Boundary**: the kernel's. What surrounds the grid is never assumed.
+//! * **Boundary**: the kernel says what surrounds the grid ([`Boundary`]). There is no default.
 //!
 //! # What a path costs
 //!
-//! With a factor, n nodes in contact take 4n² bytes and n³/3 floating-point operations at the speed of a matrix
-//! product; nodes out of contact cost little. Where that is more than iterations would take, from some 8000 nodes in
-//! contact on a grid of 256 × 256, the path goes on without: memory is in proportion to the grid then, and states
-//! between the exact ones carry an estimate of their error ([`loading`]). Results are the same bit for bit with any
+//! A Cholesky factor of n nodes in contact takes 4n² bytes and n³/3 floating-point operations at the speed of a matrix
+//! product; nodes out of contact cost little. When iterations become cheaper than the factor, from some 8000 nodes in
+//! contact on a grid of 256 × 256, the path continues without a factor. Memory is then proportional to the grid, and states
+//! between two exact solutions carry an estimate of their error ([`loading`]). Results are bit for bit the same with any
 //! number of threads, and without the feature `rayon`.
 //!
 //! # Limits of the model
 //!
-//! Elastic, frictionless, without adhesion, small slopes; unloading retraces loading. Compare the greatest pressure with
-//! the hardness.
+//! Contact is elastic, frictionless and without adhesion, and slopes are small. Unloading retraces loading. Nothing
+//! yields: compare the greatest pressure with the hardness.
 
 pub mod contact;
 pub mod convolution;

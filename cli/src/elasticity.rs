@@ -17,7 +17,7 @@ pub(crate) struct Elasticity {
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
     e_star: Option<f64>,
 
-    /// In place of E*, one body: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...: typical
+    /// One body, in place of E*: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...: typical
     /// values), or Young's modulus in Pa and Poisson's ratio: 210e9,0.3 [generated surface: steel]
     #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     material: Option<Material>,
@@ -93,7 +93,7 @@ impl Bodies {
             None => (plane_strain_modulus(first.e, first.nu), "rigid".to_string()),
         };
         Ok(Self {
-            e_star: e_star.map_err(|error| Failure::new("no such material", error))?,
+            e_star: e_star.map_err(|error| Failure::new("invalid material", error))?,
             elastic: [Some(first), second]
                 .into_iter()
                 .flatten()

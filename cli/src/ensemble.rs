@@ -15,15 +15,15 @@ use clap::Args;
 /// Many surfaces in place of one.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Ensemble {
-    /// A path for each of these seeds, both ends included, in DIR/seed_N; what is there is skipped
+    /// Follow a path for each seed from A to B, in DIR/seed_N; folders that are there are skipped
     #[arg(long, value_name = "A..B", conflicts_with_all = ["surface", "seed", "resume", "record"])]
     pub(crate) seeds: Option<Seeds>,
 
-    /// Only the K-th of N equal shares of the seeds, counted from 0 or from 1: for arrays of jobs
+    /// Only the K-th of N equal shares of the seeds, for job arrays; K counts from 0 or from 1
     #[arg(long, value_name = "K/N", requires = "seeds")]
     task: Option<Task>,
 
-    /// Say what would be done, what memory it takes and about how long, and do nothing
+    /// Print what would be done, and about how much memory and time it takes, and stop
     #[arg(long, requires = "seeds")]
     pub(crate) dry_run: bool,
 }

@@ -22,13 +22,13 @@ use crate::values::{bytes, positive};
 
 /// The contact of a measured surface under given loads or mean pressures, each solved by itself
 ///
-/// Prints one line for each on stdout, for programs, and what people want to know on stderr. Writes load.csv and
-/// contact_map_K.png, K counting from 0. The model is that of `asperity path`: elastic, without friction and
-/// adhesion, small slopes. Memory grows with the grid and not with the contact.
+/// Prints one line for each load on stdout, for programs, and a description on stderr. Writes load.csv and
+/// contact_map_K.png, where K counts the loads from 0. The model is that of `asperity path`: elastic, without friction and
+/// adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
-    /// rows of an image are y; an array of NumPy is [ix, iy]
+    /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
+    /// an image are y; a NumPy array is [ix, iy]
     #[arg(long, value_name = "FILE")]
     surface: PathBuf,
 
@@ -41,13 +41,13 @@ pub(crate) struct Options {
     #[command(flatten)]
     loads: Loads,
 
-    /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
-    /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and
-    /// there is no contact stiffness but the interfacial one
+    /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
+    /// pressure outside the surface]; the approach is then that of the mean planes, and of the two stiffnesses there is only
+    /// the interfacial one
     #[arg(long, value_enum)]
     periodic: Option<Periodic>,
 
-    /// Greatest error of gaps relative to the approach
+    /// Greatest error of the gaps, relative to the approach
     #[arg(
         long,
         value_name = "T",
@@ -56,15 +56,15 @@ pub(crate) struct Options {
     )]
     tolerance: f64,
 
-    /// Bytes that may be held at most, 2e9 say [default: three quarters of the memory]
+    /// Greatest memory in bytes, for example 2e9 [default: three quarters of the memory]
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     memory_budget: Option<usize>,
 
-    /// Directory for pressure_K.npy and gap_K.npy, K counting the loads from 0
+    /// Directory for pressure_K.npy and gap_K.npy, where K counts the loads from 0
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
 
-    /// Directory for load.csv and the pictures, made if it is not there
+    /// Directory for load.csv and the pictures, created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
 }
@@ -77,7 +77,7 @@ struct Loads {
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true)]
     load: Vec<f64>,
 
-    /// Load over nominal area; may be given several times, and comes after the loads
+    /// Load over nominal area; may be given several times, and is solved after the loads
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
     mean_pressure: Vec<f64>,
 }
@@ -106,7 +106,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (nx, ny) = grid.shape();
     let start = Instant::now();
     let half_space = half_space(options.periodic, grid, bodies.e_star)
-        .map_err(|error| Failure::new("no such half-space", error))?;
+        .map_err(|error| Failure::new("cannot make the half-space", error))?;
     let check = |grid: &Grid| {
         FixedLoadSolver::check_room(grid, half_space.boundary(), options.memory_budget)
     };
@@ -118,7 +118,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let mut solver = builder
         .build()
-        .map_err(|error| room::failure("no solution can begin".to_string(), error, check))?;
+        .map_err(|error| room::failure("cannot set up the solver".to_string(), error, check))?;
     eprintln!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
@@ -126,8 +126,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     );
     panel::register_font()?;
     for directory in options.save.iter().chain([&options.out]) {
-        std::fs::create_dir_all(directory)
-            .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
+        std::fs::create_dir_all(directory).map_err(|error| {
+            Failure::new(format!("cannot create {}", directory.display()), error)
+        })?;
     }
     let loads = options.loads.on(grid.nominal_area());
     let mut outcome = Outcome::default();
@@ -141,7 +142,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         );
         let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
             let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
-            let resolution = resolution.map_err(|error| Failure::new("no patches", error))?;
+            let resolution = resolution
+                .map_err(|error| Failure::new("cannot find the contact patches", error))?;
             let numbers = numbers(&solution, &resolution, &grid);
             // Writing to a text cannot fail.
             let _ = writeln!(table, "{}", numbers.join(","));
@@ -181,7 +183,10 @@ fn solve(
 ) -> Result<(FixedLoadSolution, (f64, f64)), Failure> {
     let failed = |error| {
         Failure::new(
-            format!("no contact under {}", quantity(load, "N", 6)),
+            format!(
+                "cannot solve for the contact under {}",
+                quantity(load, "N", 6)
+            ),
             error,
         )
     };
@@ -272,11 +277,11 @@ fn print_words(
     let gap = |relative: f64| quantity(relative * solution.certificate.length, "m", 2);
     let least = solution.certificate.least_gap;
     eprintln!(
-        "  left of the equations: gap in contact {}{}",
+        "  residuals: gap in contact {}{}",
         gap(solution.certificate.greatest_contact_gap),
         // There is none in full contact.
         match least.is_finite() {
-            true => format!(", least gap outside {}", gap(least)),
+            true => format!(", least gap out of contact {}", gap(least)),
             false => String::new(),
         }
     );
@@ -289,7 +294,7 @@ fn print_words(
         eprintln!("warning: {doubt}");
     }
     if state.contact_area_fraction == 1.0 {
-        eprintln!("note: the contact is full; above full contact nothing but the pressure changes");
+        eprintln!("note: the contact is full; beyond full contact only the pressure changes");
     }
 }
 
@@ -323,7 +328,7 @@ fn verify(solution: &FixedLoadSolution, tolerance: f64) -> Result<(), Failure> {
         let is_right = error <= allowed;
         if !is_right {
             return Err(Failure::request(format!(
-                "the certificate of the contact under {} is bad: an error of {error:.1e} ({what}), where {allowed:.1e} is the most",
+                "the contact under {} violates the contact conditions: {what} has an error of {error:.1e}, more than the allowed {allowed:.1e}",
                 quantity(solution.state.load, "N", 6)
             )));
         }

@@ -21,16 +21,16 @@ use std::process::ExitCode;
 use asperity_cli::speech;
 use clap::{Parser, Subcommand};
 
-/// Elastic contact of rough surfaces: the whole loading path, event by event, or single loads.
+/// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single loads.
 ///
-/// The model: a rigid rough surface is pressed into an elastic half-space (two elastic bodies are one of composite modulus E*),
-/// without friction, without adhesion, without yielding, and with slopes well below 1. The discrete problem, one pressure for
-/// each cell of the grid, is solved to rounding, or the error that is left is printed. How far it is from the surface
-/// itself is a question of the grid, and every command warns where the grid is too coarse.
+/// The model: a rigid rough surface is pressed into an elastic half-space, without friction, adhesion or yielding, and with
+/// slopes well below 1. Two elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one
+/// pressure for each cell of the grid. The program solves it to rounding, or prints the remaining error. Every command warns if
+/// the grid is too coarse for the surface.
 ///
-/// Without a command it is `path` of a generated surface to 10 % contact, in seconds, as an example. Surfaces of one's own:
-/// `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help`, and the same of
-/// every other command, lists options. All numbers are in SI units.
+/// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example. For your
+/// own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help` lists
+/// the options of that command; the other commands have such a list too. All numbers are in SI units.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true)]
 struct Arguments {

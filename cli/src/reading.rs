@@ -14,39 +14,39 @@ use crate::values::{positive, unit};
 /// What a file does not say of itself, and how its surface is prepared.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
-    /// Side of the surface along x, in place of what the file says [generated surface: 1e-2]
+    /// Side of the surface along x, in place of that in the file [generated surface: 1e-2]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
     pub(crate) side: Option<f64>,
 
-    /// Side along y [default: as many square cells as there are nodes]
+    /// Side along y [default: that of square cells]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "side")]
     pub(crate) side_y: Option<f64>,
 
-    /// Unit of the heights in the file, in place of what it says: m, mm, um, nm, ...
+    /// Unit of the heights, in place of that in the file: m, mm, um, nm, ...
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     height_unit: Option<LengthUnit>,
 
-    /// Unit of the lengths along x and y in the file, in place of what it says
+    /// Unit of the lengths along x and y, in place of that in the file
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     lateral_unit: Option<LengthUnit>,
 
-    /// Which map, in a file with several
+    /// Name of the map, if the file contains several
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
 
-    /// Keep heights that a mask in the file marks; otherwise they are missing
+    /// Use heights that a mask in the file marks as missing
     #[arg(long)]
     ignore_mask: bool,
 
-    /// Fill missing nodes from those around them
+    /// Interpolate missing nodes from the nodes around them
     #[arg(long)]
     fill: bool,
 
-    /// Take a trend out of the heights, by least squares
+    /// Remove a trend from the heights, by least squares
     #[arg(long, value_enum)]
     level: Option<Level>,
 
-    /// Turn peaks into valleys: for the replica of a surface
+    /// Turn peaks into valleys, for the replica of a surface
     #[arg(long)]
     invert: bool,
 }
@@ -104,7 +104,7 @@ impl Reading {
         match self.given().keys().next() {
             None => Ok(()),
             Some(option) => Err(Failure::request(format!(
-                "--{option} does nothing to {this}"
+                "--{option} has no effect on {this}"
             ))),
         }
     }
@@ -146,7 +146,7 @@ impl Reading {
         if measured.missing > 0 && self.fill {
             let missing = measured.missing;
             measured = measured.fill_missing().map_err(failed)?;
-            eprintln!("filled     {missing} nodes from those around them");
+            eprintln!("filled     {missing} nodes, interpolated from the nodes around them");
         }
         let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();
@@ -172,7 +172,7 @@ impl Reading {
             surface = levelled;
         }
         if self.invert {
-            eprintln!("inverted   peaks are valleys");
+            eprintln!("inverted   peaks are now valleys");
             surface = surface.invert();
         }
         Ok(surface)

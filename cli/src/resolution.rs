@@ -49,7 +49,7 @@ impl fmt::Display for Resolution {
         };
         write!(
             f,
-            "{} {plural} of {:.1} nodes on average; cells count {}, corrected {} ({:.1} % less)",
+            "{} {plural} of {:.1} nodes on average; contact area {} as counted in cells, {} corrected ({:.1} % less)",
             self.patches,
             self.contact_nodes as f64 / self.patches as f64,
             area(self.area, 4),

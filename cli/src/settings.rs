@@ -36,7 +36,7 @@ impl Settings {
             let name = file.display();
             Failure::new(
                 format!(
-                    "cannot tell what the path in {} is of: {name}",
+                    "cannot read the settings of the path in {}: {name}",
                     folder.display()
                 ),
                 error,
@@ -80,7 +80,7 @@ impl Settings {
             return Ok(());
         }
         Err(Failure::request(format!(
-            "{name} and {other_name} are of different paths: {}",
+            "{name} and {other_name} have different settings: {}",
             differences.join("; ")
         )))
     }

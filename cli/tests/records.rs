@@ -256,7 +256,7 @@ fn interrupted_paths_go_on() -> Done {
             - 1;
         assert!(states < 4915, "it was at its end");
         let told = format!(
-            "{states} states in {record}; go on with `asperity path --resume {record} --updater cholesky --out out`"
+            "{states} states in {record}; continue with `asperity path --resume {record} --updater cholesky --out out`"
         );
         assert!(said.contains(&told), "{said}");
         let again = format!("path --resume {record} --updater cholesky --out out");

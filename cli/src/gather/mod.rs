@@ -14,10 +14,10 @@ use clap::Args;
 use crate::settings::Settings;
 use table::Table;
 
-/// Mean and spread of the paths that `asperity path --seeds` has left, at common loads
+/// Mean and standard deviation of the paths of `asperity path --seeds`, at common loads
 ///
-/// Writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Folders that are
-/// not finished are left out.
+/// Writes gather.csv (for each load the mean and the standard deviation of every column) and gather.png. Unfinished
+/// folders are ignored.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// The folder that holds one folder for each path
@@ -52,7 +52,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     say!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
     let out = options.out.as_ref().unwrap_or(&options.directory);
     fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("cannot make {}", out.display()), error))?;
+        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
     panel::register_font()?;
     let mut outcome = Outcome::default();
     outcome.written(write(&rows, &out.join("gather.csv")));

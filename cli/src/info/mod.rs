@@ -23,13 +23,13 @@ use summary::Whole;
 /// Greatest Hurst exponent that a fit is told with: above 1, but for its error, a map is not self-affine.
 const HIGHEST_HURST: f64 = 1.2;
 
-/// What is in a file of an instrument, and what looks wrong: size, units, missing nodes, roughness, pictures
+/// Describe the file of an instrument: size, units, missing nodes, roughness, pictures, and warnings of what looks wrong
 ///
-/// All figures are of the surface that would touch: with missing nodes filled, and levelled and inverted if that is asked for.
-/// Warnings say what looks wrong: units, tilt, waves that the grid does not resolve.
+/// All figures are those of the surface that would be pressed: missing nodes are filled, and the surface is levelled or
+/// inverted if the options say so. Warnings concern units, tilt, and wavelengths that the grid does not resolve.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// Heights in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
+    /// File with heights (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -41,7 +41,7 @@ pub(crate) struct Options {
     #[arg(long)]
     json: bool,
 
-    /// Directory for the pictures, made if it is not there [default: out]
+    /// Directory for the pictures, created if it does not exist [default: out]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -62,7 +62,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     panel::register_font()?;
     std::fs::create_dir_all(&directory)
-        .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
+        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&whole, &directory));
     outcome.written(picture::statistics(&whole, &directory));
@@ -143,7 +143,7 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
     if let Some(gradient) = whole.rms_gradient() {
         say!("rms gradient  {gradient:.4}");
     }
-    let failed = |error| Failure::new("no figures without the tilt", error);
+    let failed = |error| Failure::new("cannot remove the tilt", error);
     let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
     let tilt = map.rms_height().powi(2) - levelled.map().rms_height().powi(2);
     // What a difference of squares leaves of rounding is no tilt.
@@ -166,7 +166,7 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
         spectrum(&levelled);
     } else {
         say!(
-            "no gradients and waves: the file does not give the size of the surface; give it with --side"
+            "no gradients and no spectrum: the file does not contain the size of the surface; give it with --side"
         );
     }
     for doubt in doubts(whole) {

@@ -48,9 +48,7 @@ pub(super) fn statistics(whole: &Whole, directory: &Path) -> Result<PathBuf, Fai
     let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     let columns = charts.len();
     if charts.is_empty() {
-        return Err(Failure::request(
-            "no statistics of a surface without relief",
-        ));
+        return Err(Failure::request("a flat surface has no statistics to draw"));
     }
     chart::draw(&charts, columns, &directory.join("surface_statistics.png"))
 }

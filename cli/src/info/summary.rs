@@ -20,7 +20,7 @@ pub(super) struct Whole {
 
 impl Whole {
     pub(super) fn of(measured: &MeasuredSurface, reading: &Reading) -> Result<Self, Failure> {
-        let failed = |error| Failure::new("no figures of these heights", error);
+        let failed = |error| Failure::new("cannot use these heights", error);
         let filled = measured.clone().fill_missing().map_err(failed)?;
         let (nx, ny) = filled.heights.shape();
         let has_size = filled.cell.is_some();

@@ -15,13 +15,13 @@ const BELOW: f64 = 1e-3;
 pub(super) fn draw(record: &LoadingRecord, name: &Path) -> Result<PathBuf, Failure> {
     let grid = record.grid();
     let loads = activation_map(&grid, record.states(), |state| state.load)
-        .map_err(|error| Failure::new("no map of activation", error))?;
+        .map_err(|error| Failure::new("cannot make the map of activation", error))?;
     let mut positive: Vec<f64> = loads.iter().copied().filter(|load| *load > 0.0).collect();
     positive.sort_by(f64::total_cmp);
     let place = ((BELOW * grid.nodes() as f64) as usize).min(positive.len() / 2);
     let (Some(&least), Some(&greatest)) = (positive.get(place), positive.last()) else {
         return Err(Failure::request(
-            "no map of activation: no node touched under load",
+            "there is no map of activation: no node touched under load",
         ));
     };
     let touched = loads.iter().filter(|load| !load.is_nan()).count();

@@ -26,7 +26,7 @@ pub(super) fn draw(
     moment: &Moment,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
-    let failed = |error| Failure::new("no distributions", error);
+    let failed = |error| Failure::new("cannot compute the distributions", error);
     let charts = [
         pressures(record, moment).map_err(failed)?,
         gaps(moment).map_err(failed)?,
@@ -35,7 +35,7 @@ pub(super) fn draw(
     let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     if charts.is_empty() {
         return Err(Failure::request(
-            "no distributions: the state has no pressure and no gap",
+            "there are no distributions: the state has no pressure and no gap",
         ));
     }
     chart::draw(&charts, charts.len(), name)

@@ -27,31 +27,31 @@ use crate::values::{fraction, positive};
 use followed::Followed;
 use moment::Moment;
 
-/// Contact patches along a path, from its record: when it percolates and seals, and which patches carry
+/// Contact patches along a recorded path: when the contact percolates and seals, and which patches carry the load
 ///
-/// Prints when one patch leads all the way along x or y, when the last channel through the gap closes, and for one state the
-/// largest patch and the narrowest place of the widest channel, which any leak has to pass.
+/// Prints when one patch extends over the whole surface along x or y, when the last channel through the gap closes, and for
+/// one state the largest patch and the narrowest place of the widest channel, which any leak has to pass.
 /// Writes patches.csv, patches.png, activation.png (the load at which each node touched: every contact map in one),
 /// merge_tree.png and distributions.png.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// What `asperity path --record` has written
+    /// File that `asperity path --record` has written
     #[arg(value_name = "FILE.npz")]
     record: PathBuf,
 
-    /// Load of the state to look at [default: the last state]
+    /// Load of the state that is described [default: the last state]
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, conflicts_with = "at_area_fraction")]
     at_load: Option<f64>,
 
-    /// Contact area over nominal area of the state to look at
+    /// Contact area over nominal area of the state that is described
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
     at_area_fraction: Option<f64>,
 
-    /// Nodes that have only a corner in common belong to one patch too, and no channel leads between them
+    /// Nodes that share only a corner belong to one patch too, and no channel passes between them
     #[arg(long)]
     corners: bool,
 
-    /// Directory for the files, made if it is not there
+    /// Directory for the files, created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
 }
@@ -78,7 +78,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     let out = &options.out;
     std::fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("cannot make {}", out.display()), error))?;
+        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
 
     let mut outcome = Outcome::default();
     // Else there is one node, or several at one height.
@@ -104,7 +104,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Ok(moment) => {
             words::print_moment(&moment);
             let channels = words::print_channels(&record, &moment, connectivity);
-            outcome.note(channels.map_err(|error| Failure::new("no channels", error)));
+            outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));
             let name = out.join("distributions.png");
             outcome.written(distributions::draw(&record, &moment, &name));
         }

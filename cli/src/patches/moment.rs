@@ -54,7 +54,7 @@ impl Moment {
         state: LoadingState,
         connectivity: Connectivity,
     ) -> Result<Self, Failure> {
-        let failed = |error| Failure::new("no fields of the state", error);
+        let failed = |error| Failure::new("cannot compute the fields of the state", error);
         let mut path = record.replay().map_err(failed)?;
         let contact_map = path.contact_map_at(&state).map_err(failed)?;
         let pressure = path.pressure_at(&state).map_err(failed)?;

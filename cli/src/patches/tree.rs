@@ -48,7 +48,7 @@ pub(super) fn draw(
     };
     let Some(ends) = tree.loads() else {
         return Err(Failure::request(
-            "no tree of mergers: no state carries load",
+            "there is no tree of mergers: no state carries load",
         ));
     };
     draw_fine(name, (WIDTH, TOP + height + 70), |area| {

@@ -30,9 +30,9 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
         "{} states on {nx} x {ny} nodes, {boundary} boundary",
         record.states().len()
     );
-    say!("patches: nodes in contact with {joined} in common; channels lead across {channels}");
+    say!("patches: nodes in contact that share {joined}; channels pass across {channels}");
     say!(
-        "contact percolates where one patch leads {all_the_way}, and seals where no channel does any more"
+        "the contact percolates when one patch extends {all_the_way}, and seals when no channel does any more"
     );
     say!();
 }
@@ -127,7 +127,7 @@ pub(super) fn print_moment(moment: &Moment) {
         count => format!("{count} patches"),
     };
     say!(
-        "{count}; the largest has {} nodes, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean of {}",
+        "{count}; the largest has {} nodes, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean pressure of {}",
         patch.nodes,
         area(patch.area, 4),
         percent(patch.area, state.contact_area),

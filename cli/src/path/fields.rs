@@ -26,7 +26,7 @@ pub(super) type Fields = [(&'static str, DMatrix<f64>); 2];
 
 /// Those of the present state.
 pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
-    let failed = |error| Failure::new("no fields of the last state", error);
+    let failed = |error| Failure::new("cannot compute the fields of the last state", error);
     Ok([
         ("pressure", solver.pressure().map_err(failed)?),
         ("gap", solver.gap().map_err(failed)?),

@@ -62,7 +62,7 @@ impl Job {
                     .is_some_and(|kept| is_same(kept, file)) =>
             {
                 return Err(Failure::request(format!(
-                    "--record would replace the surface {}: give another file",
+                    "--record would replace the surface {}: name another file",
                     file.display()
                 )));
             }
@@ -94,7 +94,7 @@ impl Job {
 
     /// The path of a record.
     fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
-        let failed = |error| Failure::new(format!("cannot go on from {}", file.display()), error);
+        let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
         let record = LoadingRecord::read_npz(file).map_err(failed)?;
         let (periodic, e_star) = match record.kernel().origin {
             KernelOrigin::Boussinesq { e_star } => (None, e_star),
@@ -103,9 +103,7 @@ impl Job {
             _ => return Err(failed(asperity::Error::ForeignKernel)),
         };
         let heights = record.heights().matrix().clone();
-        options
-            .reading
-            .only_sides("the surface of a record: it is as it is")?;
+        options.reading.only_sides("the surface of a record")?;
         let surface = Topography::new(record.grid(), heights).map_err(failed)?;
         let grid = *surface.grid();
         let targets = options.targets(&grid, &record.settings().targets);
@@ -116,7 +114,7 @@ impl Job {
         let kept = match (&options.record, passed) {
             (Some(kept), Some(_)) if is_same(kept, file) => {
                 return Err(Failure::request(format!(
-                    "{} goes beyond what is asked for, and would lose that: give --record another file",
+                    "{} contains more than the requested path, and the rest would be lost: name another file with --record",
                     file.display()
                 )));
             }
@@ -126,7 +124,7 @@ impl Job {
         };
         if let (Some(_), Some(last)) = (passed, record.states().last()) {
             eprintln!(
-                "note: {} goes on to {}; what is asked for lies before that, and is read from it",
+                "note: {} continues to {}; the requested target lies before that and is read from it",
                 file.display(),
                 quantity(last.load, "N", 4)
             );
@@ -192,7 +190,7 @@ impl Job {
         }
         .map_err(|error| {
             no_room(
-                "the path cannot begin".to_string(),
+                "cannot set up the path".to_string(),
                 error,
                 (self.updater, kernel.boundary(), self.memory_budget),
             )
@@ -246,12 +244,12 @@ impl Job {
         let state = state?;
         self.targets.iter().find_map(|target| match *target {
             ContactTarget::Load(load) if state.load < load => Some(format!(
-                "the load asked for, {}, at {}",
+                "the requested load of {}, at {}",
                 quantity(load, "N", 4),
                 quantity(state.load, "N", 4)
             )),
             ContactTarget::Approach(approach) if state.approach < approach => Some(format!(
-                "the approach asked for, {}, at {}",
+                "the requested approach of {}, at {}",
                 quantity(approach, "m", 4),
                 quantity(state.approach, "m", 4)
             )),
@@ -289,7 +287,7 @@ impl Job {
 
     fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
         half_space(self.periodic, self.grid(), self.e_star())
-            .map_err(|error| Failure::new("no such half-space", error))
+            .map_err(|error| Failure::new("cannot make the half-space", error))
     }
 }
 
@@ -369,7 +367,7 @@ fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {
 /// From differences of the heights, whatever the surface is from: a record knows nothing else.
 fn rms_gradient(surface: &Topography) -> Result<f64, Failure> {
     let gradient = surface.map().rms_gradient(surface.grid());
-    gradient.map_err(|error| Failure::new("no gradient of the surface", error))
+    gradient.map_err(|error| Failure::new("cannot compute the gradient of the surface", error))
 }
 
 /// Whether two names are of one file that is there.

@@ -11,9 +11,9 @@ use asperity_cli::outcome::Failure;
 pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<PathBuf, Failure> {
     let pressure = solver
         .pressure()
-        .map_err(|error| Failure::new("no pressure for the map", error))?;
+        .map_err(|error| Failure::new("cannot compute the pressure for the map", error))?;
     let Some(state) = solver.state() else {
-        return Err(Failure::request("no state for the map"));
+        return Err(Failure::request("there is no state to draw a map of"));
     };
     contact_map::draw(
         &job.grid(),

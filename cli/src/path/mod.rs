@@ -58,7 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             .map_err(|failure| failure.with_advice("give another --out, or remove that folder"))?;
     }
     let missing = options.ensemble.count() - there.len() as u128;
-    say!("{missing} paths to follow, {} are there", there.len());
+    say!("{missing} paths to follow, {} finished", there.len());
     let seeds = options.ensemble.seeds_of_task();
     let mut members = seeds
         .filter(|seed| !there.contains(seed))
@@ -75,7 +75,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                 member.abandon()?;
                 let seed = member.seed;
                 Err(Failure::with_code(
-                    format!("interrupted at seed {seed}: the same command goes on with it, and skips what is there"),
+                    format!("interrupted at seed {seed}: the same command follows it again and skips finished folders"),
                     interrupt::EXIT_CODE,
                 ))
             }
@@ -97,7 +97,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     }
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
-        .map_err(|error| Failure::new(format!("cannot make {}", options.out.display()), error))?;
+        .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
     if let Some(record) = job.record() {
         outcome::check_place(record)?;
     }
@@ -159,7 +159,7 @@ fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
     let record = record.display();
     Failure::with_code(
         format!(
-            "interrupted: {states} states in {record}; go on with `asperity path --resume {record}{updater} --out {}`",
+            "interrupted: {states} states in {record}; continue with `asperity path --resume {record}{updater} --out {}`",
             options.out.display()
         ),
         interrupt::EXIT_CODE,

@@ -18,22 +18,23 @@ use crate::values::{bytes, fraction, positive};
 
 /// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
 ///
-/// Prints a table of states at loads spread over the path, and how well the last one solves the equations. Writes path.csv (a
+/// Prints a table of states at loads spread over the path, and the residuals of the last state. Writes path.csv (one
 /// line for each state), loading_curve.svg and contact_map.png.
 ///
-/// The model is an elastic half-space without friction and adhesion and a rigid rough surface of small slopes; both bodies may
-/// be elastic, then E* has both. With one pressure in each cell of the grid it solves that problem to rounding; of long paths
-/// approach_error says what is left. What the grid does not resolve, no solver brings back: corrected_contact_area says
-/// how much area is due to the mesh, and a warning comes where patches or waves are a few cells.
+/// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If both bodies
+/// are elastic, E* contains both. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
+/// approach_error estimates the remaining error. No solver can restore what the grid does not resolve: corrected_contact_area
+/// removes the excess of whole cells from the area, and the program warns if contact patches or wavelengths are only a few cells
+/// wide.
 ///
-/// Without --surface it generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst exponent
-/// 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wave that the grid
-/// resolves. Of their mesh, and with their shortest wave, it is --nodes 512 --short-cutoff 78.125e-6.
+/// Without --surface the program generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst
+/// exponent 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wavelength
+/// that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff 78.125e-6.
 #[derive(Debug, Clone, Parser)]
 #[command(group(ArgGroup::new("kept").multiple(true)))]
 pub(crate) struct Options {
-    /// Heights, positive towards the half-space, in a file of an instrument (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text):
-    /// rows of an image are y; an array of NumPy is [ix, iy]
+    /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
+    /// an image are y; a NumPy array is [ix, iy]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
 
@@ -43,20 +44,20 @@ pub(crate) struct Options {
     #[command(flatten)]
     elasticity: Elasticity,
 
-    /// Repeat surface and half-space with the nominal area, with this kernel [default: a free
-    /// half-space, which goes on without pressure]; approaches are then those of the mean planes, and
-    /// there is no contact stiffness but the interfacial one
+    /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
+    /// pressure outside the surface]; the approach is then that of the mean planes, and of the two stiffnesses there is only
+    /// the interfacial one
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
     #[command(flatten)]
     ends: Ends,
 
-    /// Which node touches next
+    /// Rule that chooses the node that touches next
     #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
     pub(super) rule: Rule,
 
-    /// How the contact is solved; the order of events is the same
+    /// Solver of the linear systems; the order of events is the same
     #[arg(long, value_enum, default_value_t = Updater::Auto)]
     pub(super) updater: Updater,
 
@@ -68,11 +69,11 @@ pub(crate) struct Options {
     #[arg(long, value_name = "S")]
     pub(super) seed: Option<u64>,
 
-    /// Shortest wave of the generated surface [default: eight cells, which resolve it, but no less than 78.125 µm]
+    /// Shortest wavelength of the generated surface [default: eight cells, but not less than 78.125 µm]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
     pub(super) short_cutoff: Option<f64>,
 
-    /// Keep the path in this file, which numpy.load opens and --resume goes on from
+    /// Save the path in this file; numpy.load opens it, and --resume continues the path from it
     #[arg(long, value_name = "FILE.npz", group = "kept")]
     pub(super) record: Option<PathBuf>,
 
@@ -80,23 +81,23 @@ pub(crate) struct Options {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(super) fields: Option<Format>,
 
-    /// Write the record each time so many states have been added to it, and not only at the end
+    /// Save the record each time that many states have been added, and not only at the end
     #[arg(long, value_name = "STATES", requires = "kept")]
     pub(super) save_every: Option<NonZeroUsize>,
 
-    /// Go on with the path of a record, to where it was to end unless another end is given; the record grows with it, unless
-    /// --record names another file. What lies before the end of the record is read from it
+    /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
+    /// names another file. A target before the end of the record is read from it
     #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
-    /// Bytes that the path may hold at most, 2e9 say [default: three quarters of the memory]
+    /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(super) memory_budget: Option<usize>,
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
 
-    /// Directory for the files, made if it is not there
+    /// Directory for the files, created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(super) out: PathBuf,
 }
@@ -104,23 +105,23 @@ pub(crate) struct Options {
 /// Where the path ends.
 #[derive(Debug, Clone, Args)]
 struct Ends {
-    /// Load over nominal area at which the path ends, exactly
+    /// End the path at exactly this load over nominal area
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, conflicts_with = "max_load")]
     mean_pressure: Option<f64>,
 
-    /// Load at which the path ends, exactly
+    /// End the path at exactly this load
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
     max_load: Option<f64>,
 
-    /// Approach at which the path ends, exactly
+    /// End the path at exactly this approach
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
     max_approach: Option<f64>,
 
-    /// Mean gap at which the path ends, exactly
+    /// End the path at exactly this mean gap
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
     min_mean_gap: Option<f64>,
 
-    /// Contact area over nominal area at which the path ends [default: 0.1 if nothing else ends it]
+    /// End the path at this contact area over nominal area [default: 0.1 if no other end is given]
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
     max_area_fraction: Option<f64>,
 }
@@ -199,9 +200,9 @@ pub(super) const AREA_FRACTION: f64 = 0.1;
 pub(super) enum Rule {
     /// The node whose gap closes first: exact
     FirstContact,
-    /// Nearly that, faster where there is no factor: neighbours may change places
+    /// The same, but faster without a factor: nodes that touch almost together may be in the wrong order
     ApproximateOrder,
-    /// The node with the smallest gap, as in the paper: not exact
+    /// The node with the smallest gap, as in Zhang et al. (2020): not exact
     SmallestGap,
 }
 
@@ -218,11 +219,11 @@ impl From<Rule> for ContactRule {
 /// The updater on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum Updater {
-    /// A factor as long as it pays, iterations after
+    /// A Cholesky factor while it is faster, then iterations
     Auto,
-    /// A factor: states are exact to rounding, memory grows as the square of the nodes in contact
+    /// A Cholesky factor: states are exact to rounding; memory grows with the square of the number of nodes in contact
     Cholesky,
-    /// Iterations, without a factor, from the first node on
+    /// Iterations from the first node on; memory is proportional to the grid
     Iterative,
 }
 

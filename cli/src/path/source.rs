@@ -59,7 +59,7 @@ impl Generated {
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
         options
             .reading
-            .only_sides("a generated surface: --surface names a file")?;
+            .only_sides("a generated surface: use it with --surface FILE")?;
         let nodes = options.nodes.unwrap_or(NODES);
         let seed = options.seed.unwrap_or(SEED);
         let side = options.reading.side.unwrap_or(SIDE);
@@ -94,7 +94,7 @@ pub(super) fn generate(options: &Options) -> Result<Made, Failure> {
     let heights = Topography::sample(&spectrum, grid).map_err(failed)?;
     let shortest = spectrum.short_cutoff_wavelength();
     let name = format!(
-        "generated as an example: self-affine, Hurst exponent {}, waves of {} ({}) and longer, roll-off at {}, seed {}",
+        "generated as an example: self-affine, Hurst exponent {}, shortest wavelength {} ({}), roll-off at {}, seed {}",
         spectrum.hurst(),
         quantity(shortest, "m", 4),
         quantity(shortest / longer_side(&grid), "cells", 4),
@@ -110,7 +110,7 @@ fn longer_side(grid: &Grid) -> f64 {
 }
 
 fn no_surface(options: &Options, nodes: usize, error: asperity::Error) -> Failure {
-    let what = format!("cannot put the surface on {nodes} x {nodes} nodes");
+    let what = format!("cannot generate the surface on {nodes} x {nodes} nodes");
     options.no_room(what, error)
 }
 

@@ -31,7 +31,7 @@ pub(super) fn print(
     }
     say!();
     let corrected = corrected_areas(job, states)
-        .map_err(|error| Failure::new("no corrected contact area", error))?;
+        .map_err(|error| Failure::new("cannot compute the corrected contact area", error))?;
     let rows = rows(job.rule(), states, last);
     let mut failed = Ok(());
     let mut greatest = Vec::new();
@@ -39,7 +39,10 @@ pub(super) fn print(
         greatest.push(match solver.pressure_at(state) {
             Ok(pressure) => pressure.iter().copied().fold(0.0, f64::max),
             Err(error) => {
-                failed = Err(Failure::new("no pressure for the table", error));
+                failed = Err(Failure::new(
+                    "cannot compute a pressure for the table",
+                    error,
+                ));
                 f64::NAN
             }
         });
@@ -47,7 +50,7 @@ pub(super) fn print(
     table(job, &rows, &greatest, &corrected);
     failed?;
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
-        .map_err(|error| Failure::new("no patches of the last state", error))?;
+        .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;
     say!("mesh: at the last state {resolution}");
     if let Some(doubt) = resolution.doubt() {
         say!("warning: {doubt}");
@@ -57,11 +60,11 @@ pub(super) fn print(
     }
     let certificate = solver
         .certificate()
-        .map_err(|error| Failure::new("no certificate", error))?;
+        .map_err(|error| Failure::new("cannot compute the residuals of the last state", error))?;
     exactness(&certificate, last);
     solver
         .verify()
-        .map_err(|error| Failure::new("the last state is no state of contact", error))
+        .map_err(|error| Failure::new("the last state violates the contact conditions", error))
 }
 
 /// The corrected contact area \[m²\] after each event.
@@ -108,11 +111,11 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
     say!();
     say!("pressure: load over nominal area; greatest: the greatest pressure of a cell");
     say!(
-        "area: cells in contact; corrected: without what they count too much along the edges of patches (somewhat too small)"
+        "area: cells in contact; corrected: without the excess of whole cells along the edges of patches (somewhat too small)"
     );
     match job.periodic() {
-        None => say!("approach: since first touch; K: contact stiffness, d load/d approach"),
-        Some(_) => say!("approach: of the mean planes, since first touch"),
+        None => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
+        Some(_) => say!("approach: of the mean planes, from first touch"),
     }
     say!("K_i: interfacial stiffness, -d load/d mean gap");
     say!();
@@ -124,7 +127,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
     let pressure = last.load / last.contact_area;
     say!();
     say!(
-        "solution: what is left of the equations of the last state on this grid, from its pressure alone (0 is exact):"
+        "solution: residuals of the contact conditions of the last state on this grid, recomputed from its pressure (0 is exact):"
     );
     let left = [
         (
@@ -161,14 +164,14 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 fn doubts(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let pressure = solver
         .max_pressure()
-        .map_err(|error| Failure::new("no pressure of the last state", error))?;
+        .map_err(|error| Failure::new("cannot compute the pressure of the last state", error))?;
     let high = Doubt::of_pressure(pressure, job.e_star());
     let mut doubts: Vec<String> = high.iter().map(Doubt::to_string).collect();
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
     {
         doubts.push(format!(
-            "the path ended before {target}. If that was not to be expected, look at the units: E* is {} Pa",
+            "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",
             scientific(job.e_star(), 3)
         ));
     }
@@ -194,13 +197,13 @@ fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<
 fn reason(end: LoadingEnd) -> &'static str {
     match end {
         LoadingEnd::FullContact => "full contact",
-        LoadingEnd::Load => "the load asked for",
-        LoadingEnd::Approach => "the approach asked for",
-        LoadingEnd::MeanGap => "the mean gap asked for",
-        LoadingEnd::AreaFraction => "the contact area asked for",
-        LoadingEnd::Nodes => "the number of nodes asked for",
+        LoadingEnd::Load => "the requested load",
+        LoadingEnd::Approach => "the requested approach",
+        LoadingEnd::MeanGap => "the requested mean gap",
+        LoadingEnd::AreaFraction => "the requested contact area",
+        LoadingEnd::Nodes => "the requested number of nodes",
         LoadingEnd::Memory => "the memory budget",
-        LoadingEnd::NoMoreEvents => "no further node that touches",
+        LoadingEnd::NoMoreEvents => "no further node touches",
         _ => "an error",
     }
 }

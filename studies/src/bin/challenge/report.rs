@@ -68,9 +68,10 @@ impl Report {
              The geometry of M. H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118 (problem: \
              arXiv 1512.02403): L = 100 µm, H = {HURST}, λᵣ = 20 µm, λₛ = 0.1 µm, rms gradient {GRADIENT}, E\\* = 25 MPa, reference \
              load 250 kPa, which is 0.01 E\\*h′; periodic, kernel 2/(E\\*|q|). It is solved here **without adhesion**, which the \
-             challenge has, on a surface with our own phases. So the consensus of that paper, whose area, gaps and \
-             pressures are those of adhesive contact, is no number to agree with, and none of it is quoted; what can be said is \
-             what each quantity is without adhesion, and what resolution leaves open. Numbers and picture are written by\n\n\
+             challenge has, on a surface with our own phases. The consensus of that paper \
+             describes adhesive contact, so that its numbers cannot be compared and are not \
+             quoted. This section gives each quantity without adhesion, and the error that the \
+             resolution leaves. This command writes the numbers and the picture:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin challenge -- --report docs/validation.md\n\
              ```\n\n\
@@ -86,7 +87,7 @@ impl Report {
             .and_then(|m| m.first())
             .map_or(0, |c| c.band);
         let mut text = format!(
-            "### What resolution leaves open\n\nThe same surface, its spectrum cut at L/{band}, on three meshes. *Limit*: Richardson's \
+            "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on three meshes. *Limit*: Richardson's \
              extrapolation from the finest two, of first order for the area as counted and of second for the mean gap.\n\n\
              | p̄/E\\* | nodes | cells to λₛ | A/A₀ | corrected | ḡ/h_rms | K_i h_rms/(A₀ p̄) | p_max/p̄ |\n\
              |---|---|---|---|---|---|---|---|\n"
@@ -113,7 +114,8 @@ impl Report {
         let resolved = area <= RESOLVED && gap <= RESOLVED;
         let _ = write!(
             text,
-            "\n**Verdict: {}** (criterion: the limits of counted and corrected area, two roads to the same number, within {r:.0} % \
+            "\n**Verdict: {}** (criterion: the limits of counted and corrected area, two \
+            estimates of the same number, within {r:.0} % \
              of each other, and the mean gap on the finest mesh within {r:.0} % of its limit, at every load). Found: {:.2} % and \
              {:.3} %. The greatest pressure, that of one node on the sharpest summit in contact, changes by up to {:.0} % from the \
              second mesh to the finest.",
@@ -127,7 +129,7 @@ impl Report {
     }
 
     fn spectra(&self) -> String {
-        let mut text = "### Towards its spectrum\n\nThe reference load, p̄ = 0.01 E\\*, with four cells to λₛ (4.1 at the end), the rms \
+        let mut text = "### Approaching the spectrum of the challenge\n\nThe reference load, p̄ = 0.01 E\\*, with four cells to λₛ (4.1 at the end), the rms \
                         gradient always 1:\n\n\
                         | L/λₛ | nodes | h_rms [µm] | Nayak's α | A/A₀ | corrected | κ, corrected | ḡ [µm] | ḡ/h_rms |\n\
                         |---|---|---|---|---|---|---|---|---|\n"
@@ -175,7 +177,7 @@ impl Report {
     fn challenge(&self) -> String {
         let (nodes, band) = self.loads.first().map_or((0, 0), |c| (c.nodes, c.band));
         let mut text = format!(
-            "### Its loads\n\nThe widest spectrum, L/λₛ = {band}, that of the challenge being {BAND}, on {nodes} × {nodes} nodes, {:.1} cells to λₛ: too coarse for \
+            "### The loads of the challenge\n\nThe widest spectrum, L/λₛ = {band}, that of the challenge being {BAND}, on {nodes} × {nodes} nodes, {:.1} cells to λₛ: too coarse for \
              the area as counted.\n\n\
              | p̄/E\\* | nodes | cells to λₛ | A/A₀ | corrected | ḡ/h_rms | K_i h_rms/(A₀ p̄) | p_max/p̄ |\n\
              |---|---|---|---|---|---|---|---|\n",

@@ -43,8 +43,9 @@ impl Report {
              target (of radii, for the circular punch) and four places of the apex between the nodes, since that of one \
              state depends on how the edge of contact runs through the cells. Cells are counted over the radius of the \
              contact, the shorter semi-axis or the half-width. Pressures are the greatest against the closed form \
-             at the same node; where that is infinite, of the cone and the punch, those from 0.35 to 0.65 of the radius. A cylinder has no approach, which goes like a \
-             logarithm without end, and so neither stiffness nor energy.\n\n\
+             at the same node; where that is infinite, of the cone and the punch, those from 0.35 to 0.65 of the radius. A \
+             cylinder has no approach, because it diverges logarithmically, and therefore neither \
+             stiffness nor energy.\n\n\
              **Criterion**, for every row: the order fitted to the finest four meshes is at least the expected one less \
              {SLACK}, and on the finest mesh the error is at most {COEFFICIENT} × cells^(−expected order). *Expected* is 2, \
              but 1 for what depends on which cells count as contact: area, stiffness, and the pressure under a circular edge \

@@ -28,13 +28,14 @@ impl Study {
     fn introduction(&self) -> String {
         format!(
             "## Mesh and spectrum\n\n\
-             What of κ = A E\\* h′/(A₀ p̄), of the mean gap and of the interfacial stiffness is the surface's, and what the \
-             mesh's? Numbers and picture are written by\n\n\
+             How much do κ = A E\\* h′/(A₀ p̄), the mean gap and the interfacial stiffness depend \
+             on the mesh? This command writes the numbers and the picture:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin mesh -- --report docs/validation.md\n\
              ```\n\n\
              Self-affine surfaces as those of the section on rough contact (H = {HURST}, roll-off at {ROLLOFF} of the side, kernel \
-             Love), {} seeds; *cells* are those to the shortest wave, λₛ. A surface is the same on every mesh. *Corrected* is the \
+             Love), {} seeds; *cells* are those to the shortest wave, λₛ. The surface of a seed \
+             is the same on every mesh. *Corrected* is the \
              area less (π − 1 + ln 2)/24 = {:.4} cells for each side of a cell between contact and no contact \
              (`Perimeter::corrected_area`; Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161). *Limit* is \
              Richardson's extrapolation of κ as cells are counted from the finest two meshes, surface by surface: 2 κ(Δ/2) − κ(Δ). \
@@ -93,7 +94,8 @@ impl Study {
             .collect();
         let sense = match taken.iter().all(|part| *part > 1.0 && *part < 2.0) {
             true => {
-                ": always too much, as on a Hertz contact, but always closer than cells counted"
+                ": always too much, as on a Hertz contact, but always closer to the limit than \
+                the counted area"
             }
             false => "",
         };
@@ -104,10 +106,11 @@ impl Study {
         let _ = write!(
             text,
             "\n**Verdict on the correction: {}.** Criterion: on every mesh, on the mean over the loads, it leaves at most {:.0} % of \
-             what counting cells gives too much, with either sign. It takes away {} cells{sense}. The factor that these surfaces want is {} in the place of {:.4}, \
+             the excess of the counted area, with either sign. It removes {} cells{sense}. The \
+             factor that fits these surfaces is {} in the place of {:.4}, \
              mean and deviation over the meshes.\n\n\
-             Under the lightest load κ is {} with {} cells, counted, and {} without mesh: a κ near or above √(2π) = {bgt:.3} on \
-             a coarse mesh is the mesh. {} between √(2π) and Persson's √(8/π) = {persson:.3} {}.",
+             Under the lightest load κ is {} with {} cells, counted, and {} in the limit: a κ \
+             near or above √(2π) = {bgt:.3} on a coarse mesh is an artefact of the mesh. {} between √(2π) and Persson's √(8/π) = {persson:.3} {}.",
             if agrees { "agrees" } else { "differs" },
             100.0 * (1.0 - REMOVED),
             parts.join(", "),
@@ -149,10 +152,12 @@ impl Study {
         let stiffness = self.coarsest(|f, load| self.beside_finest(f, load)[1].abs() <= ENOUGH);
         let mut text = format!(
             "### What to choose\n\n\
-             Cells to the shortest wave from which on the mean over the surfaces is within {share:.0} % at all these loads: of the \
-             limit for κ, of the finest mesh for the others.\n\n\
+             The table gives the number of cells to the shortest wave from which on the mean over \
+             the surfaces is within {share:.0} % at all these loads, of the limit for κ and of \
+             the finest mesh for the others.\n\n\
              | quantity | enough |\n|---|---|\n| area, cells counted | {} |\n| area, corrected | {} |\n| mean gap | {} |\n\
-             | interfacial stiffness | {} |\n\nWhat each mesh leaves at worst over the loads, in per cent:\n\n\
+             | interfacial stiffness | {} |\n\nGreatest error of each mesh over the loads, in per \
+             cent:\n\n\
              | cells | κ counted | κ corrected | mean gap | stiffness |\n|---|---|---|---|---|\n",
             cells(counted),
             cells(corrected),
@@ -183,11 +188,13 @@ impl Study {
             );
         }
         text.push_str(
-            "\nSo: mean gap and stiffness come with any mesh that has the shortest wave. For the area take the corrected one, or \
-             better two meshes, and extrapolate what is counted, 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
+            "\nConclusion: mean gap and stiffness are right on any mesh that represents the \
+             shortest wave. For the area use the corrected one, or better use two meshes and \
+             extrapolate the counted area, 2 κ(Δ/2) − κ(Δ). Refine by Fourier interpolation \
              (`Topography::resample`), and only if the spectrum really ends at λₛ: a measured surface that is rough down to its \
-             pixels has no area that does not depend on the pixel. Where the deviation between surfaces is the larger \
-             number, as under light loads, more surfaces are worth more than a finer mesh.",
+             pixels has no area that does not depend on the pixel. If the deviation between \
+             surfaces is greater than the error of the mesh, as under light loads, more surfaces \
+             help more than a finer mesh.",
         );
         text
     }

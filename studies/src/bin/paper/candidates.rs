@@ -159,8 +159,9 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
             list(&possible)
         ),
         _ => format!(
-            "{} have the paper's gradient and its k under the greatest load. Whether the paper's table or its amplitudes \
-             were others than it says, these two numbers do not tell.{}",
+            "{} have the paper's gradient and its k under the greatest load. These two numbers do \
+             not show whether the table or the amplitudes of the paper were different from what \
+             it says.{}",
             list(&possible),
             by_patches(report, claims, &possible)
         ),

@@ -39,9 +39,9 @@ pub(crate) fn rules(report: &Report) -> String {
          pressures below −10⁻¹⁰ of their mean and gaps below −10⁻¹⁰ Sq.\n\n\
          | rule | steps back | p < 0 in states | least p / mean p | overlap in states | least gap / Sq |\n\
          |---|---|---|---|---|---|\n{}\n{}\n\n\
-         They part {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
-         differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq: so much of \
-         the paper's curves is due to its rule. The verdict on its statement that there are no negative pressures is in the \
+         The two rules first differ {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
+         differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq: this part \
+         of the paper's curves is due to its rule. The verdict on its statement that there are no negative pressures is in the \
          table above.",
         rules.nodes,
         rules.nodes,
@@ -88,8 +88,9 @@ pub(crate) fn peers(report: &Report) -> String {
          `studies/src/bin/paper/peers.py`, which says how.\n\n\
          | program | half-space | tolerance | W/A₀E\\* | nodes, theirs | ours | greatest p/E\\*, theirs | ours | difference |\n\
          |---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         aspher's tolerance is one of all gaps together, and a greatest pressure may be off by some times that: these numbers \
-         are for the eye, and no verdict is made of them. The section \"Other programs\" below judges 195 states, solved to 10⁻¹¹.",
+         The tolerance of aspher applies to all gaps together, and a greatest pressure may be \
+         wrong by several times that: these numbers \
+         are only a rough check, without a verdict. The section \"Other programs\" below judges 195 states, solved to 10⁻¹¹.",
     )
 }
 
@@ -231,7 +232,8 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
         format!(
             "**√(8/π)** is taken for what Persson's theory says of all areas, and found \"better\" at large ones (Fig. 6). It \
              is the limit of his theory at *vanishing* load, as √(2π) is that of Bush, Gibson and Thomas; at other loads \
-             the theory is the curve A/A₀ = erf(√2 W/A₀E\\*h′), whose k falls. Nor can such a comparison fail: since A ≤ A₀, k is \
+             the theory is the curve A/A₀ = erf(√2 W/A₀E\\*h′), whose k falls. Such a comparison \
+             cannot fail either: since A ≤ A₀, k is \
              below √(8/π) = {limit:.3} on every surface from W/A₀E\\* = h′/{limit:.3} on. So it has no verdict here; that with the whole \
              curve is in the table of Fig. 6."
         ),

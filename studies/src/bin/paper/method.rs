@@ -156,7 +156,7 @@ pub(crate) fn tables(report: &Report) -> String {
          convolutions a step; *ours*: steps of `FixedLoadSolver` on the finest grid, and its convolutions, those on coarser \
          grids by their part. Both until no gap in contact and no overlap is above 10⁻⁸ of the approach:\n\n\
          | W/A₀E\\* | nodes | plain | ours | convolutions |\n|---|---|---|---|---|\n{}\n\n\
-         The factor that the paper's procedure holds, 4n² bytes. No verdict is made of its time, \"about 20 min\" for π/16 of \
+         The factor that the paper's procedure holds, 4n² bytes. There is no verdict on its time, \"about 20 min\" for π/16 of \
          256², since it was another machine; `docs/performance.md` has ours for the same case, on an idle machine, and the \
          command that measures it:\n\n\
          | mesh | A/A₀ | nodes | factor |\n|---|---|---|---|\n{}",

@@ -122,27 +122,29 @@ impl Report {
         }
         format!(
             "## The paper, figure by figure\n\n\
-             No curve of the paper is compared here: its pictures have not been read off. What is compared are the numbers and \
-             statements of its text: every number that X. Zhang, Y. Zhang and Z. Jin state in *A semi-analytical approach to \
-             the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 (2020), \"the \
-             paper\", next to ours. This part of the page, numbers and pictures, is written by\n\n\
+             This section compares every number and statement in the text of X. Zhang, Y. Zhang, \
+             Z. Jin, *A semi-analytical approach to the elastic loading behaviour of rough \
+             surfaces*, Friction 8(5), 970–981 (2020), \"the paper\", with ours. The curves in \
+             its pictures were not digitised and are not compared. This command writes the \
+             numbers and pictures of this section:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
              --report docs/validation.md\n\
              ```\n\n\
-             Without options the program does the same on 256 × 256 nodes in a few minutes, and writes \
+             Without options the program uses 256 × 256 nodes, takes a few minutes, and writes \
              into `out/paper`.\n\n\
              * **Rough surfaces**: {} × {} nodes, {} seeds each; \"a ± b\" is the mean over the seeds and \
              the sample standard deviation.\n\
              * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area), one \
-             state for each node; from there fixed loads, each with its exact tangent stiffness, up to \
-             0.1 A₀E\\*. Where the two meet they differ, at worst over all runs, by {area:.0e} of the area \
-             (a node that just touches counts in the path; under a fixed load it may not), {approach:.0e} of the \
+             state for each node; beyond that fixed loads, each with its exact tangent stiffness, \
+             up to 0.1 A₀E\\*. At the load where the two methods meet, their greatest differences \
+             over all runs are {area:.0e} of the area \
+             (a node that just touches counts in the path, but perhaps not under a fixed load), {approach:.0e} of the \
              approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
-             * **Without units**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
+             * **Dimensionless**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
              E\\*.\n\
-             * **Three surfaces**, since the paper's cannot be told for certain: see \
-             \"Which surface the paper had\".",
+             * **Three surfaces**, because the paper does not determine its surface with \
+             certainty: see \"Which surface the paper had\".",
             study.nodes, study.seeds, study.nodes, study.nodes, study.seeds, study.path_nodes,
         )
     }

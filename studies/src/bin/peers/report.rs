@@ -154,26 +154,30 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
     });
     let mut text = format!(
         "## Other programs\n\n\
-         The same surfaces, loads and half-spaces by other programs. Their side is computed, with everything they need, by \
-         the first of these lines, and kept in `studies/src/bin/peers/peers.csv`; the second solves ours again, stops if it is \
-         no longer what theirs was compared with, and writes this section:\n\n\
+         This section compares the results of other programs on the same surfaces, loads and \
+         half-spaces. The first command installs and runs the other programs and stores their \
+         results in `studies/src/bin/peers/peers.csv`. The second solves the same problems with \
+         asperity, stops if its results differ from those that the table was compared with, and \
+         writes this section:\n\n\
          ```text\n\
          studies/src/bin/peers/peers.sh\n\
          cargo run --release -p asperity-studies --bin peers -- --report docs/validation.md\n\
          ```\n\n\
          * **Programs**: {}; ours is `FixedLoadSolver`, to {}. \"dense\" is `dense.py` next to the table, which shares nothing \
          with any of them: the influence matrix entry by entry, LU on the contact set, and the set changed until the \
-         conditions of contact hold to rounding. It is the judge, on grids of up to 1024 nodes.\n\
+         conditions of contact hold to rounding. It decides who is right, on grids of up to 1024 \
+         nodes.\n\
          * **Half-spaces**: free with Love's kernel (`Boussinesq`); periodic with 2/(E\\*|q|) (`Spectral`).\n\
          * **Surfaces**: the first eight on 128 × 128 nodes; then grids that are not square, with cells of 3 : 1, and with an \
          odd number of nodes along y or x. `surfaces.rs` there makes them.\n\
          * **Loads**: p̄ = {} E\\* times the rms gradient between nodes. Each entry is the worst of the three.\n\
          * **Criterion**, for every entry: at each load the same nodes under pressure, pressures within {} of the greatest, mean \
          gaps within {} Sq, and stiffness within {} of theirs by differences, from a second load larger by 10⁻⁵, unless a node \
-         joins in between. What fails it is in bold.\n\n\
+         joins in between. Entries that fail it are in bold.\n\n\
          Nodes that differ, of all three loads together, and the greatest difference of pressure:\n\n{pressures}\n\
          Differences of mean gap, over Sq, and of stiffness, relative:\n\n{stiffnesses}\n\
-         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** What does not:\n",
+         **Verdict: {agreeing} of {compared} entries, {solved} states in all, agree.** The \
+         exception:\n",
         programs.join(", "),
         scientific(TOLERANCE, 1),
         LOADS.map(|load| load.to_string()).join(", "),
@@ -186,9 +190,9 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
         let judge = Cell::new(rows, surface, ("dense", half_space));
         let judged = judge.map_or("no judge on a grid of this size".to_string(), |judge| {
             let verdict = if judge.agrees() {
-                "sides with us"
+                "agrees with asperity"
             } else {
-                "does not side with us"
+                "does not agree with asperity"
             };
             format!(
                 "the dense check {verdict}: {} nodes, {}",
@@ -232,18 +236,20 @@ fn shortest_waves(waves: &[Wave]) -> String {
     });
     let wrong: Vec<String> = each.collect();
     let why = match wrong.len() {
-        0 => "All are answered so.".to_string(),
+        0 => "All are right.".to_string(),
         count => format!(
-            "All but {count} are answered so, within {}: {}. With an odd number of nodes along its first axis tamaas gives one \
-             of the two conjugates of the shortest wave the wave number of the next shorter one. What that does is of the \
-             size of what the wave carries; with an even number along the first axis there is none of it.",
+            "All but {count} are right within {}: {}. With an odd number of nodes along its first axis tamaas gives one \
+             of the two conjugates of the shortest wave the wave number of the next shorter one. The \
+             error that this causes is in proportion to the amplitude of that wave; with an even \
+             number of nodes along the first axis there is none.",
             scientific(WAVE, 1),
             wrong.join("; "),
         ),
     };
     format!(
-        "\n\n**Why.** The displacement under a pressure that is one wave must be 2/(E\\*|q|) times it: {} shortest waves asked of \
-         tamaas and ContactMechanics (`waves.csv`). {why}",
+        "\n\n**Why.** A pressure that is a single wave must give a displacement of 2/(E\\*|q|) \
+        times that pressure: {} of the shortest waves were given to tamaas and ContactMechanics \
+        (`waves.csv`). {why}",
         waves.len(),
     )
 }

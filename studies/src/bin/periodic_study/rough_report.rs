@@ -44,24 +44,26 @@ impl Study {
             "### Rough contact against theory\n\n\
              ![Area, mean gap and interfacial stiffness of self-affine surfaces against load](images/periodic_study.png)\n\n\
              {} self-affine surfaces of {n} × {n} nodes (H = {HURST}, roll-off at a quarter and short cut-off at 1/32 of the side, \
-             {:.0} cells), kernel {}; {} loads each; {:.0} convolutions in all. *Corrected* is the area without what \
-             whole cells count too much along the border of the contact, (π − 1 + ln 2)/24 of a cell for each side.\n\n{}\n\
+             {:.0} cells), kernel {}; {} loads each; {:.0} convolutions in all. *Corrected* is \
+             the area without the excess of whole cells along the edge of the contact, (π − 1 + ln 2)/24 of a cell for each side.\n\n{}\n\
              Mean ± standard deviation of one surface. With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}, 1/γ = \
              {:.2}.\n\n\
              * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected; under the lightest load {} \
-             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. That counted \
-             cells come close to the former where contacts are smallest is largely the mesh: a contact of a few cells is counted \
-             too large. Corrected, κ is between the two at every light load: {} (criterion: the mean of the surfaces, each \
-             load). What it is without any mesh is in the section on mesh and spectrum. At the lightest loads contacts \
-             are few, and the spread is that of the highest peaks.\n\
+             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. Counted \
+             cells come close to the former at the smallest contacts mainly because of the mesh, \
+             which overestimates contacts of a few cells. The corrected κ is between the two at \
+             every light load: {} (criterion: the mean of the surfaces, each \
+             load). The section on mesh and spectrum extrapolates κ to vanishing cells. At the \
+             lightest loads there are few contacts, and the highest peaks determine the spread.\n\
              * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load the \
              area that is still open is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
              * **Mean gap.** Between the first few contacts and a fifth of the area in contact, p̄ ∝ exp(−ḡ/(γ h_rms)): {} (criterion: \
              γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness. It is \
              steeper at the lightest loads, where the finite surface has no higher peaks, and at full contact the gap closes.\n\
              * **Stiffness.** The exact tangent, not a difference of gaps: K_i h_rms/(A₀ p̄) is {} over the upper decade of the \
-             same loads, mean and deviation over them, and 1/γ = {:.2}. Both belong to the same curve, so that no verdict is made of it: they differ as far as \
-             the curve is not exponential.",
+             same loads, mean and deviation over them, and 1/γ = {:.2}. Both describe the same \
+             curve, so that there is no verdict. They differ only because the curve is not \
+             exactly exponential.",
             self.surfaces,
             CUTOFF * self.nodes as f64,
             self.kernel.name(),

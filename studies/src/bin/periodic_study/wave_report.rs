@@ -46,13 +46,15 @@ impl Convergence {
              * **Mean gap**: the greatest error at any event, from first touch to full contact. Second order: {gap:.2} (Love) and \
              {spectral_gap:.2} (spectral) times amplitude × (cell / wavelength)² on the finest grid.\n\
              * **Area**: the greatest error just before a row of nodes touches, between 10 and 90 % of the load of full contact. \
-             First order, as everything that is counted in cells: short by {area:.2} (Love) and {spectral_area:.2} (spectral) cells \
+             First order, as everything that is counted in cells: too small by {area:.2} (Love) and {spectral_area:.2} (spectral) cells \
              over the wavelength. Then two rows touch at once, one at each edge, and it is {:.2} and {:.2} too much.\n\
-             * **Stiffness**: the same, relative. It is that of the contact as it is, and so first order with it. Between events it \
-             is constant: a staircase around the exact curve.\n\
-             * **Load of full contact**: exact to rounding, {exact:.0e}, for the spectral kernel, for which the wave is one of its \
-             own. Love's cells are stiffer by {full:.3} (cell / wavelength)², in theory π²/6 = {:.3}, because pressure that is uniform \
-             on cells is by that much less of a wave.\n\n\
+             * **Stiffness**: the greatest relative error in the same range. The stiffness \
+             follows the contact area and is therefore of first order too. It is constant between \
+             events: a staircase around the exact curve.\n\
+             * **Load of full contact**: exact to rounding, {exact:.0e}, for the spectral kernel, which \
+             represents the wave exactly. Love's cells are stiffer by {full:.3} (cell / wavelength)², in theory π²/6 = {:.3}, because \
+             the wave component of a pressure that is uniform on each cell is smaller by this \
+             amount.\n\n\
              **Verdict: {}** (criterion: orders, those of the finest three grids, within {SLACK} of 2, 1 and 1). \
              `tests/closed_forms/westergaard.rs` holds the constants.",
             self.table(),

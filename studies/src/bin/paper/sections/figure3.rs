@@ -48,8 +48,8 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
          is wide, and 10⁻⁶ times as large with the length used.\n\
          * **Wave**, eqs. (21) and (22): `PeriodicBoussinesq` with one cell along y is the plane periodic problem \
          without approximation, one wavelength.\n\
-         * **{WAVES} free waves**: the paper's substitute for it, on the domain (−5, 5); the middle wave is compared \
-         at the same mean pressure. The error, up to {} p\\*, does not fall with a finer mesh, only with more waves: \
+         * **{WAVES} free waves**: the paper's substitute for the periodic problem, on the domain \
+         (−5, 5); the middle wave is compared at the same mean pressure. The error, up to {} p\\*, does not fall with a finer mesh, only with more waves: \
          {} with 1, {} with 3, {} with {WAVES} and {} with 15 at half contact.\n\n\
          Errors of the pressure over p₀ or p\\* with N = {NODES} cells over the contact of the cylinder, or the \
          wavelength. *Inner* is the greatest error on |x| < 0.6 a, *rms* the root mean square over the contact. Both are \
@@ -59,7 +59,7 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
          | case | inner error | rms error | orders, inner and rms |\n|---|---|---|---|\n{rows}\n\
          Away from the edge of contact the error is of second order in the cell size. Over the \
          whole contact it is of first order, because the edge cuts cells; in full contact there is no edge, and it is \
-         of second order. Free waves have an error of their own that no finer mesh removes.",
+         of second order. Free waves have an additional error that no finer mesh removes.",
         picture(
             prefix,
             "figure3",

@@ -32,8 +32,9 @@ pub(crate) fn figure4(report: &Report, prefix: &str) -> String {
          as small and the largest tenth of the patches as large:\n\n\
          | surface | A/A₀ | W/A₀E\\* | greatest p/E\\* | greatest p/E\\*h′ | where | patches | small ones | contact in small ones | \
          contact in the largest tenth |\n|---|---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         Colours of the maps are even in the logarithm of p/E\\*h′. Where it is greatest at the border \
-         of the square, the cause is the finite punch on a free half-space, and not roughness.",
+         Colours of the maps are even in the logarithm of p/E\\*h′. If the pressure is greatest \
+         at the border of the square, the cause is the finite punch on a free half-space, and not \
+         roughness.",
         picture(
             prefix,
             "figure4",

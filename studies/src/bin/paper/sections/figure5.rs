@@ -36,9 +36,9 @@ pub(crate) fn figure5(report: &Report, prefix: &str) -> String {
     );
     format!(
         "### Fig. 5: area against load\n\n{}\n\n{}\n\
-         Evenly spaced loads. A correlation of 0.999 does not make a law linear: a line with an intercept \
-         also fits a gently curved law, and k of Fig. 6 falls over the same range. The dot is what the paper's k and gradient \
-         mean at its greatest load.",
+         Evenly spaced loads. A correlation of 0.999 does not prove a linear law: a line with an \
+         intercept also fits a slightly curved law, and k of Fig. 6 falls over the same range. \
+         The dot follows from the paper's k and gradient at its greatest load.",
         picture(prefix, "figure5", "Contact area against load"),
         table.text,
     )

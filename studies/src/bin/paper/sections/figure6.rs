@@ -69,12 +69,13 @@ pub(crate) fn figure6(report: &Report, prefix: &str) -> String {
     let rule = "---|---|".repeat(ratios.len());
     format!(
         "### Fig. 6: the ratio of area to load\n\n{}\n\n\
-         k = A E\\* h′ / W. \"Corrected\" is the area without what whole cells along the border of the contact add to \
-         it: (π − 1 + ln 2)/24 times the length of the staircase times the cell size (Yastrebov, Anciaux and Molinari 2017, \
+         k = A E\\* h′ / W. \"Corrected\" is the area without the excess of whole cells along the \
+         edge of the contact: (π − 1 + ln 2)/24 times the length of the staircase times the cell size (Yastrebov, Anciaux and Molinari 2017, \
          arXiv 1701.02727).\n\n{head}\n|---|{rule}\n{rows}\n\n\
          Within 10 % of 2: {}. With the gradient by central differences on the paper's mesh, k under the greatest \
-         load is {}. How high k starts depends in good part on the mesh: corrected, it starts lower. To end at 1.0, a surface \
-         must be almost in full contact at 0.1 A₀E\\*, which takes a small gradient.\n\n\
+         load is {}. The value of k at light load depends strongly on the mesh: the corrected one \
+         is lower. To end at k = 1.0, a surface must be almost in full contact at 0.1 A₀E\\*, \
+         which requires a small gradient.\n\n\
          The area over that of Persson's theory, erf(√2 W/A₀E\\*h′), at the same load:\n\n{head}\n|---|{rule}\n{persson}",
         picture(
             prefix,

@@ -14,14 +14,15 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     format!(
         "### Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
          The exponential is y₀ + A exp(−W/t) through u/Sq = −δ/Sq, the line is fitted from {} on; both by least \
-         squares over evenly spaced loads, since the paper does not say which it took. Nor does it say how \
-         far it fitted the exponential, which depends on the range more than on the seed: all three are judged (above). None starts \
-         at 0, where every path does. The paper's line cannot be one of u/Sq: saturation alone means a slope of {}. In the picture, and \
-         in two rows, u is over {LINE_UNIT} Sq, the unit in which its line fits. What does not depend on the unit, intercept \
-         over slope, is judged.\n\n\
+         squares over evenly spaced loads, since the paper does not say which spacing it used. \
+         The paper does not give the range of the exponential fit either. The fit depends more on \
+         the range than on the seed, so that all three ranges are judged (above). No fit starts \
+         at 0, but every path does. The paper's line cannot be one of u/Sq: saturation alone means a slope of {}. In the picture, and \
+         in two rows, u is divided by {LINE_UNIT} Sq, the unit in which its line fits. Only the \
+         ratio of intercept to slope is judged, because it does not depend on the unit.\n\n\
          **Saturated stiffness.** The rigid square punch has K = {} E\\*L, {} in these units; the same punch on \
-         the mesh has {} ({} % less, the error of the mesh), and the rough surfaces end there: the value has \
-         nothing to do with roughness, and no verdict is made of it.\n\n\
+         the mesh has {} ({} % less, the error of the mesh), and the rough surfaces end there. \
+         The value does not depend on roughness, so that there is no verdict on it.\n\n\
          **Growth at light loads.** For few asperities of a finite surface a power with the exponent 1/(1 + H) = 0.56 is \
          expected (Pastewka et al., arXiv 1210.4635).",
         picture(

@@ -34,7 +34,7 @@ pub(crate) fn figure8(report: &Report, prefix: &str) -> String {
          the paper's range over γ of the line | α |\n|---|---|---|---|---|---|---|\n{rows}\n\
          Where the law holds exactly, Kᵢ = W/(γ Sq) grows in proportion to W, at a constant rate. Below its range few \
          asperities carry the load and γ is smaller (a finite surface has a highest summit), so that Kᵢ grows more slowly \
-         than W; beyond it contact is so large that the gap runs out, and Kᵢ grows faster.",
+         than W; above the range little gap is left, and Kᵢ grows faster.",
         picture(
             prefix,
             "figure8",

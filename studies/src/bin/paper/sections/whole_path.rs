@@ -35,8 +35,9 @@ pub(crate) fn whole_path(path: &WholePath, prefix: &str) -> String {
          cargo run --release -p asperity-studies --bin paper -- --nodes {} --whole-path out/path.csv --report \
          docs/validation.md --reuse\n\
          ```\n\n{}\n\n\
-         What Figs. 5 to 8 show, in one panel each; the dashed line is the paper's greatest load. The last state at or \
-         below each load, without units as there (k with the rms gradient {:.4} of the sum of waves):\n\n\
+         Each panel shows one quantity of Figs. 5 to 8; the dashed line is the paper's greatest \
+         load. The table gives the last state at or below each load, dimensionless as above (k \
+         with the rms gradient {:.4} of the sum of waves):\n\n\
          | W/A₀E\\* | nodes | A/A₀ | k | k corrected | u/{UNIT} Sq | ḡ/Sq | K Sq/A₀E\\* | Kᵢ Sq/A₀E\\* |\n\
          |---|---|---|---|---|---|---|---|---|\n{}{against}",
         path.path_nodes,
@@ -60,9 +61,10 @@ fn against(found: &Against) -> String {
     let worst = [found.approach, found.mean_gap, found.stiffness, found.area];
     let worst = worst.into_iter().fold(0.0, f64::max);
     format!(
-        "\n\nThe fixed loads of \"Table 1\", seed 1, above know nothing of events. At {} of them, up to W = {}, approach, mean \
+        "\n\nThe fixed loads of \"Table 1\", seed 1, above are solved without following events. \
+        At {} of them, up to W = {}, approach, mean \
          gap, contact stiffness and area differ from this path's, interpolated between two events, by at most {}, {}, {} and {} \
-         (areas and stiffnesses go in steps).\n\n\
+         (areas and stiffnesses change in steps).\n\n\
          **\"Robust results from infinitesimal to full contact\"**, here with the exact rule: {} (*agrees* if all nodes touch, \
          without which this section is not written, and none of these differences is above 10⁻³; *near* 10⁻²; else \
          *differs*).",
