@@ -27,17 +27,18 @@ fn main() -> Result<(), Error> {
         println!("nothing touches");
         return Ok(());
     };
+    let contact = state.contact;
     let pressure = path.pressure()?;
-    println!("nodes in contact     {}", state.contact_nodes);
+    println!("nodes in contact     {}", contact.contact_nodes);
     println!(
         "contact area         {:.4} of the nominal",
-        state.contact_area_fraction
+        contact.contact_area_fraction
     );
-    println!("approach             {:.4e} m", state.approach);
-    println!("mean gap             {:.4e} m", state.mean_gap);
+    println!("approach             {:.4e} m", contact.approach);
+    println!("mean gap             {:.4e} m", contact.mean_gap);
     println!(
         "mean pressure there  {:.4e} Pa",
-        state.load / state.contact_area
+        contact.load / contact.contact_area
     );
     println!("greatest pressure    {:.4e} Pa", pressure.max());
     Ok(())

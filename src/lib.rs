@@ -14,8 +14,8 @@
 //!     .max_mean_pressure(100e6)
 //!     .build()?;
 //! for state in path.by_ref() {
-//!     let state = state?;
-//!     println!("{} nodes carry {} N", state.contact_nodes, state.load);
+//!     let contact = state?.contact;
+//!     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 //! }
 //! let pressure = path.pressure()?; // at exactly 100 MPa
 //! # assert!(pressure.max() > 100e6);

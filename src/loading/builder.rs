@@ -138,8 +138,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// Ends the path at a target: at exactly this load, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
     /// counts; of several of one kind the last one given.
-    pub fn until(mut self, target: impl Into<ContactTarget>) -> Self {
-        self.targets.push(target.into());
+    pub fn until(mut self, target: ContactTarget) -> Self {
+        self.targets.push(target);
         self
     }
 

@@ -23,7 +23,7 @@ use crate::{Error, Grid};
 /// // Up to and at the limit:
 /// for load in [10.0, 500.0, 1000.0] {
 ///     let state = history.at_load(load).ok_or(asperity::Error::NotFinite { step: 0 })?;
-///     assert_eq!(state.load, load);
+///     assert_eq!(state.contact.load, load);
 ///     let pressure = path.pressure_at(&state)?;
 ///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
 /// }
@@ -72,7 +72,10 @@ impl History {
         grid: &Grid,
         targets: &[ContactTarget],
     ) -> Result<(Self, Option<LoadingEnd>), Error> {
-        let unloaded = self.states.first().map_or(f64::INFINITY, |s| s.mean_gap);
+        let unloaded = self
+            .states
+            .first()
+            .map_or(f64::INFINITY, |s| s.contact.mean_gap);
         let mut limits = Limits::default();
         for &target in targets {
             limits.set(target, grid, unloaded)?;
@@ -90,8 +93,15 @@ impl History {
     /// in full contact can be read, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
-        let after = self.states.partition_point(|state| state.load <= load);
-        self.read(load, after, |state| state.load, ContactState::at_load)
+        let after = self
+            .states
+            .partition_point(|state| state.contact.load <= load);
+        self.read(
+            load,
+            after,
+            |state| state.contact.load,
+            ContactState::at_load,
+        )
     }
 
     /// The state at an approach \[m\]; see [`Self::at_load`].
@@ -99,11 +109,11 @@ impl History {
     pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {
         let after = self
             .states
-            .partition_point(|state| state.approach <= approach);
+            .partition_point(|state| state.contact.approach <= approach);
         self.read(
             approach,
             after,
-            |state| state.approach,
+            |state| state.contact.approach,
             ContactState::at_approach,
         )
     }
@@ -113,11 +123,11 @@ impl History {
     #[must_use]
     pub fn at_mean_gap(&self, mean_gap: f64) -> Option<LoadingState> {
         let mut states = self.states.iter();
-        let after = states.position(|state| state.mean_gap < mean_gap);
+        let after = states.position(|state| state.contact.mean_gap < mean_gap);
         self.read(
             mean_gap,
             after.unwrap_or(self.states.len()),
-            |state| state.mean_gap,
+            |state| state.contact.mean_gap,
             ContactState::at_mean_gap,
         )
     }
@@ -129,13 +139,13 @@ impl History {
         // The same rounding as there: a fraction such as 0.1 of 10 nodes means one node.
         let limit = fraction * (1.0 + 4.0 * f64::EPSILON);
         let with_one_more = |state: &LoadingState| {
-            let nodes = state.contact_nodes as f64;
-            state.contact_area_fraction * ((nodes + 1.0) / nodes)
+            let nodes = state.contact.contact_nodes as f64;
+            state.contact.contact_area_fraction * ((nodes + 1.0) / nodes)
         };
         // Not a search by halves: area shrinks where a node leaves.
         let mut states = self.states.iter();
         let found = states.find(|state| with_one_more(state) > limit)?;
-        (found.contact_area_fraction <= limit).then_some(*found)
+        (found.contact.contact_area_fraction <= limit).then_some(*found)
     }
 
     /// The state at a target, from the one before the first that is beyond it.
@@ -151,7 +161,7 @@ impl History {
         }
         let last = self.states.get(after.checked_sub(1)?)?;
         let is_there = after < self.states.len()
-            || last.contact_area_fraction == 1.0
+            || last.contact.contact_area_fraction == 1.0
             || quantity(last) == target;
         let contact = is_there.then(|| at(&last.contact, target))??;
         contact.is_finite().then(|| last.with(contact))
@@ -221,7 +231,13 @@ mod tests {
                 history.at_mean_gap(2.0 - 0.25 * load),
             ];
             for reading in readings {
-                let found = reading.map(|state| (state.contact_nodes, state.load, state.energy));
+                let found = reading.map(|state| {
+                    (
+                        state.contact.contact_nodes,
+                        state.contact.load,
+                        state.contact.energy,
+                    )
+                });
                 assert_eq!(found, Some((nodes, load, 0.25 * load * load)));
             }
         }
@@ -240,7 +256,7 @@ mod tests {
         let history: History = states.into_iter().collect();
         let found = history
             .at_load(6.0)
-            .map(|state| (state.contact_nodes, state.approach));
+            .map(|state| (state.contact.contact_nodes, state.contact.approach));
         assert_eq!(found, Some((4, 3.0)));
     }
 
@@ -251,7 +267,7 @@ mod tests {
         let nodes = |fraction| {
             history
                 .at_area_fraction(fraction)
-                .map(|state| state.contact_nodes)
+                .map(|state| state.contact.contact_nodes)
         };
         for (fraction, expected) in [
             (0.05, None),

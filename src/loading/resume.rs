@@ -21,7 +21,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let events = history.events().iter();
         self.state = events.last().copied();
         if let Some(state) = &self.state {
-            run.front.place_at(run.front.own_approach(state));
+            run.front.place_at(run.front.own_approach(&state.contact));
             run.last = run.last.map(|_| state.contact);
         }
         run.contact = contact;
@@ -90,10 +90,10 @@ pub(crate) fn replay(
                 "one more than before",
             ));
         }
-        if state.contact_nodes != contact.len() {
+        if state.contact.contact_nodes != contact.len() {
             return Err(not_a_path(
                 state,
-                ("number of nodes in contact", state.contact_nodes),
+                ("number of nodes in contact", state.contact.contact_nodes),
                 "that of the events",
             ));
         }

@@ -32,8 +32,8 @@ use crate::{Error, Grid, Problem};
 ///     .max_area_fraction(0.1)
 ///     .build()?;
 /// while let Some(state) = path.next() {
-///     let state = state?;
-///     println!("{} nodes carry {} N", state.contact_nodes, state.load);
+///     let contact = state?.contact;
+///     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 /// }
 /// assert!(path.certificate()?.least_pressure > -1e-12);
 /// # Ok(())
@@ -68,7 +68,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// [`Error::OutOfRange`] for a target that is not beyond the present state, and those of the builder;
     /// [`Error::CannotContinue`] after an error.
-    pub fn continue_to(&mut self, target: impl Into<ContactTarget>) -> Result<(), Error> {
+    pub fn continue_to(&mut self, target: ContactTarget) -> Result<(), Error> {
         if let Some(LoadingEnd::Failed | LoadingEnd::Memory) = self.end {
             return Err(Error::CannotContinue {
                 steps: self.state.map_or(0, |state| state.step),
@@ -76,7 +76,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         let mut limits = Limits::default();
         let problem = &self.run.problem;
-        limits.set(target.into(), &problem.grid(), problem.mean_gap())?;
+        limits.set(target, &problem.grid(), problem.mean_gap())?;
         if let Some(state) = &self.state {
             limits.check_ahead(state, true)?;
         }
@@ -174,7 +174,7 @@ impl<U: LinearUpdater> Iterator for LoadingSolver<U> {
             return (0, None);
         }
         let nodes = self.run.problem.grid().nodes();
-        let done = self.state.map_or(0, |state| state.contact_nodes);
+        let done = self.state.map_or(0, |state| state.contact.contact_nodes);
         let most = self.limits.most_nodes().min(nodes).saturating_sub(done);
         // One more for an error or a limit.
         (0, Some(most + 1))
@@ -268,9 +268,13 @@ mod tests {
     fn paths_go_on_to_what_lies_beyond() -> Result<(), Error> {
         use ContactTarget::{Approach, AreaFraction, Load, MeanGap};
         let state = path()?.state();
-        let mean_gap = state.map_or(0.0, |state| state.mean_gap);
-        assert!(state.is_some_and(|state| state.contact_nodes == 2 && state.approach == 2.0));
-        let load = state.map_or(0.0, |state| state.load);
+        let mean_gap = state.map_or(0.0, |state| state.contact.mean_gap);
+        assert!(
+            state.is_some_and(
+                |state| state.contact.contact_nodes == 2 && state.contact.approach == 2.0
+            )
+        );
+        let load = state.map_or(0.0, |state| state.contact.load);
         for (target, is_beyond) in [
             (Load(load), false),
             (Load(1.25), false),

@@ -26,7 +26,7 @@
 //! // And on to 600 N:
 //! let mut path = record.resume()?;
 //! path.continue_to(ContactTarget::Load(600.0))?;
-//! # assert_eq!(path.last().transpose()?.map(|state| state.load), Some(600.0));
+//! # assert_eq!(path.last().transpose()?.map(|state| state.contact.load), Some(600.0));
 //! # Ok(())
 //! # }
 //! ```
