@@ -48,6 +48,7 @@ impl LoadingSolver {
     /// # Errors
     ///
     /// [`Error::MemoryBudget`] if not even the grid fits.
+    #[doc(hidden)]
     pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
         fixed_bytes(grid, boundary, budget).map(drop)
@@ -58,6 +59,7 @@ impl LoadingSolver {
     /// # Errors
     ///
     /// [`Error::MemoryBudget`] if all nodes in contact do not fit.
+    #[doc(hidden)]
     pub fn check_room_to_full_contact(
         grid: &Grid,
         boundary: Boundary,

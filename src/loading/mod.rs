@@ -85,6 +85,7 @@ pub use history::History;
 pub use limits::LoadingEnd;
 pub(crate) use resume::replay;
 pub use rule::ContactRule;
+#[doc(hidden)] // for the studies of this repository
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};

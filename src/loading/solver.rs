@@ -215,6 +215,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 
     /// Where the time went so far, besides the updater.
+    #[doc(hidden)]
     #[must_use]
     pub fn timings(&self) -> LoadingTimings {
         self.run.timings
