@@ -23,11 +23,7 @@ fn main() -> Result<(), Error> {
 
     // The path has ended at exactly this pressure, unless all nodes were in contact before.
     println!("the path ended by    {:?}", path.end());
-    let Some(state) = path.state() else {
-        println!("nothing touches");
-        return Ok(());
-    };
-    let contact = state.contact;
+    let contact = path.present()?.contact;
     let pressure = path.pressure()?;
     println!("nodes in contact     {}", contact.contact_nodes);
     println!(

@@ -70,6 +70,8 @@
 //! Elastic, frictionless, without adhesion, small slopes; unloading retraces loading. Compare the greatest pressure with
 //! the hardness.
 
+#![warn(missing_debug_implementations)]
+
 pub mod contact;
 pub mod convolution;
 mod doubt;
@@ -90,6 +92,8 @@ pub mod reference;
 #[cfg(test)]
 mod row;
 mod scale;
+#[cfg(test)]
+mod send_and_sync;
 pub mod surface;
 pub mod updater;
 

@@ -1,6 +1,7 @@
 //! How a loading path is set up.
 
 use std::collections::VecDeque;
+use std::fmt;
 
 use super::front::Front;
 use super::gap_field::GapField;
@@ -30,6 +31,21 @@ pub struct LoadingBuilder<'a, U = Handover> {
     targets: Vec<ContactTarget>,
     max_mean_pressure: Option<f64>,
     memory_budget: Option<usize>,
+}
+
+impl<U: fmt::Debug> fmt::Debug for LoadingBuilder<'_, U> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LoadingBuilder")
+            .field("grid", &self.kernel.grid())
+            .field("updater", &self.updater)
+            .field("rule", &self.rule)
+            .field("window_size", &self.window_size)
+            .field("max_nodes", &self.max_nodes)
+            .field("targets", &self.targets)
+            .field("max_mean_pressure", &self.max_mean_pressure)
+            .field("memory_budget", &self.memory_budget)
+            .finish_non_exhaustive()
+    }
 }
 
 impl LoadingSolver {
@@ -342,6 +358,11 @@ mod tests {
             .max_mean_pressure(3.0)
             .build()?;
         assert_eq!(path.targets(), [Load(54.0), Approach(2.0)]);
+        let printed = format!(
+            "{:?}",
+            LoadingSolver::builder(&surface, &kernel).max_load(9.0)
+        );
+        assert!(printed.contains("targets: [Load(9.0)]"), "{printed}");
         for (window, is_one) in [(0, false), (1, true)] {
             let built = LoadingSolver::builder(&surface, &kernel)
                 .window_size(window)

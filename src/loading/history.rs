@@ -12,7 +12,7 @@ use crate::{Error, Grid};
 ///
 /// ```
 /// use asperity::loading::History;
-/// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+/// use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
@@ -22,7 +22,7 @@ use crate::{Error, Grid};
 /// let history: History = path.by_ref().collect::<Result<_, _>>()?;
 /// // Up to and at the limit:
 /// for load in [10.0, 500.0, 1000.0] {
-///     let state = history.at_load(load).ok_or(asperity::Error::NotFinite { step: 0 })?;
+///     let state = history.at(ContactTarget::Load(load))?;
 ///     assert_eq!(state.contact.load, load);
 ///     let pressure = path.pressure_at(&state)?;
 ///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
@@ -87,6 +87,39 @@ impl History {
             }
         }
         Ok((self.clone(), None))
+    }
+
+    /// The state at a target, or an error that says what the path has not reached: [`Self::at_load`] and its like for a
+    /// caller who has nothing to do without it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for what lies outside the path.
+    pub fn at(&self, target: ContactTarget) -> Result<LoadingState, Error> {
+        let (quantity, value, state) = match target {
+            ContactTarget::Load(load) => ("load of a state", load, self.at_load(load)),
+            ContactTarget::Approach(approach) => {
+                ("approach of a state", approach, self.at_approach(approach))
+            }
+            ContactTarget::AreaFraction(fraction) => (
+                "area fraction of a state",
+                fraction,
+                self.at_area_fraction(fraction),
+            ),
+            ContactTarget::MeanGap(mean_gap) => {
+                ("mean gap of a state", mean_gap, self.at_mean_gap(mean_gap))
+            }
+        };
+        let expected = if self.states.is_empty() {
+            "asked for after a state has been yielded"
+        } else {
+            "one that the path has had"
+        };
+        state.ok_or(Error::OutOfRange {
+            quantity,
+            value,
+            expected,
+        })
     }
 
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
@@ -241,11 +274,38 @@ mod tests {
                 assert_eq!(found, Some((nodes, load, 0.25 * load * load)));
             }
         }
+        for (target, nodes) in [
+            (ContactTarget::Load(3.0), 2),
+            (ContactTarget::Approach(1.5), 2),
+            (ContactTarget::MeanGap(1.25), 2),
+            (ContactTarget::AreaFraction(0.4), 4),
+        ] {
+            let found = history.at(target).ok();
+            assert_eq!(found.map(|state| state.contact.contact_nodes), Some(nodes));
+        }
         for outside in [0.5, 4.5, f64::NAN, f64::INFINITY] {
             assert_eq!(history.at_load(outside), None);
             assert_eq!(history.at_approach(0.5 * outside), None);
             assert_eq!(history.at_mean_gap(2.0 - 0.25 * outside), None);
         }
+    }
+
+    /// What a path has not had is an error that says so, in the words of the target.
+    #[test]
+    fn readings_outside_the_path_say_what_is_wrong() {
+        let told = |history: &History, target| history.at(target).err().map(|e| e.to_string());
+        for (target, quantity, value) in [
+            (ContactTarget::Load(4.5), "load", "4.5"),
+            (ContactTarget::Approach(0.25), "approach", "0.25"),
+            (ContactTarget::MeanGap(0.5), "mean gap", "0.5"),
+            (ContactTarget::AreaFraction(0.5), "area fraction", "0.5"),
+        ] {
+            let expected =
+                format!("{quantity} of a state must be one that the path has had, but is {value}");
+            assert_eq!(told(&history(), target), Some(expected));
+        }
+        let empty = told(&History::default(), ContactTarget::Load(1.0)).unwrap_or_default();
+        assert!(empty.contains("after a state has been yielded"), "{empty}");
     }
 
     /// Behind full contact everything is linear in the load.

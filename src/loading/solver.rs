@@ -233,6 +233,19 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.state
     }
 
+    /// The same, for a caller who has nothing to do without a state.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] before the first state.
+    pub fn present(&self) -> Result<LoadingState, Error> {
+        self.state.ok_or(Error::OutOfRange {
+            quantity: "number of states yielded so far",
+            value: 0.0,
+            expected: "at least 1 for a present state",
+        })
+    }
+
     /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the
     /// present state.
     #[must_use]
@@ -257,7 +270,12 @@ mod tests {
             .build()?;
         assert_eq!(path.size_hint(), (0, Some(5)));
         assert_eq!((path.state(), path.end()), (None, None));
+        let none = path.present().err().map(|error| error.to_string());
+        let told =
+            "number of states yielded so far must be at least 1 for a present state, but is 0";
+        assert_eq!(none.as_deref(), Some(told));
         path.by_ref().try_for_each(|state| state.map(drop))?;
+        assert_eq!(Some(path.present()?), path.state());
         assert_eq!(
             (path.size_hint(), path.end()),
             ((0, Some(0)), Some(LoadingEnd::Approach))

@@ -5,6 +5,7 @@ use crate::contact::ContactState;
 /// What happens at a state of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum ContactEvent {
     /// The gap of a node has closed, and it joins the contact.
     Touch,

@@ -18,9 +18,9 @@
 //! let record = LoadingRecord::new(&path, history)?;
 //!
 //! // Fields of a state, without the path:
-//! let at_100_newtons = record.history().at_load(100.0);
+//! let at_100_newtons = record.history().at(ContactTarget::Load(100.0))?;
 //! let mut replay = record.replay()?;
-//! let pressure = replay.pressure_at(&at_100_newtons.ok_or(asperity::Error::NotFinite { step: 0 })?)?;
+//! let pressure = replay.pressure_at(&at_100_newtons)?;
 //! # assert!(pressure.max() > 0.0);
 //!
 //! // And on to 600 N:

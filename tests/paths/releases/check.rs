@@ -57,7 +57,7 @@ pub(super) fn check<U: LinearUpdater>(
         match state.event {
             ContactEvent::Touch => assert!(contact.insert(node), "{state:?}"),
             ContactEvent::Release => assert!(contact.remove(&node), "{state:?}"),
-            ContactEvent::Limit => panic!("no limit was set: {state:?}"),
+            _ => panic!("no limit was set: {state:?}"),
         }
         assert_eq!(state.step, states.len() + 1);
         assert_eq!(state.contact.contact_nodes, contact.len());
