@@ -31,7 +31,7 @@ use crate::{Error, Grid};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
     states: Vec<LoadingState>,
 }
@@ -41,6 +41,12 @@ impl FromIterator<LoadingState> for History {
         Self {
             states: states.into_iter().collect(),
         }
+    }
+}
+
+impl Extend<LoadingState> for History {
+    fn extend<I: IntoIterator<Item = LoadingState>>(&mut self, states: I) {
+        self.states.extend(states);
     }
 }
 
@@ -314,7 +320,10 @@ mod tests {
         let mut states = history().states().to_vec();
         states[2].contact.contact_area_fraction = 1.0;
         let history: History = states.into_iter().collect();
-        let found = history
+        let mut later = History::default();
+        later.extend(history.states().iter().copied());
+        assert_eq!(later, history);
+        let found = later
             .at_load(6.0)
             .map(|state| (state.contact.contact_nodes, state.contact.approach));
         assert_eq!(found, Some((4, 3.0)));
