@@ -37,7 +37,7 @@ fn main() -> Result<(), Error> {
                 .max_area_fraction(0.1)
                 .build()?;
             if let Some(last) = path.last() {
-                println!("{surface_name:7}  {name:10}  {:24.4e}", last?.load);
+                println!("{surface_name:7}  {name:10}  {:24.4e}", last?.contact.load);
             }
         }
     }

@@ -35,15 +35,16 @@ fn resistances(
     let history: History = path.collect::<Result<_, _>>()?;
     let mut resistances = Vec::new();
     for state in LOADS.iter().filter_map(|&load| history.at_load(load)) {
+        let contact = state.contact;
         // The contact stiffness if there is one, which is on a free half-space.
-        let stiffness = state.contact_stiffness.or(state.interfacial_stiffness);
+        let stiffness = contact.contact_stiffness.or(contact.interfacial_stiffness);
         let conductance = contact_conductance(
             stiffness.unwrap_or(0.0),
             e_star,
             // The sum over both bodies.
             RESISTIVITY + RESISTIVITY,
         )?;
-        resistances.push((1.0 / conductance, state.contact_area_fraction));
+        resistances.push((1.0 / conductance, contact.contact_area_fraction));
     }
     Ok(resistances)
 }

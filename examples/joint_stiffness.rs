@@ -10,8 +10,8 @@
 
 use asperity::surface::Amplitude;
 use asperity::{
-    Boussinesq, Error, FixedLoadSolver, Grid, InfluenceKernel, PeriodicBoussinesq, SelfAffine,
-    composite_modulus,
+    Boussinesq, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel, PeriodicBoussinesq,
+    SelfAffine, composite_modulus,
 };
 
 /// Preload of the bolt \[N\], and the area that it presses together \[m²\].
@@ -39,7 +39,7 @@ fn main() -> Result<(), Error> {
     for (name, half_space) in &half_spaces {
         let mut solver = FixedLoadSolver::new(&surface, half_space)?;
         let loads = PARTS.map(|part| part * preload_pressure * grid.nominal_area());
-        for solution in solver.sweep(loads) {
+        for solution in solver.sweep(loads.map(ContactTarget::Load)) {
             let state = solution?.state;
             let per_area = |stiffness: Option<f64>| match stiffness {
                 Some(stiffness) => format!("{:.3e}", stiffness / grid.nominal_area()),

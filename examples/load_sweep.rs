@@ -7,7 +7,7 @@
 //! ```
 
 use asperity::surface::Amplitude;
-use asperity::{Error, FixedLoadSolver, Grid, PeriodicBoussinesq, SelfAffine};
+use asperity::{ContactTarget, Error, FixedLoadSolver, Grid, PeriodicBoussinesq, SelfAffine};
 
 const E_STAR: f64 = 115e9;
 
@@ -19,11 +19,11 @@ fn main() -> Result<(), Error> {
     let half_space = PeriodicBoussinesq::new(grid, E_STAR)?;
     let mut solver = FixedLoadSolver::builder(&surface, &half_space).build()?;
 
-    // Three decades, five loads in each. `ContactTarget` asks for approaches, areas or mean gaps.
+    // Three decades, five loads in each. Approaches, areas and mean gaps are targets, too.
     let greatest = 0.02 * E_STAR * grid.nominal_area();
     let loads = (0..=15).map(|k| greatest * 10_f64.powf(f64::from(k - 15) / 5.0));
     println!("   load [N]  contact [%]  mean gap [m]  interfacial stiffness [N/m]");
-    for solution in solver.sweep(loads) {
+    for solution in solver.sweep(loads.map(ContactTarget::Load)) {
         let state = solution?.state;
         println!(
             "{:11.4e} {:12.3} {:13.4e} {:28.4e}",

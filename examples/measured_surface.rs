@@ -35,13 +35,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     // One state for each node that touches; every 50th is enough to look at.
     println!("contact [%]    load [N]  approach [m]  mean gap [m]");
     for state in path.step_by(50) {
-        let state = state?;
+        let contact = state?.contact;
         println!(
             "{:11.2} {:11.4e} {:13.4e} {:13.4e}",
-            100.0 * state.contact_area_fraction,
-            state.load,
-            state.approach,
-            state.mean_gap
+            100.0 * contact.contact_area_fraction,
+            contact.load,
+            contact.approach,
+            contact.mean_gap
         );
     }
     Ok(())

@@ -48,9 +48,9 @@ fn main() -> Result<(), Error> {
             .max_load(50.0)
             .build()?;
         if let Some(last) = path.last() {
-            let state = last?;
-            let radius = (state.contact_area / std::f64::consts::PI).sqrt();
-            println!("{compliance:14.0e} {:11.4e} {radius:22.4e}", state.load);
+            let contact = last?.contact;
+            let radius = (contact.contact_area / std::f64::consts::PI).sqrt();
+            println!("{compliance:14.0e} {:11.4e} {radius:22.4e}", contact.load);
         }
     }
     Ok(())

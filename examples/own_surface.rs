@@ -36,9 +36,12 @@ fn press(name: &str, surface: impl Surface) -> Result<(), Error> {
         .build()?;
     println!("{name}\ncontact [%]    load [N]  approach [m]");
     for state in path.step_by(200) {
-        let state = state?;
-        let area = 100.0 * state.contact_area_fraction;
-        println!("{area:11.2} {:11.4e} {:13.4e}", state.load, state.approach);
+        let contact = state?.contact;
+        let area = 100.0 * contact.contact_area_fraction;
+        println!(
+            "{area:11.2} {:11.4e} {:13.4e}",
+            contact.load, contact.approach
+        );
     }
     Ok(())
 }

@@ -23,21 +23,18 @@ fn main() -> Result<(), Error> {
 
     // The path has ended at exactly this pressure, unless all nodes were in contact before.
     println!("the path ended by    {:?}", path.end());
-    let Some(state) = path.state() else {
-        println!("nothing touches");
-        return Ok(());
-    };
+    let contact = path.present()?.contact;
     let pressure = path.pressure()?;
-    println!("nodes in contact     {}", state.contact_nodes);
+    println!("nodes in contact     {}", contact.contact_nodes);
     println!(
         "contact area         {:.4} of the nominal",
-        state.contact_area_fraction
+        contact.contact_area_fraction
     );
-    println!("approach             {:.4e} m", state.approach);
-    println!("mean gap             {:.4e} m", state.mean_gap);
+    println!("approach             {:.4e} m", contact.approach);
+    println!("mean gap             {:.4e} m", contact.mean_gap);
     println!(
         "mean pressure there  {:.4e} Pa",
-        state.load / state.contact_area
+        contact.load / contact.contact_area
     );
     println!("greatest pressure    {:.4e} Pa", pressure.max());
     Ok(())

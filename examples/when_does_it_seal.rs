@@ -47,12 +47,12 @@ fn main() -> Result<(), Error> {
         ] {
             // The number of nodes in contact is the number of the state.
             let state = nodes.and_then(|nodes| events.get(nodes.checked_sub(1)?));
-            match state {
-                Some(state) => println!(
+            match state.map(|state| state.contact) {
+                Some(contact) => println!(
                     "{name:18} {what:20} {:17.2} {:13.2} {:15.3}",
-                    state.mean_pressure() / 1e6,
-                    100.0 * state.contact_area_fraction,
-                    1e6 * state.mean_gap
+                    contact.mean_pressure() / 1e6,
+                    100.0 * contact.contact_area_fraction,
+                    1e6 * contact.mean_gap
                 ),
                 None => println!("{name:18} {what:20} not on this path"),
             }

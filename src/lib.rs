@@ -15,8 +15,8 @@
 //!     .max_mean_pressure(100e6)
 //!     .build()?;
 //! for state in path.by_ref() {
-//!     let state = state?;
-//!     println!("{} nodes carry {} N", state.contact_nodes, state.load);
+//!     let contact = state?.contact;
+//!     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 //! }
 //! let pressure = path.pressure()?; // at exactly 100 MPa
 //! # assert!(pressure.max() > 100e6);
@@ -70,6 +70,8 @@
 //! Contact is elastic, frictionless and without adhesion, and slopes are small. Unloading retraces loading. Nothing
 //! yields: compare the greatest pressure with the hardness.
 
+#![warn(missing_debug_implementations)]
+
 pub mod contact;
 pub mod convolution;
 mod doubt;
@@ -88,6 +90,8 @@ mod problem;
 pub mod record;
 pub mod reference;
 mod scale;
+#[cfg(test)]
+mod send_and_sync;
 pub mod surface;
 #[cfg(test)]
 mod test_chain;

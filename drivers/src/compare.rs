@@ -64,10 +64,10 @@ pub(crate) fn same_path(
     let Some(first) = exact.first() else {
         return Ok(());
     };
-    let initial = first.mean_gap;
+    let initial = first.contact.mean_gap;
     let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
     // Of the approach that is computed with, in which the load is contained.
-    let computed = |state: &LoadingState| state.approach + uniform(state.load);
+    let computed = |state: &LoadingState| state.contact.approach + uniform(state.contact.load);
     // States at one approach joined together, as a window began: they are ties as far as they say themselves.
     let is_together = |k: usize| {
         let neighbours = [k.checked_sub(1), Some(k + 1)];
@@ -75,8 +75,9 @@ pub(crate) fn same_path(
             .into_iter()
             .flatten()
             .filter_map(|k| found.get(k));
-        let own = found[k].approach;
-        neighbours.any(|other| (other.approach - own).abs() <= ROUNDING * computed(&found[k]))
+        let own = found[k].contact.approach;
+        neighbours
+            .any(|other| (other.contact.approach - own).abs() <= ROUNDING * computed(&found[k]))
     };
     let tie = |k: usize| {
         let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
@@ -90,28 +91,34 @@ pub(crate) fn same_path(
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
         let context = || format!("{state:?} in place of {expected:?}");
         ensure!(
-            (state.step, state.contact_nodes) == (expected.step, expected.contact_nodes),
+            (state.step, state.contact.contact_nodes)
+                == (expected.step, expected.contact.contact_nodes),
             "{}",
             context()
         );
         let Some(&own) = place.get(&state.node) else {
             return Err(Violation::new(context()));
         };
-        let apart = (exact[own].approach - expected.approach).abs();
+        let apart = (exact[own].contact.approach - expected.contact.approach).abs();
         // Between its place and the one where it was found, as far as the path goes.
         let uncertain = found.iter().take(own.max(k) + 1).skip(own.min(k));
         let uncertain = uncertain.fold(0.0, |most: f64, state| most.max(state.approach_error));
         if state.node != expected.node && apart > tie(k).max(bounds.order * uncertain) {
             return Err(Violation::new(format!("{}: {apart:e} apart", context())));
         }
-        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
-        if next - expected.approach <= tie(k) || expected.approach <= tie(k) {
+        let next = exact
+            .get(k + 1)
+            .map_or(f64::INFINITY, |next| next.contact.approach);
+        if next - expected.contact.approach <= tie(k) || expected.contact.approach <= tie(k) {
             continue;
         }
         // What the state itself says of its approach, and what follows from it.
         let error = bounds.excess * state.approach_error;
         let rate = |state: &LoadingState| {
-            let rate = state.contact_stiffness.or(state.interfacial_stiffness);
+            let rate = state
+                .contact
+                .contact_stiffness
+                .or(state.contact.interfacial_stiffness);
             rate.filter(|rate| rate.is_finite())
         };
         // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
@@ -120,39 +127,40 @@ pub(crate) fn same_path(
         let mut scalars = [
             (
                 "approach",
-                state.approach,
-                expected.approach,
+                state.contact.approach,
+                expected.contact.approach,
                 FAR_OFF * state.approach_error + tie(k),
             ),
             (
                 "load",
-                state.load,
-                expected.load,
-                bounds.load * expected.load + by_error,
+                state.contact.load,
+                expected.contact.load,
+                bounds.load * expected.contact.load + by_error,
             ),
             (
                 "energy",
-                state.energy,
-                expected.energy,
-                3.0 * bounds.load * expected.energy + (expected.load + by_error) * error,
+                state.contact.energy,
+                expected.contact.energy,
+                3.0 * bounds.load * expected.contact.energy
+                    + (expected.contact.load + by_error) * error,
             ),
             (
                 "mean gap",
-                state.mean_gap,
-                expected.mean_gap,
+                state.contact.mean_gap,
+                expected.contact.mean_gap,
                 bounds.mean_gap * initial + error,
             ),
         ]
         .to_vec();
         let pairs = [
             (
-                state.contact_stiffness,
-                expected.contact_stiffness,
+                state.contact.contact_stiffness,
+                expected.contact.contact_stiffness,
                 bounds.stiffness,
             ),
             (
-                state.interfacial_stiffness,
-                expected.interfacial_stiffness,
+                state.contact.interfacial_stiffness,
+                expected.contact.interfacial_stiffness,
                 bounds.interfacial,
             ),
         ];

@@ -132,14 +132,14 @@ impl Judge {
             return ContactTarget::Load(1.0);
         };
         // Beyond full contact as well; of a flat surface any load is.
-        let greatest = match last.load > 0.0 {
-            true => last.load,
+        let greatest = match last.contact.load > 0.0 {
+            true => last.contact.load,
             false => self.grid.nominal_area(),
         };
         match draw.whole(0, 6) {
             0..=2 => ContactTarget::Load(greatest * draw.decades(-4.0, 1.0)),
-            3 => ContactTarget::Approach(last.approach * draw.decades(-3.0, 0.3)),
-            4 => ContactTarget::MeanGap(first.mean_gap * draw.unit()),
+            3 => ContactTarget::Approach(last.contact.approach * draw.decades(-3.0, 0.3)),
+            4 => ContactTarget::MeanGap(first.contact.mean_gap * draw.unit()),
             5 => ContactTarget::AreaFraction(draw.unit()),
             _ => ContactTarget::AreaFraction(
                 draw.whole(1, self.grid.nodes()) as f64 / self.grid.nodes() as f64,

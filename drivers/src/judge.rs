@@ -68,7 +68,8 @@ impl Judge {
             (ContactTarget::MeanGap(value), Error::NoConvergence { .. }) => {
                 let mut states = states.iter();
                 self.circumstances.growth == ContactGrowth::Unknown
-                    && states.any(|state| state.interfacial_stiffness.is_some_and(|k| k < 0.0))
+                    && states
+                        .any(|state| state.contact.interfacial_stiffness.is_some_and(|k| k < 0.0))
                     && value < unloaded
             }
             (ContactTarget::AreaFraction(fraction), Error::NoConvergence { .. }) => {
@@ -85,7 +86,7 @@ impl Judge {
     /// The mean gap of surfaces that just touch.
     fn unloaded(&self) -> f64 {
         let states = self.history.states();
-        states.first().map_or(0.0, |state| state.mean_gap)
+        states.first().map_or(0.0, |state| state.contact.mean_gap)
     }
 
     /// Whether the tolerance lies below the roundings of a solution.
@@ -105,13 +106,13 @@ impl Judge {
         let states = self.history.states();
         let mut pairs = states.iter().zip(states.iter().skip(1));
         self.circumstances.growth == ContactGrowth::Unknown
-            && pairs.any(|(one, next)| next.contact_nodes < one.contact_nodes)
+            && pairs.any(|(one, next)| next.contact.contact_nodes < one.contact.contact_nodes)
     }
 
     /// More nodes than are ever in contact: on a body that promises nothing others may stay away under any load.
     fn is_never_reached(&self, fraction: f64) -> bool {
         let most = self.history.states().iter();
-        let most = most.map(|state| state.contact_nodes).max();
+        let most = most.map(|state| state.contact.contact_nodes).max();
         self.circumstances.growth == ContactGrowth::Unknown
             && self.grid.nodes_in(fraction).ok() > most
     }
@@ -126,12 +127,13 @@ impl Judge {
         let mut has = states
             .iter()
             .zip(states.iter().skip(1).map(Some).chain([None]));
-        let Some((state, next)) = has.find(|(state, _)| state.contact_nodes == nodes) else {
+        let Some((state, next)) = has.find(|(state, _)| state.contact.contact_nodes == nodes)
+        else {
             return true;
         };
-        let end = next.map_or(f64::INFINITY, |next| next.load);
+        let end = next.map_or(f64::INFINITY, |next| next.contact.load);
         let slack = (SURE * self.settings.tolerance).max(self.circumstances.error);
-        end - state.load <= slack * self.grid.nodes() as f64 * end
+        end - state.contact.load <= slack * self.grid.nodes() as f64 * end
     }
 
     /// Looks at a solution.

@@ -31,10 +31,13 @@ impl Limit {
         let choose = |between: f64, at: f64| if at_event { at } else { between };
         match draw.whole(0, 5) {
             0 => Self::None,
-            1 => Self::Load(choose(part * last.load, some.load)),
-            2 => Self::Approach(choose(part * last.approach, some.approach)),
-            3 => Self::MeanGap(choose((1.0 - part) * first.mean_gap, some.mean_gap)),
-            4 => Self::Area(choose(part, some.contact_area_fraction)),
+            1 => Self::Load(choose(part * last.contact.load, some.contact.load)),
+            2 => Self::Approach(choose(part * last.contact.approach, some.contact.approach)),
+            3 => Self::MeanGap(choose(
+                (1.0 - part) * first.contact.mean_gap,
+                some.contact.mean_gap,
+            )),
+            4 => Self::Area(choose(part, some.contact.contact_area_fraction)),
             _ => Self::Nodes(draw.whole(0, grid.nodes() + 1)),
         }
     }
@@ -80,16 +83,20 @@ impl Limit {
         let Some(last) = states.last() else {
             return Err(Violation::new("a path without a state"));
         };
-        let full = last.contact_nodes == grid.nodes();
+        let full = last.contact.contact_nodes == grid.nodes();
         let nodes_in = |fraction| grid.nodes_in(fraction).unwrap_or(0);
         let is_there = match (end, self) {
-            (Some(LoadingEnd::Load), Self::Load(load)) => last.load == load,
-            (Some(LoadingEnd::Approach), Self::Approach(approach)) => last.approach == approach,
-            (Some(LoadingEnd::MeanGap), Self::MeanGap(mean_gap)) => last.mean_gap == mean_gap,
-            (Some(LoadingEnd::AreaFraction), Self::Area(fraction)) => {
-                last.contact_nodes == nodes_in(fraction)
+            (Some(LoadingEnd::Load), Self::Load(load)) => last.contact.load == load,
+            (Some(LoadingEnd::Approach), Self::Approach(approach)) => {
+                last.contact.approach == approach
             }
-            (Some(LoadingEnd::Nodes), Self::Nodes(nodes)) => last.contact_nodes == nodes,
+            (Some(LoadingEnd::MeanGap), Self::MeanGap(mean_gap)) => {
+                last.contact.mean_gap == mean_gap
+            }
+            (Some(LoadingEnd::AreaFraction), Self::Area(fraction)) => {
+                last.contact.contact_nodes == nodes_in(fraction)
+            }
+            (Some(LoadingEnd::Nodes), Self::Nodes(nodes)) => last.contact.contact_nodes == nodes,
             (Some(LoadingEnd::FullContact), _) => full,
             // Whether anything closes is asked elsewhere.
             (Some(LoadingEnd::NoMoreEvents), _) => !full,
@@ -101,11 +108,11 @@ impl Limit {
         );
         let is_within = |state: &LoadingState| match self {
             Self::None => true,
-            Self::Load(load) => state.load <= load,
-            Self::Approach(approach) => state.approach <= approach,
-            Self::MeanGap(mean_gap) => state.mean_gap >= mean_gap,
-            Self::Area(fraction) => state.contact_nodes <= nodes_in(fraction),
-            Self::Nodes(nodes) => state.contact_nodes <= nodes,
+            Self::Load(load) => state.contact.load <= load,
+            Self::Approach(approach) => state.contact.approach <= approach,
+            Self::MeanGap(mean_gap) => state.contact.mean_gap >= mean_gap,
+            Self::Area(fraction) => state.contact.contact_nodes <= nodes_in(fraction),
+            Self::Nodes(nodes) => state.contact.contact_nodes <= nodes,
         };
         match states.iter().find(|state| !is_within(state)) {
             None => Ok(()),

@@ -213,7 +213,7 @@ impl<'a> Trial<'a> {
             return Ok(tally);
         };
         for part in parts {
-            let asked = part * last.load;
+            let asked = part * last.contact.load;
             let Some(state) = history.at_load(asked) else {
                 return Err(Violation::new(format!("no reading at the load {asked:e}")));
             };

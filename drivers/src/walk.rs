@@ -203,7 +203,7 @@ impl<'a> Walk<'a> {
                 self.tally.close(what, value, 0.0, allowed)?;
             }
             let allowed = set.sum_error(instant.gap_error);
-            let change = found.sum - self.dense.own_sum(last.load);
+            let change = found.sum - self.dense.own_sum(last.contact.load);
             if self.demands.signs {
                 self.tally
                     .not_negative("growth of the load", change, allowed)?;
@@ -212,7 +212,12 @@ impl<'a> Walk<'a> {
                     .not_negative("growth of the approach", change, instant.gap_error)?;
             }
         } else if last.is_none() {
-            let first = (state.step, state.approach, state.load, state.energy);
+            let first = (
+                state.step,
+                state.contact.approach,
+                state.contact.load,
+                state.contact.energy,
+            );
             ensure!(first == (1, 0.0, 0.0, 0.0), "it is no first touch");
             let highest = (0..self.dense.nodes()).find(|&node| self.dense.gap()[node] == 0.0);
             ensure!(
@@ -251,15 +256,15 @@ impl<'a> Walk<'a> {
             _ => events + 1,
         };
         ensure!(
-            state.contact_nodes == nodes && state.step == expected,
+            state.contact.contact_nodes == nodes && state.step == expected,
             "{nodes} nodes are in contact after {expected} events"
         );
         // Products of two numbers, in whichever order.
         let area = nodes as f64 * self.grid.cell_area();
         let fraction = nodes as f64 / self.grid.nodes() as f64;
         ensure!(
-            (state.contact_area - area).abs() <= 4.0 * f64::EPSILON * area
-                && (state.contact_area_fraction - fraction).abs() <= f64::EPSILON,
+            (state.contact.contact_area - area).abs() <= 4.0 * f64::EPSILON * area
+                && (state.contact.contact_area_fraction - fraction).abs() <= f64::EPSILON,
             "the area is {area:e}, a fraction of {fraction:e}"
         );
         Ok(())

@@ -8,11 +8,13 @@ use crate::kernel::KernelTable;
 /// All figures are dimensionless: pressures relative to the mean pressure on the contact, loads to the
 /// load, gaps to [`length`](Self::length). Zero would be exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Certificate {
     /// Least pressure in contact: zero at a node that just touches, negative by rounding.
     pub least_pressure: f64,
     /// Least gap out of contact; infinite in full contact.
+    #[cfg_attr(feature = "serde", serde(with = "unbounded"))]
     pub least_gap: f64,
     /// Greatest absolute gap in contact.
     pub greatest_contact_gap: f64,
@@ -25,6 +27,25 @@ pub struct Certificate {
     /// beyond full contact rounding grows with the pressure while the approach stays what it is. That
     /// `C(0, 0)` is of the size of a node's own displacement, and independent of the kernel's gauge.
     pub length: f64,
+}
+
+/// A number that may be infinite, as `None` in formats without infinity, such as JSON.
+#[cfg(feature = "serde")]
+mod unbounded {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    // By reference, as serde calls it.
+    #[allow(clippy::trivially_copy_pass_by_ref)]
+    pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        (*value != f64::INFINITY)
+            .then_some(*value)
+            .serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        let finite = Option::deserialize(deserializer)?;
+        Ok(finite.unwrap_or(f64::INFINITY))
+    }
 }
 
 /// The lengths of a contact problem that do not depend on its state: see [`Certificate::length`].

@@ -8,17 +8,16 @@ use crate::{Error, Grid};
 
 /// The nodes in contact, in the order in which they joined.
 ///
-/// Every change gives the sequence a new [`revision`](Self::revision), a number that no other content
-/// of any sequence has had: what was computed from a sequence belongs to all that have its revision.
+/// A path adds to its sequence, and takes from it. Every change gives the sequence a new [`revision`](Self::revision), a
+/// number that no other content of any sequence has had: what was computed from a sequence belongs to all that have its
+/// revision.
 ///
 /// ```
 /// use asperity::contact::ContactSequence;
 /// use asperity::{Error, Grid};
 ///
 /// # fn main() -> Result<(), Error> {
-/// let mut contact = ContactSequence::new(Grid::square(4, 1.0)?);
-/// contact.push(5)?;
-/// contact.push(6)?;
+/// let contact = ContactSequence::with_order(Grid::square(4, 1.0)?, [5, 6])?;
 /// assert_eq!(contact.order(), [5, 6]);
 /// assert!(contact.contains(6) && !contact.contains(7));
 /// # Ok(())
@@ -54,7 +53,7 @@ impl ContactSequence {
     ///
     /// # Errors
     ///
-    /// Those of [`push`](Self::push).
+    /// [`Error::NodeOutOfGrid`], and [`Error::AlreadyInContact`] for a node that is given twice.
     pub fn with_order(grid: Grid, order: impl IntoIterator<Item = usize>) -> Result<Self, Error> {
         let mut contact = Self::new(grid);
         for node in order {
@@ -115,7 +114,7 @@ impl ContactSequence {
     /// # Errors
     ///
     /// [`Error::NodeOutOfGrid`], and [`Error::AlreadyInContact`].
-    pub fn push(&mut self, node: usize) -> Result<(), Error> {
+    pub(crate) fn push(&mut self, node: usize) -> Result<(), Error> {
         self.insert(self.len(), node)
     }
 
@@ -138,7 +137,7 @@ impl ContactSequence {
     }
 
     /// Keeps the first `count` nodes.
-    pub fn truncate(&mut self, count: usize) {
+    pub(crate) fn truncate(&mut self, count: usize) {
         if count < self.order.len() {
             for node in self.order.drain(count..) {
                 self.is_in[node] = false;
@@ -152,7 +151,7 @@ impl ContactSequence {
     /// # Errors
     ///
     /// [`Error::NodeOutOfGrid`], and [`Error::NotInContact`].
-    pub fn remove(&mut self, node: usize) -> Result<usize, Error> {
+    pub(crate) fn remove(&mut self, node: usize) -> Result<usize, Error> {
         let nodes = self.is_in.len();
         if node >= nodes {
             return Err(Error::NodeOutOfGrid { node, nodes });

@@ -80,6 +80,14 @@ impl ContactState {
             && (interfacial.is_finite() || (full && !interfacial.is_nan()))
     }
 
+    /// Puts back the stiffness of full contact, for formats without infinity, such as JSON, which lose it.
+    #[cfg(feature = "serde")]
+    pub(crate) fn restore_infinity(&mut self) {
+        if self.contact_area_fraction == 1.0 {
+            self.interfacial_stiffness.get_or_insert(f64::INFINITY);
+        }
+    }
+
     /// Takes what has fallen since an earlier state from there: where contact only grows it is rounding, or what
     /// states of an iteration may be off by.
     pub(crate) fn keep_growing(&mut self, earlier: &Self) {

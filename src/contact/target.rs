@@ -1,6 +1,6 @@
 //! What a state of contact is asked to have.
 
-/// What a state of contact is asked to have; a plain number is a load.
+/// What a state of contact is asked to have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,10 +27,4 @@ pub enum ContactTarget {
     /// [arbitrary](crate::kernel::MeanDisplacement::Arbitrary), if that is more; but to no less than 10⁻¹⁴ of the mean gap
     /// without load, which is rounding.
     MeanGap(f64),
-}
-
-impl From<f64> for ContactTarget {
-    fn from(load: f64) -> Self {
-        Self::Load(load)
-    }
 }

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! is a convolution, which [`Convolution`] does by fast Fourier transform in a time that hardly
-//! grows faster than the number of nodes, and [`direct_sum`] term by term as it stands here.
+//! grows faster than the number of nodes.
 //!
 //! What lies outside the grid is the kernel's [`Boundary`]:
 //!
@@ -49,6 +49,7 @@ use std::fmt;
 
 use nalgebra::DMatrix;
 
+#[doc(hidden)] // for tests of kernels and convolutions
 pub use direct::direct_sum;
 
 use crate::kernel::KernelTable;
@@ -209,6 +210,7 @@ impl Convolution {
     ///
     /// [`Error::LengthMismatch`] unless all slices have one value for each node; then nothing is
     /// written.
+    #[doc(hidden)] // for the bench
     pub fn apply_two(
         &mut self,
         pressures: [&[f64]; 2],

@@ -38,6 +38,7 @@ impl FixedLoadBuilder<'_> {
     }
 
     /// Whether to start from coarser grids, as is the default.
+    #[doc(hidden)]
     pub fn nested(mut self, nested: bool) -> Self {
         self.settings.nested = nested;
         self
@@ -110,6 +111,7 @@ impl FixedLoadSolver {
     /// # Errors
     ///
     /// [`Error::MemoryBudget`] if they do not fit.
+    #[doc(hidden)]
     pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
         let nested = Settings::default().nested;

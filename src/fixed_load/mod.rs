@@ -70,6 +70,8 @@ mod descent;
 mod hierarchy;
 mod iterate;
 mod level;
+#[cfg(feature = "serde")]
+mod parts;
 mod release;
 mod search;
 mod settings;

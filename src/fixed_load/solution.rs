@@ -9,6 +9,11 @@ use crate::{Error, Grid};
 
 /// Contact under one load: fields and scalars.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "super::parts::Parts", into = "super::parts::Parts")
+)]
 #[non_exhaustive]
 pub struct FixedLoadSolution {
     /// Scalars of the state.
@@ -35,6 +40,7 @@ pub struct FixedLoadSolution {
 
 /// What a solution took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SolverEffort {
     /// Steps of conjugate gradients on the finest grid, for the pressure.

@@ -106,19 +106,15 @@ impl FixedLoadSolver {
     /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area
     /// fraction or a mean gap that cannot be; [`Error::NoConvergence`] if the load is not found, as on an
     /// ill-conditioned body of one's own where a loose tolerance leaves the mean gap uncertain.
-    pub fn solve_target(
-        &mut self,
-        target: impl Into<ContactTarget>,
-    ) -> Result<FixedLoadSolution, Error> {
-        solve_target(&mut self.stepper(), target.into())
+    pub fn solve_target(&mut self, target: ContactTarget) -> Result<FixedLoadSolution, Error> {
+        solve_target(&mut self.stepper(), target)
     }
 
-    /// Contact at each of `targets` in turn, plain numbers being loads, every state the start of the
-    /// next: see [`Self::solve_from`].
+    /// Contact at each of `targets` in turn, every state the start of the next: see [`Self::solve_from`]. Loads
+    /// become targets by `loads.map(ContactTarget::Load)`.
     pub fn sweep<I>(&mut self, targets: I) -> LoadSweep<'_, I::IntoIter>
     where
-        I: IntoIterator,
-        I::Item: Into<ContactTarget>,
+        I: IntoIterator<Item = ContactTarget>,
     {
         LoadSweep::new(self.stepper(), targets.into_iter())
     }

@@ -17,14 +17,14 @@ use crate::contact::ContactTarget;
 ///
 /// ```
 /// use asperity::surface::{Amplitude, SelfAffine};
-/// use asperity::{Boussinesq, FixedLoadSolver, Grid};
+/// use asperity::{Boussinesq, ContactTarget, FixedLoadSolver, Grid};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let grid = Grid::square(64, 1e-3)?;
 /// let surface = SelfAffine::new(0.8, 5e-4, 8e-5, Amplitude::RmsHeight(1e-6), 7)?;
 /// let half_space = Boussinesq::new(grid, 100e9)?;
 /// let mut solver = FixedLoadSolver::new(&surface, &half_space)?;
-/// for solution in solver.sweep([10.0, 20.0, 40.0]) {
+/// for solution in solver.sweep([10.0, 20.0, 40.0].map(ContactTarget::Load)) {
 ///     let state = solution?.state;
 ///     println!("{} N: {} nodes, {} m", state.load, state.contact_nodes, state.mean_gap);
 /// }
@@ -50,8 +50,7 @@ impl<'a, I> LoadSweep<'a, I> {
 
 impl<I> Iterator for LoadSweep<'_, I>
 where
-    I: Iterator,
-    I::Item: Into<ContactTarget>,
+    I: Iterator<Item = ContactTarget>,
 {
     type Item = Result<FixedLoadSolution, Error>;
 
@@ -60,7 +59,7 @@ where
             return None;
         }
         let target = self.targets.next();
-        let solved = target.map(|target| solve_target(&mut self.stepper, target.into()));
+        let solved = target.map(|target| solve_target(&mut self.stepper, target));
         self.finished = !matches!(solved, Some(Ok(_)));
         solved
     }
@@ -73,9 +72,4 @@ where
     }
 }
 
-impl<I> FusedIterator for LoadSweep<'_, I>
-where
-    I: Iterator,
-    I::Item: Into<ContactTarget>,
-{
-}
+impl<I> FusedIterator for LoadSweep<'_, I> where I: Iterator<Item = ContactTarget> {}

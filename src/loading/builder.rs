@@ -1,6 +1,7 @@
 //! How a loading path is set up.
 
 use std::collections::VecDeque;
+use std::fmt;
 
 use super::gap_field::GapField;
 use super::history::History;
@@ -34,6 +35,21 @@ pub struct LoadingBuilder<'a, U = Handover> {
     memory_budget: Option<usize>,
 }
 
+impl<U: fmt::Debug> fmt::Debug for LoadingBuilder<'_, U> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LoadingBuilder")
+            .field("grid", &self.kernel.grid())
+            .field("updater", &self.updater)
+            .field("rule", &self.rule)
+            .field("window_size", &self.window_size)
+            .field("max_nodes", &self.max_nodes)
+            .field("targets", &self.targets)
+            .field("max_mean_pressure", &self.max_mean_pressure)
+            .field("memory_budget", &self.memory_budget)
+            .finish_non_exhaustive()
+    }
+}
+
 impl LoadingSolver {
     /// The path of `surface` on the half-space of `kernel`, to full contact.
     ///
@@ -50,6 +66,7 @@ impl LoadingSolver {
     /// # Errors
     ///
     /// [`Error::MemoryBudget`] if not even the grid fits.
+    #[doc(hidden)]
     pub fn check_room(grid: &Grid, boundary: Boundary, budget: Option<usize>) -> Result<(), Error> {
         let budget = budget.unwrap_or_else(memory::default_budget);
         fixed_bytes(grid, boundary, budget).map(drop)
@@ -60,6 +77,7 @@ impl LoadingSolver {
     /// # Errors
     ///
     /// [`Error::MemoryBudget`] if all nodes in contact do not fit.
+    #[doc(hidden)]
     pub fn check_room_to_full_contact(
         grid: &Grid,
         boundary: Boundary,
@@ -140,8 +158,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// Ends the path at a target: at exactly this load, approach or mean gap, or with as many nodes in
     /// contact as fit into this fraction of the nominal area. Of several targets the first one reached
     /// counts; of several of one kind the last one given.
-    pub fn until(mut self, target: impl Into<ContactTarget>) -> Self {
-        self.targets.push(target.into());
+    pub fn until(mut self, target: ContactTarget) -> Self {
+        self.targets.push(target);
         self
     }
 
@@ -345,6 +363,11 @@ mod tests {
             .max_mean_pressure(3.0)
             .build()?;
         assert_eq!(path.targets(), [Load(54.0), Approach(2.0)]);
+        let printed = format!(
+            "{:?}",
+            LoadingSolver::builder(&surface, &kernel).max_load(9.0)
+        );
+        assert!(printed.contains("targets: [Load(9.0)]"), "{printed}");
         for (window, is_one) in [(0, false), (1, true)] {
             let built = LoadingSolver::builder(&surface, &kernel)
                 .window_size(window)

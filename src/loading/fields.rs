@@ -95,7 +95,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure`].
     pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
         let pressure = self.pressure()?;
-        let load = self.state.map_or(0.0, |state| state.load);
+        let load = self.state.map_or(0.0, |state| state.contact.load);
         self.displacement_under(&pressure, load)
     }
 
@@ -106,7 +106,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure_at`].
     pub fn displacement_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         let pressure = self.pressure_at(state)?;
-        self.displacement_under(&pressure, state.load)
+        self.displacement_under(&pressure, state.contact.load)
     }
 
     fn displacement_under(
@@ -127,7 +127,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure`].
     pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
         let displacement = self.displacement()?;
-        Ok(self.gap_over(displacement, self.state.map_or(0.0, |state| state.approach)))
+        Ok(self.gap_over(
+            displacement,
+            self.state.map_or(0.0, |state| state.contact.approach),
+        ))
     }
 
     /// The same at any state up to the present one: see [`Self::pressure_at`].
@@ -137,7 +140,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure_at`].
     pub fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         let displacement = self.displacement_at(state)?;
-        Ok(self.gap_over(displacement, state.approach))
+        Ok(self.gap_over(displacement, state.contact.approach))
     }
 
     fn gap_over(&self, mut displacement: DMatrix<f64>, approach: f64) -> DMatrix<f64> {

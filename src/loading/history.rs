@@ -12,7 +12,7 @@ use crate::{Error, Grid};
 ///
 /// ```
 /// use asperity::loading::History;
-/// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+/// use asperity::{Boussinesq, ContactTarget, Grid, LoadingSolver, SelfAffine};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
@@ -22,8 +22,8 @@ use crate::{Error, Grid};
 /// let history: History = path.by_ref().collect::<Result<_, _>>()?;
 /// // Up to and at the limit:
 /// for load in [10.0, 500.0, 1000.0] {
-///     let state = history.at_load(load).ok_or(asperity::Error::NotFinite { step: 0 })?;
-///     assert_eq!(state.load, load);
+///     let state = history.at(ContactTarget::Load(load))?;
+///     assert_eq!(state.contact.load, load);
 ///     let pressure = path.pressure_at(&state)?;
 ///     assert!((pressure.sum() * path.grid().cell_area() / load - 1.0).abs() < 1e-12);
 /// }
@@ -31,7 +31,7 @@ use crate::{Error, Grid};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
     states: Vec<LoadingState>,
 }
@@ -41,6 +41,12 @@ impl FromIterator<LoadingState> for History {
         Self {
             states: states.into_iter().collect(),
         }
+    }
+}
+
+impl Extend<LoadingState> for History {
+    fn extend<I: IntoIterator<Item = LoadingState>>(&mut self, states: I) {
+        self.states.extend(states);
     }
 }
 
@@ -72,7 +78,10 @@ impl History {
         grid: &Grid,
         targets: &[ContactTarget],
     ) -> Result<(Self, Option<LoadingEnd>), Error> {
-        let unloaded = self.states.first().map_or(f64::INFINITY, |s| s.mean_gap);
+        let unloaded = self
+            .states
+            .first()
+            .map_or(f64::INFINITY, |s| s.contact.mean_gap);
         let mut limits = Limits::default();
         for &target in targets {
             limits.set(target, grid, unloaded)?;
@@ -86,12 +95,52 @@ impl History {
         Ok((self.clone(), None))
     }
 
+    /// The state at a target, or an error that says what the path has not reached: [`Self::at_load`] and its like for a
+    /// caller who has nothing to do without it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for what lies outside the path.
+    pub fn at(&self, target: ContactTarget) -> Result<LoadingState, Error> {
+        let (quantity, value, state) = match target {
+            ContactTarget::Load(load) => ("load of a state", load, self.at_load(load)),
+            ContactTarget::Approach(approach) => {
+                ("approach of a state", approach, self.at_approach(approach))
+            }
+            ContactTarget::AreaFraction(fraction) => (
+                "area fraction of a state",
+                fraction,
+                self.at_area_fraction(fraction),
+            ),
+            ContactTarget::MeanGap(mean_gap) => {
+                ("mean gap of a state", mean_gap, self.at_mean_gap(mean_gap))
+            }
+        };
+        let expected = if self.states.is_empty() {
+            "asked for after a state has been yielded"
+        } else {
+            "one that the path has had"
+        };
+        state.ok_or(Error::OutOfRange {
+            quantity,
+            value,
+            expected,
+        })
+    }
+
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
     /// in full contact can be read, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
-        let after = self.states.partition_point(|state| state.load <= load);
-        self.read(load, after, |state| state.load, ContactState::at_load)
+        let after = self
+            .states
+            .partition_point(|state| state.contact.load <= load);
+        self.read(
+            load,
+            after,
+            |state| state.contact.load,
+            ContactState::at_load,
+        )
     }
 
     /// The state at an approach \[m\]; see [`Self::at_load`].
@@ -99,11 +148,11 @@ impl History {
     pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {
         let after = self
             .states
-            .partition_point(|state| state.approach <= approach);
+            .partition_point(|state| state.contact.approach <= approach);
         self.read(
             approach,
             after,
-            |state| state.approach,
+            |state| state.contact.approach,
             ContactState::at_approach,
         )
     }
@@ -113,11 +162,11 @@ impl History {
     #[must_use]
     pub fn at_mean_gap(&self, mean_gap: f64) -> Option<LoadingState> {
         let mut states = self.states.iter();
-        let after = states.position(|state| state.mean_gap < mean_gap);
+        let after = states.position(|state| state.contact.mean_gap < mean_gap);
         self.read(
             mean_gap,
             after.unwrap_or(self.states.len()),
-            |state| state.mean_gap,
+            |state| state.contact.mean_gap,
             ContactState::at_mean_gap,
         )
     }
@@ -129,13 +178,13 @@ impl History {
         // The same rounding as there: a fraction such as 0.1 of 10 nodes means one node.
         let limit = fraction * (1.0 + 4.0 * f64::EPSILON);
         let with_one_more = |state: &LoadingState| {
-            let nodes = state.contact_nodes as f64;
-            state.contact_area_fraction * ((nodes + 1.0) / nodes)
+            let nodes = state.contact.contact_nodes as f64;
+            state.contact.contact_area_fraction * ((nodes + 1.0) / nodes)
         };
         // Not a search by halves: area shrinks where a node leaves.
         let mut states = self.states.iter();
         let found = states.find(|state| with_one_more(state) > limit)?;
-        (found.contact_area_fraction <= limit).then_some(*found)
+        (found.contact.contact_area_fraction <= limit).then_some(*found)
     }
 
     /// The state at a target, from the one before the first that is beyond it.
@@ -151,7 +200,7 @@ impl History {
         }
         let last = self.states.get(after.checked_sub(1)?)?;
         let is_there = after < self.states.len()
-            || last.contact_area_fraction == 1.0
+            || last.contact.contact_area_fraction == 1.0
             || quantity(last) == target;
         let contact = is_there.then(|| at(&last.contact, target))??;
         contact.is_finite().then(|| last.with(contact))
@@ -221,9 +270,24 @@ mod tests {
                 history.at_mean_gap(2.0 - 0.25 * load),
             ];
             for reading in readings {
-                let found = reading.map(|state| (state.contact_nodes, state.load, state.energy));
+                let found = reading.map(|state| {
+                    (
+                        state.contact.contact_nodes,
+                        state.contact.load,
+                        state.contact.energy,
+                    )
+                });
                 assert_eq!(found, Some((nodes, load, 0.25 * load * load)));
             }
+        }
+        for (target, nodes) in [
+            (ContactTarget::Load(3.0), 2),
+            (ContactTarget::Approach(1.5), 2),
+            (ContactTarget::MeanGap(1.25), 2),
+            (ContactTarget::AreaFraction(0.4), 4),
+        ] {
+            let found = history.at(target).ok();
+            assert_eq!(found.map(|state| state.contact.contact_nodes), Some(nodes));
         }
         for outside in [0.5, 4.5, f64::NAN, f64::INFINITY] {
             assert_eq!(history.at_load(outside), None);
@@ -232,15 +296,36 @@ mod tests {
         }
     }
 
+    /// What a path has not had is an error that says so, in the words of the target.
+    #[test]
+    fn readings_outside_the_path_say_what_is_wrong() {
+        let told = |history: &History, target| history.at(target).err().map(|e| e.to_string());
+        for (target, quantity, value) in [
+            (ContactTarget::Load(4.5), "load", "4.5"),
+            (ContactTarget::Approach(0.25), "approach", "0.25"),
+            (ContactTarget::MeanGap(0.5), "mean gap", "0.5"),
+            (ContactTarget::AreaFraction(0.5), "area fraction", "0.5"),
+        ] {
+            let expected =
+                format!("{quantity} of a state must be one that the path has had, but is {value}");
+            assert_eq!(told(&history(), target), Some(expected));
+        }
+        let empty = told(&History::default(), ContactTarget::Load(1.0)).unwrap_or_default();
+        assert!(empty.contains("after a state has been yielded"), "{empty}");
+    }
+
     /// Behind full contact everything is linear in the load.
     #[test]
     fn a_path_that_ends_in_full_contact_goes_on() {
         let mut states = history().states().to_vec();
         states[2].contact.contact_area_fraction = 1.0;
         let history: History = states.into_iter().collect();
-        let found = history
+        let mut later = History::default();
+        later.extend(history.states().iter().copied());
+        assert_eq!(later, history);
+        let found = later
             .at_load(6.0)
-            .map(|state| (state.contact_nodes, state.approach));
+            .map(|state| (state.contact.contact_nodes, state.contact.approach));
         assert_eq!(found, Some((4, 3.0)));
     }
 
@@ -251,7 +336,7 @@ mod tests {
         let nodes = |fraction| {
             history
                 .at_area_fraction(fraction)
-                .map(|state| state.contact_nodes)
+                .map(|state| state.contact.contact_nodes)
         };
         for (fraction, expected) in [
             (0.05, None),

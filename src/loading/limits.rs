@@ -114,22 +114,22 @@ impl Limits {
             (
                 "load at which the path ends",
                 self.load,
-                self.load - state.load,
+                self.load - state.contact.load,
             ),
             (
                 "approach at which the path ends",
                 self.approach,
-                self.approach - state.approach,
+                self.approach - state.contact.approach,
             ),
             (
                 "mean gap at which the path ends",
                 self.least_mean_gap,
-                state.mean_gap - self.least_mean_gap,
+                state.contact.mean_gap - self.least_mean_gap,
             ),
             (
                 "number of contact nodes at which the path ends",
                 most as f64,
-                most as f64 - state.contact_nodes as f64,
+                most as f64 - state.contact.contact_nodes as f64,
             ),
         ];
         let is_passed = |way: f64| way < 0.0 || (goes_on && way == 0.0);
@@ -192,17 +192,17 @@ impl Limits {
         let exceeded = [
             (
                 LoadingEnd::Load,
-                next.load > self.load,
+                next.contact.load > self.load,
                 last.contact.at_load(self.load),
             ),
             (
                 LoadingEnd::Approach,
-                next.approach > self.approach,
+                next.contact.approach > self.approach,
                 last.contact.at_approach(self.approach),
             ),
             (
                 LoadingEnd::MeanGap,
-                next.mean_gap < self.least_mean_gap,
+                next.contact.mean_gap < self.least_mean_gap,
                 last.contact.at_mean_gap(self.least_mean_gap),
             ),
         ];
@@ -213,8 +213,10 @@ impl Limits {
         if let Some((end, state)) = first {
             return Some((end, last.at_limit(state)));
         }
-        let beyond = next.contact_nodes > last.contact_nodes;
-        let end = beyond.then(|| self.enough(last.contact_nodes)).flatten();
+        let beyond = next.contact.contact_nodes > last.contact.contact_nodes;
+        let end = beyond
+            .then(|| self.enough(last.contact.contact_nodes))
+            .flatten();
         end.map(|end| (end, None))
     }
 }
@@ -348,7 +350,9 @@ mod tests {
         ] {
             let (found, at_limit) = limits(targets)?.between(Some(last), &next).unzip();
             assert_eq!(found, Some(end));
-            let at_limit = at_limit.flatten().map(|state| (state.event, state.load));
+            let at_limit = at_limit
+                .flatten()
+                .map(|state| (state.event, state.contact.load));
             assert_eq!(at_limit, Some((ContactEvent::Limit, load)));
         }
         // At the limit already, and the next state at it: that one comes.

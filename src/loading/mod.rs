@@ -88,6 +88,7 @@ pub use limits::LoadingEnd;
 pub use phase::{event_seconds, last_factor};
 pub(crate) use resume::replay;
 pub use rule::ContactRule;
+#[doc(hidden)] // for the studies of this repository
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};

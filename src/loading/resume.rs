@@ -21,7 +21,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let events = history.events().iter();
         self.state = events.last().copied();
         if let Some(state) = &self.state {
-            run.scalars.place_at(run.scalars.own_approach(state));
+            run.scalars
+                .place_at(run.scalars.own_approach(&state.contact));
             run.last = run.last.map(|_| state.contact);
         }
         run.contact = contact;
@@ -83,10 +84,10 @@ pub(crate) fn replay(
                 "one more than before",
             ));
         }
-        if state.contact_nodes != contact.len() {
+        if state.contact.contact_nodes != contact.len() {
             return Err(not_a_path(
                 state,
-                ("number of nodes in contact", state.contact_nodes),
+                ("number of nodes in contact", state.contact.contact_nodes),
                 "that of the events",
             ));
         }

@@ -1,7 +1,7 @@
 //! Which node touches next.
 
 /// Which node is taken to touch next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ContactRule {
     /// The node whose gap closes first as the approach grows. Exact.

@@ -32,8 +32,8 @@ pub(super) fn not_on_path(
 ) -> Error {
     Error::NotOnPath {
         step: state.step,
-        load: state.load,
-        approach: state.approach,
+        load: state.contact.load,
+        approach: state.contact.approach,
         quantity,
         value,
         expected,
@@ -58,7 +58,7 @@ impl Snapshot {
         state: &LoadingState,
     ) -> Result<Self, Error> {
         let mut solution = Solution::default();
-        let approach = run.scalars.own_approach(state);
+        let approach = run.scalars.own_approach(&state.contact);
         let nodes = phase.solve_at(run, (state.step, approach), &mut solution)?;
         let grid = run.problem.grid();
         let (nx, ny) = grid.shape();
@@ -93,8 +93,8 @@ impl Snapshot {
         // At first touch nothing is left but the rounding of lengths as long as the greatest gap.
         let rounding = f64::EPSILON * self.stiffness * run.problem.greatest_gap();
         // NaN is refused as well.
-        let same_load = (load - state.load).abs() <= (allowed * scale).max(rounding);
-        if !same_load || !state.approach.is_finite() {
+        let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
+        if !same_load || !state.contact.approach.is_finite() {
             return refused("load", load, "the load of the state");
         }
         if !keeps_conditions {

@@ -34,8 +34,8 @@ use crate::{Error, Grid, Problem};
 ///     .max_area_fraction(0.1)
 ///     .build()?;
 /// while let Some(state) = path.next() {
-///     let state = state?;
-///     println!("{} nodes carry {} N", state.contact_nodes, state.load);
+///     let contact = state?.contact;
+///     println!("{} nodes carry {} N", contact.contact_nodes, contact.load);
 /// }
 /// assert!(path.certificate()?.least_pressure > -1e-12);
 /// # Ok(())
@@ -75,7 +75,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// [`Error::OutOfRange`] for a target that is not beyond the present state, and those of the builder;
     /// [`Error::CannotContinue`] after an error.
-    pub fn continue_to(&mut self, target: impl Into<ContactTarget>) -> Result<(), Error> {
+    pub fn continue_to(&mut self, target: ContactTarget) -> Result<(), Error> {
         if let Some(LoadingEnd::Failed | LoadingEnd::Memory) = self.end {
             return Err(Error::CannotContinue {
                 steps: self.state.map_or(0, |state| state.step),
@@ -83,7 +83,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         let mut limits = Limits::default();
         let problem = &self.run.problem;
-        limits.set(target.into(), &problem.grid(), problem.mean_gap())?;
+        limits.set(target, &problem.grid(), problem.mean_gap())?;
         if let Some(state) = &self.state {
             limits.check_ahead(state, true)?;
         }
@@ -188,7 +188,7 @@ impl<U: LinearUpdater> Iterator for LoadingSolver<U> {
             return (0, None);
         }
         let nodes = self.run.problem.grid().nodes();
-        let done = self.state.map_or(0, |state| state.contact_nodes);
+        let done = self.state.map_or(0, |state| state.contact.contact_nodes);
         let most = self.limits.most_nodes().min(nodes).saturating_sub(done);
         // One more for an error or a limit.
         (0, Some(most + 1))
@@ -238,6 +238,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 
     /// Where the time went so far, besides the updater.
+    #[doc(hidden)]
     #[must_use]
     pub fn timings(&self) -> LoadingTimings {
         self.run.timings
@@ -253,6 +254,19 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     #[must_use]
     pub fn state(&self) -> Option<LoadingState> {
         self.state
+    }
+
+    /// The same, for a caller who has nothing to do without a state.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] before the first state.
+    pub fn present(&self) -> Result<LoadingState, Error> {
+        self.state.ok_or(Error::OutOfRange {
+            quantity: "number of states yielded so far",
+            value: 0.0,
+            expected: "at least 1 for a present state",
+        })
     }
 
     /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the
@@ -282,7 +296,12 @@ mod tests {
             .build()?;
         assert_eq!(path.size_hint(), (0, Some(5)));
         assert_eq!((path.state(), path.end()), (None, None));
+        let none = path.present().err().map(|error| error.to_string());
+        let told =
+            "number of states yielded so far must be at least 1 for a present state, but is 0";
+        assert_eq!(none.as_deref(), Some(told));
         path.by_ref().try_for_each(|state| state.map(drop))?;
+        assert_eq!(Some(path.present()?), path.state());
         assert_eq!(
             (path.size_hint(), path.end()),
             ((0, Some(0)), Some(LoadingEnd::Approach))
@@ -294,9 +313,13 @@ mod tests {
     fn paths_go_on_to_what_lies_beyond() -> Result<(), Error> {
         use ContactTarget::{Approach, AreaFraction, Load, MeanGap};
         let state = path()?.state();
-        let mean_gap = state.map_or(0.0, |state| state.mean_gap);
-        assert!(state.is_some_and(|state| state.contact_nodes == 2 && state.approach == 2.0));
-        let load = state.map_or(0.0, |state| state.load);
+        let mean_gap = state.map_or(0.0, |state| state.contact.mean_gap);
+        assert!(
+            state.is_some_and(
+                |state| state.contact.contact_nodes == 2 && state.contact.approach == 2.0
+            )
+        );
+        let load = state.map_or(0.0, |state| state.contact.load);
         for (target, is_beyond) in [
             (Load(load), false),
             (Load(1.25), false),

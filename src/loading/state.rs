@@ -1,12 +1,11 @@
 //! A state of a path, and what happened there.
 
-use std::ops::Deref;
-
 use crate::contact::ContactState;
 
 /// What happens at a state of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum ContactEvent {
     /// The gap of a node has closed, and it joins the contact.
     Touch,
@@ -19,8 +18,8 @@ pub enum ContactEvent {
 
 /// A state of a path: the instant of an event, with the event already done.
 ///
-/// The node that touches or leaves has no pressure at that instant. All scalars of
-/// [`contact`](Self::contact) are fields of the state too: `state.load` is `state.contact.load`.
+/// The node that touches or leaves has no pressure at that instant. Load, approach, area and the other scalars are those of
+/// the contact: `state.contact.load`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -37,14 +36,6 @@ pub struct LoadingState {
     pub approach_error: f64,
     /// The scalars of the contact.
     pub contact: ContactState,
-}
-
-impl Deref for LoadingState {
-    type Target = ContactState;
-
-    fn deref(&self) -> &ContactState {
-        &self.contact
-    }
 }
 
 impl LoadingState {

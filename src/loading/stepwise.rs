@@ -297,16 +297,16 @@ mod tests {
         let found: Vec<_> = run
             .queue
             .iter()
-            .map(|state| (state.step, state.contact_nodes, state.node))
+            .map(|state| (state.step, state.contact.contact_nodes, state.node))
             .collect();
         assert_eq!(found, [(1, 1, (0, 0)), (2, 2, (2, 0)), (3, 3, (1, 0))]);
         for (state, (approach, error)) in
             run.queue.iter().zip([(0.0, 0.0), (1.0, 0.0), (2.0, 2e-4)])
         {
             assert!(
-                (state.approach - approach).abs() < 1e-14,
+                (state.contact.approach - approach).abs() < 1e-14,
                 "{}",
-                state.approach
+                state.contact.approach
             );
             // At first touch a part of 10⁻⁶ of the mean gap.
             assert!(
@@ -316,7 +316,7 @@ mod tests {
             );
         }
         // 1/2 N for each metre, and after the second node twice as much.
-        let loads: Vec<f64> = run.queue.iter().map(|state| state.load).collect();
+        let loads: Vec<f64> = run.queue.iter().map(|state| state.contact.load).collect();
         for (found, expected) in loads.into_iter().zip([0.0, 0.5, 1.5]) {
             assert!((found - expected).abs() < 1e-14, "{found}");
         }

@@ -26,7 +26,7 @@ use crate::{Boundary, Error, Grid};
 /// for state in path.by_ref() {
 ///     let state = state?;
 ///     edge.follow(state.event, state.node)?;
-///     println!("{} m² in cells, {} m² corrected", state.contact_area, edge.corrected_area());
+///     println!("{} m² in cells, {} m² corrected", state.contact.contact_area, edge.corrected_area());
 /// }
 /// # Ok(())
 /// # }

@@ -30,7 +30,7 @@
 //!
 //! let boundary = half_space.boundary();
 //! for (patches, state) in PatchHistory::new(&contact, boundary, Connectivity::Four).zip(history.states()) {
-//!     println!("{} patches under {} N", patches.patches, state.load);
+//!     println!("{} patches under {} N", patches.patches, state.contact.load);
 //! }
 //! let percolation = Percolation::of(&contact, boundary, Connectivity::Eight);
 //! println!("no channel along x from {:?} nodes on", percolation.leak_x);

@@ -52,8 +52,8 @@ pub fn contact_sequence(
 ///     .max_area_fraction(0.5)
 ///     .build()?;
 /// let history: History = path.by_ref().collect::<Result<_, _>>()?;
-/// let load = activation_map(&path.grid(), history.states(), |state| state.load)?;
-/// let reached = path.state().map_or(0.0, |state| state.load);
+/// let load = activation_map(&path.grid(), history.states(), |state| state.contact.load)?;
+/// let reached = path.state().map_or(0.0, |state| state.contact.load);
 /// assert_eq!(load.map(|touched| touched <= reached), path.contact_map());
 /// # Ok(())
 /// # }

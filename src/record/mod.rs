@@ -18,15 +18,15 @@
 //! let record = LoadingRecord::new(&path, history)?;
 //!
 //! // Fields of a state, without the path:
-//! let at_100_newtons = record.history().at_load(100.0);
+//! let at_100_newtons = record.history().at(ContactTarget::Load(100.0))?;
 //! let mut replay = record.replay()?;
-//! let pressure = replay.pressure_at(&at_100_newtons.ok_or(asperity::Error::NotFinite { step: 0 })?)?;
+//! let pressure = replay.pressure_at(&at_100_newtons)?;
 //! # assert!(pressure.max() > 0.0);
 //!
 //! // And on to 600 N:
 //! let mut path = record.resume()?;
 //! path.continue_to(ContactTarget::Load(600.0))?;
-//! # assert_eq!(path.last().transpose()?.map(|state| state.load), Some(600.0));
+//! # assert_eq!(path.last().transpose()?.map(|state| state.contact.load), Some(600.0));
 //! # Ok(())
 //! # }
 //! ```

@@ -131,7 +131,7 @@ impl LoadingRecord {
             ("step", |state| state.step),
             ("ix", |state| state.node.0),
             ("iy", |state| state.node.1),
-            ("contact_nodes", |state| state.contact_nodes),
+            ("contact_nodes", |state| state.contact.contact_nodes),
         ];
         for (name, get) in whole {
             archive.integers(name, states.len(), states.iter().map(|s| get(s) as i64))?;
@@ -143,7 +143,7 @@ impl LoadingRecord {
         }
         self.write_patches(&mut archive)?;
         archive.matrix("heights", self.heights.matrix())?;
-        if let Ok(load) = activation_map(&self.grid, self.states(), |state| state.load) {
+        if let Ok(load) = activation_map(&self.grid, self.states(), |state| state.contact.load) {
             archive.matrix("activation", &load)?;
         }
         for (name, field) in fields {

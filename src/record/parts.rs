@@ -53,11 +53,7 @@ impl TryFrom<Parts> for LoadingRecord {
         let heights = HeightMap::new(DMatrix::from_vec(nx, ny, parts.heights))?;
         let mut states = parts.states;
         for state in &mut states {
-            let contact = &mut state.contact;
-            // Formats without infinity, such as JSON, lose the one there is.
-            if contact.contact_area_fraction == 1.0 {
-                contact.interfacial_stiffness.get_or_insert(f64::INFINITY);
-            }
+            state.contact.restore_infinity();
         }
         let history = states.into_iter().collect();
         Self::from_parts(

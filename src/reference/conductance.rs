@@ -27,7 +27,7 @@ use crate::Error;
 ///   bodies with a uniform current, for one period of the surface. In full contact it adds nothing, and the
 ///   conductance is infinite.
 ///
-/// `state.contact_stiffness.or(state.interfacial_stiffness)` is the right one on either. A layer, or a graded
+/// `contact.contact_stiffness.or(contact.interfacial_stiffness)` is the right one on either. A layer, or a graded
 /// body, has no such analogy: current and displacement solve different problems there.
 ///
 /// ```
@@ -39,10 +39,10 @@ use crate::Error;
 /// let half_space = PeriodicBoussinesq::new(Grid::square(32, 1.25e-3)?, e_star)?;
 /// let mut last = 0.0;
 /// for state in LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).build()? {
-///     let state = state?;
-///     if let Some(stiffness) = state.contact_stiffness.or(state.interfacial_stiffness) {
+///     let contact = state?.contact;
+///     if let Some(stiffness) = contact.contact_stiffness.or(contact.interfacial_stiffness) {
 ///         last = contact_conductance(stiffness, e_star, copper + copper)?;
-///         println!("{} N: {last} S", state.load);
+///         println!("{} N: {last} S", contact.load);
 ///     }
 /// }
 /// assert_eq!(last, f64::INFINITY); // full contact

@@ -27,7 +27,9 @@ mod solution;
 mod window_factor;
 
 pub use check::{UpdaterReport, check};
-pub use cholesky::{CholeskyTimings, RecursiveCholesky};
+#[doc(hidden)] // for the studies and benches of this repository
+pub use cholesky::CholeskyTimings;
+pub use cholesky::RecursiveCholesky;
 pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;

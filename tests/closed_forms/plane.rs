@@ -21,7 +21,7 @@ fn sections(surface: &dyn Surface, grid: Grid, from: f64, fraction: f64) -> Vec<
     let builder = LoadingSolver::builder(surface, &kernel).max_area_fraction(fraction);
     let mut path = builder.build().unwrap();
     let history: History = path.by_ref().map(Result::unwrap).collect();
-    let last = history.states().last().unwrap().load;
+    let last = history.states().last().unwrap().contact.load;
     let sections = (0..SAMPLES).map(|sample| {
         let part = from + (1.0 - from) * (sample as f64 + 0.5) / SAMPLES as f64;
         let state = history.at_load(part * last).unwrap();

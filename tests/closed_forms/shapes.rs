@@ -96,7 +96,13 @@ fn punch_stiffness(n: usize) -> f64 {
     let grid = Grid::square(n, 2.0).unwrap();
     let kernel = Boussinesq::new(grid, E_STAR).unwrap();
     let path = LoadingSolver::new(&FlatPunch::default(), &kernel).unwrap();
-    path.last().unwrap().unwrap().contact_stiffness.unwrap() / (E_STAR * 2.0)
+    path.last()
+        .unwrap()
+        .unwrap()
+        .contact
+        .contact_stiffness
+        .unwrap()
+        / (E_STAR * 2.0)
 }
 
 #[test]
@@ -139,14 +145,15 @@ fn sphere_is_hertzian() {
             let (depth, first) = (run.depth, run.first.0.hypot(run.first.1));
             let [area, approach, loads, stiffness, energy, greatest] =
                 run.average(load, |state, pressure| {
-                    let exact = hertz.approach_at_load(state.load);
-                    let approach = state.approach + depth;
+                    let exact = hertz.approach_at_load(state.contact.load);
+                    let approach = state.contact.approach + depth;
                     [
-                        state.contact_area / hertz.contact_area(exact) - 1.0,
+                        state.contact.contact_area / hertz.contact_area(exact) - 1.0,
                         approach / exact - 1.0,
-                        state.load / hertz.load(approach) - 1.0,
-                        state.contact_stiffness.unwrap() / hertz.contact_stiffness(exact) - 1.0,
-                        state.energy / hertz.energy(exact) - 1.0,
+                        state.contact.load / hertz.load(approach) - 1.0,
+                        state.contact.contact_stiffness.unwrap() / hertz.contact_stiffness(exact)
+                            - 1.0,
+                        state.contact.energy / hertz.energy(exact) - 1.0,
                         pressure.max() / hertz.pressure(first, exact) - 1.0,
                     ]
                 });
@@ -164,7 +171,7 @@ fn sphere_is_hertzian() {
             within("pressure", greatest * two, 0.03, 0.08);
 
             let state = run.path.state().unwrap();
-            let exact = hertz.approach_at_load(state.load);
+            let exact = hertz.approach_at_load(state.contact.load);
             let displacement = run.path.displacement().unwrap();
             let mut worst = 0.0_f64;
             for ix in 0..grid.nx() {
@@ -216,8 +223,8 @@ fn elliptic_paraboloid_is_hertzian() {
                 width,
                 length,
             ] = run.average(load, |state, pressure| {
-                let exact = hertz.approach_at_load(state.load);
-                let approach = state.approach + depth;
+                let exact = hertz.approach_at_load(state.contact.load);
+                let approach = state.contact.approach + depth;
                 let (along_x, along_y) = hertz.semi_axes(exact);
                 let touched = |lines: usize, touches: &dyn Fn(usize) -> bool| {
                     (0..lines).filter(|&line| touches(line)).count() as f64
@@ -225,11 +232,11 @@ fn elliptic_paraboloid_is_hertzian() {
                 let width = touched(grid.nx(), &|ix| pressure.row(ix).max() > 0.0);
                 let length = touched(grid.ny(), &|iy| pressure.column(iy).max() > 0.0);
                 [
-                    state.contact_area / hertz.contact_area(exact) - 1.0,
+                    state.contact.contact_area / hertz.contact_area(exact) - 1.0,
                     approach / exact - 1.0,
-                    state.load / hertz.load(approach) - 1.0,
-                    state.contact_stiffness.unwrap() / hertz.contact_stiffness(exact) - 1.0,
-                    state.energy / hertz.energy(exact) - 1.0,
+                    state.contact.load / hertz.load(approach) - 1.0,
+                    state.contact.contact_stiffness.unwrap() / hertz.contact_stiffness(exact) - 1.0,
+                    state.contact.energy / hertz.energy(exact) - 1.0,
                     pressure.max() / hertz.pressure(first.0, first.1, exact) - 1.0,
                     width - 2.0 * along_x / dx,
                     length - 2.0 * along_y / dy,
@@ -263,7 +270,7 @@ fn cone_is_sneddons() {
             let (depth, apex) = (run.depth, run.apex);
             let [area, approach, stiffness, energy, pressures] =
                 run.average(load, |state, pressure| {
-                    let exact = sneddon.approach_at_load(state.load);
+                    let exact = sneddon.approach_at_load(state.contact.load);
                     let a = sneddon.contact_radius(exact);
                     // Half-way between the apex, where the pressure is infinite, and the edge.
                     let (mut error, mut count) = (0.0, 0.0);
@@ -277,10 +284,11 @@ fn cone_is_sneddons() {
                         }
                     }
                     [
-                        state.contact_area / sneddon.contact_area(exact) - 1.0,
-                        (state.approach + depth) / exact - 1.0,
-                        state.contact_stiffness.unwrap() / sneddon.contact_stiffness(exact) - 1.0,
-                        state.energy / sneddon.energy(exact) - 1.0,
+                        state.contact.contact_area / sneddon.contact_area(exact) - 1.0,
+                        (state.contact.approach + depth) / exact - 1.0,
+                        state.contact.contact_stiffness.unwrap() / sneddon.contact_stiffness(exact)
+                            - 1.0,
+                        state.contact.energy / sneddon.energy(exact) - 1.0,
                         error / count,
                     ]
                 });

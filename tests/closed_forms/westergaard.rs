@@ -41,23 +41,24 @@ fn errors<K: InfluenceKernel>(nodes: usize, kernel: impl Fn(Grid) -> K) -> Error
         gap: 0.0,
         area: (f64::INFINITY, f64::NEG_INFINITY),
         stiffness: 0.0,
-        full: (last.mean_pressure() / full - 1.0) / (cell * cell),
+        full: (last.contact.mean_pressure() / full - 1.0) / (cell * cell),
     };
     for pair in states.windows(2) {
         let (before, at) = (pair[0], pair[1]);
-        let pressure = at.mean_pressure();
+        let pressure = at.contact.mean_pressure();
         // Two rows of four nodes touch at once.
-        if at.load <= before.load * (1.0 + 1e-9) || pressure > full {
+        if at.contact.load <= before.contact.load * (1.0 + 1e-9) || pressure > full {
             continue;
         }
-        let gap = (at.mean_gap - exact.mean_gap(pressure)).abs() / (AMPLITUDE * cell * cell);
+        let gap =
+            (at.contact.mean_gap - exact.mean_gap(pressure)).abs() / (AMPLITUDE * cell * cell);
         errors.gap = errors.gap.max(gap);
         let ratio = pressure / full;
         if ratio > 0.1 && ratio < 0.9 {
-            let area = before.contact_area_fraction - exact.contact_area_fraction(pressure);
+            let area = before.contact.contact_area_fraction - exact.contact_area_fraction(pressure);
             errors.area.0 = errors.area.0.min(area / cell);
             errors.area.1 = errors.area.1.max(area / cell);
-            let found = before.interfacial_stiffness.unwrap() / grid.nominal_area();
+            let found = before.contact.interfacial_stiffness.unwrap() / grid.nominal_area();
             let error = found / exact.interfacial_stiffness(pressure) - 1.0;
             errors.stiffness = errors.stiffness.max(error.abs() / cell);
         }

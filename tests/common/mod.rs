@@ -72,18 +72,23 @@ impl Sphere {
 /// The state half-way, by approach, from one event to the next; beyond full contact, if that is where
 /// the path ends, at twice the approach.
 pub fn half_way(state: LoadingState, next: Option<LoadingState>) -> LoadingState {
-    let end = next.map_or(3.0 * state.approach, |next| next.approach);
+    let end = next.map_or(3.0 * state.contact.approach, |next| next.contact.approach);
     let interval: History = [state].into_iter().chain(next).collect();
-    interval.at_approach(0.5 * (state.approach + end)).unwrap()
+    interval
+        .at_approach(0.5 * (state.contact.approach + end))
+        .unwrap()
 }
 
 /// The same nodes in contact under another load, whether or not that is a state.
 pub fn loaded(mut state: LoadingState, load: f64) -> LoadingState {
-    let change = load - state.load;
-    let rate = state.contact_stiffness.or(state.interfacial_stiffness);
+    let change = load - state.contact.load;
+    let rate = state
+        .contact
+        .contact_stiffness
+        .or(state.contact.interfacial_stiffness);
     state.contact.approach += change / rate.unwrap();
-    state.contact.mean_gap -= change / state.interfacial_stiffness.unwrap();
-    state.contact.energy += 0.5 * (state.load + load) * change / rate.unwrap();
+    state.contact.mean_gap -= change / state.contact.interfacial_stiffness.unwrap();
+    state.contact.energy += 0.5 * (state.contact.load + load) * change / rate.unwrap();
     state.contact.load = load;
     state
 }

@@ -39,38 +39,41 @@ fn random_loads() {
             }
             let is_free = matches!(kernel, Kernel::Free(_));
             let (mut path, history) = path(&map, &kernel);
-            let last = history.states()[history.states().len() - 1].load;
+            let last = history.states()[history.states().len() - 1].contact.load;
             let mut solver = solver(&map, &kernel, 1e-12);
             for i in 0..17 {
                 let load = last * 10_f64.powf(-5.0 * uniform() + 0.3);
                 let expected = history.at_load(load).unwrap();
-                let interfacial = expected.interfacial_stiffness.unwrap();
+                let interfacial = expected.contact.interfacial_stiffness.unwrap();
                 // Near full contact the approach of mean planes says nothing about the load: where
                 // it does, the tolerance of 1e-12 of the approach is below 1e-9 of the load.
-                let slope = interfacial * expected.approach / expected.load;
+                let slope = interfacial * expected.contact.approach / expected.contact.load;
                 let by_approach = i % 4 == 3 && (is_free || slope < 1e3);
                 let solution = if by_approach {
-                    solver.solve_approach(expected.approach).unwrap()
+                    solver.solve_approach(expected.contact.approach).unwrap()
                 } else {
                     solver.solve(load).unwrap()
                 };
                 check(&solver, &solution, 1e-12);
                 let state = solution.state;
                 let context = format!("case {case}, load {load:e}: {state:?}, {expected:?}");
-                assert_eq!(state.contact_nodes, expected.contact_nodes, "{context}");
+                assert_eq!(
+                    state.contact_nodes, expected.contact.contact_nodes,
+                    "{context}"
+                );
                 // Near full contact the mean gap is a small difference; it is measured by the rms
                 // height. Everything else is within some hundred times the tolerance, and 1e-8 is
                 // what was asked for.
-                let error = (state.mean_gap - expected.mean_gap).abs();
+                let error = (state.mean_gap - expected.contact.mean_gap).abs();
                 assert!(error < 1e-10 * long, "{context}");
                 for (found, expected) in [
-                    (state.load, expected.load),
-                    (state.approach, expected.approach),
-                    (state.energy, expected.energy),
+                    (state.load, expected.contact.load),
+                    (state.approach, expected.contact.approach),
+                    (state.energy, expected.contact.energy),
                 ] {
                     assert!(relative(found, expected) < 1e-8, "{context}");
                 }
-                match (state.contact_stiffness, expected.contact_stiffness) {
+                match (state.contact_stiffness, expected.contact.contact_stiffness) {
                     (Some(found), Some(expected)) => {
                         assert!(is_free && relative(found, expected) < 1e-8, "{context}");
                     }
@@ -112,22 +115,25 @@ fn mean_gaps_and_approaches() {
             .stiffness(stiffness)
             .build()
             .unwrap();
-        let gaps =
-            [30, 200, 230, 1000, 2200, 400].map(|step: usize| history.states()[step].mean_gap);
+        let gaps = [30, 200, 230, 1000, 2200, 400]
+            .map(|step: usize| history.states()[step].contact.mean_gap);
         let targets = gaps.map(ContactTarget::MeanGap);
         for (gap, solution) in gaps.into_iter().zip(solver.sweep(targets)) {
             let state = solution.unwrap().state;
             assert!((state.mean_gap - gap).abs() <= 1e-12 * state.approach);
             let expected = history.at_mean_gap(gap).unwrap();
             // The tolerance of the gap times the stiffness.
-            assert!(relative(state.load, expected.load) < 1e-8, "{state:?}");
+            assert!(
+                relative(state.load, expected.contact.load) < 1e-8,
+                "{state:?}"
+            );
         }
         let steps = [100, 110, 900, 850];
-        let approaches = steps.map(|step: usize| history.states()[step].approach);
+        let approaches = steps.map(|step: usize| history.states()[step].contact.approach);
         let targets = approaches.map(ContactTarget::Approach);
         for (step, solution) in steps.into_iter().zip(solver.sweep(targets)) {
             let load = solution.unwrap().state.load;
-            assert!(relative(load, history.states()[step].load) < 1e-8);
+            assert!(relative(load, history.states()[step].contact.load) < 1e-8);
         }
     }
 }
@@ -144,8 +150,8 @@ fn the_path_ends_at_the_pseudo_inverse() {
         let (mut path, history) = path(&map, &kernel);
         let state = history.states()[history.states().len() - 1];
         // The sums have 300 terms: some 1e-14 of the greatest, magnified by a condition number of 30.
-        assert!(relative(state.mean_pressure(), relief.max()) < 1e-12);
-        assert!(relative(state.approach, gap.mean()) < 1e-12);
+        assert!(relative(state.contact.mean_pressure(), relief.max()) < 1e-12);
+        assert!(relative(state.contact.approach, gap.mean()) < 1e-12);
         let pressure = path.pressure_at(&state).unwrap();
         let (node, least) =
             pressure

@@ -3,7 +3,8 @@
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::updater::RecursiveCholesky;
 use asperity::{
-    Boundary, Boussinesq, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, Spectral,
+    Boundary, Boussinesq, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
+    LoadingSolver, Spectral,
 };
 use nalgebra::DMatrix;
 
@@ -83,7 +84,10 @@ fn tension_that_was_cut_off_does_not_keep_a_load_from_its_tolerance() {
         let map = HeightMap::sample(&rough, &grid).unwrap();
         let mut solver = solver(&map, &kernel, tolerance);
         let loads = (0..25).map(|k| 1e-3 * 1.2_f64.powi(k));
-        let solutions: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        let solutions: Vec<_> = solver
+            .sweep(loads.map(ContactTarget::Load))
+            .map(Result::unwrap)
+            .collect();
         for solution in &solutions {
             check(&solver, solution, tolerance);
         }
@@ -123,8 +127,9 @@ fn long_cells() {
                 let mut solver = built.unwrap();
                 for part in [10, 2] {
                     // Between two events of the path, which has its pressure from a factor.
-                    let load =
-                        0.5 * (states[nx * ny / part - 1].load + states[nx * ny / part].load);
+                    let load = 0.5
+                        * (states[nx * ny / part - 1].contact.load
+                            + states[nx * ny / part].contact.load);
                     let solution = solver.solve(load).unwrap();
                     check(&solver, &solution, 1e-8);
                     assert_eq!(solution.state.contact_nodes, nx * ny / part);

@@ -6,6 +6,8 @@
 mod common;
 
 mod along_the_path;
+#[cfg(feature = "io")]
+mod as_data;
 mod closed_forms;
 mod extremes;
 mod problems;

@@ -13,7 +13,10 @@ fn a_sweep_is_its_loads() {
         let mut solver = solver(&map, &kernel, 1e-11);
         // Up, in small and large steps, beyond full contact, and down again.
         let loads = [1e-6, 1e-4, 1e-2, 1.1e-2, 0.1, 0.12, 3.0, 0.05, 1e-5];
-        let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        let swept: Vec<_> = solver
+            .sweep(loads.map(ContactTarget::Load))
+            .map(Result::unwrap)
+            .collect();
         assert_eq!(swept.len(), loads.len());
         for (load, swept) in loads.into_iter().zip(swept) {
             check(&solver, &swept, 1e-11);
@@ -66,7 +69,10 @@ fn a_solution_brings_its_tangent() {
     for kernel in Kernel::all(grid, 1.0) {
         let mut solver = solver(&map, &kernel, 1e-11);
         let loads = [0.02, 0.021];
-        let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        let swept: Vec<_> = solver
+            .sweep(loads.map(ContactTarget::Load))
+            .map(Result::unwrap)
+            .collect();
         let next = solver.solve_from(&swept[0], loads[1]).unwrap();
         let [again, once] = [&next, &swept[1]].map(|solution| solution.effort.iterations);
         // Its displacements are computed anew: rounding, which may cost a step.
@@ -83,7 +89,7 @@ fn a_solution_brings_its_tangent() {
 fn an_error_ends_a_sweep() {
     let grid = Grid::square(16, 1.0).unwrap();
     let mut solver = solver(&rough(&grid, 1), &Kernel::free(grid, 1.0), 1e-8);
-    let mut sweep = solver.sweep([1.0, -1.0, 2.0]);
+    let mut sweep = solver.sweep([1.0, -1.0, 2.0].map(ContactTarget::Load));
     assert!(sweep.next().unwrap().is_ok());
     assert!(matches!(sweep.next(), Some(Err(Error::NotPositive { .. }))));
     assert!(sweep.next().is_none());
@@ -94,8 +100,8 @@ fn an_error_ends_a_sweep() {
 fn size_hints() {
     let grid = Grid::square(16, 1.0).unwrap();
     let mut solver = solver(&rough(&grid, 1), &Kernel::free(grid, 1.0), 1e-8);
-    for loads in [vec![1.0, 2.0, 3.0], vec![1.0, -1.0, 2.0]] {
-        let mut sweep = solver.sweep(loads);
+    for loads in [[1.0, 2.0, 3.0], [1.0, -1.0, 2.0]] {
+        let mut sweep = solver.sweep(loads.map(ContactTarget::Load));
         assert_eq!(sweep.size_hint(), (0, Some(3)));
         sweep.next();
         assert_eq!(sweep.size_hint(), (0, Some(2)));

@@ -30,11 +30,13 @@ fn areas() {
                 let nodes = grid.nodes_in(fraction).unwrap();
                 assert_eq!(solution.state.contact_nodes, nodes);
             }
-            // Alone, and a plain number for a load.
+            // Alone, and under the load that was found.
             let area = ContactTarget::AreaFraction(0.2);
             let alone = solver.solve_target(area).unwrap();
             assert_eq!(alone.state.contact_nodes, 460);
-            let same = solver.solve_target(alone.state.load).unwrap();
+            let same = solver
+                .solve_target(ContactTarget::Load(alone.state.load))
+                .unwrap();
             assert_eq!(same.contact_map, alone.contact_map);
             assert!(relative(same.state.approach, alone.state.approach) < 1e-11);
         }

@@ -36,7 +36,7 @@ fn path<U: LinearUpdater>(kernel: &dyn InfluenceKernel, updater: U, window: usiz
     let pressures = [
         states[states.len() / 2],
         history
-            .at_load(0.5 * (states[1].load + states[2].load))
+            .at_load(0.5 * (states[1].contact.load + states[2].contact.load))
             .unwrap(),
         states[states.len() - 1],
     ]
@@ -52,10 +52,13 @@ fn assert_same_path(a: &Path, b: &Path) {
         // An explicit inverse, bordered some hundred times, loses a few digits more than a factor:
         // 1e-9 is what the crate promises of two ways to the same path.
         for (x, y) in [
-            (a.approach, b.approach),
-            (a.load, b.load),
-            (a.contact_stiffness.unwrap(), b.contact_stiffness.unwrap()),
-            (a.energy, b.energy),
+            (a.contact.approach, b.contact.approach),
+            (a.contact.load, b.contact.load),
+            (
+                a.contact.contact_stiffness.unwrap(),
+                b.contact.contact_stiffness.unwrap(),
+            ),
+            (a.contact.energy, b.contact.energy),
         ] {
             assert!((x - y).abs() <= 1e-9 * x.abs(), "{a:?} {b:?}");
         }
@@ -189,7 +192,10 @@ fn own_surface_kernel_and_updater() {
     let kernel = grains(grid);
     let reference = path(&kernel, RecursiveCholesky::new(), 16);
     for (k, state) in reference.0.iter().enumerate().skip(1) {
-        assert!(state.approach > reference.0[k - 1].approach, "no ties here");
+        assert!(
+            state.contact.approach > reference.0[k - 1].contact.approach,
+            "no ties here"
+        );
     }
     for window in [1, 7, 16, 200] {
         assert_same_path(&reference, &path(&kernel, Bordering::default(), window));

@@ -75,21 +75,24 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
                     Some(Ok(state)) => state,
                     other => panic!("{context}: {other:?}"),
                 };
-                assert_eq!(state.contact_nodes, 67, "{context}");
+                assert_eq!(state.contact.contact_nodes, 67, "{context}");
                 let expected = *reference.get_or_insert(state);
                 // Iterations: changes inside a window err by some 1e-7.
-                let error = (state.load / expected.load - 1.0).abs();
+                let error = (state.contact.load / expected.contact.load - 1.0).abs();
                 assert!(error < 1e-6, "{context}: {error:e}");
 
                 let (pressure, gap) = (path.pressure()?, path.gap()?);
                 let (displacement, map) = (path.displacement()?, path.contact_map());
                 let load = pressure.sum() * grid.cell_area();
-                assert!((load / state.load - 1.0).abs() < 1e-6, "{context}: {load}");
+                assert!(
+                    (load / state.contact.load - 1.0).abs() < 1e-6,
+                    "{context}: {load}"
+                );
                 for field in [&pressure, &gap, &displacement] {
                     assert_eq!(field.shape(), grid.shape());
                 }
                 assert_eq!(map.iter().filter(|inside| **inside).count(), 67);
-                let greatest = displacement.amax().max(state.approach);
+                let greatest = displacement.amax().max(state.contact.approach);
                 for (node, inside) in map.iter().enumerate() {
                     if *inside {
                         assert!(pressure[node] >= -1e-6 * pressure.max(), "{context}");
@@ -103,8 +106,8 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
             // One load alone, between the last two events: the same contact.
             let mut path = LoadingSolver::builder(&surface, &kernel).build()?;
             let states = path.by_ref().take(68).collect::<Result<Vec<_>, _>>()?;
-            let load = 0.5 * (states[66].load + states[67].load);
-            if load > states[66].load * (1.0 + 1e-6) {
+            let load = 0.5 * (states[66].contact.load + states[67].contact.load);
+            if load > states[66].contact.load * (1.0 + 1e-6) {
                 let solution = FixedLoadSolver::new(&surface, &kernel)?.solve(load)?;
                 let map = path_map(&path.contact_order()[..67], grid);
                 assert_eq!(solution.contact_map, map, "{surface_name}, {kernel_name}");

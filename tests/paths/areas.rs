@@ -33,7 +33,7 @@ fn paths_records_and_fixed_loads_round_alike() {
                 }
                 assert_eq!(grid.nodes_in(fraction).unwrap(), expected);
                 let read = history.at_area_fraction(fraction).unwrap();
-                assert_eq!(read.contact_nodes, expected, "{fraction}");
+                assert_eq!(read.contact.contact_nodes, expected, "{fraction}");
                 // Every path and every search only where that is cheap.
                 if k % 10 != 1 {
                     continue;

@@ -32,11 +32,11 @@ fn targets(all: &[LoadingState]) -> Vec<(ContactTarget, LoadingEnd)> {
     let nodes = all.len() as f64;
     vec![
         (
-            ContactTarget::Load(0.3 * all[10].load + 0.7 * all[11].load),
+            ContactTarget::Load(0.3 * all[10].contact.load + 0.7 * all[11].contact.load),
             LoadingEnd::Load,
         ),
         (
-            ContactTarget::Load(0.2 * all[10].load + 0.8 * all[11].load),
+            ContactTarget::Load(0.2 * all[10].contact.load + 0.8 * all[11].contact.load),
             LoadingEnd::Load,
         ),
         (
@@ -44,11 +44,13 @@ fn targets(all: &[LoadingState]) -> Vec<(ContactTarget, LoadingEnd)> {
             LoadingEnd::AreaFraction,
         ),
         (
-            ContactTarget::MeanGap(0.5 * (all[100].mean_gap + all[101].mean_gap)),
+            ContactTarget::MeanGap(0.5 * (all[100].contact.mean_gap + all[101].contact.mean_gap)),
             LoadingEnd::MeanGap,
         ),
         (
-            ContactTarget::Approach(0.9 * all[180].approach + 0.1 * all[181].approach),
+            ContactTarget::Approach(
+                0.9 * all[180].contact.approach + 0.1 * all[181].contact.approach,
+            ),
             LoadingEnd::Approach,
         ),
         (ContactTarget::AreaFraction(1.0), LoadingEnd::FullContact),
@@ -73,7 +75,7 @@ fn continued_paths_are_uninterrupted_ones() {
                 "{name}"
             );
             // Windows that end elsewhere: rounding only.
-            assert_close(found, expected, 1e-12, all[0].mean_gap);
+            assert_close(found, expected, 1e-12, all[0].contact.mean_gap);
         }
     }
 }
@@ -90,7 +92,7 @@ fn continues_with<U: LinearUpdater + Clone>(updater: U, tolerance: f64) {
     assert_eq!(events.len(), all.len());
     for (found, expected) in events.iter().zip(&all) {
         assert_eq!(found.node, expected.node);
-        assert_close(found, expected, tolerance, all[0].mean_gap);
+        assert_close(found, expected, tolerance, all[0].contact.mean_gap);
     }
 }
 
@@ -111,12 +113,12 @@ fn targets_that_are_not_beyond_are_refused() {
     let mut path = builder.build().unwrap();
     let last = path.by_ref().last().unwrap().unwrap();
     for target in [
-        ContactTarget::Load(last.load),
-        ContactTarget::Load(0.5 * last.load),
-        ContactTarget::Approach(last.approach),
-        ContactTarget::AreaFraction(last.contact_area_fraction),
-        ContactTarget::MeanGap(last.mean_gap),
-        ContactTarget::MeanGap(1.1 * last.mean_gap),
+        ContactTarget::Load(last.contact.load),
+        ContactTarget::Load(0.5 * last.contact.load),
+        ContactTarget::Approach(last.contact.approach),
+        ContactTarget::AreaFraction(last.contact.contact_area_fraction),
+        ContactTarget::MeanGap(last.contact.mean_gap),
+        ContactTarget::MeanGap(1.1 * last.contact.mean_gap),
     ] {
         let error = path.continue_to(target).unwrap_err();
         assert!(
@@ -128,10 +130,11 @@ fn targets_that_are_not_beyond_are_refused() {
         assert!(path.next().is_none());
         assert_eq!(path.state(), Some(last));
     }
-    let error = path.continue_to(-1.0).unwrap_err();
+    let error = path.continue_to(ContactTarget::Load(-1.0)).unwrap_err();
     assert!(matches!(error, Error::NotPositive { .. }), "{error}");
-    path.continue_to(2.0 * last.load).unwrap();
-    assert!(path.last().unwrap().unwrap().load == 2.0 * last.load);
+    path.continue_to(ContactTarget::Load(2.0 * last.contact.load))
+        .unwrap();
+    assert!(path.last().unwrap().unwrap().contact.load == 2.0 * last.contact.load);
 }
 
 #[test]
@@ -145,7 +148,7 @@ fn a_path_that_failed_does_not_go_on() {
     let error = path.find_map(Result::err).unwrap();
     assert!(matches!(error, Error::MemoryBudget { .. }), "{error}");
     assert_eq!(path.end(), Some(LoadingEnd::Memory));
-    let error = path.continue_to(1e9).unwrap_err();
+    let error = path.continue_to(ContactTarget::Load(1e9)).unwrap_err();
     assert!(matches!(error, Error::CannotContinue { .. }), "{error}");
     assert_eq!(path.end(), Some(LoadingEnd::Memory));
 }

@@ -13,7 +13,7 @@ fn paths_end_exactly_at_their_limits() {
     let surface = rough(&grid(), 1);
     for (name, kernel) in kernels(grid()) {
         let all = states(&surface, &kernel);
-        let unloaded = all[0].mean_gap;
+        let unloaded = all[0].contact.mean_gap;
         let whole: History = all.iter().copied().collect();
         let area = grid().nominal_area();
         for step in [1, 2, 40, 150, 250] {
@@ -21,31 +21,31 @@ fn paths_end_exactly_at_their_limits() {
             let builder = || LoadingSolver::builder(&surface, &kernel);
             for (builder, end, target, quantity, read) in [
                 (
-                    builder().max_load(at.load),
+                    builder().max_load(at.contact.load),
                     LoadingEnd::Load,
-                    at.load,
-                    at.load,
+                    at.contact.load,
+                    at.contact.load,
                     History::at_load as Read,
                 ),
                 (
-                    builder().max_mean_pressure(at.load / area),
+                    builder().max_mean_pressure(at.contact.load / area),
                     LoadingEnd::Load,
-                    at.load / area * area,
-                    at.load,
+                    at.contact.load / area * area,
+                    at.contact.load,
                     History::at_load,
                 ),
                 (
-                    builder().max_approach(at.approach),
+                    builder().max_approach(at.contact.approach),
                     LoadingEnd::Approach,
-                    at.approach,
-                    at.approach,
+                    at.contact.approach,
+                    at.contact.approach,
                     History::at_approach,
                 ),
                 (
-                    builder().min_mean_gap(at.mean_gap),
+                    builder().min_mean_gap(at.contact.mean_gap),
                     LoadingEnd::MeanGap,
-                    at.mean_gap,
-                    at.mean_gap,
+                    at.contact.mean_gap,
+                    at.contact.mean_gap,
                     History::at_mean_gap,
                 ),
             ] {
@@ -61,9 +61,9 @@ fn paths_end_exactly_at_their_limits() {
                 assert_eq!(events.len() + 1, history.states().len());
                 assert!(events.iter().all(|s| s.event == ContactEvent::Touch));
                 let found = match end {
-                    LoadingEnd::Load => last.load,
-                    LoadingEnd::Approach => last.approach,
-                    _ => last.mean_gap,
+                    LoadingEnd::Load => last.contact.load,
+                    LoadingEnd::Approach => last.contact.approach,
+                    _ => last.contact.mean_gap,
                 };
                 // To the last bit, and the history has it there.
                 assert_eq!(found, target, "{context}");
@@ -83,7 +83,7 @@ fn paths_end_exactly_at_their_limits() {
                 let pressure = path.pressure().unwrap();
                 assert_eq!(path.max_pressure().unwrap(), pressure.max());
                 let load = pressure.sum() * path.grid().cell_area();
-                assert!((load / last.load - 1.0).abs() < 1e-12, "{context}");
+                assert!((load / last.contact.load - 1.0).abs() < 1e-12, "{context}");
                 let certificate = path.certificate().unwrap();
                 assert!(certificate.least_pressure >= -1e-12, "{context}");
                 assert!(certificate.least_gap >= -1e-12, "{context}");
@@ -106,14 +106,17 @@ fn until_is_any_limit() {
         path.last().unwrap().unwrap()
     };
     for (target, named) in [
-        (ContactTarget::Load(at.load), builder().max_load(at.load)),
         (
-            ContactTarget::Approach(at.approach),
-            builder().max_approach(at.approach),
+            ContactTarget::Load(at.contact.load),
+            builder().max_load(at.contact.load),
         ),
         (
-            ContactTarget::MeanGap(at.mean_gap),
-            builder().min_mean_gap(at.mean_gap),
+            ContactTarget::Approach(at.contact.approach),
+            builder().max_approach(at.contact.approach),
+        ),
+        (
+            ContactTarget::MeanGap(at.contact.mean_gap),
+            builder().min_mean_gap(at.contact.mean_gap),
         ),
         (
             ContactTarget::AreaFraction(0.25),
@@ -122,11 +125,6 @@ fn until_is_any_limit() {
     ] {
         assert_eq!(ends(builder().until(target)), ends(named), "{target:?}");
     }
-    // A plain number is a load.
-    assert_eq!(
-        ends(builder().until(at.load)),
-        ends(builder().max_load(at.load))
-    );
 }
 
 /// A path tells its limits, as they were given, and none that were not.
@@ -134,7 +132,7 @@ fn until_is_any_limit() {
 fn targets_are_the_limits() {
     let (surface, kernel) = (rough(&grid(), 2), &kernels(grid())[0].1);
     let builder = || LoadingSolver::builder(&surface, kernel);
-    let gap = 0.5 * states(&surface, kernel)[0].mean_gap;
+    let gap = 0.5 * states(&surface, kernel)[0].contact.mean_gap;
     let load = (builder().max_load(3.0), ContactTarget::Load(3.0));
     let approach = (builder().max_approach(1e-6), ContactTarget::Approach(1e-6));
     let mean_gap = (builder().min_mean_gap(gap), ContactTarget::MeanGap(gap));
@@ -165,14 +163,18 @@ fn states_are_read_where_they_were_asked_for() {
             let part = (0.618 * k as f64).fract();
             let between = |a: f64, b: f64| a + part * (b - a);
             let context = format!("{name}, step {}", before.step);
-            let load = between(before.load, after.load);
-            assert_eq!(history.at_load(load).unwrap().load, load, "{context}");
-            let approach = between(before.approach, after.approach);
+            let load = between(before.contact.load, after.contact.load);
+            assert_eq!(
+                history.at_load(load).unwrap().contact.load,
+                load,
+                "{context}"
+            );
+            let approach = between(before.contact.approach, after.contact.approach);
             let read = history.at_approach(approach).unwrap();
-            assert_eq!(read.approach, approach, "{context}");
-            let mean_gap = between(before.mean_gap, after.mean_gap);
+            assert_eq!(read.contact.approach, approach, "{context}");
+            let mean_gap = between(before.contact.mean_gap, after.contact.mean_gap);
             let read = history.at_mean_gap(mean_gap).unwrap();
-            assert_eq!(read.mean_gap, mean_gap, "{context}");
+            assert_eq!(read.contact.mean_gap, mean_gap, "{context}");
         }
     }
 }

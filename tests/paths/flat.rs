@@ -33,10 +33,10 @@ fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
     let fixed = fixed.build().unwrap().solve(1.0).unwrap().state;
     let is_full = |found: &LoadingState| {
         let context = format!("{found:?}");
-        assert_eq!(found.contact_nodes, nodes, "{context}");
-        assert_eq!(found.mean_gap, 0.0, "{context}");
-        assert_eq!(found.interfacial_stiffness, Some(f64::INFINITY));
-        match (found.contact_stiffness, fixed.contact_stiffness) {
+        assert_eq!(found.contact.contact_nodes, nodes, "{context}");
+        assert_eq!(found.contact.mean_gap, 0.0, "{context}");
+        assert_eq!(found.contact.interfacial_stiffness, Some(f64::INFINITY));
+        match (found.contact.contact_stiffness, fixed.contact_stiffness) {
             (Some(found), Some(fixed)) => assert!((found / fixed - 1.0).abs() < 1e-11, "{context}"),
             (found, fixed) => assert_eq!(found, fixed, "{context}"),
         }
@@ -54,17 +54,21 @@ fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
         let history: History = path.build().unwrap().map(Result::unwrap).collect();
         let (last, before) = history.states().split_last().unwrap();
         for state in before {
-            assert_eq!((state.load, state.mean_gap), (0.0, 0.0), "{state:?}");
-            let stiffness = state.interfacial_stiffness.unwrap();
+            assert_eq!(
+                (state.contact.load, state.contact.mean_gap),
+                (0.0, 0.0),
+                "{state:?}"
+            );
+            let stiffness = state.contact.interfacial_stiffness.unwrap();
             assert!(stiffness > 0.0 && stiffness.is_finite(), "{state:?}");
         }
         is_full(last);
-        assert_eq!(last.load, 0.0);
+        assert_eq!(last.contact.load, 0.0);
         let loaded = history.at_load(1.0).unwrap();
         is_full(&loaded);
         // On a periodic half-space both are 0 but for rounding.
         assert!(
-            (loaded.approach - fixed.approach).abs() < 1e-11,
+            (loaded.contact.approach - fixed.approach).abs() < 1e-11,
             "{loaded:?}"
         );
     }

@@ -52,16 +52,20 @@ fn states_beyond_their_interval_are_refused() {
             let context = format!("{name}, step {step}");
             let (state, next) = (all[step - 1], all[step]);
             // The contact of this step under the load of many events later, and earlier.
-            assert_refused(&mut path, &loaded(state, all[step + 40].load), &context);
-            let before = loaded(state, 0.3 * state.load);
+            assert_refused(
+                &mut path,
+                &loaded(state, all[step + 40].contact.load),
+                &context,
+            );
+            let before = loaded(state, 0.3 * state.contact.load);
             assert_refused(&mut path, &before, &context);
             // Inside the interval the same relations give states.
-            let inside = loaded(state, 0.5 * (state.load + next.load));
+            let inside = loaded(state, 0.5 * (state.contact.load + next.contact.load));
             assert!(path.pressure_at(&inside).is_ok(), "{context}");
         }
         // In full contact the line goes on.
         let last = all[all.len() - 1];
-        let beyond = loaded(last, 100.0 * last.load);
+        let beyond = loaded(last, 100.0 * last.contact.load);
         assert!(path.pressure_at(&beyond).is_ok(), "{name}");
     }
 }
@@ -88,5 +92,5 @@ fn states_that_were_tampered_with_are_refused() {
     // And nothing of that harms the path.
     let again = path.pressure_at(&state).unwrap();
     let load = again.sum() * path.grid().cell_area();
-    assert!((load / state.load - 1.0).abs() < 1e-12);
+    assert!((load / state.contact.load - 1.0).abs() < 1e-12);
 }

@@ -30,18 +30,18 @@ fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
             expected.step
         );
         for (found, expected) in [
-            (found.approach, expected.approach),
-            (found.load, expected.load),
-            (found.mean_gap, expected.mean_gap),
+            (found.contact.approach, expected.contact.approach),
+            (found.contact.load, expected.contact.load),
+            (found.contact.mean_gap, expected.contact.mean_gap),
             (
-                found.contact_stiffness.unwrap(),
-                expected.contact_stiffness.unwrap(),
+                found.contact.contact_stiffness.unwrap(),
+                expected.contact.contact_stiffness.unwrap(),
             ),
             (
-                found.interfacial_stiffness.unwrap(),
-                expected.interfacial_stiffness.unwrap(),
+                found.contact.interfacial_stiffness.unwrap(),
+                expected.contact.interfacial_stiffness.unwrap(),
             ),
-            (found.energy, expected.energy),
+            (found.contact.energy, expected.contact.energy),
         ] {
             let error = (found - expected).abs();
             assert!(

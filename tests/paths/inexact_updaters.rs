@@ -66,15 +66,13 @@ impl LinearUpdater for Rounded {
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let mut inner = RecursiveCholesky::new();
-        let mut joined = ContactSequence::new(problem.grid());
+        let before = ContactSequence::new(problem.grid());
         let nodes = &contact.order()[..request.count];
         let mut schur = Schur::default();
-        inner.watch(problem, &joined, nodes, &mut schur)?;
+        inner.watch(problem, &before, nodes, &mut schur)?;
         let positions: Vec<usize> = (0..nodes.len()).collect();
         let touched = WindowFactor::of(schur, &positions)?;
-        for &node in nodes {
-            joined.push(node)?;
-        }
+        let joined = ContactSequence::with_order(problem.grid(), nodes.iter().copied())?;
         inner.join(problem, &joined, &touched)?;
         inner.solve(problem, &joined, request, solution)?;
         if request.count == contact.len() {

@@ -53,11 +53,17 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     assert_eq!(grid.coordinates(order[state.step - 1]), state.node);
     assert_eq!(map.iter().filter(|inside| **inside).count(), state.step);
     let area = state.step as f64 * grid.cell_area();
-    close("area", state.contact_area, area, 4.0 * f64::EPSILON, area);
+    close(
+        "area",
+        state.contact.contact_area,
+        area,
+        4.0 * f64::EPSILON,
+        area,
+    );
     let fraction = state.step as f64 / nodes;
     close(
         "fraction",
-        state.contact_area_fraction,
+        state.contact.contact_area_fraction,
         fraction,
         f64::EPSILON,
         fraction,
@@ -65,7 +71,7 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
 
     // Complementarity. Lengths that cancel in the gap: the initial gap and the approach.
     let mean = pressure.sum() / state.step as f64;
-    let length = sq.max(state.approach);
+    let length = sq.max(state.contact.approach);
     for ((&p, &g), &inside) in pressure.iter().zip(&gap).zip(&map) {
         if inside {
             assert!(
@@ -83,17 +89,17 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     close("newest pressure", pressure[state.node], 0.0, EXACT, mean);
 
     let load = grid.cell_area() * pressure.sum();
-    close("load", state.load, load, SUMMED, load);
+    close("load", state.contact.load, load, SUMMED, load);
     // Elastic energy is half of pressure times displacement: load rises from nothing, and pressure
     // and gap are never both there. The state has it as the work of the load.
     let energy = 0.5 * grid.cell_area() * pressure.dot(&displacement);
-    close("energy", state.energy, energy, SUMMED, energy);
+    close("energy", state.contact.energy, energy, SUMMED, energy);
     let mean_gap = if map.iter().all(|inside| *inside) {
         0.0
     } else {
         gap.mean()
     };
-    close("mean gap", state.mean_gap, mean_gap, SUMMED, length);
+    close("mean gap", state.contact.mean_gap, mean_gap, SUMMED, length);
 
     let certificate = path.certificate().unwrap();
     assert!(certificate.least_pressure >= -EXACT, "{certificate:?}");
@@ -117,28 +123,40 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     {
         assert_eq!(state.step, last.step + 1);
         // Monotone to the last bit: all are sums of terms that are not negative.
-        assert!(state.approach >= last.approach, "{last:?} {state:?}");
-        assert!(state.load >= last.load, "{last:?} {state:?}");
-        assert!(state.contact_area > last.contact_area, "{last:?} {state:?}");
         assert!(
-            state.contact_stiffness >= last.contact_stiffness,
+            state.contact.approach >= last.contact.approach,
+            "{last:?} {state:?}"
+        );
+        assert!(
+            state.contact.load >= last.contact.load,
+            "{last:?} {state:?}"
+        );
+        assert!(
+            state.contact.contact_area > last.contact.contact_area,
+            "{last:?} {state:?}"
+        );
+        assert!(
+            state.contact.contact_stiffness >= last.contact.contact_stiffness,
             "{last:?} {state:?}"
         );
         // Stiffnesses are the slopes from there to here, of load and mean gap from the fields.
-        let change = state.approach - last.approach;
+        let change = state.contact.approach - last.contact.approach;
         close(
             "dW",
             load - last_load,
-            last.contact_stiffness.unwrap() * change,
+            last.contact.contact_stiffness.unwrap() * change,
             SUMMED,
             load,
         );
-        let closed = (load - last_load) / last.interfacial_stiffness.unwrap();
+        let closed = (load - last_load) / last.contact.interfacial_stiffness.unwrap();
         close("dW/Ki", last_gap - mean_gap, closed, SUMMED, length);
         assert!(mean_gap <= last_gap + SUMMED * length);
     } else {
-        assert_eq!((state.step, state.approach, state.load), (1, 0.0, 0.0));
-        assert_eq!(state.energy, 0.0);
+        assert_eq!(
+            (state.step, state.contact.approach, state.contact.load),
+            (1, 0.0, 0.0)
+        );
+        assert_eq!(state.contact.energy, 0.0);
     }
     seen
 }
@@ -171,8 +189,8 @@ proptest! {
         // The end of every path is the rigid flat punch, the stiffest of all.
         let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
         let punch = LoadingSolver::new(&FlatPunch::default(), &kernel).unwrap();
-        let stiffest = punch.last().unwrap().unwrap().contact_stiffness.unwrap();
-        close("punch", last.contact_stiffness.unwrap(), stiffest, SUMMED, stiffest);
+        let stiffest = punch.last().unwrap().unwrap().contact.contact_stiffness.unwrap();
+        close("punch", last.contact.contact_stiffness.unwrap(), stiffest, SUMMED, stiffest);
     }
 
     /// Pressure, and contact stiffness as a finite difference of load inside the next interval,
@@ -189,10 +207,10 @@ proptest! {
         for pair in states.windows(2) {
             let [state, next] = [pair[0], pair[1]];
             let contact = &order[..state.step];
-            let width = next.approach - state.approach;
+            let width = next.contact.approach - state.contact.approach;
             let mut loads = [0.0; 2];
             for (load, part) in loads.iter_mut().zip([0.25, 0.75]) {
-                let approach = state.approach + part * width;
+                let approach = state.contact.approach + part * width;
                 let expected = dense_pressure(&kernel, contact, &gap, approach);
                 let inside = history.at_approach(approach).unwrap();
                 let pressure = path.pressure_at(&inside).unwrap();
@@ -202,10 +220,10 @@ proptest! {
                     close("pressure", pressure[node], p, EXACT, scale);
                 }
                 *load = cell * expected.sum();
-                close("load", inside.load, *load, SUMMED, *load);
+                close("load", inside.contact.load, *load, SUMMED, *load);
             }
-            let slope = state.contact_stiffness.unwrap() * 0.5 * width;
-            close("stiffness", loads[1] - loads[0], slope, SUMMED, next.load);
+            let slope = state.contact.contact_stiffness.unwrap() * 0.5 * width;
+            close("stiffness", loads[1] - loads[0], slope, SUMMED, next.contact.load);
         }
     }
 
@@ -213,7 +231,7 @@ proptest! {
     #[test]
     fn windows_and_updaters_give_one_path(case in case(12, noise()), size in 2_usize..40) {
         let reference = states(&case, Some(1));
-        let length = reference.last().unwrap().approach;
+        let length = reference.last().unwrap().contact.approach;
         let dense: Vec<_> = {
             let surface = HeightMap::new(case.heights()).unwrap();
             let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
@@ -228,17 +246,17 @@ proptest! {
                 // The crate promises 1e-9. Two paths that are exact to rounding differ by 1e-13 at
                 // worst, interfacial stiffness by 3e-12: near full contact its inverse is a
                 // difference of lengths that are nearly equal.
-                close("approach", a.approach, b.approach, 1e-11, a.approach);
-                close("load", a.load, b.load, 1e-11, a.load);
-                close("energy", a.energy, b.energy, 1e-11, a.energy);
-                let (k, ki) = (a.contact_stiffness.unwrap(), a.interfacial_stiffness.unwrap());
-                close("stiffness", k, b.contact_stiffness.unwrap(), 1e-11, k);
+                close("approach", a.contact.approach, b.contact.approach, 1e-11, a.contact.approach);
+                close("load", a.contact.load, b.contact.load, 1e-11, a.contact.load);
+                close("energy", a.contact.energy, b.contact.energy, 1e-11, a.contact.energy);
+                let (k, ki) = (a.contact.contact_stiffness.unwrap(), a.contact.interfacial_stiffness.unwrap());
+                close("stiffness", k, b.contact.contact_stiffness.unwrap(), 1e-11, k);
                 // The mean gap is a difference of lengths as long as the approach.
-                close("mean gap", a.mean_gap, b.mean_gap, SUMMED, length);
+                close("mean gap", a.contact.mean_gap, b.contact.mean_gap, SUMMED, length);
                 if ki.is_finite() {
-                    close("interfacial stiffness", ki, b.interfacial_stiffness.unwrap(), 1e-9, ki);
+                    close("interfacial stiffness", ki, b.contact.interfacial_stiffness.unwrap(), 1e-9, ki);
                 } else {
-                    prop_assert_eq!(Some(ki), b.interfacial_stiffness);
+                    prop_assert_eq!(Some(ki), b.contact.interfacial_stiffness);
                 }
             }
         }
@@ -256,20 +274,20 @@ proptest! {
         let gap = initial_gap(&case.heights());
         // Beyond the last event too, in full contact.
         for part in parts {
-            let load = 1.2 * part * last.load;
+            let load = 1.2 * part * last.contact.load;
             let state = history.at_load(load).unwrap();
             let pressure = path.pressure_at(&state).unwrap();
             let displacement = convolution.convolve(&pressure).unwrap();
             let energy = 0.5 * cell * pressure.dot(&displacement);
-            prop_assert_eq!(state.load, load);
+            prop_assert_eq!(state.contact.load, load);
             close("load", cell * pressure.sum(), load, SUMMED, load);
-            close("energy", state.energy, energy, SUMMED, energy);
-            let sum: f64 = displacement.iter().zip(&gap).map(|(u, g)| g + u - state.approach).sum();
-            let length = last.approach.max(state.approach);
-            close("mean gap", state.mean_gap, sum / gap.len() as f64, SUMMED, length);
+            close("energy", state.contact.energy, energy, SUMMED, energy);
+            let sum: f64 = displacement.iter().zip(&gap).map(|(u, g)| g + u - state.contact.approach).sum();
+            let length = last.contact.approach.max(state.contact.approach);
+            close("mean gap", state.contact.mean_gap, sum / gap.len() as f64, SUMMED, length);
             // Reading by approach finds the same instant.
-            let same = history.at_approach(state.approach).unwrap();
-            close("load", same.load, load, SUMMED, load);
+            let same = history.at_approach(state.contact.approach).unwrap();
+            close("load", same.contact.load, load, SUMMED, load);
         }
         prop_assert!(history.at_load(-1.0).is_none());
         prop_assert!(history.at_load(f64::NAN).is_none());
@@ -301,13 +319,13 @@ fn bits(states: &[LoadingState]) -> Vec<[u64; 10]> {
             s.step as u64,
             s.node.0 as u64,
             s.node.1 as u64,
-            s.approach.to_bits(),
-            s.load.to_bits(),
-            s.contact_area.to_bits(),
-            s.mean_gap.to_bits(),
-            s.contact_stiffness.unwrap().to_bits(),
-            s.interfacial_stiffness.unwrap().to_bits(),
-            s.energy.to_bits(),
+            s.contact.approach.to_bits(),
+            s.contact.load.to_bits(),
+            s.contact.contact_area.to_bits(),
+            s.contact.mean_gap.to_bits(),
+            s.contact.contact_stiffness.unwrap().to_bits(),
+            s.contact.interfacial_stiffness.unwrap().to_bits(),
+            s.contact.energy.to_bits(),
         ]
     };
     states.iter().map(row).collect()

@@ -35,13 +35,17 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
         let state = solver.next().unwrap().unwrap();
         assert_eq!((state.step, state.node), (step, (ix, iy)), "{name}");
         for (column, found, expected) in [
-            ("load", state.load, load),
-            ("contact area", state.contact_area, area),
-            ("area fraction", state.contact_area_fraction, fraction),
-            ("mean gap", state.mean_gap, mean_gap),
+            ("load", state.contact.load, load),
+            ("contact area", state.contact.contact_area, area),
+            (
+                "area fraction",
+                state.contact.contact_area_fraction,
+                fraction,
+            ),
+            ("mean gap", state.contact.mean_gap, mean_gap),
             (
                 "interfacial stiffness",
-                state.interfacial_stiffness.unwrap(),
+                state.contact.interfacial_stiffness.unwrap(),
                 stiffness,
             ),
         ] {
@@ -52,23 +56,27 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
             );
         }
         // The mean planes approach by what the mean gap closes, from first touch on.
-        let first = *first_gap.get_or_insert(state.mean_gap);
-        let closed = first - state.mean_gap;
+        let first = *first_gap.get_or_insert(state.contact.mean_gap);
+        let closed = first - state.contact.mean_gap;
         assert!(
-            (state.approach - closed).abs() < 1e-12 * first,
+            (state.contact.approach - closed).abs() < 1e-12 * first,
             "{name}, step {step}"
         );
-        assert_eq!(state.contact_stiffness, None);
+        assert_eq!(state.contact.contact_stiffness, None);
         // Energy grows by trapezoids of load over that approach: both sides round at 1e-13 of it.
         if let Some((load, approach, energy)) = last {
-            let work: f64 = 0.5 * (load + state.load) * (state.approach - approach);
-            let error = (state.energy - energy - work).abs();
+            let work: f64 = 0.5 * (load + state.contact.load) * (state.contact.approach - approach);
+            let error = (state.contact.energy - energy - work).abs();
             assert!(
-                error <= 1e-11 * state.energy,
+                error <= 1e-11 * state.contact.energy,
                 "{name}, step {step}: {error:e}"
             );
         }
-        last = Some((state.load, state.approach, state.energy));
+        last = Some((
+            state.contact.load,
+            state.contact.approach,
+            state.contact.energy,
+        ));
         events += 1;
     }
     assert!(solver.next().is_none());
@@ -143,12 +151,15 @@ fn conjugate_gradients_follow_a_periodic_path() {
             .map(Result::unwrap)
             .collect();
         assert_eq!(factored.len(), iterated.len());
-        let first = factored[0].mean_gap;
+        let first = factored[0].contact.mean_gap;
         for (a, b) in factored.iter().zip(&iterated) {
             assert_eq!((a.step, a.node), (b.step, b.node));
             // Between the ends of windows; see `without_factor`.
-            assert!((a.load - b.load).abs() <= 1e-5 * a.load, "{a:?} {b:?}");
-            let error = (a.mean_gap - b.mean_gap).abs();
+            assert!(
+                (a.contact.load - b.contact.load).abs() <= 1e-5 * a.contact.load,
+                "{a:?} {b:?}"
+            );
+            let error = (a.contact.mean_gap - b.contact.mean_gap).abs();
             assert!(error <= 1e-6 * first, "{a:?} {b:?}");
         }
     }
@@ -176,7 +187,7 @@ fn fields_of_a_path_in_two_gauges() {
         let expected = a.gap().unwrap();
         let gap = map.heights(&grid).unwrap();
         let gap = gap.map(|height| gap.max() - height) + u;
-        let gap = gap.map(|value| value - states[0].approach);
+        let gap = gap.map(|value| value - states[0].contact.approach);
         assert!((gap - expected).amax() < 1e-12 * v.amax(), "step {step}");
     }
 }

@@ -21,38 +21,38 @@ fn the_approach_contains_the_mean_displacement() {
     while let Some(state) = path.next() {
         let state = state.unwrap();
         if state.step == 1 {
-            unloaded = state.mean_gap;
+            unloaded = state.contact.mean_gap;
         }
         // ḡ = ḡ₀ + ū − δ: sums of some hundred lengths of the size of the approach.
-        let mean = mean_displacement(state.load, &grid);
-        let error = state.mean_gap - (unloaded + mean - state.approach);
+        let mean = mean_displacement(state.contact.load, &grid);
+        let error = state.contact.mean_gap - (unloaded + mean - state.contact.approach);
         assert!(
-            error.abs() <= 1e-12 * (unloaded + state.approach),
+            error.abs() <= 1e-12 * (unloaded + state.contact.approach),
             "{state:?}: {error:e}"
         );
         let displacement = path.displacement().unwrap().mean();
         assert!((displacement - mean).abs() <= 1e-12 * mean, "{state:?}");
         // There is a base to approach: dW/dδ, which is the slope from event to event.
-        let stiffness = state.contact_stiffness.unwrap();
-        let interfacial = state.interfacial_stiffness.unwrap();
+        let stiffness = state.contact.contact_stiffness.unwrap();
+        let interfacial = state.contact.interfacial_stiffness.unwrap();
         // Base and interface in series: 1/K = 1/Kᵢ + compliance/area. Rounding of two inverses.
         let series = 1.0 / interfacial + COMPLIANCE / grid.nominal_area();
         assert!((stiffness * series - 1.0).abs() < 1e-9, "{state:?}");
         if let Some((approach, load, last)) = before {
-            let change = last * (state.approach - approach);
+            let change = last * (state.contact.approach - approach);
             assert!(
-                (state.load - load - change).abs() <= 1e-11 * state.load,
+                (state.contact.load - load - change).abs() <= 1e-11 * state.contact.load,
                 "{state:?}"
             );
         }
-        before = Some((state.approach, state.load, stiffness));
+        before = Some((state.contact.approach, state.contact.load, stiffness));
     }
     // Full contact goes on as the base lets it.
     let last = path.state().unwrap();
-    assert_eq!(last.contact_nodes, grid.nodes());
+    assert_eq!(last.contact.contact_nodes, grid.nodes());
     let stiffest = grid.nominal_area() / COMPLIANCE;
-    assert!((last.contact_stiffness.unwrap() / stiffest - 1.0).abs() < 1e-11);
-    assert_eq!(last.interfacial_stiffness, Some(f64::INFINITY));
+    assert!((last.contact.contact_stiffness.unwrap() / stiffest - 1.0).abs() < 1e-11);
+    assert_eq!(last.contact.interfacial_stiffness, Some(f64::INFINITY));
 }
 
 #[test]
@@ -70,17 +70,17 @@ fn fixed_loads_agree_with_the_path() {
         let expected = half_way(all[step - 1], Some(all[step]));
         let pressure = path.pressure_at(&expected).unwrap();
         for solution in [
-            solver.solve(expected.load).unwrap(),
-            solver.solve_approach(expected.approach).unwrap(),
+            solver.solve(expected.contact.load).unwrap(),
+            solver.solve_approach(expected.contact.approach).unwrap(),
         ] {
             let found = expected_like(expected, solution.state);
             // The tolerance, times a condition number of some 1e2.
-            assert_close(&found, &expected, 1e-8, all[0].mean_gap);
-            assert!(found.contact_stiffness.is_some());
+            assert_close(&found, &expected, 1e-8, all[0].contact.mean_gap);
+            assert!(found.contact.contact_stiffness.is_some());
             let error = (&solution.pressure - &pressure).amax();
             assert!(error <= 1e-8 * pressure.amax(), "step {step}: {error:e}");
             let mean = solution.displacement.mean();
-            let error = mean / mean_displacement(found.load, &grid) - 1.0;
+            let error = mean / mean_displacement(found.contact.load, &grid) - 1.0;
             assert!(error.abs() < 1e-11, "step {step}: {error:e}");
         }
     }
@@ -109,9 +109,16 @@ fn an_arbitrary_mean_is_another_body() {
     let b = LoadingSolver::new(&surface, &arbitrary).unwrap();
     for (a, b) in a.map(Result::unwrap).zip(b.map(Result::unwrap)) {
         assert_eq!(a.node, b.node);
-        assert!((a.load - b.load).abs() <= 1e-10 * a.load, "{a:?} {b:?}");
-        assert_eq!(b.contact_stiffness, None);
-        let difference = a.approach - b.approach - mean_displacement(a.load, &grid);
-        assert!(difference.abs() <= 1e-11 * a.approach, "{a:?} {b:?}");
+        assert!(
+            (a.contact.load - b.contact.load).abs() <= 1e-10 * a.contact.load,
+            "{a:?} {b:?}"
+        );
+        assert_eq!(b.contact.contact_stiffness, None);
+        let difference =
+            a.contact.approach - b.contact.approach - mean_displacement(a.contact.load, &grid);
+        assert!(
+            difference.abs() <= 1e-11 * a.contact.approach,
+            "{a:?} {b:?}"
+        );
     }
 }

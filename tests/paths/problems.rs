@@ -68,19 +68,34 @@ pub(crate) fn assert_close(
     unloaded: f64,
 ) {
     let context = format!("{found:?} {expected:?}");
-    assert_eq!(found.contact_nodes, expected.contact_nodes, "{context}");
-    let contact_stiffness = |state: &LoadingState| state.contact_stiffness.unwrap_or(0.0);
-    let interfacial = |state: &LoadingState| state.interfacial_stiffness.unwrap();
+    assert_eq!(
+        found.contact.contact_nodes, expected.contact.contact_nodes,
+        "{context}"
+    );
+    let contact_stiffness = |state: &LoadingState| state.contact.contact_stiffness.unwrap_or(0.0);
+    let interfacial = |state: &LoadingState| state.contact.interfacial_stiffness.unwrap();
     for (a, b, scale) in [
-        (found.approach, expected.approach, expected.approach),
-        (found.load, expected.load, expected.load),
         (
-            found.contact_area,
-            expected.contact_area,
-            expected.contact_area,
+            found.contact.approach,
+            expected.contact.approach,
+            expected.contact.approach,
         ),
-        (found.mean_gap, expected.mean_gap, unloaded),
-        (found.energy, expected.energy, expected.energy),
+        (
+            found.contact.load,
+            expected.contact.load,
+            expected.contact.load,
+        ),
+        (
+            found.contact.contact_area,
+            expected.contact.contact_area,
+            expected.contact.contact_area,
+        ),
+        (found.contact.mean_gap, expected.contact.mean_gap, unloaded),
+        (
+            found.contact.energy,
+            expected.contact.energy,
+            expected.contact.energy,
+        ),
         (
             contact_stiffness(found),
             contact_stiffness(expected),

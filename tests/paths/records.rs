@@ -48,7 +48,7 @@ fn resumed_paths_are_uninterrupted_ones() {
             assert_eq!(rest.len(), all.len() - at, "{name} {at}");
             for (found, expected) in rest.iter().zip(&all[at..]) {
                 assert_eq!(found.node, expected.node, "{name} {at}");
-                assert_close(found, expected, 1e-10, all[0].mean_gap);
+                assert_close(found, expected, 1e-10, all[0].contact.mean_gap);
             }
         }
     }
@@ -85,7 +85,9 @@ fn records_make_their_kernel_again() {
         let record = LoadingRecord::new(&path, history).unwrap();
         let mut resumed = record.resume().unwrap();
         resumed
-            .continue_to(ContactTarget::Load(0.5 * (all[170].load + all[171].load)))
+            .continue_to(ContactTarget::Load(
+                0.5 * (all[170].contact.load + all[171].contact.load),
+            ))
             .unwrap();
         let last = resumed.by_ref().last().unwrap().unwrap();
         assert_eq!(last.step, 171);
@@ -102,7 +104,7 @@ fn records_know_the_fields_of_their_states() {
     let mut replay = record.replay().unwrap();
     let history = record.history();
     let between = history
-        .at_load(0.4 * (all[90].load + all[91].load))
+        .at_load(0.4 * (all[90].contact.load + all[91].contact.load))
         .unwrap();
     for state in [all[0], all[40], between, all[179]] {
         let expected = path.pressure_at(&state).unwrap();
@@ -111,12 +113,12 @@ fn records_know_the_fields_of_their_states() {
         // Iterations end at a residual of 1e-10 of the approach.
         assert!((&found - &expected).amax() <= 1e-7 * greatest);
         let gap = (replay.gap_at(&state).unwrap(), path.gap_at(&state).unwrap());
-        assert!((gap.0 - gap.1).amax() <= 1e-9 * state.approach.max(1e-9));
+        assert!((gap.0 - gap.1).amax() <= 1e-9 * state.contact.approach.max(1e-9));
         let contact = replay.contact_map_at(&state).unwrap();
         assert_eq!(contact, path.contact_map_at(&state).unwrap());
         assert_eq!(
             contact.iter().filter(|is_in| **is_in).count(),
-            state.contact_nodes
+            state.contact.contact_nodes
         );
     }
     let beyond = replay.pressure_at(&all[180]);
@@ -172,10 +174,10 @@ fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
             |quantity: fn(&LoadingState) -> f64| 0.3 * quantity(&from) + 0.7 * quantity(&to);
         let surface = rough(&grid(), 5);
         for target in [
-            ContactTarget::Load(between(|s| s.load)),
-            ContactTarget::Approach(between(|s| s.approach)),
-            ContactTarget::MeanGap(between(|s| s.mean_gap)),
-            ContactTarget::AreaFraction(from.contact_area_fraction),
+            ContactTarget::Load(between(|s| s.contact.load)),
+            ContactTarget::Approach(between(|s| s.contact.approach)),
+            ContactTarget::MeanGap(between(|s| s.contact.mean_gap)),
+            ContactTarget::AreaFraction(from.contact.contact_area_fraction),
         ] {
             let builder = || {
                 LoadingSolver::builder(&surface, &kernel)
@@ -199,7 +201,7 @@ fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
             assert_eq!(end, stopped.end(), "{name} {target:?}");
             assert_eq!(read.states().len(), expected.len(), "{name} {target:?}");
             for (found, expected) in read.states().iter().zip(&expected) {
-                assert_close(found, expected, 1e-10, all[0].mean_gap);
+                assert_close(found, expected, 1e-10, all[0].contact.mean_gap);
             }
             // To where it has got, a path is resumed, and ends there again.
             let resumed = builder().resume(&read).unwrap();
@@ -208,7 +210,7 @@ fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
             assert_eq!((same.states(), end), (read.states(), None));
         }
         // What it has not passed leaves all as it is; what makes no sense is refused.
-        let far = [ContactTarget::Load(2.0 * all[240].load)];
+        let far = [ContactTarget::Load(2.0 * all[240].contact.load)];
         let (same, end) = record.history().ending_at(&grid(), &far).unwrap();
         assert_eq!((same.states().len(), end), (240, None));
         assert!(
@@ -341,7 +343,10 @@ fn states_in_no_order_of_a_path_are_refused() {
             approach,
         }) => {
             assert_eq!((quantity, value, expected), numbers);
-            assert_eq!((load, approach), (all[20].load, all[20].approach));
+            assert_eq!(
+                (load, approach),
+                (all[20].contact.load, all[20].contact.approach)
+            );
             step
         }
         other => panic!("{other:?}"),
@@ -364,7 +369,7 @@ fn states_in_no_order_of_a_path_are_refused() {
 fn a_limit_is_no_event() {
     let kernel = Boussinesq::new(grid(), 1e9).unwrap();
     let (_, all) = whole(&kernel, RecursiveCholesky::new());
-    let load = 0.3 * all[99].load + 0.7 * all[100].load;
+    let load = 0.3 * all[99].contact.load + 0.7 * all[100].contact.load;
     let surface = rough(&grid(), 5);
     let mut path = LoadingSolver::builder(&surface, &kernel)
         .max_load(load)
@@ -374,17 +379,17 @@ fn a_limit_is_no_event() {
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.states().len(), 101);
     assert_eq!(record.contact().unwrap().len(), 100);
-    assert_eq!(record.history().at_load(load).unwrap().load, load);
+    assert_eq!(record.history().at_load(load).unwrap().contact.load, load);
     assert_eq!(record.settings().rule, ContactRule::FirstContact);
     let mut resumed = record.resume().unwrap();
     // It is to end where it ended, and then goes on.
     let last = resumed.by_ref().last().unwrap().unwrap();
-    assert_eq!((last.step, last.load), (100, load));
+    assert_eq!((last.step, last.contact.load), (100, load));
     resumed
         .continue_to(ContactTarget::AreaFraction(1.0))
         .unwrap();
     let next = resumed.next().unwrap().unwrap();
-    assert_close(&next, &all[100], 1e-10, all[0].mean_gap);
+    assert_close(&next, &all[100], 1e-10, all[0].contact.mean_gap);
 }
 
 /// Read anywhere, a record gives the state of a path that was stopped there, and of a solver that knows one load
@@ -396,17 +401,17 @@ fn a_record_reads_as_a_path_that_stops_there() {
         let (path, all) = whole(&*kernel, RecursiveCholesky::new());
         let record = cut(&path, &all, all.len());
         let history = record.history();
-        let unloaded = all[0].mean_gap;
+        let unloaded = all[0].contact.mean_gap;
         for _ in 0..12 {
             // Between two events, from the sixth on to the last but one.
             let k = random.random_range(5..all.len() - 1);
             let share: f64 = random.random_range(0.05..0.95);
             let between = |a: f64, b: f64| a + share * (b - a);
             let (a, b) = (&all[k], &all[k + 1]);
-            let load = between(a.load, b.load);
-            let approach = between(a.approach, b.approach);
-            let mean_gap = between(a.mean_gap, b.mean_gap);
-            let fraction = a.contact_area_fraction;
+            let load = between(a.contact.load, b.contact.load);
+            let approach = between(a.contact.approach, b.contact.approach);
+            let mean_gap = between(a.contact.mean_gap, b.contact.mean_gap);
+            let fraction = a.contact.contact_area_fraction;
             let read = [
                 (ContactTarget::Load(load), history.at_load(load)),
                 (
@@ -438,10 +443,10 @@ fn a_record_reads_as_a_path_that_stops_there() {
                 .unwrap();
             let found = solver.solve(load).unwrap().state;
             let read = history.at_load(load).unwrap();
-            assert_eq!(found.contact_nodes, read.contact_nodes, "{name}");
-            let error = (found.approach - read.approach).abs();
-            assert!(error <= 1e-7 * read.approach, "{name} {error}");
-            let error = (found.mean_gap - read.mean_gap).abs();
+            assert_eq!(found.contact_nodes, read.contact.contact_nodes, "{name}");
+            let error = (found.approach - read.contact.approach).abs();
+            assert!(error <= 1e-7 * read.contact.approach, "{name} {error}");
+            let error = (found.mean_gap - read.contact.mean_gap).abs();
             assert!(error <= 1e-7 * unloaded, "{name} {error}");
         }
     }

@@ -55,7 +55,7 @@ fn what_is_written_is_read_back() {
     let file = Scratch::new("whole");
     let whole = record(None);
     // Half of the load of the path: it ends at a limit.
-    let half = record(Some(0.5 * whole.states()[250].load));
+    let half = record(Some(0.5 * whole.states()[250].contact.load));
     for record in [whole, half] {
         let gap = record.heights().matrix().map(|height| -height);
         record.write_npz(&file.0, &[("initial_gap", &gap)]).unwrap();
@@ -80,8 +80,8 @@ fn a_periodic_path_has_no_contact_stiffness() {
     let read = LoadingRecord::read_npz(&file.0).unwrap();
     assert!(same(&read, &record));
     let last = read.states().last().unwrap();
-    assert_eq!(last.contact_stiffness, None);
-    assert_eq!(last.interfacial_stiffness, Some(f64::INFINITY));
+    assert_eq!(last.contact.contact_stiffness, None);
+    assert_eq!(last.contact.interfacial_stiffness, Some(f64::INFINITY));
 }
 
 /// Random corruptions, and truncations: an error, or the record itself where nothing that is read was hit. The
@@ -89,7 +89,7 @@ fn a_periodic_path_has_no_contact_stiffness() {
 #[test]
 fn damaged_records_are_refused() {
     let file = Scratch::new("damaged");
-    let record = record(Some(20.0 * record(None).states()[20].load));
+    let record = record(Some(20.0 * record(None).states()[20].contact.load));
     record.write_npz(&file.0, &[]).unwrap();
     let bytes = fs::read(&file.0).unwrap();
     let read = |bytes: &[u8]| {

@@ -20,24 +20,28 @@ fn compare(name: &str, tolerance: f64, events: &[Event], states: &[LoadingState]
             "{context}"
         );
         for (column, expected, found) in [
-            ("approach", event.approach, state.approach),
-            ("load", event.load, state.load),
-            ("contact_area", event.contact_area, state.contact_area),
+            ("approach", event.approach, state.contact.approach),
+            ("load", event.load, state.contact.load),
+            (
+                "contact_area",
+                event.contact_area,
+                state.contact.contact_area,
+            ),
             (
                 "fraction",
                 event.contact_area_fraction,
-                state.contact_area_fraction,
+                state.contact.contact_area_fraction,
             ),
-            ("mean_gap", event.mean_gap, state.mean_gap),
+            ("mean_gap", event.mean_gap, state.contact.mean_gap),
             (
                 "contact_stiffness",
                 event.contact_stiffness,
-                state.contact_stiffness.unwrap(),
+                state.contact.contact_stiffness.unwrap(),
             ),
             (
                 "interfacial",
                 event.interfacial_stiffness,
-                state.interfacial_stiffness.unwrap(),
+                state.contact.interfacial_stiffness.unwrap(),
             ),
         ] {
             if expected == found {

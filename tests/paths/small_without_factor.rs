@@ -47,12 +47,14 @@ fn nodes_of_the_same_height_are_told_apart() {
     let rule = ContactRule::FirstContact;
     let exact = states(RecursiveCholesky::new(), &map, &kernel, rule);
     let found = states(ConjugateGradient::new(), &map, &kernel, rule);
-    assert!(exact[3].approach - exact[2].approach > 5e-6 * exact[2].approach);
+    assert!(
+        exact[3].contact.approach - exact[2].contact.approach > 5e-6 * exact[2].contact.approach
+    );
     for (found, exact) in found.iter().zip(&exact) {
         assert_eq!(found.node, exact.node);
         // Ties are closer than 1e-9 of the approach.
-        let off = (found.approach - exact.approach).abs();
-        assert!(off <= 1e-9 * exact.approach, "{off:e} at {exact:?}");
+        let off = (found.contact.approach - exact.contact.approach).abs();
+        assert!(off <= 1e-9 * exact.contact.approach, "{off:e} at {exact:?}");
     }
 }
 
@@ -76,11 +78,11 @@ fn single_events_say_what_they_are_off_by() {
         assert_eq!(found.len(), exact.len());
         for (found, exact) in found.iter().zip(&exact) {
             assert_eq!((found.node, found.event), (exact.node, exact.event));
-            let off = (found.approach - exact.approach).abs();
+            let off = (found.contact.approach - exact.contact.approach).abs();
             let error = found.approach_error;
             assert!(off <= error, "{off:e} of {error:e} at {exact:?}");
             // And it says something: the tolerance of the solutions is 1e-10 of the approach.
-            let enough = 1e-6 * exact.approach.max(1e-3);
+            let enough = 1e-6 * exact.contact.approach.max(1e-3);
             assert!(error > 0.0 && error < enough, "{error:e} at {exact:?}");
             assert_eq!(exact.approach_error, 0.0);
         }

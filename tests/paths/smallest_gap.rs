@@ -92,7 +92,7 @@ fn the_papers_procedure_is_reproduced_step_by_step() {
             // Approach and pressure are differences of numbers of the size of these scales.
             let approach = expected.h0 + heights.max_height();
             assert!(
-                (state.approach - approach).abs() < 1e-12 * length,
+                (state.contact.approach - approach).abs() < 1e-12 * length,
                 "step {}",
                 state.step
             );
@@ -107,7 +107,7 @@ fn the_papers_procedure_is_reproduced_step_by_step() {
             let load = expected.pressure.sum() * grid.cell_area();
             let load_scale = scale * grid.cell_area() * state.step as f64;
             assert!(
-                (state.load - load).abs() < 1e-12 * load_scale,
+                (state.contact.load - load).abs() < 1e-12 * load_scale,
                 "step {}",
                 state.step
             );
@@ -155,8 +155,8 @@ fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
         faults.worst_pressure = faults.worst_pressure.min(p);
         faults.overlap += usize::from(g < -1e-9);
         faults.worst_gap = faults.worst_gap.min(g);
-        faults.backward += usize::from(state.approach < approach);
-        approach = state.approach;
+        faults.backward += usize::from(state.contact.approach < approach);
+        approach = state.contact.approach;
     }
     faults
 }

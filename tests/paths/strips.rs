@@ -22,11 +22,15 @@ fn strip(grid: &Grid, seed: u64) -> HeightMap {
 /// The greatest relative difference of loads and interfacial stiffnesses of states with the same nodes in contact.
 fn greatest_differences(found: &[LoadingState], exact: &[LoadingState]) -> [f64; 2] {
     let mut greatest = [0.0_f64; 2];
-    for (a, b) in found.iter().zip(exact).filter(|(_, b)| b.load > 0.0) {
-        greatest[0] = greatest[0].max((a.load / b.load - 1.0).abs());
+    for (a, b) in found
+        .iter()
+        .zip(exact)
+        .filter(|(_, b)| b.contact.load > 0.0)
+    {
+        greatest[0] = greatest[0].max((a.contact.load / b.contact.load - 1.0).abs());
         let (a, b) = (
-            a.interfacial_stiffness.unwrap(),
-            b.interfacial_stiffness.unwrap(),
+            a.contact.interfacial_stiffness.unwrap(),
+            b.contact.interfacial_stiffness.unwrap(),
         );
         if b.is_finite() {
             greatest[1] = greatest[1].max((a / b - 1.0).abs());
@@ -49,10 +53,10 @@ fn strips_have_the_events_of_the_factor() {
         assert_eq!(order(&found), order(&exact), "{name}");
         let mut exceeded = 0;
         for (state, expected) in found.iter().zip(&exact) {
-            let error = (state.approach - expected.approach).abs();
+            let error = (state.contact.approach - expected.contact.approach).abs();
             // Both solutions may be off by the tolerance of 10⁻¹⁰ of the approach that is computed with, some 100 times that of
             // the mean planes late on a path.
-            let tolerance = 1e-8 * expected.approach;
+            let tolerance = 1e-8 * expected.contact.approach;
             exceeded += usize::from(error > state.approach_error + tolerance);
             assert!(
                 error <= 5.0 * state.approach_error + tolerance,
@@ -144,8 +148,11 @@ fn nodes_of_tiles_touch_in_the_order_of_their_indices() {
                 for pair in orbit.windows(2) {
                     let [a, b] = [pair[0], pair[1]];
                     // Of the approach that is computed with, which contains the displacement under the load.
-                    let gauge = 24.0 * a.load / 576.0;
-                    assert!(b.approach - a.approach <= same * (a.approach + gauge));
+                    let gauge = 24.0 * a.contact.load / 576.0;
+                    assert!(
+                        b.contact.approach - a.contact.approach
+                            <= same * (a.contact.approach + gauge)
+                    );
                 }
             }
         }
@@ -170,10 +177,10 @@ fn errors_are_those_of_the_approach_of_the_mean_planes() {
         let kernel: &dyn InfluenceKernel = kernel;
         let exact = states(&surface, kernel, RecursiveCholesky::new(), None);
         let found = states(&surface, kernel, ConjugateGradient::new(), None);
-        let place: HashMap<_, _> = exact.iter().map(|s| (s.node, s.approach)).collect();
+        let place: HashMap<_, _> = exact.iter().map(|s| (s.node, s.contact.approach)).collect();
         let exceeded = found.iter().filter(|state| {
-            let error = (state.approach - place[&state.node]).abs();
-            error > state.approach_error + 1e-9 * state.approach
+            let error = (state.contact.approach - place[&state.node]).abs();
+            error > state.approach_error + 1e-9 * state.contact.approach
         });
         // Estimates, of which some hundredths may fail, by little.
         let exceeded = exceeded.count();
@@ -184,7 +191,8 @@ fn errors_are_those_of_the_approach_of_the_mean_planes() {
         );
         // Half of them are below a fiftieth of the spacing of events there.
         let late = &found[1500..1900];
-        let spacing = (late[late.len() - 1].approach - late[0].approach) / late.len() as f64;
+        let spacing =
+            (late[late.len() - 1].contact.approach - late[0].contact.approach) / late.len() as f64;
         let mut errors: Vec<f64> = late.iter().map(|s| s.approach_error / spacing).collect();
         errors.sort_by(f64::total_cmp);
         let median = errors[errors.len() / 2];

@@ -26,26 +26,37 @@ fn check_numbers(states: &[LoadingState], nodes: usize) {
     assert_eq!(states.len(), nodes);
     for (k, s) in states.iter().enumerate() {
         assert_eq!(s.step, k + 1);
-        for value in [s.approach, s.load, s.contact_stiffness.unwrap(), s.energy] {
+        for value in [
+            s.contact.approach,
+            s.contact.load,
+            s.contact.contact_stiffness.unwrap(),
+            s.contact.energy,
+        ] {
             assert!(value.is_finite() && value >= 0.0, "{s:?}");
         }
         // A difference of lengths like the approach: where the last nodes touch at once, it may
         // miss zero by their rounding.
         assert!(
-            s.mean_gap.is_finite() && s.mean_gap >= -1e-13 * s.approach,
+            s.contact.mean_gap.is_finite() && s.contact.mean_gap >= -1e-13 * s.contact.approach,
             "{s:?}"
         );
         assert!(
-            s.contact_stiffness > Some(0.0) && s.interfacial_stiffness > Some(0.0),
+            s.contact.contact_stiffness > Some(0.0) && s.contact.interfacial_stiffness > Some(0.0),
             "{s:?}"
         );
-        let interfacial = s.interfacial_stiffness.unwrap();
+        let interfacial = s.contact.interfacial_stiffness.unwrap();
         assert_eq!(interfacial.is_finite(), s.step < nodes, "{s:?}");
     }
     for pair in states.windows(2) {
         let [a, b] = [pair[0], pair[1]];
-        assert!(a.approach <= b.approach && a.load <= b.load, "{a:?} {b:?}");
-        assert!(a.contact_stiffness <= b.contact_stiffness, "{a:?} {b:?}");
+        assert!(
+            a.contact.approach <= b.contact.approach && a.contact.load <= b.contact.load,
+            "{a:?} {b:?}"
+        );
+        assert!(
+            a.contact.contact_stiffness <= b.contact.contact_stiffness,
+            "{a:?} {b:?}"
+        );
     }
 }
 
@@ -74,7 +85,7 @@ fn check_symmetric(shape: &dyn Surface, grid: Grid, diagonal: bool) -> usize {
         for (k, state) in states.iter().enumerate() {
             assert_eq!(path.next().unwrap().unwrap(), *state);
             let complete = states.get(k + 1).is_none_or(|next| {
-                next.approach > state.approach * (1.0 + SAME) + f64::MIN_POSITIVE
+                next.contact.approach > state.contact.approach * (1.0 + SAME) + f64::MIN_POSITIVE
             });
             if !complete {
                 continue;
@@ -125,7 +136,12 @@ fn flat_punches_fill_in_order_of_the_index() {
                 assert_eq!(path.contact_order(), order, "window {window:?}");
                 for state in &states {
                     assert_eq!(
-                        (state.approach, state.load, state.mean_gap, state.energy),
+                        (
+                            state.contact.approach,
+                            state.contact.load,
+                            state.contact.mean_gap,
+                            state.contact.energy
+                        ),
                         (0.0, 0.0, 0.0, 0.0)
                     );
                 }
@@ -175,8 +191,8 @@ fn a_worn_plateau_fills_in_order_and_before_the_rest() {
         let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
         check_numbers(&states, grid.nodes());
         assert_eq!(path.contact_order()[..plateau.len()], plateau);
-        assert_eq!(states[plateau.len() - 1].load, 0.0);
-        assert!(states[plateau.len()].load > 0.0);
+        assert_eq!(states[plateau.len() - 1].contact.load, 0.0);
+        assert!(states[plateau.len()].contact.load > 0.0);
         let mut path = solver(&map, grid, window);
         while path.next().is_some() {
             let certificate = path.certificate().unwrap();

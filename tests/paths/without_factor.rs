@@ -53,16 +53,16 @@ pub(crate) fn compare(
 ) -> usize {
     assert_eq!(found.len(), exact.len(), "{context}");
     let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
-    let initial = exact[0].mean_gap;
-    let tie = |k: usize| (TIE * exact[k].approach).max(1e-13 * initial);
+    let initial = exact[0].contact.mean_gap;
+    let tie = |k: usize| (TIE * exact[k].contact.approach).max(1e-13 * initial);
     let mut exceeded = 0;
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
         assert_eq!(
-            (state.step, state.contact_nodes),
-            (expected.step, expected.contact_nodes)
+            (state.step, state.contact.contact_nodes),
+            (expected.step, expected.contact.contact_nodes)
         );
         let own = &exact[place[&state.node]];
-        let apart = (own.approach - expected.approach).abs();
+        let apart = (own.contact.approach - expected.contact.approach).abs();
         assert!(
             state.node == expected.node || apart <= tie(k),
             "{context}, step {}: {:?} for {:?}, {apart:e} apart",
@@ -70,10 +70,12 @@ pub(crate) fn compare(
             state.node,
             expected.node
         );
-        let error = (state.approach - own.approach).abs();
+        let error = (state.contact.approach - own.contact.approach).abs();
         exceeded += usize::from(error > state.approach_error + 0.2 * tie(k));
-        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
-        if next - expected.approach <= tie(k) || expected.approach <= tie(k) {
+        let next = exact
+            .get(k + 1)
+            .map_or(f64::INFINITY, |next| next.contact.approach);
+        if next - expected.contact.approach <= tie(k) || expected.contact.approach <= tie(k) {
             continue;
         }
         let is_near = |a: f64, b: f64, tolerance: f64| {
@@ -82,23 +84,30 @@ pub(crate) fn compare(
                 "{context}: {state:?} {expected:?}"
             );
         };
-        is_near(state.load, expected.load, allowed.load * expected.load);
         is_near(
-            state.energy,
-            expected.energy,
-            3.0 * allowed.load * expected.energy,
+            state.contact.load,
+            expected.contact.load,
+            allowed.load * expected.contact.load,
         );
         is_near(
-            state.mean_gap,
-            expected.mean_gap,
+            state.contact.energy,
+            expected.contact.energy,
+            3.0 * allowed.load * expected.contact.energy,
+        );
+        is_near(
+            state.contact.mean_gap,
+            expected.contact.mean_gap,
             allowed.mean_gap * initial,
         );
-        if let (Some(a), Some(b)) = (state.contact_stiffness, expected.contact_stiffness) {
+        if let (Some(a), Some(b)) = (
+            state.contact.contact_stiffness,
+            expected.contact.contact_stiffness,
+        ) {
             is_near(a, b, allowed.stiffness * b);
         }
         let (a, b) = (
-            state.interfacial_stiffness.unwrap(),
-            expected.interfacial_stiffness.unwrap(),
+            state.contact.interfacial_stiffness.unwrap(),
+            expected.contact.interfacial_stiffness.unwrap(),
         );
         if b.is_finite() {
             is_near(a, b, allowed.interfacial * b);
@@ -230,18 +239,22 @@ fn every_state_can_be_asked_for_its_pressure() {
             let pressure = path.pressure_at(state).unwrap();
             let load = pressure.sum() * grid.cell_area();
             assert!(
-                (load - state.load).abs() <= BETWEEN.load * state.load,
+                (load - state.contact.load).abs() <= BETWEEN.load * state.contact.load,
                 "{name}"
             );
             assert!(pressure.min() >= -1e-6 * pressure.max(), "{name}");
         }
         // A load between two events, at which the path ends exactly.
-        let load = 0.3 * all[400].load + 0.7 * all[401].load;
+        let load = 0.3 * all[400].contact.load + 0.7 * all[401].contact.load;
         let mut path = build(1.0);
         path.continue_to(asperity::ContactTarget::Load(load))
             .unwrap();
         let last = path.by_ref().map(Result::unwrap).last().unwrap();
-        assert_eq!((last.load, last.contact_nodes), (load, 401), "{name}");
+        assert_eq!(
+            (last.contact.load, last.contact.contact_nodes),
+            (load, 401),
+            "{name}"
+        );
         let certificate = path.certificate().unwrap();
         assert!(
             certificate.least_pressure >= -1e-3,
@@ -308,7 +321,7 @@ fn the_approximate_order_is_nearly_right() {
     assert!(100 * moved <= exact.len(), "{moved}");
     for (state, expected) in found.iter().zip(&exact).skip(100) {
         assert!(
-            (state.load - expected.load).abs() <= 1e-3 * expected.load,
+            (state.contact.load - expected.contact.load).abs() <= 1e-3 * expected.contact.load,
             "{state:?} {expected:?}"
         );
     }
@@ -352,8 +365,11 @@ fn full_contact_is_full() {
             .build()
             .unwrap();
         let last = path.by_ref().map(Result::unwrap).last().unwrap();
-        assert_eq!((last.contact_nodes, last.mean_gap), (256, 0.0));
-        assert_eq!(last.interfacial_stiffness, Some(f64::INFINITY));
+        assert_eq!(
+            (last.contact.contact_nodes, last.contact.mean_gap),
+            (256, 0.0)
+        );
+        assert_eq!(last.contact.interfacial_stiffness, Some(f64::INFINITY));
         assert_eq!(path.end(), Some(LoadingEnd::FullContact));
     }
 }

@@ -80,7 +80,7 @@ fn a_kernel_that_is_not_positive_definite_names_node_and_approach() {
         let second = path.next().unwrap().unwrap();
         assert_eq!((first.node, second.node), ((0, 0), (1, 0)));
         // Three nodes, a handful of roundings.
-        assert!((second.approach - 0.5).abs() < 1e-14);
+        assert!((second.contact.approach - 0.5).abs() < 1e-14);
         let error = path.next().unwrap().unwrap_err();
         let Error::NotPositiveDefinite {
             ix,
@@ -218,10 +218,13 @@ fn nodes_that_leave_under_a_broken_promise_are_named() {
         events,
         [touch(0), touch(1), touch(2), leave(1), touch(3), touch(1)]
     );
-    let counts: Vec<_> = states.iter().map(|state| state.contact_nodes).collect();
+    let counts: Vec<_> = states
+        .iter()
+        .map(|state| state.contact.contact_nodes)
+        .collect();
     assert_eq!(counts, [1, 2, 3, 2, 3, 4]);
-    let error = (states[3].approach - expected).abs();
-    assert!(error < 1e-13, "{} {expected}", states[3].approach);
+    let error = (states[3].contact.approach - expected).abs();
+    assert!(error < 1e-13, "{} {expected}", states[3].contact.approach);
     assert_eq!(path.contact_order(), [0, 2, 3, 1]);
 }
 
@@ -325,7 +328,7 @@ proptest! {
         let mut states = Vec::new();
         while let Some(state) = path.next() {
             let state = state.unwrap();
-            prop_assert!(exact(&kernel, &heights, &path.contact_order(), state.approach), "{:?}", state);
+            prop_assert!(exact(&kernel, &heights, &path.contact_order(), state.contact.approach), "{:?}", state);
             states.push(state);
         }
         let mut promised = solver(&Promising(kernel.clone(), promise), &gaps, Some(1));

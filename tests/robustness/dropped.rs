@@ -3,7 +3,7 @@
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::surface::HeightMap;
-use asperity::{Boussinesq, FixedLoadSolver, Grid, LoadingSolver, LoadingState};
+use asperity::{Boussinesq, ContactTarget, FixedLoadSolver, Grid, LoadingSolver, LoadingState};
 use nalgebra::DMatrix;
 
 fn problem() -> (HeightMap, Boussinesq) {
@@ -31,8 +31,8 @@ fn a_path_dropped_midway() {
         drop(path);
         assert!(record.states() == &whole[..count]);
         let last = whole[count - 1];
-        let between = record.history().at_load(0.6 * last.load).unwrap();
-        assert_eq!(between.load, 0.6 * last.load);
+        let between = record.history().at_load(0.6 * last.contact.load).unwrap();
+        assert_eq!(between.contact.load, 0.6 * last.contact.load);
         let replayed = record.replay().unwrap().pressure_at(&last).unwrap();
         // Iterations in place of a factor: their tolerance of gaps, times a condition number below 10³.
         let error = (&replayed - &pressure).amax();
@@ -41,7 +41,9 @@ fn a_path_dropped_midway() {
         for (found, expected) in rest.by_ref().map(Result::unwrap).zip(&whole[count..]) {
             assert_eq!((found.step, found.node), (expected.step, expected.node));
             // Windows that end elsewhere: rounding only.
-            assert!((found.load - expected.load).abs() <= 1e-12 * expected.load);
+            assert!(
+                (found.contact.load - expected.contact.load).abs() <= 1e-12 * expected.contact.load
+            );
         }
         assert_eq!(rest.state().unwrap().step, whole.len());
     }
@@ -58,7 +60,7 @@ fn a_sweep_dropped_midway() {
     for count in 0..4 {
         let mut solver = FixedLoadSolver::new(&surface, &kernel).unwrap();
         let swept: Vec<_> = solver
-            .sweep([1.0, 1.5, 3.0, 5.0])
+            .sweep([1.0, 1.5, 3.0, 5.0].map(ContactTarget::Load))
             .take(count)
             .map(Result::unwrap)
             .collect();

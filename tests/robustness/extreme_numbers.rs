@@ -56,20 +56,20 @@ fn cell() -> impl Strategy<Value = (f64, f64)> {
 }
 
 fn finite(state: &LoadingState) -> bool {
-    let stiffness = state.interfacial_stiffness.unwrap();
+    let stiffness = state.contact.interfacial_stiffness.unwrap();
     [
-        state.approach,
-        state.load,
-        state.contact_area,
-        state.contact_area_fraction,
-        state.mean_gap,
-        state.contact_stiffness.unwrap(),
-        state.energy,
+        state.contact.approach,
+        state.contact.load,
+        state.contact.contact_area,
+        state.contact.contact_area_fraction,
+        state.contact.mean_gap,
+        state.contact.contact_stiffness.unwrap(),
+        state.contact.energy,
     ]
     .iter()
     .all(|value| value.is_finite())
         && !stiffness.is_nan()
-        && (stiffness.is_finite() || state.contact_area_fraction == 1.0)
+        && (stiffness.is_finite() || state.contact.contact_area_fraction == 1.0)
 }
 
 /// Runs a path to its end, asking for everything on the way; the states and the error, if any.
@@ -101,8 +101,8 @@ fn run(
         for state in readings.iter().flatten() {
             let pressure = path.pressure_at(state);
             // Full contact is read at any load, also where it or its pressures over- or underflow.
-            let mean = state.load / grid.nominal_area() / grid.nodes() as f64;
-            let is_in_range = finite(state) && (state.load == 0.0 || mean.is_normal());
+            let mean = state.contact.load / grid.nominal_area() / grid.nodes() as f64;
+            let is_in_range = finite(state) && (state.contact.load == 0.0 || mean.is_normal());
             if is_in_range || !matches!(pressure, Err(Error::NotOnPath { .. })) {
                 pressure?;
             }
@@ -164,7 +164,7 @@ proptest! {
             prop_assert_eq!(states.len(), grid.nodes());
             for pair in states.windows(2) {
                 prop_assert!(finite(&pair[1]), "{:?}", pair[1]);
-                prop_assert!(pair[1].approach >= pair[0].approach && pair[1].load >= pair[0].load);
+                prop_assert!(pair[1].contact.approach >= pair[0].contact.approach && pair[1].contact.load >= pair[0].contact.load);
             }
         }
     }
@@ -199,14 +199,20 @@ fn powers_of_two_scale_exactly() {
         for (a, b) in reference.iter().zip(&scaled) {
             let scale = |value: f64, exponent: i32| value * 2_f64.powi(exponent);
             assert_eq!(a.node, b.node);
-            assert_eq!(scale(a.approach, height), b.approach);
-            assert_eq!(scale(a.mean_gap, height), b.mean_gap);
-            assert_eq!(scale(a.load, length + height + modulus), b.load);
+            assert_eq!(scale(a.contact.approach, height), b.contact.approach);
+            assert_eq!(scale(a.contact.mean_gap, height), b.contact.mean_gap);
             assert_eq!(
-                scale(a.contact_stiffness.unwrap(), length + modulus),
-                b.contact_stiffness.unwrap()
+                scale(a.contact.load, length + height + modulus),
+                b.contact.load
             );
-            assert_eq!(scale(a.energy, length + 2 * height + modulus), b.energy);
+            assert_eq!(
+                scale(a.contact.contact_stiffness.unwrap(), length + modulus),
+                b.contact.contact_stiffness.unwrap()
+            );
+            assert_eq!(
+                scale(a.contact.energy, length + 2 * height + modulus),
+                b.contact.energy
+            );
         }
     }
 }
@@ -295,7 +301,10 @@ fn gaps_that_underflow_are_closed() {
             let first: Vec<_> = states[..3].iter().map(|state| state.node).collect();
             assert_eq!(first, [(1, 1), (3, 1), (2, 2)]);
             // Iterations take what is so close for ties.
-            assert_eq!(states[2].approach == 0.0, iterations || tiny < 1e-140);
+            assert_eq!(
+                states[2].contact.approach == 0.0,
+                iterations || tiny < 1e-140
+            );
         }
     };
     for tiny in [5e-324, 1e-310, 1e-200, 1e-141, 1e-100, 1e-30] {

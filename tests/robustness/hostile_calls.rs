@@ -154,6 +154,15 @@ fn call() -> impl Strategy<Value = Call> {
     ]
 }
 
+/// Edits the order of a contact, unless it is then no order of one.
+fn edit(contact: &mut ContactSequence, edit: impl FnOnce(&mut Vec<usize>)) {
+    let mut order = contact.order().to_vec();
+    edit(&mut order);
+    if let Ok(edited) = ContactSequence::with_order(contact.grid(), order) {
+        *contact = edited;
+    }
+}
+
 /// Makes the calls, with a contact on the larger grid; the answers do not matter.
 fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &[Call]) {
     let mut contact = ContactSequence::new(problems[0].grid());
@@ -176,7 +185,8 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                     continue;
                 };
                 for &position in positions {
-                    let _ = contact.push(watched.get(position).copied().unwrap_or(position));
+                    let node = watched.get(position).copied().unwrap_or(position);
+                    edit(&mut contact, |order| order.push(node));
                 }
                 let _ = updater.join(&problems[*p], &contact, &touched);
             }
@@ -191,17 +201,17 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                 let _ = updater.solve(&problems[*p], &contact, request, &mut solution);
             }
             Call::Truncate(p, count) => {
-                contact.truncate(*count);
+                edit(&mut contact, |order| order.truncate(*count));
                 let _ = updater.truncate(&problems[*p], &contact);
             }
             Call::Release(p, node, position) => {
                 let _ = updater.release(&problems[*p], &contact, *node, *position);
             }
             Call::Push(node) => {
-                let _ = contact.push(*node);
+                edit(&mut contact, |order| order.push(*node));
             }
             Call::Remove(node) => {
-                let _ = contact.remove(*node);
+                edit(&mut contact, |order| order.retain(|other| other != node));
             }
             Call::MakeRoom(p, bytes) => {
                 let _ = updater.make_room(&problems[*p], *bytes);

@@ -40,7 +40,7 @@ fn limits_that_make_no_sense() {
     let error = sphere.builder().max_area_fraction(0.9 / 16.0).build();
     let error = error.unwrap_err();
     assert!(matches!(error, Error::LessThanOneNode { .. }), "{error}");
-    let unloaded = sphere.states()[0].mean_gap;
+    let unloaded = sphere.states()[0].contact.mean_gap;
     for bad in [-1e-9, unloaded, 2.0 * unloaded, f64::NAN, f64::INFINITY] {
         let error = sphere.builder().min_mean_gap(bad).build().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
@@ -74,12 +74,15 @@ fn assert_same(found: &[LoadingState], expected: &[LoadingState]) {
     assert_eq!(found.len(), expected.len());
     for (a, b) in found.iter().zip(expected) {
         assert_eq!(
-            (a.step, a.event, a.contact_nodes),
-            (b.step, b.event, b.contact_nodes)
+            (a.step, a.event, a.contact.contact_nodes),
+            (b.step, b.event, b.contact.contact_nodes)
         );
-        assert!((a.load - b.load).abs() <= 1e-12 * b.load, "{a:?} {b:?}");
         assert!(
-            (a.approach - b.approach).abs() <= 1e-12 * b.approach,
+            (a.contact.load - b.contact.load).abs() <= 1e-12 * b.contact.load,
+            "{a:?} {b:?}"
+        );
+        assert!(
+            (a.contact.approach - b.contact.approach).abs() <= 1e-12 * b.contact.approach,
             "{a:?} {b:?}"
         );
     }
@@ -108,11 +111,11 @@ fn limits_are_ends_and_not_errors() {
     assert_same(&run(builder, LoadingEnd::FullContact), &all);
     // A whole shell has the same load: limits between shells, far from rounding.
     let (before, after) = (all[15], all[16]);
-    assert!(after.approach > before.approach * 1.01);
+    assert!(after.contact.approach > before.contact.approach * 1.01);
     let middle = |quantity: fn(&LoadingState) -> f64| 0.5 * (quantity(&before) + quantity(&after));
-    let load = middle(|state| state.load);
-    let approach = middle(|state| state.approach);
-    let mean_gap = middle(|state| state.mean_gap);
+    let load = middle(|state| state.contact.load);
+    let approach = middle(|state| state.contact.approach);
+    let mean_gap = middle(|state| state.contact.mean_gap);
     for (builder, end) in [
         (sphere.builder().max_load(load), LoadingEnd::Load),
         // The nominal area is 1.
@@ -138,7 +141,7 @@ fn limits_are_ends_and_not_errors() {
 fn the_first_limit_reached_counts() {
     let sphere = Sphere::on(6);
     let all = sphere.states();
-    let load = all[20].load;
+    let load = all[20].contact.load;
     let builder = sphere.builder().max_load(load).max_nodes(9);
     assert_eq!(run(builder, LoadingEnd::Nodes).len(), 9);
     let builder = sphere.builder().max_nodes(9).max_area_fraction(0.1);
@@ -146,12 +149,15 @@ fn the_first_limit_reached_counts() {
     let builder = sphere
         .builder()
         .max_load(load)
-        .max_approach(all[12].approach);
+        .max_approach(all[12].contact.approach);
     let states = run(builder, LoadingEnd::Approach);
-    assert_eq!(states.last().unwrap().approach, all[12].approach);
+    assert_eq!(
+        states.last().unwrap().contact.approach,
+        all[12].contact.approach
+    );
     let builder = sphere.builder().max_load(load).max_load(0.5 * load);
     let states = run(builder, LoadingEnd::Load);
-    assert_eq!(states.last().unwrap().load, 0.5 * load);
+    assert_eq!(states.last().unwrap().contact.load, 0.5 * load);
 }
 
 /// A limit at which an event happens adds no second state.
@@ -160,12 +166,12 @@ fn a_limit_at_an_event_is_that_event() {
     let sphere = Sphere::on(6);
     let all = sphere.states();
     for state in &all {
-        if state.load == 0.0 {
+        if state.contact.load == 0.0 {
             continue;
         }
-        let states = run(sphere.builder().max_load(state.load), {
+        let states = run(sphere.builder().max_load(state.contact.load), {
             let last = all.last().unwrap();
-            if state.load == last.load {
+            if state.contact.load == last.contact.load {
                 LoadingEnd::FullContact
             } else {
                 LoadingEnd::Load
@@ -176,7 +182,7 @@ fn a_limit_at_an_event_is_that_event() {
                 .iter()
                 .all(|state| state.event == ContactEvent::Touch)
         );
-        assert_eq!(states.last().unwrap().load, state.load);
+        assert_eq!(states.last().unwrap().contact.load, state.contact.load);
     }
 }
 
@@ -196,18 +202,21 @@ fn limits_of_approach_and_mean_gap_at_an_event() {
         let all: Vec<_> = builder().build().unwrap().map(Result::unwrap).collect();
         for state in &all[1..19] {
             for limited in [
-                builder().max_approach(state.approach),
-                builder().min_mean_gap(state.mean_gap),
+                builder().max_approach(state.contact.approach),
+                builder().min_mean_gap(state.contact.mean_gap),
             ] {
                 let states: Vec<_> = limited.build().unwrap().map(Result::unwrap).collect();
                 assert_eq!(states, all[..state.step]);
             }
             // A little less is a state of its own.
-            let less = state.approach * (1.0 - 1e-9);
+            let less = state.contact.approach * (1.0 - 1e-9);
             let limited = builder().max_approach(less).build().unwrap();
             let states: Vec<_> = limited.map(Result::unwrap).collect();
             let last = states.last().unwrap();
-            assert_eq!((last.event, last.approach), (ContactEvent::Limit, less));
+            assert_eq!(
+                (last.event, last.contact.approach),
+                (ContactEvent::Limit, less)
+            );
             assert_eq!(states.len(), state.step);
         }
     }

@@ -222,7 +222,12 @@ fn lying_updaters() {
                         count += 1;
                         assert!(count < 1000, "{what} has no end");
                         let Ok(state) = item else { continue };
-                        for value in [state.approach, state.load, state.mean_gap, state.energy] {
+                        for value in [
+                            state.contact.approach,
+                            state.contact.load,
+                            state.contact.mean_gap,
+                            state.contact.energy,
+                        ] {
                             assert!(value.is_finite(), "{what}: {state:?}");
                         }
                         let _ = (path.pressure(), path.gap(), path.certificate());

@@ -50,9 +50,9 @@ fn memory_budgets() {
         // Every state up to there is that of the path without a budget.
         // Close to the limit windows are smaller, and rounding differs: 1e-11 as between windows.
         for (state, expected) in states.iter().zip(&all) {
-            let change = state.load - expected.load;
+            let change = state.contact.load - expected.contact.load;
             assert!(
-                change.abs() <= 1e-11 * expected.load,
+                change.abs() <= 1e-11 * expected.contact.load,
                 "{state:?} {expected:?}"
             );
         }

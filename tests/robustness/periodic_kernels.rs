@@ -71,9 +71,12 @@ fn periodic_kernels_that_are_not_positive_definite() {
                 single.unwrap();
                 let states: Vec<_> = built.unwrap().map(Result::unwrap).collect();
                 let last = states.last().unwrap();
-                assert_eq!(last.contact_nodes, nx * ny, "{nx} × {ny}, {width}");
+                assert_eq!(last.contact.contact_nodes, nx * ny, "{nx} × {ny}, {width}");
                 for state in &states {
-                    assert!(state.energy >= 0.0 && state.interfacial_stiffness > Some(0.0));
+                    assert!(
+                        state.contact.energy >= 0.0
+                            && state.contact.interfacial_stiffness > Some(0.0)
+                    );
                 }
                 accepted += 1;
                 continue;
@@ -126,8 +129,8 @@ fn any_gauge_has_the_same_path() {
                 // Some roundings of coefficients that are so much larger.
                 let allowed = 1e-13 * f64::max(gauge, 1e3);
                 for (a, b) in [
-                    (state.load, expected.load),
-                    (state.approach, expected.approach),
+                    (state.contact.load, expected.contact.load),
+                    (state.contact.approach, expected.contact.approach),
                 ] {
                     assert!((a - b).abs() <= allowed * b, "gauge {gauge}: {a} {b}");
                 }

@@ -132,7 +132,7 @@ fn compare(
         (true, false) => -own,
         (false, true) => own,
     });
-    let load = state.load / problem.grid().cell_area();
+    let load = state.contact.load / problem.grid().cell_area();
     let rhs = DVector::from_fn(
         n + 1,
         |i, _| if i < n { -gap[contact[i]] } else { own * load },
@@ -146,8 +146,11 @@ fn compare(
         return Err(format!("pressure {least:e} of {:e}", pressure.amax()));
     }
     let reported = approach - table.gauge().unwrap_or(0.0) * load;
-    if (reported - state.approach).abs() > length {
-        return Err(format!("approach {} and not {reported}", state.approach));
+    if (reported - state.contact.approach).abs() > length {
+        return Err(format!(
+            "approach {} and not {reported}",
+            state.contact.approach
+        ));
     }
     let mut open = 0.0;
     for node in (0..gap.len()).filter(|node| !contact.contains(node)) {
@@ -162,8 +165,11 @@ fn compare(
         open += here;
     }
     let mean_gap = open / gap.len() as f64;
-    if (mean_gap - state.mean_gap).abs() > length {
-        return Err(format!("mean gap {} and not {mean_gap}", state.mean_gap));
+    if (mean_gap - state.contact.mean_gap).abs() > length {
+        return Err(format!(
+            "mean gap {} and not {mean_gap}",
+            state.contact.mean_gap
+        ));
     }
     Ok(())
 }
@@ -192,14 +198,14 @@ fn whole_path<U: LinearUpdater>(
     let order = path.contact_order();
     let mut last = (0.0, 0.0);
     for state in &states {
-        if state.mean_gap < 0.0 || state.energy < 0.0 {
+        if state.contact.mean_gap < 0.0 || state.contact.energy < 0.0 {
             return Err(format!("mean gap or energy below zero: {state:?}"));
         }
-        if state.load < last.0 || state.approach < last.1 {
+        if state.contact.load < last.0 || state.contact.approach < last.1 {
             return Err(format!("load or approach falls: {last:?} {state:?}"));
         }
-        last = (state.load, state.approach);
-        let contact = &order[..state.contact_nodes];
+        last = (state.contact.load, state.contact.approach);
+        let contact = &order[..state.contact.contact_nodes];
         compare(path.problem(), contact, state, allowed)
             .map_err(|what| format!("state {}: {what}", state.step))?;
     }

@@ -14,7 +14,7 @@ const BELOW: f64 = 1e-3;
 /// Draws the map, with lines where the contact ends at round loads.
 pub(super) fn draw(record: &LoadingRecord, name: &Path) -> Result<PathBuf, Failure> {
     let grid = record.grid();
-    let loads = activation_map(&grid, record.states(), |state| state.load)
+    let loads = activation_map(&grid, record.states(), |state| state.contact.load)
         .map_err(|error| Failure::new("cannot make the map of activation", error))?;
     let mut positive: Vec<f64> = loads.iter().copied().filter(|load| *load > 0.0).collect();
     positive.sort_by(f64::total_cmp);

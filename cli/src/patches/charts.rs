@@ -27,19 +27,19 @@ pub(super) fn draw(
     let grid = record.grid();
     let marks = marks(&followed.passages);
     let states = || record.history().events().iter().zip(&followed.patches);
-    let reached = states().map(|(state, _)| state.contact_area_fraction);
+    let reached = states().map(|(state, _)| state.contact.contact_area_fraction);
     let reached = reached.fold(0.0, f64::max);
     let count = followed.patches.len();
     let shown = |quantity: Quantity| -> Vec<(f64, f64)> {
         let all = states().enumerate();
         let some = all.filter(|(k, _)| (count - 1 - k).is_multiple_of(1 + count / POINTS));
-        some.map(|(_, (s, p))| (s.contact_area_fraction, quantity(s, p)))
+        some.map(|(_, (s, p))| (s.contact.contact_area_fraction, quantity(s, p)))
             .collect()
     };
     // Marks end at `top`, so that they do not run behind a legend above.
     let against_area = |title: &str, y: Axis, top: f64, quantity: Quantity| {
         let lines = marks.iter().map(|mark| {
-            let x = mark.state.contact_area_fraction;
+            let x = mark.state.contact.contact_area_fraction;
             mark.series([(x, 0.0), (x, top)])
         });
         let curve = Series::new("", BLUE, Style::Line, shown(quantity));
@@ -57,7 +57,7 @@ pub(super) fn draw(
     };
 
     let number: Quantity = &|_, p| p.patches as f64;
-    let share: Quantity = &|s, p| p.largest as f64 / s.contact_nodes as f64;
+    let share: Quantity = &|s, p| p.largest as f64 / s.contact.contact_nodes as f64;
     let perimeter: Quantity = &|_, p| p.perimeter.length(&grid);
     let (most, longest) = (greatest(number), greatest(perimeter));
     let room = if marks.is_empty() { 1.0 } else { 1.3 };
@@ -88,16 +88,21 @@ fn areas(
     corrected: Quantity,
     marks: &[Mark],
 ) -> Option<Chart> {
-    let loaded = states.iter().filter(|(state, _)| state.load > 0.0);
+    let loaded = states.iter().filter(|(state, _)| state.contact.load > 0.0);
     let counted = loaded
         .clone()
-        .map(|(s, _)| (s.load, s.contact_area_fraction));
-    let corrected: Vec<_> = loaded.map(|(s, p)| (s.load, corrected(s, p))).collect();
+        .map(|(s, _)| (s.contact.load, s.contact.contact_area_fraction));
+    let corrected: Vec<_> = loaded
+        .map(|(s, p)| (s.contact.load, corrected(s, p)))
+        .collect();
     let (first, last) = (*corrected.first()?, *corrected.last()?);
     let least = corrected.iter().map(|(_, area)| *area).fold(1.0, f64::min);
     let y = Axis::plain_logarithmic(AREA, least, last.1);
     let lines = marks.iter().map(|mark| {
-        let mut line = mark.series([(mark.state.load, least), (mark.state.load, last.1)]);
+        let mut line = mark.series([
+            (mark.state.contact.load, least),
+            (mark.state.contact.load, last.1),
+        ]);
         line.name.clear();
         line
     });

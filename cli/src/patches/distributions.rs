@@ -49,7 +49,7 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
     let Some(&greatest) = found.histogram.edges().last() else {
         return Ok(None);
     };
-    let mean = state.load / state.contact_area;
+    let mean = state.contact.load / state.contact.contact_area;
     let density = found.histogram.density();
     let density = density.iter().map(|d| d * found.contact_share * mean);
     let own = outline(found.histogram.edges(), density, 0.0);
@@ -61,7 +61,7 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
         own,
     )];
     if let Some(law) = persson(record)? {
-        let nominal = state.mean_pressure();
+        let nominal = state.contact.mean_pressure();
         let theory = (0..=POINTS).map(|k| {
             let pressure = greatest * k as f64 / POINTS as f64;
             (pressure, law.persson_density(pressure, nominal) * mean)
@@ -70,7 +70,7 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
         series.push(Series::new(name, ORANGE, Style::Dashed, theory));
     }
     Ok(Some(Chart {
-        title: format!("pressure, W = {}", quantity(state.load, "N", 4)),
+        title: format!("pressure, W = {}", quantity(state.contact.load, "N", 4)),
         x: Axis::linear("pressure p", "Pa", 0.0, greatest),
         y: Axis::plain(
             "density over A₀ × mean p in contact",
@@ -103,7 +103,7 @@ fn gaps(moment: &Moment) -> Result<Option<Chart>, Error> {
         return Ok(None);
     };
     let open = 1.0 - found.contact_share;
-    let mean = moment.state.mean_gap / open;
+    let mean = moment.state.contact.mean_gap / open;
     let density = found.histogram.density();
     let density = density.iter().map(|density| density * mean);
     let points = outline(found.histogram.edges(), density, 0.0);

@@ -83,7 +83,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     // Else there is one node, or several at one height.
     let mut events = record.history().events().iter();
-    let carries = events.any(|state| state.load > 0.0);
+    let carries = events.any(|state| state.contact.load > 0.0);
     match &followed {
         Ok(followed) => {
             words::print_passages(&options.record, &record, followed);

@@ -18,15 +18,19 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
     let missed = |what: String| {
         Failure::request(format!(
             "the path has no state at {what}: it ends at {}, with {} of {} nodes in contact",
-            quantity(last.load, "N", 6),
-            last.contact_nodes,
+            quantity(last.contact.load, "N", 6),
+            last.contact.contact_nodes,
             record.grid().nodes()
         ))
     };
     if let Some(load) = options.at_load {
         let found = match record.settings().rule {
             // Which is not a function of load.
-            ContactRule::SmallestGap => record.states().iter().find(|s| s.load >= load).copied(),
+            ContactRule::SmallestGap => record
+                .states()
+                .iter()
+                .find(|s| s.contact.load >= load)
+                .copied(),
             _ => history.at_load(load),
         };
         return found.ok_or_else(|| missed(quantity(load, "N", 6)));

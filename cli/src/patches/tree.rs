@@ -66,14 +66,14 @@ impl Tree<'_> {
     fn load(&self, step: usize) -> f64 {
         let events = self.record.history().events();
         let state = step.checked_sub(1).and_then(|place| events.get(place));
-        state.map_or(f64::NAN, |state| state.load)
+        state.map_or(f64::NAN, |state| state.contact.load)
     }
 
     /// The first positive load at which a branch is born, and the last load.
     fn loads(&self) -> Option<(f64, f64)> {
         let branches = self.followed.tree.branches();
         let births = self.leaves.iter().map(|leaf| branches[leaf.branch].birth);
-        let last = self.record.states().last()?.load;
+        let last = self.record.states().last()?.contact.load;
         let positive = births
             .map(|step| self.load(step))
             .filter(|load| *load > 0.0);

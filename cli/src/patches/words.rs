@@ -63,7 +63,7 @@ pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Fol
     let reached = record
         .states()
         .last()
-        .map_or(0.0, |state| state.contact_area_fraction);
+        .map_or(0.0, |state| state.contact.contact_area_fraction);
     if is_missing && can_go_on && reached < 1.0 {
         // Random surfaces percolate and seal at some 40 to 55 % contact.
         let further = if reached < 0.5 { 0.6 } else { 1.0 };
@@ -130,9 +130,9 @@ pub(super) fn print_moment(moment: &Moment) {
         "{count}; the largest has {} nodes, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean pressure of {}",
         patch.nodes,
         area(patch.area, 4),
-        percent(patch.area, state.contact_area),
+        percent(patch.area, state.contact.contact_area),
         quantity(carried.load, "N", 4),
-        percent(carried.load, state.load),
+        percent(carried.load, state.contact.load),
         quantity(carried.mean_pressure, "Pa", 4)
     );
 }
@@ -141,8 +141,8 @@ pub(super) fn print_moment(moment: &Moment) {
 pub(super) fn described(state: &LoadingState) -> String {
     format!(
         "W = {}, A/A0 = {:.2} %, mean pressure {}",
-        quantity(state.load, "N", 4),
-        100.0 * state.contact_area_fraction,
-        quantity(state.mean_pressure(), "Pa", 4)
+        quantity(state.contact.load, "N", 4),
+        100.0 * state.contact.contact_area_fraction,
+        quantity(state.contact.mean_pressure(), "Pa", 4)
     )
 }

@@ -60,8 +60,12 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     };
     centred(&title, 34)?;
 
-    let loaded: Vec<LoadingState> = states.iter().filter(|s| s.load > 0.0).copied().collect();
-    let Some((from, to)) = extent(&loaded, &[|s| s.load]) else {
+    let loaded: Vec<LoadingState> = states
+        .iter()
+        .filter(|s| s.contact.load > 0.0)
+        .copied()
+        .collect();
+    let Some((from, to)) = extent(&loaded, &[|s| s.contact.load]) else {
         centred("No state of this path carries load.", SIZE.1 / 2)?;
         return area.present();
     };
@@ -103,16 +107,16 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     };
     let all: [(Axis, &[Curve]); 4] = [
         (
-            logarithmic("contact area A", "m²", &[|s| s.contact_area]),
-            &[(|s| s.contact_area, BLUE, "")],
+            logarithmic("contact area A", "m²", &[|s| s.contact.contact_area]),
+            &[(|s| s.contact.contact_area, BLUE, "")],
         ),
         (
-            linear(approach, "m", |s| s.approach),
-            &[(|s| s.approach, BLUE, "")],
+            linear(approach, "m", |s| s.contact.approach),
+            &[(|s| s.contact.approach, BLUE, "")],
         ),
         (
-            linear("mean gap", "m", |s| s.mean_gap),
-            &[(|s| s.mean_gap, BLUE, "")],
+            linear("mean gap", "m", |s| s.contact.mean_gap),
+            &[(|s| s.contact.mean_gap, BLUE, "")],
         ),
         (
             logarithmic(
@@ -131,7 +135,9 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         let x = load();
         panel.rule(area, &x, &y)?;
         for (value, colour, _) in curves {
-            let points = loaded.iter().map(|state| (state.load, value(state)));
+            let points = loaded
+                .iter()
+                .map(|state| (state.contact.load, value(state)));
             panel.curve(area, (&x, &y), points, *colour)?;
         }
         legend(area, &panel, curves)?;
@@ -169,12 +175,12 @@ fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) 
 
 /// NaN, which is not drawn, where there is none.
 fn contact_stiffness(state: &LoadingState) -> f64 {
-    state.contact_stiffness.unwrap_or(f64::NAN)
+    state.contact.contact_stiffness.unwrap_or(f64::NAN)
 }
 
 /// The same.
 fn interfacial_stiffness(state: &LoadingState) -> f64 {
-    state.interfacial_stiffness.unwrap_or(f64::NAN)
+    state.contact.interfacial_stiffness.unwrap_or(f64::NAN)
 }
 
 /// Least and greatest positive finite value of some quantities.

@@ -74,11 +74,11 @@ impl Followed {
                     if state.step.is_multiple_of(STRIDE) {
                         let progress = progress(&state);
                         bar.set_position((100.0 * progress.done) as u64);
-                        let load = scientific(state.load, 3);
+                        let load = scientific(state.contact.load, 3);
                         let left = progress.left(start.elapsed());
                         bar.set_message(format!(
                             "{} nodes, W = {load} N{left}",
-                            state.contact_nodes
+                            state.contact.contact_nodes
                         ));
                     }
                     self.add(state, solver)
@@ -157,13 +157,13 @@ impl PathFile {
             self.lines,
             "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e}",
             state.step,
-            state.approach,
-            state.load,
-            state.contact_area,
-            state.contact_area_fraction,
-            state.mean_gap,
-            printed(state.contact_stiffness),
-            printed(state.interfacial_stiffness),
+            state.contact.approach,
+            state.contact.load,
+            state.contact.contact_area,
+            state.contact.contact_area_fraction,
+            state.contact.mean_gap,
+            printed(state.contact.contact_stiffness),
+            printed(state.contact.interfacial_stiffness),
             self.edge.corrected_area(),
             state.approach_error,
         );

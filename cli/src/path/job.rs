@@ -126,7 +126,7 @@ impl Job {
             eprintln!(
                 "note: {} continues to {}; the requested target lies before that and is read from it",
                 file.display(),
-                quantity(last.load, "N", 4)
+                quantity(last.contact.load, "N", 4)
             );
         }
         let source = json!({
@@ -227,14 +227,16 @@ impl Job {
     /// How far a state is on the way to the nearest target: load grows about in proportion to nodes.
     pub(super) fn progress(&self, state: &LoadingState) -> Progress {
         let shares = self.targets.iter().map(|target| match *target {
-            ContactTarget::Load(load) => state.load / load,
-            ContactTarget::Approach(approach) => state.approach / approach,
-            ContactTarget::AreaFraction(fraction) => state.contact_area_fraction / fraction,
+            ContactTarget::Load(load) => state.contact.load / load,
+            ContactTarget::Approach(approach) => state.contact.approach / approach,
+            ContactTarget::AreaFraction(fraction) => state.contact.contact_area_fraction / fraction,
             _ => 0.0,
         });
-        let share = shares.fold(state.contact_area_fraction, f64::max).min(1.0);
+        let share = shares
+            .fold(state.contact.contact_area_fraction, f64::max)
+            .min(1.0);
         let nodes = self.grid().nodes();
-        Progress::new(state.contact_nodes, share, |contact| {
+        Progress::new(state.contact.contact_nodes, share, |contact| {
             self.updater.event_cost(nodes, contact)
         })
     }
@@ -243,16 +245,25 @@ impl Job {
     pub(super) fn missed(&self, state: Option<LoadingState>) -> Option<String> {
         let state = state?;
         self.targets.iter().find_map(|target| match *target {
-            ContactTarget::Load(load) if state.load < load => Some(format!(
+            ContactTarget::Load(load) if state.contact.load < load => Some(format!(
                 "the requested load of {}, at {}",
                 quantity(load, "N", 4),
-                quantity(state.load, "N", 4)
+                quantity(state.contact.load, "N", 4)
             )),
-            ContactTarget::Approach(approach) if state.approach < approach => Some(format!(
-                "the requested approach of {}, at {}",
-                quantity(approach, "m", 4),
-                quantity(state.approach, "m", 4)
-            )),
+            ContactTarget::Approach(approach) if state.contact.approach < approach => {
+                Some(format!(
+                    "the requested approach of {}, at {}",
+                    quantity(approach, "m", 4),
+                    quantity(state.contact.approach, "m", 4)
+                ))
+            }
+            ContactTarget::Approach(approach) if state.contact.approach < approach => {
+                Some(format!(
+                    "the approach asked for, {}, at {}",
+                    quantity(approach, "m", 4),
+                    quantity(state.contact.approach, "m", 4)
+                ))
+            }
             _ => None,
         })
     }

@@ -91,21 +91,28 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
     };
     let stiffness = |stiffness: Option<f64>| stiffness.unwrap_or(f64::NAN);
     let mut columns = vec![
-        column("load", "N", &|state| state.load),
-        column("pressure", "Pa", &|state| state.mean_pressure()),
+        column("load", "N", &|state| state.contact.load),
+        column("pressure", "Pa", &|state| state.contact.mean_pressure()),
         Column::new("greatest", "Pa", greatest.iter().copied()),
-        Column::area("area", rows.iter().map(|state| state.contact_area)),
-        Column::percent("area", rows.iter().map(|state| state.contact_area_fraction)),
+        Column::area("area", rows.iter().map(|state| state.contact.contact_area)),
+        Column::percent(
+            "area",
+            rows.iter().map(|state| state.contact.contact_area_fraction),
+        ),
         Column::percent("corrected", rows.iter().map(area)),
-        column("approach", "m", &|state| state.approach),
-        column("mean gap", "m", &|state| state.mean_gap),
-        column("K", "N/m", &|state| stiffness(state.contact_stiffness)),
+        column("approach", "m", &|state| state.contact.approach),
+        column("mean gap", "m", &|state| state.contact.mean_gap),
+        column("K", "N/m", &|state| {
+            stiffness(state.contact.contact_stiffness)
+        }),
         column("K_i", "N/m", &|state| {
-            stiffness(state.interfacial_stiffness)
+            stiffness(state.contact.interfacial_stiffness)
         }),
     ];
     // A periodic half-space has no contact stiffness.
-    let has_k = rows.iter().any(|state| state.contact_stiffness.is_some());
+    let has_k = rows
+        .iter()
+        .any(|state| state.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
     print_columns(&columns);
     say!();
@@ -124,7 +131,7 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
 /// How well the last state solves its equations.
 fn exactness(certificate: &Certificate, last: &LoadingState) {
     let gap = |relative: f64| quantity(relative * certificate.length, "m", 2);
-    let pressure = last.load / last.contact_area;
+    let pressure = last.contact.load / last.contact.contact_area;
     say!();
     say!(
         "solution: residuals of the contact conditions of the last state on this grid, recomputed from its pressure (0 is exact):"
@@ -148,7 +155,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
         ),
         (
             "sum of pressures less load",
-            quantity(certificate.load_error * last.load, "N", 2),
+            quantity(certificate.load_error * last.contact.load, "N", 2),
         ),
         (
             "estimated error of the approach",
@@ -183,10 +190,10 @@ fn doubts(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
 fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
     let history: History = states.iter().copied().collect();
     let mut rows: Vec<LoadingState> = Vec::new();
-    for load in LOADS.map(|fraction| fraction * last.load) {
+    for load in LOADS.map(|fraction| fraction * last.contact.load) {
         let state = match rule {
             ContactRule::FirstContact | ContactRule::ApproximateOrder => history.at_load(load),
-            ContactRule::SmallestGap => states.iter().find(|s| s.load >= load).copied(),
+            ContactRule::SmallestGap => states.iter().find(|s| s.contact.load >= load).copied(),
         };
         rows.extend(state.filter(|state| rows.last() != Some(state)));
     }

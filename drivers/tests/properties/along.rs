@@ -15,7 +15,7 @@ proptest! {
     fn a_fixed_load_is_a_state_of_the_path(case in case(), part in 0.001..1.5) {
         let tolerance = 1e-12;
         let history: History = case.states().map_err(failed)?.into_iter().collect();
-        let last = history.states().last().map_or(0.0, |last| last.load);
+        let last = history.states().last().map_or(0.0, |last| last.contact.load);
         prop_assume!(last > 0.0);
         let load = part * last;
         let expected = history.at_load(load)
@@ -25,14 +25,14 @@ proptest! {
         let found = solver.and_then(|mut solver| solver.solve(load)).map_err(failed)?.state;
         // Errors of the tolerance, times a condition of 10³.
         let allowed = 1e3 * tolerance;
-        let length = expected.approach + history.states().first().map_or(0.0, |s| s.mean_gap);
-        close("approach", found.approach, expected.approach, allowed * length)?;
-        close("mean gap", found.mean_gap, expected.mean_gap, allowed * length)?;
-        close("energy", found.energy, expected.energy, allowed * load * length)?;
+        let length = expected.contact.approach + history.states().first().map_or(0.0, |s| s.contact.mean_gap);
+        close("approach", found.approach, expected.contact.approach, allowed * length)?;
+        close("mean gap", found.mean_gap, expected.contact.mean_gap, allowed * length)?;
+        close("energy", found.energy, expected.contact.energy, allowed * load * length)?;
         // As many nodes, unless one is about to touch.
-        let near = |s: &&LoadingState| (s.load - load).abs() <= 1e3 * allowed * load;
+        let near = |s: &&LoadingState| (s.contact.load - load).abs() <= 1e3 * allowed * load;
         if !history.states().iter().any(|s| near(&s)) {
-            prop_assert_eq!(found.contact_nodes, expected.contact_nodes);
+            prop_assert_eq!(found.contact_nodes, expected.contact.contact_nodes);
         }
     }
 
@@ -40,22 +40,22 @@ proptest! {
     #[test]
     fn everything_is_monotone(case in case()) {
         let states = case.states().map_err(failed)?;
-        let last = states.last().map_or(0.0, |last| last.approach);
-        let initial = states.first().map_or(0.0, |first| first.mean_gap);
+        let last = states.last().map_or(0.0, |last| last.contact.approach);
+        let initial = states.first().map_or(0.0, |first| first.contact.mean_gap);
         for pair in states.windows(2) {
             let [a, b] = [pair[0], pair[1]];
             // The approach of mean planes is a difference of two lengths, and so is every mean gap.
             let slack = EXACT * if case.body == Body::Free { 0.0 } else { last };
-            prop_assert!(b.load >= a.load, "{:?} {:?}", a, b);
-            prop_assert!(b.approach >= a.approach - slack, "{:?} {:?}", a, b);
-            prop_assert!(b.contact_area > a.contact_area, "{:?} {:?}", a, b);
-            prop_assert!(b.mean_gap <= a.mean_gap + EXACT * initial, "{:?} {:?}", a, b);
+            prop_assert!(b.contact.load >= a.contact.load, "{:?} {:?}", a, b);
+            prop_assert!(b.contact.approach >= a.contact.approach - slack, "{:?} {:?}", a, b);
+            prop_assert!(b.contact.contact_area > a.contact.contact_area, "{:?} {:?}", a, b);
+            prop_assert!(b.contact.mean_gap <= a.contact.mean_gap + EXACT * initial, "{:?} {:?}", a, b);
             let stiffer = |a: Option<f64>, b: Option<f64>| match (a, b) {
                 (Some(a), Some(b)) => b >= a * (1.0 - EXACT),
                 (a, b) => a == b,
             };
-            prop_assert!(stiffer(a.contact_stiffness, b.contact_stiffness), "{:?} {:?}", a, b);
-            prop_assert!(stiffer(a.interfacial_stiffness, b.interfacial_stiffness), "{:?} {:?}", a, b);
+            prop_assert!(stiffer(a.contact.contact_stiffness, b.contact.contact_stiffness), "{:?} {:?}", a, b);
+            prop_assert!(stiffer(a.contact.interfacial_stiffness, b.contact.interfacial_stiffness), "{:?} {:?}", a, b);
         }
     }
 
@@ -71,15 +71,15 @@ proptest! {
         while let Some(state) = path.next() {
             let state = state.map_err(failed)?;
             if let Some(last) = last {
-                work += 0.5 * (last.load + state.load) * (state.approach - last.approach);
+                work += 0.5 * (last.contact.load + state.contact.load) * (state.contact.approach - last.contact.approach);
             }
             // Approaches of mean planes differ by less than they are, near full contact by far less.
-            let allowed = EXACT * state.load * (state.approach + state.mean_gap);
-            close("work", state.energy, work, allowed)?;
+            let allowed = EXACT * state.contact.load * (state.contact.approach + state.contact.mean_gap);
+            close("work", state.contact.energy, work, allowed)?;
             let pressure = path.pressure().map_err(failed)?;
             let displacement = path.displacement().map_err(failed)?;
             let energy = 0.5 * cell * pressure.dot(&displacement);
-            close("half of pressures times displacements", state.energy, energy, allowed)?;
+            close("half of pressures times displacements", state.contact.energy, energy, allowed)?;
             last = Some(state);
         }
     }

@@ -45,18 +45,18 @@ pub(crate) fn same_path(
     allowed: f64,
 ) -> TestCaseResult {
     prop_assert_eq!(found.len(), expected.len());
-    let initial = expected.first().map_or(0.0, |first| first.mean_gap);
-    let last = expected.last().map_or(0.0, |last| last.approach);
+    let initial = expected.first().map_or(0.0, |first| first.contact.mean_gap);
+    let last = expected.last().map_or(0.0, |last| last.contact.approach);
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         ours.push(place(a.node));
         theirs.push(b.node);
         let next = expected
             .get(k + 1)
-            .map_or(f64::INFINITY, |next| next.approach);
+            .map_or(f64::INFINITY, |next| next.contact.approach);
         // Lengths cancel in an approach: the heights.
-        let tie = (TIE * b.approach).max(1e-13 * initial);
-        if next - b.approach <= tie {
+        let tie = (TIE * b.contact.approach).max(1e-13 * initial);
+        if next - b.contact.approach <= tie {
             continue;
         }
         ours.sort_unstable();
@@ -65,36 +65,39 @@ pub(crate) fn same_path(
         ours.clear();
         theirs.clear();
         // Where there is hardly an approach, it consists of rounding.
-        if b.approach <= tie {
+        if b.contact.approach <= tie {
             continue;
         }
         let Scale { length, load } = scale;
-        let approach = allowed * (b.approach + last);
+        let approach = allowed * (b.contact.approach + last);
         close(
             "approach",
-            a.approach,
-            length * b.approach,
+            a.contact.approach,
+            length * b.contact.approach,
             length * approach,
         )?;
         close(
             "mean gap",
-            a.mean_gap,
-            length * b.mean_gap,
+            a.contact.mean_gap,
+            length * b.contact.mean_gap,
             length * allowed * initial,
         )?;
         // A load is a stiffness times an approach, both as exact as that.
-        let stiffness = b.contact_stiffness.or(b.interfacial_stiffness);
+        let stiffness = b
+            .contact
+            .contact_stiffness
+            .or(b.contact.interfacial_stiffness);
         let stiffness = stiffness.filter(|k| k.is_finite()).unwrap_or(0.0);
-        let slack = allowed * b.load + approach * stiffness;
-        close("load", a.load, load * b.load, load * slack)?;
-        let slack = 3.0 * allowed * b.energy + slack * b.approach;
+        let slack = allowed * b.contact.load + approach * stiffness;
+        close("load", a.contact.load, load * b.contact.load, load * slack)?;
+        let slack = 3.0 * allowed * b.contact.energy + slack * b.contact.approach;
         close(
             "energy",
-            a.energy,
-            load * length * b.energy,
+            a.contact.energy,
+            load * length * b.contact.energy,
             load * length * slack,
         )?;
-        if let (Some(a), Some(b)) = (a.contact_stiffness, b.contact_stiffness) {
+        if let (Some(a), Some(b)) = (a.contact.contact_stiffness, b.contact.contact_stiffness) {
             close(
                 "stiffness",
                 a,
@@ -110,12 +113,12 @@ pub(crate) fn same_path(
 pub(crate) fn bits(states: &[LoadingState]) -> Vec<[Option<u64>; 8]> {
     let row = |s: &LoadingState| {
         let scalars = [
-            Some(s.approach),
-            Some(s.load),
-            Some(s.mean_gap),
-            Some(s.energy),
-            s.contact_stiffness,
-            s.interfacial_stiffness,
+            Some(s.contact.approach),
+            Some(s.contact.load),
+            Some(s.contact.mean_gap),
+            Some(s.contact.energy),
+            s.contact.contact_stiffness,
+            s.contact.interfacial_stiffness,
             Some(s.node.0 as f64),
             Some(s.node.1 as f64),
         ];

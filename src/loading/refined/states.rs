@@ -133,19 +133,22 @@ mod tests {
             let found: Vec<_> = run.queue.drain(..).collect();
             assert_eq!(found.len(), 2);
             for (k, state) in found.iter().enumerate() {
-                assert_eq!((state.step, state.contact_nodes), (k + 2, k + 2));
+                assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));
                 assert_eq!(state.node, ([2, 4][k], 0));
                 assert_eq!(state.approach_error, [2e-3, 4e-3][k]);
                 let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.front.state(k + 2);
                 let pairs = [
-                    (state.approach, expected.approach),
-                    (state.load, expected.load),
-                    (state.energy, expected.energy),
-                    (state.mean_gap, expected.mean_gap),
+                    (state.contact.approach, expected.approach),
+                    (state.contact.load, expected.load),
+                    (state.contact.energy, expected.energy),
+                    (state.contact.mean_gap, expected.mean_gap),
                 ];
                 let stiffnesses = [
-                    (state.contact_stiffness, expected.contact_stiffness),
-                    (state.interfacial_stiffness, expected.interfacial_stiffness),
+                    (state.contact.contact_stiffness, expected.contact_stiffness),
+                    (
+                        state.contact.interfacial_stiffness,
+                        expected.interfacial_stiffness,
+                    ),
                 ];
                 let stiffnesses =
                     stiffnesses.map(|(a, b)| (a.unwrap_or(f64::NAN), b.unwrap_or_default()));
@@ -185,7 +188,7 @@ mod tests {
             errors: vec![0.0],
         };
         enqueue(&mut run, &watched, &correction, &settled, (&start, 2.0))?;
-        let load = run.queue[0].load;
+        let load = run.queue[0].contact.load;
         // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
         assert!((load - 1.125).abs() < 1e-14, "{load}");
         Ok(())

@@ -85,9 +85,9 @@ fn a_node_that_overlaps_unwatched_is_watched() -> Result<(), Error> {
     assert_eq!((found.len(), exact[8].node), (16, (13, 0)));
     for (state, exact) in found.iter().zip(&exact) {
         assert_eq!(state.node, exact.node);
-        let error = (state.approach - exact.approach).abs();
+        let error = (state.contact.approach - exact.contact.approach).abs();
         // What the state says of itself, and rounding.
-        let allowed = state.approach_error + 1e-13 * exact.approach;
+        let allowed = state.approach_error + 1e-13 * exact.contact.approach;
         assert!(error <= allowed, "{error:e} of {allowed:e}: {state:?}");
     }
     Ok(())

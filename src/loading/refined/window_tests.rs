@@ -235,7 +235,7 @@ fn windows_are_gone_through() -> Result<(), Error> {
             Some((run.contact.revision(), run.front.approach()))
         );
         for (state, approach) in run.queue.iter().zip([1.5, 2.5]) {
-            assert!((state.approach - approach).abs() < 1e-12);
+            assert!((state.contact.approach - approach).abs() < 1e-12);
         }
     }
     Ok(())
@@ -361,10 +361,10 @@ fn windows_without_events_are_gone_through() -> Result<(), Error> {
             (states.len(), states[0].node, states[0].step),
             (1, (1, 0), 2)
         );
-        let approach = states[0].approach;
+        let approach = states[0].contact.approach;
         assert!((approach - 10.0 / 3.0).abs() < 1e-6, "{wrong}: {approach}");
         // Node 0 bears a quarter of the approach on 2 m², and the work is half of their product.
-        assert!((states[0].energy - approach * approach / 4.0).abs() < 1e-5);
+        assert!((states[0].contact.energy - approach * approach / 4.0).abs() < 1e-5);
     }
     Ok(())
 }

@@ -209,13 +209,20 @@ fn events_become_states() -> Result<(), Error> {
     let found: Vec<_> = run
         .queue
         .iter()
-        .map(|state| (state.step, state.contact_nodes, state.node, state.approach))
+        .map(|state| {
+            (
+                state.step,
+                state.contact.contact_nodes,
+                state.node,
+                state.contact.approach,
+            )
+        })
         .collect();
     assert_eq!(found, [(1, 1, (2, 0), 1.0), (2, 2, (4, 0), 1.25)]);
     let found: Vec<_> = run
         .queue
         .iter()
-        .map(|state| (state.load, state.contact_stiffness))
+        .map(|state| (state.contact.load, state.contact.contact_stiffness))
         .collect();
     // 1/4 m with one node.
     assert_eq!(found, [(0.0, Some(0.5)), (0.125, Some(1.0))]);

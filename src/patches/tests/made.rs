@@ -185,7 +185,7 @@ fn sphere(n: (usize, usize), fraction: f64) -> Result<(Grid, HertzSphere, Histor
 fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
     let (grid, _, history) = sphere((12, 9), 0.4)?;
     let step = activation_map(&grid, history.states(), |state| state.step as f64)?;
-    let approach = activation_map(&grid, history.states(), |state| state.approach)?;
+    let approach = activation_map(&grid, history.states(), |state| state.contact.approach)?;
     let events = history
         .states()
         .iter()
@@ -196,14 +196,17 @@ fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
         let map = contact.map_at(state.step);
         assert_eq!(step.map(|touched| touched <= state.step as f64), map);
         // Without ties, as here.
-        assert_eq!(approach.map(|touched| touched <= state.approach), map);
+        assert_eq!(
+            approach.map(|touched| touched <= state.contact.approach),
+            map
+        );
     }
     assert_eq!(
         step.iter().filter(|touched| touched.is_nan()).count(),
         108 - 43
     );
     let small = Grid::new(9, 12, 1.0, 1.0)?;
-    let refused = activation_map(&small, history.states(), |state| state.load);
+    let refused = activation_map(&small, history.states(), |state| state.contact.load);
     assert!(matches!(refused, Err(Error::OutOfRange { .. })));
     Ok(())
 }
@@ -227,10 +230,10 @@ fn the_corrected_area_is_closer_to_that_of_hertz() -> Result<(), Error> {
         let patches = PatchHistory::new(&contact, Boundary::Free, Connectivity::Four);
         let (mut error, mut corrected) = (0.0, 0.0);
         for (patches, state) in patches.zip(history.states()).skip(200) {
-            let radius = (0.75 * state.load * hertz.radius() / hertz.e_star()).cbrt();
+            let radius = (0.75 * state.contact.load * hertz.radius() / hertz.e_star()).cbrt();
             let area = std::f64::consts::PI * radius * radius;
             assert_eq!(patches.patches, 1);
-            error += state.contact_area - area;
+            error += state.contact.contact_area - area;
             corrected += patches.corrected_area(&grid) - area;
         }
         // Measured: -0.24 on square cells, -0.27 on others: the correction is a mean over directions and places.

@@ -70,6 +70,7 @@ impl RecursiveCholesky {
     }
 
     /// Where the time went so far.
+    #[doc(hidden)]
     #[must_use]
     pub fn timings(&self) -> CholeskyTimings {
         self.factor.timings

@@ -74,7 +74,7 @@ fn run(
     let mut solver = builder.build()?;
     let mut nodes = 0;
     for state in solver.by_ref() {
-        nodes = state?.contact_nodes;
+        nodes = state?.contact.contact_nodes;
         if nodes % 64 == 0 {
             bar.set_position(nodes as u64);
         }

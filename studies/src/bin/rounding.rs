@@ -68,28 +68,28 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
     let mut last: Option<LoadingState> = None;
     while let Some(state) = path.next() {
         let state = state?;
-        let is_last = state.contact_nodes == contact;
+        let is_last = state.contact.contact_nodes == contact;
         last = Some(state);
-        if !state.contact_nodes.is_multiple_of(every) && !is_last {
+        if !state.contact.contact_nodes.is_multiple_of(every) && !is_last {
             continue;
         }
         let pressure = path.pressure()?;
         let displacement = path.displacement()?;
         let certificate = path.certificate()?;
         let energy = 0.5 * cell * pressure.dot(&displacement);
-        let single = loads.solve(state.load)?.state;
-        let stiffness = [state.contact_stiffness, single.contact_stiffness];
+        let single = loads.solve(state.contact.load)?.state;
+        let stiffness = [state.contact.contact_stiffness, single.contact_stiffness];
         let [Some(own), Some(other)] = stiffness else {
             return Err("there is no contact stiffness".into());
         };
         println!(
             "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |",
-            state.contact_nodes,
-            relative(state.load, cell * pressure.sum()),
-            relative(state.mean_gap, path.gap()?.mean()),
-            relative(state.energy, energy),
+            state.contact.contact_nodes,
+            relative(state.contact.load, cell * pressure.sum()),
+            relative(state.contact.mean_gap, path.gap()?.mean()),
+            relative(state.contact.energy, energy),
             relative(own, other),
-            relative(state.approach, single.approach),
+            relative(state.contact.approach, single.approach),
             certificate.greatest_contact_gap,
         );
     }
@@ -153,7 +153,7 @@ fn line(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<String, asperity::E
         .build()?;
     let (mut pressure, mut contact) = (0.0_f64, 0.0_f64);
     while let Some(state) = path.next() {
-        if state?.contact_nodes % 8 != 0 {
+        if state?.contact.contact_nodes % 8 != 0 {
             continue;
         }
         let certificate = path.certificate()?;

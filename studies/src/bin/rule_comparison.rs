@@ -102,8 +102,8 @@ fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<d
             found.other_node += usize::from(first != state.node);
         }
         found.steps += 1;
-        found.backward_steps += usize::from(state.approach < previous);
-        previous = state.approach;
+        found.backward_steps += usize::from(state.contact.approach < previous);
+        previous = state.contact.approach;
 
         let certificate = path.certificate()?;
         let least_gap = certificate.least_gap * certificate.length / sq;

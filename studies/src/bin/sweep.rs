@@ -12,7 +12,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boussinesq, FixedLoadSolver, Grid};
+use asperity::{Boussinesq, ContactTarget, FixedLoadSolver, Grid};
 use clap::Parser;
 
 #[derive(Debug, Parser)]
@@ -80,9 +80,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let cold = arguments.cold as f64;
         let (cold_seconds, cold_convolutions) = (seconds / cold, convolutions / cold);
-        let loads: Vec<f64> = (0..arguments.loads)
+        let loads = (0..arguments.loads)
             .map(|i| load(i as f64 / (arguments.loads.max(2) - 1) as f64))
-            .collect();
+            .map(ContactTarget::Load);
         let (mut convolutions, mut worst) = (0.0, 0.0_f64);
         let start = Instant::now();
         let mut last = 0.0;

@@ -71,7 +71,7 @@ fn an_updater_that_cannot_let_nodes_leave_says_so() {
     assert!(path.next().is_none());
     // What came before stays.
     let state = path.state().unwrap();
-    assert_eq!(path.contact_order().len(), state.contact_nodes);
+    assert_eq!(path.contact_order().len(), state.contact.contact_nodes);
     assert!(path.certificate().unwrap().least_pressure > -1e-11);
 }
 
@@ -159,7 +159,7 @@ fn states_before_a_failure_stay() {
                 "{state:?}: {error:e}"
             );
         }
-        let nodes = path.state().map_or(0, |state| state.contact_nodes);
+        let nodes = path.state().map_or(0, |state| state.contact.contact_nodes);
         assert_eq!(path.contact_order().len(), nodes);
     }
 }

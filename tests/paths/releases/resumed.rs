@@ -40,18 +40,23 @@ fn paths_with_releases_go_on_from_any_state() {
             assert_eq!(rest.len(), all.len() - at);
             for (found, expected) in rest.iter().zip(&all[at..]) {
                 assert_eq!(
-                    (found.step, found.event, found.node, found.contact_nodes),
+                    (
+                        found.step,
+                        found.event,
+                        found.node,
+                        found.contact.contact_nodes
+                    ),
                     (
                         expected.step,
                         expected.event,
                         expected.node,
-                        expected.contact_nodes
+                        expected.contact.contact_nodes
                     )
                 );
                 for (a, b) in [
-                    (found.approach, expected.approach),
-                    (found.load, expected.load),
-                    (found.mean_gap, expected.mean_gap),
+                    (found.contact.approach, expected.contact.approach),
+                    (found.contact.load, expected.contact.load),
+                    (found.contact.mean_gap, expected.contact.mean_gap),
                 ] {
                     assert!(
                         (a - b).abs() <= 1e-9 * (1.0 + b.abs()),
@@ -148,7 +153,7 @@ fn records_with_releases_are_read_back() {
             let expected = path.pressure_at(state).unwrap();
             let found = replay.pressure_at(state).unwrap();
             // Residuals of 1e-10 of the approach, times the condition number.
-            let allowed = 1e-7 * (state.approach + expected.amax());
+            let allowed = 1e-7 * (state.contact.approach + expected.amax());
             assert!((&found - &expected).amax() <= allowed, "{state:?}");
         }
     }

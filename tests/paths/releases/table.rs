@@ -99,8 +99,10 @@ impl Table {
     /// The approach for which gap = g + C p − δ with the coefficients as they are.
     pub(super) fn own_approach(&self, state: &LoadingState) -> f64 {
         match self.boundary {
-            Boundary::Free => state.approach,
-            Boundary::Periodic => state.approach + self.matrix().mean() * state.load,
+            Boundary::Free => state.contact.approach,
+            Boundary::Periodic => {
+                state.contact.approach + self.matrix().mean() * state.contact.load
+            }
         }
     }
 

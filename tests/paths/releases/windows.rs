@@ -53,13 +53,13 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
                 let state = path.next().unwrap().unwrap();
                 assert_eq!((state.step, state.node), (expected.step, expected.node));
                 for (found, expected) in [
-                    (state.approach, expected.approach),
-                    (state.load, expected.load),
-                    (state.mean_gap, expected.mean_gap),
-                    (state.energy, expected.energy),
+                    (state.contact.approach, expected.contact.approach),
+                    (state.contact.load, expected.contact.load),
+                    (state.contact.mean_gap, expected.contact.mean_gap),
+                    (state.contact.energy, expected.contact.energy),
                     (
-                        state.contact_stiffness.unwrap(),
-                        expected.contact_stiffness.unwrap(),
+                        state.contact.contact_stiffness.unwrap(),
+                        expected.contact.contact_stiffness.unwrap(),
                     ),
                 ] {
                     assert!(

@@ -169,8 +169,11 @@ fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
                     );
                     for (state, expected) in states.iter().zip(&expected) {
                         // Rounding of windows and of events that are found one at a time.
-                        let change = (state.load - expected.load).abs();
-                        assert!(change <= 1e-12 * expected.load, "{context}: {state:?}");
+                        let change = (state.contact.load - expected.contact.load).abs();
+                        assert!(
+                            change <= 1e-12 * expected.contact.load,
+                            "{context}: {state:?}"
+                        );
                     }
                     assert_eq!(states.len(), expected.len(), "{context}");
                 }

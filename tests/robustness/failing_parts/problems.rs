@@ -135,8 +135,8 @@ impl Small {
     /// The approach for which gap = g + C p − δ with the coefficients as they are.
     fn own_approach(&self, state: &LoadingState) -> f64 {
         match self.kernel.boundary() {
-            Boundary::Free => state.approach,
-            Boundary::Periodic => state.approach + self.matrix.mean() * state.load,
+            Boundary::Free => state.contact.approach,
+            Boundary::Periodic => state.contact.approach + self.matrix.mean() * state.contact.load,
         }
     }
 
@@ -186,10 +186,10 @@ impl Small {
         };
         let pressed = pressure.iter().filter(|p| **p > force).count();
         let closed = gap.iter().filter(|gap| **gap <= length).count();
-        if !(pressed..=closed).contains(&state.contact_nodes) {
+        if !(pressed..=closed).contains(&state.contact.contact_nodes) {
             return Some(format!("{pressed} to {closed} nodes touch: {state:?}"));
         }
-        is_off("load", state.load, pressure.sum(), force)
-            .or_else(|| is_off("mean gap", state.mean_gap, gap.mean(), length))
+        is_off("load", state.contact.load, pressure.sum(), force)
+            .or_else(|| is_off("mean gap", state.contact.mean_gap, gap.mean(), length))
     }
 }

@@ -1,7 +1,7 @@
 //! An error at the k-th call of an updater is the last item of the path, and takes nothing away.
 
-use asperity::Error;
 use asperity::loading::LoadingEnd;
+use asperity::{ContactTarget, Error};
 
 use super::problems::{MAKERS, Maker, Path, Small};
 use super::updater::{Fault, is_refusal};
@@ -21,17 +21,17 @@ pub(super) fn is_over(
     }
     assert_eq!(path.size_hint(), (0, Some(0)), "{context}");
     assert!(matches!(
-        path.continue_to(1e9),
+        path.continue_to(ContactTarget::Load(1e9)),
         Err(Error::CannotContinue { steps }) if steps == states.len()
     ));
     assert_eq!(path.state(), states.last().copied(), "{context}");
-    let nodes = states.last().map_or(0, |state| state.contact_nodes);
+    let nodes = states.last().map_or(0, |state| state.contact.contact_nodes);
     assert_eq!(path.contact_order().len(), nodes, "{context}");
     let mut answered = 0;
     for state in states {
         let map = path.contact_map_at(state).unwrap();
         let in_contact = map.iter().filter(|in_contact| **in_contact).count();
-        assert_eq!(in_contact, state.contact_nodes, "{context}");
+        assert_eq!(in_contact, state.contact.contact_nodes, "{context}");
         // Of an updater that has failed once anything but a wrong answer is welcome.
         if let Ok(pressure) = path.pressure_at(state) {
             answered += 1;

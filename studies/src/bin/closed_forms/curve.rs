@@ -1,6 +1,6 @@
 //! What is compared, and how its error falls with the mesh.
 
-use asperity::Error;
+use asperity::{ContactTarget, Error};
 use asperity_studies::order::order;
 
 /// Cells over the radius, or the half-width, of a contact.
@@ -83,8 +83,9 @@ impl Errors {
 }
 
 /// Loads around a target.
-pub(crate) fn loads(target: f64) -> impl Iterator<Item = f64> {
-    (0..LOADS).map(move |k| target * (0.75 + 0.5 * (k as f64 + 0.5) / LOADS as f64))
+pub(crate) fn loads(target: f64) -> impl Iterator<Item = ContactTarget> {
+    let part = |k| 0.75 + 0.5 * (k as f64 + 0.5) / LOADS as f64;
+    (0..LOADS).map(move |k| ContactTarget::Load(target * part(k)))
 }
 
 /// The errors on every mesh.

@@ -67,7 +67,7 @@ fn headline() -> Result<(usize, f64), asperity::Error> {
         .build()?;
     let mut nodes = 0;
     for state in path.by_ref() {
-        nodes = state?.contact_nodes;
+        nodes = state?.contact.contact_nodes;
     }
     let matrix = 8.0 * (nodes as f64).powi(2);
     Ok((nodes, path.bytes() as f64 / matrix))

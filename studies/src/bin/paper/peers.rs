@@ -95,6 +95,6 @@ fn by_path(
         state?;
     }
     // The last state is at exactly this load.
-    let nodes = path.state().map_or(0, |state| state.contact_nodes);
+    let nodes = path.state().map_or(0, |state| state.contact.contact_nodes);
     Ok((nodes, path.max_pressure()?))
 }

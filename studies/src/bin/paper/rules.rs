@@ -60,8 +60,8 @@ impl Rules {
         let pairs = || exact.states.iter().zip(&smallest_gap.states);
         let load = pairs()
             .skip(100)
-            .map(|(a, b)| (b.load / a.load - 1.0).abs());
-        let approach = pairs().map(|(a, b)| (b.approach - a.approach).abs() / sq);
+            .map(|(a, b)| (b.contact.load / a.contact.load - 1.0).abs());
+        let approach = pairs().map(|(a, b)| (b.contact.approach - a.contact.approach).abs() / sq);
         let nodes_of = |findings: &Findings| findings.order.clone();
         let (first, second) = (nodes_of(&exact), nodes_of(&smallest_gap));
         Ok(Self {
@@ -92,8 +92,8 @@ fn examine(
     let mut found = Findings::default();
     while let Some(state) = path.next() {
         let state = state?;
-        let previous = found.states.last().map_or(0.0, |s| s.approach);
-        found.backward += usize::from(state.approach < previous);
+        let previous = found.states.last().map_or(0.0, |s| s.contact.approach);
+        found.backward += usize::from(state.contact.approach < previous);
         found.states.push(state);
         if state.step % EVERY == 0 {
             let certificate = path.certificate()?;

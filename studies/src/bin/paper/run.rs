@@ -6,7 +6,9 @@ use std::time::Instant;
 use asperity::contact::ContactSequence;
 use asperity::patches::{Connectivity, PatchHistory, Patches};
 use asperity::surface::HeightMap;
-use asperity::{Boundary, Boussinesq, ContactState, FixedLoadSolver, LoadingSolver, LoadingState};
+use asperity::{
+    Boundary, Boussinesq, ContactState, ContactTarget, FixedLoadSolver, LoadingSolver, LoadingState,
+};
 use nalgebra::DMatrix;
 
 use crate::surfaces::{E_STAR, NOMINAL_AREA, Rough, SQ, grid};
@@ -78,11 +80,13 @@ impl Run {
         let events = points.len();
         let last = points.last().map_or(GREATEST_LOAD, |point| point.load);
         let loads = loads_beyond(last);
+        let newtons = loads.iter().map(|load| load * NOMINAL_AREA * E_STAR);
+        let targets = newtons.map(ContactTarget::Load);
         let mut solver = FixedLoadSolver::builder(&heights, &kernel)
             .tolerance(TOLERANCE)
             .build()
             .map_err(failed)?;
-        for solution in solver.sweep(loads.iter().map(|load| load * NOMINAL_AREA * E_STAR)) {
+        for solution in solver.sweep(targets) {
             let solution = solution.map_err(failed)?;
             let patches = Patches::new(
                 &solution.contact_map,
@@ -291,7 +295,7 @@ fn follow(
         let state = state?;
         pending = Some(state);
         // First touch carries no load and divides nothing.
-        if state.step >= next && state.load > 0.0 {
+        if state.step >= next && state.contact.load > 0.0 {
             states.push(state);
             pending = None;
             next = state.step + 1 + state.step / 500;
@@ -303,8 +307,8 @@ fn follow(
         path.contact_order(),
     )?);
     let points = states.iter().map(|state| {
-        let area = areas.get(state.contact_nodes.wrapping_sub(1));
-        Point::new(state, area.copied().unwrap_or_default(), true)
+        let area = areas.get(state.contact.contact_nodes.wrapping_sub(1));
+        Point::new(&state.contact, area.copied().unwrap_or_default(), true)
     });
     Ok(points.collect())
 }

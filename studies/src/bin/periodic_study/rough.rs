@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use asperity::reference::AreaLoadLaw;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boundary, FixedLoadSolver, Grid};
+use asperity::{Boundary, ContactTarget, FixedLoadSolver, Grid};
 use indicatif::ProgressBar;
 
 use crate::Options;
@@ -80,7 +80,7 @@ impl Study {
                 rms_gradient * LEAST_LOAD * (MOST_LOAD / LEAST_LOAD).powf(part)
             });
             // On the unit square, with E* = 1, loads are mean pressures over E*.
-            for solution in solver.sweep(pressures) {
+            for solution in solver.sweep(pressures.map(ContactTarget::Load)) {
                 let solution = solution.map_err(failed)?;
                 let (state, map) = (solution.state, &solution.contact_map);
                 let effort = solution.effort;

@@ -116,26 +116,30 @@ impl Errors {
         };
         for pair in states.windows(2) {
             let (before, at) = (pair[0], pair[1]);
-            let pressure = at.mean_pressure();
+            let pressure = at.contact.mean_pressure();
             // Whole rows touch at once: nothing is between them.
-            if at.load <= before.load * (1.0 + 1e-9) || pressure > full {
+            if at.contact.load <= before.contact.load * (1.0 + 1e-9) || pressure > full {
                 continue;
             }
-            let gap = (at.mean_gap - exact.mean_gap(pressure)) / AMPLITUDE;
+            let gap = (at.contact.mean_gap - exact.mean_gap(pressure)) / AMPLITUDE;
             errors.gap = errors.gap.max(gap.abs());
             let ratio = pressure / full;
             if ratio > INSIDE.0 && ratio < INSIDE.1 {
-                let area = before.contact_area_fraction - exact.contact_area_fraction(pressure);
+                let area =
+                    before.contact.contact_area_fraction - exact.contact_area_fraction(pressure);
                 errors.area = errors.area.max(area.abs());
                 // A path always has it.
-                let stiffness = before.interfacial_stiffness.unwrap_or(f64::INFINITY);
+                let stiffness = before
+                    .contact
+                    .interfacial_stiffness
+                    .unwrap_or(f64::INFINITY);
                 let per_area = stiffness / grid.nominal_area();
                 let stiffness = per_area / exact.interfacial_stiffness(pressure) - 1.0;
                 errors.stiffness = errors.stiffness.max(stiffness.abs());
             }
         }
         if let Some(last) = states.last() {
-            errors.full = (last.mean_pressure() / full - 1.0).abs();
+            errors.full = (last.contact.mean_pressure() / full - 1.0).abs();
         }
         Ok(errors)
     }

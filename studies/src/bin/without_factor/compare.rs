@@ -25,13 +25,13 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
         .map(|(k, state)| (state.node, k))
         .collect();
     let count = found.len().min(exact.len());
-    let approach = |k: usize| exact[k].approach;
-    let computed = |state: &LoadingState| state.approach + uniform * state.load;
+    let approach = |k: usize| exact[k].contact.approach;
+    let computed = |state: &LoadingState| state.contact.approach + uniform * state.contact.load;
     // Nodes that join at one approach are ties as far as they say themselves.
     let together = |k: usize| {
         let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
         let same = |other: &LoadingState| {
-            (other.approach - found[k].approach).abs() <= SAME * computed(&found[k])
+            (other.contact.approach - found[k].contact.approach).abs() <= SAME * computed(&found[k])
         };
         match beside.filter_map(|k| found.get(k)).any(same) {
             true => found[k].approach_error,
@@ -40,7 +40,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
     };
     let tie = |k: usize| {
         // Heights are rounded.
-        let rounding = ROUNDING * exact[0].mean_gap;
+        let rounding = ROUNDING * exact[0].contact.mean_gap;
         (TIE * computed(&exact[k])).max(rounding).max(together(k))
     };
     let (mut places, mut events) = (0, 0);
@@ -57,7 +57,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
                 events += 1;
             }
         }
-        let error = (state.approach - approach(own)).abs();
+        let error = (state.contact.approach - approach(own)).abs();
         let (first, last) = (
             own.saturating_sub(AROUND),
             (own + AROUND).min(exact.len() - 1),
@@ -84,32 +84,36 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
     println!("  approach over spacing: {}", quantiles(errors));
     // Where no tie makes the order of equals matter.
     let clear = |k: &usize| {
-        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.approach);
+        let next = exact
+            .get(k + 1)
+            .map_or(f64::INFINITY, |next| next.contact.approach);
         approach(*k) > 0.0 && next - approach(*k) > tie(*k)
     };
     let alike: Vec<usize> = (0..count)
         .filter(clear)
         .filter(|&k| !is_full(&exact[k]))
         .collect();
-    let initial = exact[0].mean_gap;
+    let initial = exact[0].contact.mean_gap;
     let columns: [(&str, Difference<'_>); 5] = [
-        ("load", &|a, b| relative(a.load, b.load)),
+        ("load", &|a, b| relative(a.contact.load, b.contact.load)),
         ("stiffness", &|a, b| {
             relative(
-                a.contact_stiffness.unwrap_or(1.0),
-                b.contact_stiffness.unwrap_or(1.0),
+                a.contact.contact_stiffness.unwrap_or(1.0),
+                b.contact.contact_stiffness.unwrap_or(1.0),
             )
         }),
         ("interfacial stiffness", &|a, b| {
             relative(
-                a.interfacial_stiffness.unwrap_or(1.0),
-                b.interfacial_stiffness.unwrap_or(1.0),
+                a.contact.interfacial_stiffness.unwrap_or(1.0),
+                b.contact.interfacial_stiffness.unwrap_or(1.0),
             )
         }),
         ("mean gap over initial", &|a, b| {
-            (a.mean_gap - b.mean_gap).abs() / initial
+            (a.contact.mean_gap - b.contact.mean_gap).abs() / initial
         }),
-        ("energy", &|a, b| relative(a.energy, b.energy)),
+        ("energy", &|a, b| {
+            relative(a.contact.energy, b.contact.energy)
+        }),
     ];
     for (name, error) in columns {
         let errors = alike.iter().map(|&k| error(&found[k], &exact[k]));
@@ -118,7 +122,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
 }
 
 fn is_full(state: &LoadingState) -> bool {
-    state.contact_area_fraction == 1.0
+    state.contact.contact_area_fraction == 1.0
 }
 
 fn relative(a: f64, b: f64) -> f64 {

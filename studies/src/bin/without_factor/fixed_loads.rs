@@ -44,10 +44,7 @@ pub(crate) fn compare(
         let different = different.filter(|(a, b)| a != b).count();
         sets += usize::from(different > 0);
         // The exact stiffness of the path's contact.
-        let mut contact = ContactSequence::new(grid);
-        for &node in &order[..count] {
-            contact.push(node)?;
-        }
+        let contact = ContactSequence::with_order(grid, order[..count].iter().copied())?;
         let mut exact = Solution::default();
         let request = SolveRequest::exact(count, state.approach);
         ConjugateGradient::new().solve(&problem, &contact, request, &mut exact)?;

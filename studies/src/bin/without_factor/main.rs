@@ -129,9 +129,9 @@ fn run<U: LinearUpdater>(
 fn events(states: &[LoadingState]) -> Vec<Event> {
     let event = |state: &LoadingState| Event {
         node: state.node,
-        approach: state.approach,
-        load: state.load,
-        contact_stiffness: state.contact_stiffness.unwrap_or(f64::NAN),
+        approach: state.contact.approach,
+        load: state.contact.load,
+        contact_stiffness: state.contact.contact_stiffness.unwrap_or(f64::NAN),
     };
     states.iter().map(event).collect()
 }

@@ -27,7 +27,7 @@ pub(crate) fn compare(record: &LoadingRecord, stretches: usize) -> Result<(), Bo
         let mut path = LoadingSolver::builder(record.heights(), &kernel)
             .updater(ConjugateGradient::with_tolerance(TOLERANCE)?)
             .window_size(1)
-            .max_nodes(states[count - 1].contact_nodes + LENGTH)
+            .max_nodes(states[count - 1].contact.contact_nodes + LENGTH)
             .resume(&before)?;
         let exact = path
             .by_ref()
@@ -38,15 +38,16 @@ pub(crate) fn compare(record: &LoadingRecord, stretches: usize) -> Result<(), Bo
         let other = found.iter().enumerate().filter(|(k, state)| {
             let own = exact.iter().position(|exact| exact.node == state.node);
             own.is_none_or(|own| {
-                let apart = (exact[own].approach - exact[*k].approach).abs();
-                own != *k && apart > TIE * state.approach
+                let apart = (exact[own].contact.approach - exact[*k].contact.approach).abs();
+                own != *k && apart > TIE * state.contact.approach
             })
         });
         let other = other.count();
-        let spacing = (exact[length - 1].approach - exact[0].approach) / length as f64;
+        let spacing =
+            (exact[length - 1].contact.approach - exact[0].contact.approach) / length as f64;
         let errors = found.iter().zip(exact);
         let error = errors.fold(0.0_f64, |worst, (found, exact)| {
-            worst.max((found.approach - exact.approach).abs())
+            worst.max((found.contact.approach - exact.contact.approach).abs())
         });
         println!(
             "  {count} nodes: {other} of {length} events elsewhere, approach within {:.1e} of their spacing, {} windows",

@@ -1,0 +1,119 @@
+//! All types of this crate can be sent to other threads and shared between them; of those with parameters, where these can. The
+//! builders cannot: they borrow a surface and a kernel that need not. What is asserted here holds if it compiles.
+
+use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
+use crate::convolution::Convolution;
+use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
+use crate::kernel::{
+    Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, MeanDisplacement,
+    PeriodicBoussinesq, Spectral,
+};
+use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingSolver, LoadingState};
+use crate::patches::{
+    Bins, Branch, Connectivity, Constriction, ContactEdge, FieldDistribution, Histogram, MergeTree,
+    Merger, Patch, PatchEvent, PatchHistory, PatchLoad, PatchState, Patches, Percolation,
+    Perimeter,
+};
+use crate::record::{KernelRecord, LoadingRecord, Settings};
+use crate::reference::{
+    AreaLoadLaw, CircularPunch, Cone, DoubleWave, HertzEllipse, HertzLine, HertzSphere, Westergaard,
+};
+use crate::surface::{HeightMap, SelfAffine, Topography};
+use crate::updater::{
+    ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, SolveRequest,
+    UpdaterReport,
+};
+use crate::{Doubt, Error, FileError, Grid, KernelError, Problem, UpdaterError};
+
+/// Compiles for types that can be sent and shared.
+const fn asserted<T: Send + Sync>() {}
+
+macro_rules! send_and_sync {
+    ($($t:ty),+ $(,)?) => { const _: () = { $(asserted::<$t>();)+ }; };
+}
+
+send_and_sync!(
+    Grid,
+    Problem,
+    Doubt,
+    Error,
+    FileError,
+    KernelError,
+    UpdaterError
+);
+send_and_sync!(
+    Certificate,
+    ContactSequence,
+    ContactState,
+    ContactTarget,
+    Convolution
+);
+send_and_sync!(
+    FixedLoadSolution,
+    FixedLoadSolver,
+    LoadSweep<'static, std::vec::IntoIter<ContactTarget>>,
+    SolverEffort,
+);
+send_and_sync!(
+    Boundary,
+    Boussinesq,
+    ContactGrowth,
+    KernelOrigin,
+    KernelReport,
+    KernelTable,
+    MeanDisplacement,
+    PeriodicBoussinesq,
+    Spectral,
+);
+send_and_sync!(
+    ContactEvent,
+    ContactRule,
+    History,
+    LoadingEnd,
+    LoadingSolver,
+    LoadingSolver<ConjugateGradient>,
+    LoadingSolver<Dense>,
+    LoadingSolver<RecursiveCholesky>,
+    LoadingState,
+);
+send_and_sync!(
+    Bins,
+    Branch,
+    Connectivity,
+    Constriction,
+    ContactEdge,
+    FieldDistribution,
+    Histogram,
+    MergeTree,
+    Merger,
+    Patch,
+    PatchEvent,
+    PatchHistory<'static>,
+    PatchLoad,
+    PatchState,
+    Patches,
+    Percolation,
+    Perimeter,
+);
+send_and_sync!(KernelRecord, LoadingRecord, Settings);
+send_and_sync!(
+    AreaLoadLaw,
+    CircularPunch,
+    Cone,
+    DoubleWave,
+    HertzEllipse,
+    HertzLine,
+    HertzSphere,
+    Westergaard,
+);
+send_and_sync!(HeightMap, SelfAffine, Topography);
+send_and_sync!(
+    ConjugateGradient,
+    Dense,
+    Handover,
+    RecursiveCholesky,
+    Schur,
+    Solution,
+    SolveRequest,
+    UpdaterReport,
+);

@@ -1,0 +1,60 @@
+//! Solutions as data of any format that serde knows.
+
+use asperity::{Error, FixedLoadSolution, FixedLoadSolver, Grid};
+use serde_json::Value;
+
+use crate::problems::{Kernel, rough, solver};
+
+fn written(solution: &FixedLoadSolution) -> String {
+    serde_json::to_string(solution).unwrap()
+}
+
+fn read(text: &str) -> Result<FixedLoadSolution, serde_json::Error> {
+    serde_json::from_str(text)
+}
+
+/// Partial contact and full contact, whose greatest numbers JSON does not have, with stiffnesses and without.
+#[test]
+fn a_solution_is_data() {
+    let grid = Grid::new(12, 9, 1.0, 1.0).unwrap();
+    let map = rough(&grid, 4);
+    for kernel in Kernel::all(grid, 1.0) {
+        for stiffness in [true, false] {
+            let builder = FixedLoadSolver::builder(&map, &kernel);
+            let mut solver = builder.stiffness(stiffness).build().unwrap();
+            for load in [1e-2, 1e6] {
+                let solution = solver.solve(load).unwrap();
+                let full = solution.certificate.least_gap == f64::INFINITY;
+                assert_eq!(full, load > 1.0);
+                assert_eq!(read(&written(&solution)).unwrap(), solution);
+            }
+        }
+    }
+}
+
+#[test]
+fn fields_of_another_shape_are_refused() {
+    let grid = Grid::square(4, 1.0).unwrap();
+    let mut solver = solver(&rough(&grid, 4), &Kernel::free(grid, 1.0), 1e-8);
+    let text = written(&solver.solve(1e-2).unwrap());
+    let fields = [
+        "pressure",
+        "gap",
+        "displacement",
+        "contact_map",
+        "pressure_rate",
+    ];
+    for field in fields {
+        let mut fewer: Value = serde_json::from_str(&text).unwrap();
+        fewer[field].as_array_mut().unwrap().pop();
+        let refused = serde_json::from_value::<FixedLoadSolution>(fewer).unwrap_err();
+        let expected = Error::LengthMismatch {
+            expected: 16,
+            found: 15,
+        };
+        assert_eq!(refused.to_string(), expected.to_string(), "{field}");
+    }
+    let mut none: Value = serde_json::from_str(&text).unwrap();
+    none["shape"] = serde_json::json!([0, 4]);
+    assert!(serde_json::from_value::<FixedLoadSolution>(none).is_err());
+}
