@@ -76,13 +76,10 @@ mod doubt;
 mod elasticity;
 mod error;
 pub mod fixed_load;
-mod grid;
-pub mod io;
 pub mod kernel;
 mod krylov;
 pub mod loading;
 mod memory;
-mod parallel;
 pub mod patches;
 mod problem;
 pub mod record;
@@ -90,24 +87,24 @@ pub mod reference;
 #[cfg(test)]
 mod row;
 mod scale;
-pub mod surface;
 pub mod updater;
 
-pub use nalgebra;
+pub(crate) use asperity_surfaces::parallel;
+pub use asperity_surfaces::{
+    Error as SurfaceError, FileError, Grid, HeightMap, SelfAffine, Surface, io, nalgebra, surface,
+};
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use doubt::Doubt;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{Error, FileError, KernelError, UpdaterError};
+pub use error::{Error, KernelError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
-pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;
-pub use surface::{HeightMap, SelfAffine, Surface};
 pub use updater::{LinearUpdater, RecursiveCholesky};
 
 /// Compiles and runs the code of the README.

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use asperity::io::write_whole;
+use asperity::{FileError, SurfaceError};
 
 use crate::say;
 
@@ -69,11 +70,32 @@ impl Failure {
             let text = error.to_string();
             // Some errors quote their causes.
             if !said.ends_with(&text) {
-                eprintln!("  because: {text}");
+                match option(error) {
+                    Some(option) => eprintln!("  because: {text} (`{option}`)"),
+                    None => eprintln!("  because: {text}"),
+                }
             }
             said = text;
             cause = error.source();
         }
+    }
+}
+
+/// The option of the command line that supplies what an error says is not there.
+fn option(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    let error = match error.downcast_ref() {
+        Some(asperity::Error::Surface(error)) => Some(error),
+        _ => error.downcast_ref(),
+    };
+    match error? {
+        SurfaceError::HeightNotFinite { .. } => Some("--fill"),
+        SurfaceError::File(FileError::NoSide) => Some("--side"),
+        SurfaceError::File(FileError::WhichChannel { wanted: None, .. }) => Some("--channel"),
+        SurfaceError::File(FileError::NoUnit { quantity, .. }) => Some(match *quantity {
+            "heights" => "--height-unit",
+            _ => "--lateral-unit",
+        }),
+        _ => None,
     }
 }
 

@@ -105,7 +105,12 @@ pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
 /// The grid with lengths in units of the long side of its cells.
 pub(super) fn in_long_sides(grid: &Grid) -> Result<Grid, Error> {
     let long = grid.dx().max(grid.dy());
-    Grid::new(grid.nx(), grid.ny(), grid.dx() / long, grid.dy() / long)
+    Ok(Grid::new(
+        grid.nx(),
+        grid.ny(),
+        grid.dx() / long,
+        grid.dy() / long,
+    )?)
 }
 
 /// Wave number of mode k of n on cells of `spacing`, for 0 ≤ k ≤ n / 2.
