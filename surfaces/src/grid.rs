@@ -11,11 +11,35 @@ use crate::Error;
 /// is also the place of element `[(ix, iy)]` in the storage of a nalgebra `DMatrix`. In every field of
 /// this crate x is the first index; an image `[row, column]` must be transposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Unchecked")
+)]
 pub struct Grid {
     nx: usize,
     ny: usize,
     dx: f64,
     dy: f64,
+}
+
+/// What a grid is read from.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked {
+    nx: usize,
+    ny: usize,
+    dx: f64,
+    dy: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Grid {
+    type Error = Error;
+
+    fn try_from(found: Unchecked) -> Result<Self, Error> {
+        Self::new(found.nx, found.ny, found.dx, found.dy)
+    }
 }
 
 impl Grid {
@@ -311,6 +335,25 @@ mod tests {
                 Err(Error::LessThanOneNode { least: 0.01, .. })
             ));
         }
+        Ok(())
+    }
+
+    /// A grid is read as it was written, and checked as any other.
+    #[cfg(feature = "serde")]
+    #[test]
+    fn a_grid_is_data() -> Result<(), Box<dyn std::error::Error>> {
+        let grid = Grid::new(3, 4, 0.1, 1.0 / 3.0)?;
+        let text = serde_json::to_string(&grid)?;
+        assert_eq!(serde_json::from_str::<Grid>(&text)?, grid);
+        let refused = |from, to| {
+            let other = text.replacen(from, to, 1);
+            assert_ne!(other, text);
+            serde_json::from_str::<Grid>(&other).map_err(|error| error.to_string())
+        };
+        let empty = refused("\"nx\":3", "\"nx\":0");
+        assert!(empty.is_err_and(|error| error.contains("a grid of 0 x 4 nodes is empty")));
+        let flat = refused("\"dx\":0.1", "\"dx\":-0.1");
+        assert!(flat.is_err_and(|error| error.contains("dx must be positive")));
         Ok(())
     }
 }

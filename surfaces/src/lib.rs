@@ -19,7 +19,7 @@
 //! | question | answer |
 //! |---|---|
 //! | a file of my instrument | [`io::read_surface`], and [`io::ReadOptions`] for what it leaves open |
-//! | bytes that are no file | [`io::ReadOptions::read_bytes`], [`io::ReadOptions::read_from`] |
+//! | bytes that are not in a file | [`io::ReadOptions::read_bytes`], [`io::ReadOptions::read_from`] |
 //! | missing nodes | [`surface::fill_missing`] |
 //! | level, crop, filter, resample | [`surface::Topography`] |
 //! | heights, slopes, spectra, a fit of a self-affine one | [`HeightMap`], [`surface::Topography`] |
@@ -49,6 +49,33 @@ pub use nalgebra;
 pub use error::{Error, FileError};
 pub use grid::Grid;
 pub use surface::{Doubt, HeightMap, SelfAffine, Surface};
+
+/// What this crate exports goes from thread to thread, and is shared by them.
+const _: () = {
+    const fn shared<T: Send + Sync>() {}
+    shared::<(Error, FileError, Grid, Doubt)>();
+    shared::<(
+        HeightMap,
+        SelfAffine,
+        surface::Topography,
+        surface::Spectrum,
+    )>();
+    shared::<surface::Sum<surface::Paraboloid, surface::EllipticParaboloid>>();
+    shared::<(surface::Cylinder, surface::Cone, surface::FlatPunch)>();
+    shared::<(surface::Wave, surface::BiWave, surface::FittedTrend)>();
+    shared::<(
+        surface::SelfAffineFit,
+        surface::SpectralBin,
+        surface::SpectralMoments,
+    )>();
+    #[cfg(feature = "io")]
+    shared::<(
+        io::MeasuredSurface,
+        io::ReadOptions,
+        io::Format,
+        io::LengthUnit,
+    )>();
+};
 
 /// Compiles and runs the code of the README.
 #[cfg(all(doctest, feature = "io"))]

@@ -23,6 +23,13 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
+/// All bytes of a source.
+pub(super) fn read_all(mut source: impl Read) -> Result<Vec<u8>, Fault> {
+    let mut bytes = Vec::new();
+    source.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// A place in the bytes of a file.
 #[derive(Debug, Clone)]
 pub(super) struct Bytes<'a> {

@@ -19,6 +19,7 @@ use crate::{Error, FileError, Grid};
 /// # }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct MeasuredSurface {
     /// Heights \[m\], NaN at missing nodes; element `[(ix, iy)]` belongs to node (ix, iy).
     pub heights: DMatrix<f64>,

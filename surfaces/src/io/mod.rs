@@ -1,6 +1,6 @@
 //! Files of heights and other fields.
 //!
-//! [`read_surface`] reads what instruments write, [`ReadOptions`] says what a file leaves open (its side, its unit,
+//! [`read_surface`] reads what instruments write, from files, and [`ReadOptions::read_bytes`] from bytes. [`ReadOptions`] says what a file leaves open (its side, its unit,
 //! which of several maps), and [`MeasuredSurface`] is what was found. [`write_npy`], [`write_gsf`], [`write_x3p`] and
 //! [`write_vti`] pass fields on, and [`write_whole`] takes care of files that a program writes itself.
 //!
@@ -93,7 +93,7 @@ mod vk4;
 #[cfg(feature = "io")]
 mod x3p;
 
-pub use npy::{read_npy, write_npy};
+pub use npy::{read_npy, read_npy_from, write_npy};
 pub use vti::write_vti;
 pub use whole_file::write_whole;
 

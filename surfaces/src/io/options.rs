@@ -1,10 +1,11 @@
 //! Reading a surface: what a file says, and what the user adds to it.
 
+use std::io::Read;
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
-use super::bytes::read_file;
+use super::bytes::{read_all, read_file};
 use super::fault::Fault;
 use super::format::Format;
 use super::measured::MeasuredSurface;
@@ -40,7 +41,8 @@ pub fn read_surface(path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
 ///
 /// As [`ReadOptions::read`], but for units, which are not looked at.
 pub fn channels(path: impl AsRef<Path>) -> Result<Vec<String>, Error> {
-    let (_, channels) = parse(path.as_ref())?;
+    let path = path.as_ref();
+    let (_, channels) = parse(&named(path, read_file(path))?, path)?;
     Ok(names(&channels))
 }
 
@@ -129,7 +131,54 @@ impl ReadOptions {
     /// [`Error::NotPositive`] for a side that is not.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();
-        let (format, channels) = parse(path)?;
+        self.of(&named(path, read_file(path))?, path)
+    }
+
+    /// Reads the bytes of a file that is not on disk: one of an archive, of a database, from a network.
+    ///
+    /// `name` is the file's: errors call it so, and lists of points are known by its extension `.xyz`. It may be empty.
+    ///
+    /// ```
+    /// use asperity_surfaces::io::ReadOptions;
+    ///
+    /// # fn main() -> Result<(), asperity_surfaces::Error> {
+    /// let points = "0 0 1\n1 0 2\n0 1 3\n1 1 4";
+    /// let options = ReadOptions::new().height_unit("um".parse()?).lateral_unit("mm".parse()?);
+    /// let measured = options.read_bytes(points, "stylus.xyz")?;
+    /// assert_eq!(measured.heights[(1, 0)], 2e-6);
+    /// assert_eq!(measured.cell, Some((1e-3, 1e-3)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`ReadOptions::read`].
+    pub fn read_bytes(
+        &self,
+        bytes: impl AsRef<[u8]>,
+        name: impl AsRef<Path>,
+    ) -> Result<MeasuredSurface, Error> {
+        self.of(bytes.as_ref(), name.as_ref())
+    }
+
+    /// Reads all bytes of a source, and these as [`ReadOptions::read_bytes`] does.
+    ///
+    /// # Errors
+    ///
+    /// As [`ReadOptions::read`].
+    pub fn read_from(
+        &self,
+        source: impl Read,
+        name: impl AsRef<Path>,
+    ) -> Result<MeasuredSurface, Error> {
+        let name = name.as_ref();
+        self.of(&named(name, read_all(source))?, name)
+    }
+
+    /// The surface in the bytes of a file.
+    fn of(&self, bytes: &[u8], path: &Path) -> Result<MeasuredSurface, Error> {
+        let (format, channels) = parse(bytes, path)?;
         let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
         let height = self.height_factor(&channel, path)?;
@@ -286,17 +335,21 @@ fn is_length(unit: Option<&str>) -> bool {
     unit.is_some_and(|unit| unit.parse::<LengthUnit>().is_ok())
 }
 
+/// What was read, or the error that names the file.
+fn named<T>(path: &Path, read: Result<T, Fault>) -> Result<T, Error> {
+    read.map_err(|fault| fault.in_file(path, "surface"))
+}
+
 /// The format of a file, and all maps in it.
-fn parse(path: &Path) -> Result<(Format, Vec<Channel>), Error> {
-    let bytes = read_file(path).map_err(|fault| fault.in_file(path, "surface"))?;
-    let format = Format::of(&bytes).ok_or_else(|| {
+fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Vec<Channel>), Error> {
+    let format = Format::of(bytes).ok_or_else(|| {
         Error::File(FileError::UnknownFormat {
             path: path.to_path_buf(),
             begins: bytes.iter().take(8).copied().collect(),
         })
     })?;
     format
-        .parse(&bytes, path)
+        .parse(bytes, path)
         .and_then(|channels| {
             if channels.is_empty() {
                 return Err(Fault::malformed("there is no map in it"));

@@ -9,7 +9,7 @@ use crate::{Error, Grid, Surface};
 ///
 /// Two rough elastic bodies touch like one rigid surface and one flat half-space, if the heights
 /// are added, each pointing towards the other body, and the compliances too (see
-/// [`composite_modulus`](crate::composite_modulus)).
+/// `composite_modulus` of the crate `asperity`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sum<A, B> {
     pub(super) first: A,

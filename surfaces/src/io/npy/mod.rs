@@ -2,14 +2,14 @@
 
 mod header;
 
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
 pub(super) use self::header::header_of;
 use self::header::{Element, Header};
-use super::bytes::{Bytes, read_file, shape};
+use super::bytes::{Bytes, read_all, read_file, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
 use super::raw::{Channel, decode};
@@ -34,8 +34,21 @@ use crate::Error;
 /// not a regular file (a directory, a pipe), which is not opened.
 pub fn read_npy(path: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
     let path = path.as_ref();
-    read_file(path)
-        .and_then(|bytes| matrix(&bytes))
+    whole(read_file(path), path)
+}
+
+/// Reads an array as [`read_npy`] does, from all bytes of a source. `name` is what errors call it.
+///
+/// # Errors
+///
+/// As [`read_npy`].
+pub fn read_npy_from(source: impl Read, name: impl AsRef<Path>) -> Result<DMatrix<f64>, Error> {
+    whole(read_all(source), name.as_ref())
+}
+
+/// The array in all bytes of a file.
+fn whole(read: Result<Vec<u8>, Fault>, path: &Path) -> Result<DMatrix<f64>, Error> {
+    read.and_then(|bytes| matrix(&bytes))
         .map_err(|fault| fault.in_file(path, NAME))
 }
 

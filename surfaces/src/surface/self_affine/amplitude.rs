@@ -6,6 +6,7 @@ use crate::Error;
 ///
 /// Whichever is given is met exactly on every grid and by every seed, not only on average.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Amplitude {
     /// Root mean square height S_q \[m\].
     RmsHeight(f64),

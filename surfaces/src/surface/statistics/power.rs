@@ -7,6 +7,7 @@ use crate::surface::{Axis, Topography};
 
 /// Waves of about the same length, and their mean power spectral density.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SpectralBin {
     /// Mean wavevector of the waves, q = 2π/λ \[rad/m\].
     pub wavevector: f64,
@@ -19,6 +20,7 @@ pub struct SpectralBin {
 
 /// How wavevectors are put together for a radial mean.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum RadialBins {
     /// Rings of equal width: $`(k - \frac12) \Delta q < |\mathbf q| \le (k + \frac12) \Delta q`$ with Δq = 2π over the
     /// shorter side, k = 1, 2, …

@@ -16,6 +16,7 @@ const SLACK: f64 = 1e-12;
 
 /// How a filter of a cut-off wavelength λ_c parts long waves from short ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Filter {
     /// The Gaussian filter of surfaces, ISO 16610-61, for any map: a weighted mean of the heights
     /// around each node.

@@ -7,6 +7,7 @@ use crate::Error;
 
 /// What is taken for the trend of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Trend {
     /// The mean height.
     Mean,

@@ -11,6 +11,7 @@ use crate::{Error, Grid};
 
 /// How heights between nodes follow from those at nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Interpolation {
     /// The trigonometric polynomial through the nodes, for a periodic map.
     ///

@@ -11,6 +11,7 @@ use crate::surface::turns;
 /// Each is a product w(x) w(y) of the same weight along both sides; with t = (i + ½)/n, the place
 /// of node i on its side:
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Window {
     /// Hann's: $`w = \frac12 (1 - \cos 2 \pi t)`$.
     Hann,

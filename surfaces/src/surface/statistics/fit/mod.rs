@@ -35,6 +35,7 @@ const NO_POWER: f64 = 1e-3;
 
 /// A number with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// The number.
     pub value: f64,
