@@ -33,12 +33,14 @@
 //! | a file of my instrument | [`io::read_surface`], [`surface::Topography`] |
 //! | my surface as numbers | [`HeightMap`], the trait [`Surface`] |
 //! | keep a path, and go on from it | [`record`] |
-//! | patches, percolation, leakage | [`patches`] |
 //! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
 //! | which half-space | [`Boussinesq`] for a measured or finite body, where the edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
 //! | my own body | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | closed forms to compare with | [`reference`](mod@reference) |
+//!
+//! Grids, heights, files, statistics and generators ([`surface`], [`io`]) are a crate of their own, `asperity-surfaces`, for
+//! those who need no solver. All of it is exported here; its errors ([`SurfaceError`]) are [`Error::Surface`].
 //!
 //! # Conventions
 //!

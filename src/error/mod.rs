@@ -281,7 +281,7 @@ pub enum Error {
     File(#[from] FileError),
 }
 
-/// What both crates refuse alike is the same here, whichever of them has refused it.
+/// Arguments that both crates check are refused alike, whichever of them does it; files are [`Error::File`] here too.
 impl From<SurfaceError> for Error {
     fn from(error: SurfaceError) -> Self {
         match error {
@@ -309,15 +309,6 @@ impl From<SurfaceError> for Error {
             SurfaceError::GridMismatch { expected, found } => {
                 Self::GridMismatch { expected, found }
             }
-            SurfaceError::NoConvergence {
-                residual,
-                tolerance,
-                iterations,
-            } => Self::NoConvergence {
-                residual,
-                tolerance,
-                iterations,
-            },
             SurfaceError::File(error) => Self::File(error),
             error => Self::Surface(error),
         }
@@ -346,6 +337,16 @@ impl Error {
     /// `Ok(value)` if `value` is positive and finite, the typed error otherwise.
     pub(crate) fn require_positive(quantity: &'static str, value: f64) -> Result<f64, Self> {
         Ok(SurfaceError::require_positive(quantity, value)?)
+    }
+
+    /// `Ok(value)` if it is as `expected`, the typed error otherwise.
+    pub(crate) fn require(
+        quantity: &'static str,
+        value: f64,
+        is_so: bool,
+        expected: &'static str,
+    ) -> Result<f64, Self> {
+        Ok(SurfaceError::require(quantity, value, is_so, expected)?)
     }
 }
 

@@ -229,13 +229,8 @@ impl Grid {
     /// [`Error::OutOfRange`] for a fraction that is not above 0 and at most 1, and
     /// [`Error::LessThanOneNode`] for one that is smaller than 1/M.
     pub fn nodes_in(&self, fraction: f64) -> Result<usize, Error> {
-        if !(fraction > 0.0 && fraction <= 1.0) {
-            return Err(Error::OutOfRange {
-                quantity: "area fraction",
-                value: fraction,
-                expected: "above 0 and at most 1",
-            });
-        }
+        let is_one = fraction > 0.0 && fraction <= 1.0;
+        Error::require("area fraction", fraction, is_one, "above 0 and at most 1")?;
         let all = self.nodes() as f64;
         // A fraction computed as k/M falls short of k nodes by at most three roundings.
         let nodes = (fraction * all * (1.0 + 4.0 * f64::EPSILON)).floor();

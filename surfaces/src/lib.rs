@@ -50,33 +50,6 @@ pub use error::{Error, FileError};
 pub use grid::Grid;
 pub use surface::{Doubt, HeightMap, SelfAffine, Surface};
 
-/// What this crate exports goes from thread to thread, and is shared by them.
-const _: () = {
-    const fn shared<T: Send + Sync>() {}
-    shared::<(Error, FileError, Grid, Doubt)>();
-    shared::<(
-        HeightMap,
-        SelfAffine,
-        surface::Topography,
-        surface::Spectrum,
-    )>();
-    shared::<surface::Sum<surface::Paraboloid, surface::EllipticParaboloid>>();
-    shared::<(surface::Cylinder, surface::Cone, surface::FlatPunch)>();
-    shared::<(surface::Wave, surface::BiWave, surface::FittedTrend)>();
-    shared::<(
-        surface::SelfAffineFit,
-        surface::SpectralBin,
-        surface::SpectralMoments,
-    )>();
-    #[cfg(feature = "io")]
-    shared::<(
-        io::MeasuredSurface,
-        io::ReadOptions,
-        io::Format,
-        io::LengthUnit,
-    )>();
-};
-
 /// Compiles and runs the code of the README.
 #[cfg(all(doctest, feature = "io"))]
 #[doc = include_str!("../README.md")]

@@ -14,12 +14,7 @@ pub(crate) fn check_periodic_cells(
     expected: &'static str,
 ) -> Result<(), Error> {
     let value = grid.cell_aspect();
-    if value <= most * (1.0 + 4.0 * f64::EPSILON) {
-        return Ok(());
-    }
-    Err(Error::OutOfRange {
-        quantity: "ratio of the sides of a periodic cell",
-        value,
-        expected,
-    })
+    let is_short = value <= most * (1.0 + 4.0 * f64::EPSILON);
+    let quantity = "ratio of the sides of a periodic cell";
+    Error::require(quantity, value, is_short, expected).map(drop)
 }

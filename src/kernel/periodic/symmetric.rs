@@ -67,16 +67,10 @@ impl Symmetric {
     }
 
     pub(super) fn set_gauge(&mut self, gauge: f64) -> Result<(), Error> {
-        if gauge >= 0.0 && gauge.is_finite() {
-            self.gauge = gauge;
-            Ok(())
-        } else {
-            Err(Error::OutOfRange {
-                quantity: "gauge of a periodic kernel",
-                value: gauge,
-                expected: "finite and not negative",
-            })
-        }
+        let is_gauge = gauge >= 0.0 && gauge.is_finite();
+        let quantity = "gauge of a periodic kernel";
+        self.gauge = Error::require(quantity, gauge, is_gauge, "finite and not negative")?;
+        Ok(())
     }
 
     /// s* of this kernel.

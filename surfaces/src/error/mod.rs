@@ -184,4 +184,27 @@ impl Error {
             Err(Self::NotPositive { quantity, value })
         }
     }
+
+    /// `Ok(value)` if it is as `expected`, the typed error otherwise.
+    #[doc(hidden)]
+    pub fn require(
+        quantity: &'static str,
+        value: f64,
+        is_so: bool,
+        expected: &'static str,
+    ) -> Result<f64, Self> {
+        if is_so {
+            return Ok(value);
+        }
+        Err(Self::OutOfRange {
+            quantity,
+            value,
+            expected,
+        })
+    }
+
+    /// `Ok(value)` if `value` is finite, the typed error otherwise.
+    pub(crate) fn require_finite(quantity: &'static str, value: f64) -> Result<f64, Self> {
+        Self::require(quantity, value, value.is_finite(), "finite")
+    }
 }

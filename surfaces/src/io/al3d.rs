@@ -6,7 +6,7 @@
 //! image lies where a tag says: rows of float32, each padded to a multiple of eight bytes, in metres. A node is
 //! missing where it holds `InvalidPixelValue` or NaN. Icon and texture are not read.
 
-use super::bytes::{Bytes, latin1, shape};
+use super::bytes::{Bytes, latin1, reserved, shape};
 use super::fault::Fault;
 use super::number::Number;
 use super::raw::{Channel, Parsed};
@@ -45,10 +45,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let stride = row.next_multiple_of(8);
     // The padding of the last row may be absent.
     let data = bytes.take((ny - 1).saturating_mul(stride).saturating_add(row))?;
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(nx * ny)
-        .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
+    let mut values = reserved(nx * ny)?;
     for row in data.chunks(stride).flat_map(|padded| padded.get(..row)) {
         values.extend(row.chunks_exact(Number::F32.size()).map(|value| {
             let value = Number::F32.decode(value);

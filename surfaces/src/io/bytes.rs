@@ -1,5 +1,6 @@
 //! The bytes of a file, read from front to back, and never beyond their end.
 
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -15,10 +16,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Fault> {
     let mut file = File::open(path)?;
     let length = usize::try_from(file.metadata()?.len())
         .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
-    let mut bytes = Vec::new();
-    bytes
-        .try_reserve_exact(length)
-        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    let mut bytes = reserved(length)?;
     file.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
@@ -28,6 +26,15 @@ pub(super) fn read_all(mut source: impl Read) -> Result<Vec<u8>, Fault> {
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// An empty vector with room for so many elements.
+pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, Fault> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    Ok(values)
 }
 
 /// A place in the bytes of a file.
@@ -112,6 +119,17 @@ impl<'a> Bytes<'a> {
         })?;
         self.at += length + 1;
         Ok(&rest[..length])
+    }
+
+    /// `Ok` if nothing follows the contents, whose name the error says.
+    pub(super) fn end(&self, contents: fmt::Arguments<'_>) -> Result<(), Fault> {
+        match self.left() {
+            0 => Ok(()),
+            left => {
+                let reason = format!("{contents} end here, but {left} bytes follow");
+                Err(Fault::at(self.at, reason))
+            }
+        }
     }
 
     /// The next `N` bytes.

@@ -29,15 +29,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         b.try_into()
             .map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)))
     })?;
-    if bytes.left() > 0 {
-        return Err(Fault::at(
-            bytes.offset(),
-            format!(
-                "{nx} x {ny} heights end here, but {} bytes follow",
-                bytes.left()
-            ),
-        ));
-    }
+    bytes.end(format_args!("{nx} x {ny} heights"))?;
     // Sides default to 1 in the format, which is no size of any surface.
     let side = |name| header.length(name);
     let cell = match (side("XReal")?, side("YReal")?) {
@@ -52,13 +44,9 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     };
     Ok(vec![Channel {
         name: header.value("Title").unwrap_or_default().to_string(),
-        shape: (nx, ny),
-        values,
         height_unit: unit("ZUnits"),
-        cell,
         lateral_unit: unit("XYUnits"),
-        mask: None,
-        notes: Vec::new(),
+        ..Channel::in_metres((nx, ny), values, cell)
     }])
 }
 
@@ -118,13 +106,9 @@ pub fn write_gsf(
     unit: &str,
 ) -> Result<(), Error> {
     grid.check_shape(values.shape())?;
-    if unit.chars().any(char::is_control) {
-        return Err(Error::OutOfRange {
-            quantity: "number of control characters in a unit",
-            value: 1.0,
-            expected: "0",
-        });
-    }
+    let controls = unit.chars().filter(|letter| letter.is_control()).count();
+    let quantity = "number of control characters in a unit";
+    Error::require(quantity, controls as f64, controls == 0, "0")?;
     write_whole(path, |output| write(output, grid, values, unit))
 }
 

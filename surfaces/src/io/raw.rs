@@ -1,5 +1,6 @@
 //! What a reader finds in a file, before units and options are applied.
 
+use super::bytes::reserved;
 use super::fault::Fault;
 
 /// One map of a file, in the file's own units.
@@ -63,10 +64,7 @@ pub(super) fn decode(
     size: usize,
     decode: impl Fn(&[u8]) -> f64,
 ) -> Result<Vec<f64>, Fault> {
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(bytes.len() / size)
-        .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
+    let mut values = reserved(bytes.len() / size)?;
     values.extend(bytes.chunks_exact(size).map(decode));
     Ok(values)
 }

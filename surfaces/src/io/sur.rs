@@ -40,16 +40,8 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     } else {
         Cow::Borrowed(bytes.take(length)?)
     };
-    if bytes.left() > 0 {
-        let (nx, ny) = header.shape;
-        return Err(Fault::at(
-            bytes.offset(),
-            format!(
-                "{nx} x {ny} heights end here, but {} bytes follow",
-                bytes.left()
-            ),
-        ));
-    }
+    let (nx, ny) = header.shape;
+    bytes.end(format_args!("{nx} x {ny} heights"))?;
     let number = header.number;
     let values = decode(&data, number.size(), |value| {
         header.height(number.decode(value))
@@ -57,13 +49,9 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let (cell, lateral_unit) = header.cell();
     Ok(vec![Channel {
         name: header.name,
-        shape: header.shape,
-        values,
         height_unit: header.units.2,
-        cell: Some(cell),
         lateral_unit,
-        mask: None,
-        notes: Vec::new(),
+        ..Channel::in_metres((nx, ny), values, Some(cell))
     }])
 }
 

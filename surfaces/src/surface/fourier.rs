@@ -1,7 +1,5 @@
 //! The waves that a periodic map consists of.
 
-use std::f64::consts::TAU;
-
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
@@ -164,20 +162,21 @@ impl Waves {
     /// Wave numbers, wavevector and number of waves of the coefficient `[(row, column)]`.
     fn place(&self, row: usize, column: usize) -> ((i64, i64), (f64, f64), usize) {
         let (nx, ny) = self.grid.shape();
-        let (lx, ly) = self.grid.sides();
         let ky = if 2 * row > ny {
             row as i64 - ny as i64
         } else {
             row as i64
         };
         let own = column == 0 || 2 * column == nx;
-        let q = (TAU * column as f64 / lx, TAU * ky as f64 / ly);
+        let q = self.grid.wave_vector(column, row);
         ((column as i64, ky), q, if own { 1 } else { 2 })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::Error;
 

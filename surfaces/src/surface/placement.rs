@@ -21,16 +21,8 @@ pub(super) struct Placement(Option<(f64, f64)>);
 impl Placement {
     /// A fixed reference point \[m\].
     pub(super) fn at(x: f64, y: f64) -> Result<Self, Error> {
-        for (quantity, value) in [("centre x", x), ("centre y", y)] {
-            if !value.is_finite() {
-                return Err(Error::OutOfRange {
-                    quantity,
-                    value,
-                    expected: "finite",
-                });
-            }
-        }
-        Ok(Self(Some((x, y))))
+        let x = Error::require_finite("centre x", x)?;
+        Ok(Self(Some((x, Error::require_finite("centre y", y)?))))
     }
 
     /// Heights `height(x, y)`, x and y measured from the reference point.

@@ -235,15 +235,9 @@ impl FlatPunch {
     ///
     /// [`Error::OutOfRange`] for a height that is not finite.
     pub fn new(height: f64) -> Result<Self, Error> {
-        if height.is_finite() {
-            Ok(Self { height })
-        } else {
-            Err(Error::OutOfRange {
-                quantity: "height",
-                value: height,
-                expected: "finite",
-            })
-        }
+        Ok(Self {
+            height: Error::require_finite("height", height)?,
+        })
     }
 
     /// The height \[m\].

@@ -121,14 +121,9 @@ fn channel(field: &Object) -> Result<Channel, Fault> {
         _ => None,
     };
     Ok(Channel {
-        name: String::new(),
-        shape: (nx, ny),
-        values,
         height_unit: unit(field, "si_unit_z")?,
-        cell,
         lateral_unit: unit(field, "si_unit_xy")?,
-        mask: None,
-        notes: Vec::new(),
+        ..Channel::in_metres((nx, ny), values, cell)
     })
 }
 

@@ -2,14 +2,14 @@
 
 mod header;
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{Read, Write};
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
 pub(super) use self::header::header_of;
 use self::header::{Element, Header};
-use super::bytes::{Bytes, read_all, read_file, shape};
+use super::bytes::{Bytes, read_all, read_file, reserved, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
 use super::raw::{Channel, decode};
@@ -86,10 +86,7 @@ pub(super) fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
     };
     let element = Element::from_descr(&header.descr)?;
     let elements = rest(input, nx * ny, element.size())?;
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(nx * ny)
-        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    let mut values = reserved(nx * ny)?;
     values.resize(nx * ny, 0.0);
     // The file holds runs of the faster index; (slow, fast) is (ix, iy) in C order.
     let run = if header.fortran_order { nx } else { ny };
@@ -147,15 +144,7 @@ pub(super) fn text(file: &[u8]) -> Result<String, Fault> {
 /// All bytes that are left: so many elements.
 fn rest<'a>(mut input: Bytes<'a>, count: usize, size: usize) -> Result<&'a [u8], Fault> {
     let elements = input.elements(count, size)?;
-    if input.left() > 0 {
-        return Err(Fault::at(
-            input.offset(),
-            format!(
-                "{count} elements end here, but {} bytes follow",
-                input.left()
-            ),
-        ));
-    }
+    input.end(format_args!("{count} elements"))?;
     Ok(elements)
 }
 

@@ -3,7 +3,7 @@
 //! Lines end with CR LF, LF or CR; what follows a `;` is a comment. Keys are compared without regard to case.
 
 use super::{Header, MAGIC, Revision, number, require_none};
-use crate::io::bytes::{latin1, shape};
+use crate::io::bytes::{latin1, reserved, shape};
 use crate::io::fault::Fault;
 use crate::io::raw::{Channel, positive};
 
@@ -83,10 +83,7 @@ fn heights(header: &Header, text: &mut Text) -> Result<(Vec<f64>, Option<String>
             ),
         ));
     }
-    let mut heights = Vec::new();
-    heights
-        .try_reserve_exact(nodes)
-        .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
+    let mut heights = reserved(nodes)?;
     let mut ended = false;
     while let Some((at, word)) = text.word() {
         if word == b"*" {

@@ -15,13 +15,9 @@ pub(super) fn channel(header: Header, table: Table) -> Result<Channel, Fault> {
     finish(&header, &mut values);
     Ok(Channel {
         name: header.title,
-        shape,
-        values,
         height_unit: header.value_unit,
-        cell,
         lateral_unit,
-        mask: None,
-        notes: Vec::new(),
+        ..Channel::in_metres(shape, values, cell)
     })
 }
 

@@ -7,7 +7,7 @@ use super::header::Header;
 use super::matrix::finish;
 use super::table::Table;
 use crate::Grid;
-use crate::io::bytes::shape;
+use crate::io::bytes::{reserved, shape};
 use crate::io::fault::Fault;
 use crate::io::raw::Channel;
 
@@ -80,13 +80,10 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
     }
     Ok(Channel {
         name: header.title,
-        shape: (nx, ny),
-        values,
         height_unit: header.value_unit,
-        cell: Some((x.spacing, y.spacing)),
         lateral_unit: header.lateral_unit,
-        mask: None,
         notes,
+        ..Channel::in_metres((nx, ny), values, Some((x.spacing, y.spacing)))
     })
 }
 
@@ -178,13 +175,4 @@ fn spacing(mut sorted: Vec<f64>, extent: f64) -> Option<(f64, usize)> {
         .filter_map(|(k, pair)| Some((k, *pair.first()?, *pair.last()?)))
         .find(|(_, below, gap)| *gap > least && *below <= SAME * *gap)
         .map(|(k, _, gap)| (gap, gaps.len() - k))
-}
-
-/// An empty vector with room for so many numbers.
-fn reserved(count: usize) -> Result<Vec<f64>, Fault> {
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(count)
-        .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
-    Ok(values)
 }

@@ -6,6 +6,7 @@ use md5::{Digest, Md5};
 use zip::ZipArchive;
 
 use crate::io::archive::incomplete;
+use crate::io::bytes::reserved;
 use crate::io::fault::Fault;
 
 /// How many times longer than the whole archive a member may be.
@@ -113,10 +114,7 @@ impl<'a> Archive<'a> {
         let failed = |error: std::io::Error| Fault::malformed(format!("'{path}': {error}"));
         let member = self.zip.by_index(index).map_err(|e| failed(e.into()))?;
         let claimed = usize::try_from(member.size()).unwrap_or(usize::MAX);
-        let mut bytes = Vec::new();
-        bytes
-            .try_reserve_exact(claimed.min(limit))
-            .map_err(|_| failed(std::io::ErrorKind::OutOfMemory.into()))?;
+        let mut bytes = reserved(claimed.min(limit))?;
         member
             .take((limit as u64).saturating_add(1))
             .read_to_end(&mut bytes)

@@ -109,22 +109,21 @@ impl SelfAffine {
         amplitude: Amplitude,
         seed: u64,
     ) -> Result<Self, Error> {
-        if !(hurst > 0.0 && hurst <= 1.0) {
-            return Err(Error::OutOfRange {
-                quantity: "Hurst exponent",
-                value: hurst,
-                expected: "above 0 and at most 1",
-            });
-        }
+        let is_exponent = hurst > 0.0 && hurst <= 1.0;
+        Error::require(
+            "Hurst exponent",
+            hurst,
+            is_exponent,
+            "above 0 and at most 1",
+        )?;
         Error::require_positive("roll-off wavelength", rolloff_wavelength)?;
         Error::require_positive("short cut-off wavelength", short_cutoff_wavelength)?;
-        if short_cutoff_wavelength > rolloff_wavelength {
-            return Err(Error::OutOfRange {
-                quantity: "short cut-off wavelength",
-                value: short_cutoff_wavelength,
-                expected: "at most the roll-off wavelength",
-            });
-        }
+        Error::require(
+            "short cut-off wavelength",
+            short_cutoff_wavelength,
+            short_cutoff_wavelength <= rolloff_wavelength,
+            "at most the roll-off wavelength",
+        )?;
         Ok(Self {
             band: Band {
                 hurst,
@@ -147,13 +146,12 @@ impl SelfAffine {
         long_cutoff_wavelength: f64,
     ) -> Result<Self, Error> {
         Error::require_positive("long cut-off wavelength", long_cutoff_wavelength)?;
-        if long_cutoff_wavelength < self.band.rolloff_wavelength {
-            return Err(Error::OutOfRange {
-                quantity: "long cut-off wavelength",
-                value: long_cutoff_wavelength,
-                expected: "at least the roll-off wavelength",
-            });
-        }
+        Error::require(
+            "long cut-off wavelength",
+            long_cutoff_wavelength,
+            long_cutoff_wavelength >= self.band.rolloff_wavelength,
+            "at least the roll-off wavelength",
+        )?;
         self.band.long_cutoff_wavelength = Some(long_cutoff_wavelength);
         Ok(self)
     }

@@ -54,13 +54,9 @@ impl RadialBins {
                 Ok((0..=rings).map(|k| (k as f64 + 0.5) * width).collect())
             }
             Self::PerDecade(rings) => {
-                if !(1..=Self::MAX_PER_DECADE).contains(rings) {
-                    return Err(Error::OutOfRange {
-                        quantity: "number of bins in a decade",
-                        value: *rings as f64,
-                        expected: "from 1 to 10000",
-                    });
-                }
+                let is_number = (1..=Self::MAX_PER_DECADE).contains(rings);
+                let quantity = "number of bins in a decade";
+                Error::require(quantity, *rings as f64, is_number, "from 1 to 10000")?;
                 let least = match grid.shape() {
                     (_, 1) => TAU / lx,
                     (1, _) => TAU / ly,

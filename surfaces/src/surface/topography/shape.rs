@@ -69,13 +69,7 @@ impl Topography {
     /// [`Error::OutOfRange`] for a factor that is not finite, and [`Error::HeightNotFinite`] if a
     /// product overflows.
     pub fn scaled(&self, factor: f64) -> Result<Self, Error> {
-        if !factor.is_finite() {
-            return Err(Error::OutOfRange {
-                quantity: "factor of the heights",
-                value: factor,
-                expected: "finite",
-            });
-        }
+        Error::require_finite("factor of the heights", factor)?;
         self.with_heights(self.heights() * factor)
     }
 }

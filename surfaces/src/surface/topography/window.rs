@@ -23,14 +23,12 @@ pub enum Window {
 impl Window {
     /// `Ok` if it is one.
     fn checked(self) -> Result<Self, Error> {
-        match self {
-            Self::Tukey(fraction) if !(0.0..=1.0).contains(&fraction) => Err(Error::OutOfRange {
-                quantity: "tapered fraction of a Tukey window",
-                value: fraction,
-                expected: "between 0 and 1",
-            }),
-            _ => Ok(self),
+        if let Self::Tukey(fraction) = self {
+            let is_one = (0.0..=1.0).contains(&fraction);
+            let quantity = "tapered fraction of a Tukey window";
+            Error::require(quantity, fraction, is_one, "between 0 and 1")?;
         }
+        Ok(self)
     }
 
     /// The weights of a side of so many nodes, the mean of whose squares is 1.
