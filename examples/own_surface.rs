@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use asperity::{Boussinesq, Error, Grid, LoadingSolver, SelfAffine, Surface};
+use asperity::{Boussinesq, Error, Grid, LoadingSolver, SelfAffine, Surface, SurfaceError};
 use nalgebra::DMatrix;
 
 /// Parallel ridges, a wavelength apart.
@@ -20,7 +20,7 @@ struct Ridges {
 }
 
 impl Surface for Ridges {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
         Ok(DMatrix::from_fn(grid.nx(), grid.ny(), |ix, iy| {
             let (x, _) = grid.position(ix, iy);
             self.amplitude * (TAU * x / self.wavelength).cos()

@@ -2,34 +2,14 @@
 
 use std::fmt;
 
-use crate::surface::{Filter, Topography, Trend, Window};
+use crate::surface::{self, Topography};
 
 /// Something that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Doubt {
-    /// A surface with slopes above 45°, for which the theory of small slopes does not hold, and that no machining makes.
-    Steep {
-        /// Root mean square gradient.
-        rms_gradient: f64,
-    },
-    /// A plane through the heights that is larger than what is left without it.
-    Tilted {
-        /// Root mean square height of the plane \[m\].
-        plane: f64,
-        /// Root mean square height of what is left \[m\].
-        left: f64,
-    },
-    /// Heights that differ by less than atoms do.
-    Smooth {
-        /// Root mean square height \[m\].
-        rms_height: f64,
-    },
-    /// Waves that the grid does not resolve: contact areas at light loads are those of the mesh.
-    Unresolved {
-        /// The share of waves shorter than four cells in the mean square gradient, without tilt.
-        share: f64,
-    },
+    /// Something about a surface.
+    Surface(surface::Doubt),
     /// Contact of patches that the grid does not resolve.
     SmallPatches {
         /// Number of patches.
@@ -51,17 +31,6 @@ pub enum Doubt {
     },
 }
 
-/// Root mean square gradient above which a surface is doubted.
-const STEEP: f64 = 1.0;
-/// How many times the roughness a tilt may be.
-const TILT: f64 = 3.0;
-/// Root mean square height below which a surface is doubted \[m\]: a tenth of an atom.
-const SMOOTH: f64 = 1e-11;
-/// Cells of the shortest wave that counts as resolved, and the share that shorter waves may have.
-const CELLS: f64 = 4.0;
-const UNRESOLVED: f64 = 0.1;
-/// Nodes a side of the piece in which waves are looked at: more of them tell nothing new, and take memory.
-const MIDDLE: std::ops::RangeInclusive<usize> = 16..=512;
 /// Nodes that patches have on average, if they are resolved.
 const PATCH: f64 = 10.0;
 /// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and glass at 0.1.
@@ -73,28 +42,8 @@ impl Doubt {
     /// What looks wrong with a surface.
     #[must_use]
     pub fn of_surface(surface: &Topography) -> Vec<Self> {
-        let mut doubts = Vec::new();
-        let gradient = surface.map().rms_gradient(surface.grid());
-        if let Some(rms_gradient) = gradient.ok().filter(|gradient| *gradient > STEEP) {
-            doubts.push(Self::Steep { rms_gradient });
-        }
-        let rms_height = surface.map().rms_height();
-        // A mean may round: all heights are the same where they do not differ.
-        if rms_height < SMOOTH && surface.map().peak_to_valley() > 0.0 {
-            doubts.push(Self::Smooth { rms_height });
-        }
-        if let Some(share) = short_waves(surface).filter(|share| *share > UNRESOLVED) {
-            doubts.push(Self::Unresolved { share });
-        }
-        if let Ok(levelled) = surface.level(Trend::Plane) {
-            let left = levelled.map().rms_height();
-            let plane = surface.map().rms_height().powi(2) - left * left;
-            let plane = plane.max(0.0).sqrt();
-            if plane > TILT * left && left > 0.0 {
-                doubts.push(Self::Tilted { plane, left });
-            }
-        }
-        doubts
+        let doubts = surface::Doubt::of_surface(surface);
+        doubts.into_iter().map(Self::Surface).collect()
     }
 
     /// What looks wrong with the patches of a contact.
@@ -119,68 +68,10 @@ impl Doubt {
     }
 }
 
-/// The share of waves shorter than [`CELLS`] cells in the mean square gradient in the middle of a surface; `None` where
-/// there is no gradient, or too few nodes to tell waves apart.
-fn short_waves(surface: &Topography) -> Option<f64> {
-    let grid = surface.grid();
-    let (nx, ny) = grid.shape();
-    if nx.min(ny) < *MIDDLE.start() {
-        return None;
-    }
-    let middle = |n: usize| {
-        let some = n.min(*MIDDLE.end());
-        let first = (n - some) / 2;
-        first..first + some
-    };
-    let piece = surface.crop(middle(nx), middle(ny)).ok()?;
-    // Maps need not repeat: jumps at their borders would be short waves.
-    let levelled = piece.level(Trend::Plane).ok()?;
-    let whole = levelled.window(Window::Hann).ok()?;
-    let shortest = CELLS * grid.dx().max(grid.dy());
-    let resolved = whole.low_pass(shortest, Filter::Sharp).ok()?;
-    let mean_square = |surface: &Topography| surface.rms_gradient_spectral().powi(2);
-    let share = 1.0 - mean_square(&resolved) / mean_square(&whole);
-    share.is_finite().then_some(share)
-}
-
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Steep { rms_gradient } => {
-                write!(
-                    f,
-                    "the rms gradient of the surface is {rms_gradient:.3}; the theory needs slopes well below 1"
-                )?;
-                // The first unit that makes a surface of it.
-                let smaller = [(1e-3, "a thousand"), (1e-6, "a million"), (1e-9, "10⁹")];
-                let fits = |(factor, _): &&(f64, &str)| rms_gradient * factor < 0.5 * STEEP;
-                match smaller.iter().find(fits) {
-                    Some((factor, times)) => write!(
-                        f,
-                        ". With heights {times} times smaller (nm for µm, or µm for mm and so on) it would be \
-                         {:.2e}: are the units of heights and sides right?",
-                        rms_gradient * factor
-                    ),
-                    None => write!(f, ": are the units of heights and sides right?"),
-                }
-            }
-            Self::Tilted { plane, left } => write!(
-                f,
-                "the surface is tilted: a plane makes up {plane:.3e} m of its rms height, and only {left:.3e} m is \
-                 roughness. Contact would begin at one edge; level it (`level`, `--level plane`) unless the tilt is \
-                 meant"
-            ),
-            Self::Smooth { rms_height } => write!(
-                f,
-                "the rms height of the surface is {rms_height:.3e} m, less than a tenth of an atom: is the unit of \
-                 heights right?"
-            ),
-            Self::Unresolved { share } => write!(
-                f,
-                "waves shorter than four cells make up {:.0} % of the mean square gradient. The grid does not resolve \
-                 them: contact areas and greatest pressures depend on the mesh",
-                100.0 * share
-            ),
+            Self::Surface(doubt) => doubt.fmt(f),
             Self::SmallPatches {
                 patches,
                 contact_nodes,
@@ -223,69 +114,7 @@ impl fmt::Display for Doubt {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
-
     use super::*;
-    use crate::{Error, Grid};
-
-    fn doubts(cell: f64, height: impl Fn(f64, f64) -> f64) -> Result<Vec<Doubt>, Error> {
-        let heights = DMatrix::from_fn(16, 16, |ix, iy| height(ix as f64, iy as f64));
-        let surface = Topography::new(Grid::new(16, 16, cell, cell)?, heights)?;
-        Ok(Doubt::of_surface(&surface))
-    }
-
-    #[test]
-    fn units_that_are_mixed_up_are_noticed() -> Result<(), Error> {
-        let rough = |x: f64, y: f64| 1e-6 * (x.sin() + (0.9 * y).sin());
-        assert_eq!(doubts(1e-5, rough)?, []);
-        // Heights in nm that are taken for µm.
-        let found = doubts(1e-5, |x, y| 1e3 * rough(x, y))?;
-        assert!(matches!(found[..], [Doubt::Steep { .. }]), "{found:?}");
-        assert!(found[0].to_string().contains("a thousand times smaller"));
-        // No unit makes a surface of this one.
-        let hopeless = Doubt::Steep { rms_gradient: 1e10 }.to_string();
-        assert!(!hopeless.contains("times smaller"), "{hopeless}");
-        assert!(hopeless.ends_with("are the units of heights and sides right?"));
-        Ok(())
-    }
-
-    #[test]
-    fn a_tilt_that_hides_the_roughness_is_noticed() -> Result<(), Error> {
-        let tilted =
-            |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (0.9 * y).sin()) + slope * x;
-        assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
-        let found = doubts(1e-5, tilted(1e-8))?;
-        let [doubt @ Doubt::Tilted { plane, left }] = found[..] else {
-            return Err(Error::NotFinite { step: 0 });
-        };
-        // 16 columns at 1e-8 m each: an rms height of 1e-8 √((16² − 1)/12), and two waves of rms 0.7e-9.
-        assert!((plane / 4.61e-8 - 1.0).abs() < 0.01, "{plane}");
-        assert!((left / 1e-9 - 1.0).abs() < 0.1, "{left}");
-        let text = doubt.to_string();
-        assert!(
-            text.contains(&format!("{plane:.3e} m of its rms height")),
-            "{text}"
-        );
-        assert!(
-            text.contains(&format!("{left:.3e} m is roughness")),
-            "{text}"
-        );
-        Ok(())
-    }
-
-    /// Heights whose plane is no number are not called tilted.
-    #[test]
-    fn heights_that_overflow_are_not_tilted() -> Result<(), Error> {
-        let sign = |k: f64| if k < 8.0 { 1.0 } else { -1.0 };
-        let found = doubts(1.0, |x, y| f64::MAX * sign(x) * sign(y))?;
-        assert!(
-            !found
-                .iter()
-                .any(|doubt| matches!(doubt, Doubt::Tilted { .. })),
-            "{found:?}"
-        );
-        Ok(())
-    }
 
     /// Text that has room for so many bytes.
     struct Room(usize);
@@ -301,14 +130,9 @@ mod tests {
     #[test]
     fn a_doubt_that_does_not_fit_is_an_error() {
         use fmt::Write;
-        let (plane, left) = (1e-6, 1e-9);
-        let (pressure, e_star, rms_height) = (60.0, 115.0, 1e-13);
+        let (pressure, e_star) = (60.0, 115.0);
         for doubt in [
-            Doubt::Steep { rms_gradient: 40.0 },
-            Doubt::Steep { rms_gradient: 1e10 },
-            Doubt::Tilted { plane, left },
-            Doubt::Smooth { rms_height },
-            Doubt::Unresolved { share: 0.3 },
+            Doubt::Surface(surface::Doubt::Smooth { rms_height: 1e-13 }),
             Doubt::SmallPatches {
                 patches: 3,
                 contact_nodes: 7,
@@ -350,36 +174,6 @@ mod tests {
                 "{found:?}"
             );
         }
-    }
-
-    #[test]
-    fn heights_smaller_than_atoms_are_noticed() -> Result<(), Error> {
-        let found = doubts(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
-        let [doubt @ Doubt::Smooth { rms_height }] = found[..] else {
-            return Err(Error::NotFinite { step: 0 });
-        };
-        assert!((rms_height / 5e-13 - 1.0).abs() < 0.1, "{rms_height}");
-        assert!(doubt.to_string().contains("less than a tenth of an atom"));
-        // Nothing is wrong with a plane.
-        assert_eq!(doubts(1e-5, |_, _| 1e-6)?, []);
-        Ok(())
-    }
-
-    /// Two waves of 16/6 and 16/2 cells with equal gradients: half of the mean square gradient is not resolved.
-    #[test]
-    fn waves_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
-        let wave = |waves: f64, x: f64| (std::f64::consts::TAU * waves * x / 16.0).sin() / waves;
-        let found = doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
-        let [doubt @ Doubt::Unresolved { share }] = found[..] else {
-            return Err(Error::NotFinite { step: 0 });
-        };
-        assert!((share - 0.5).abs() < 0.1, "{share}");
-        assert!(doubt.to_string().contains("% of the mean square gradient"));
-        assert_eq!(
-            doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?,
-            []
-        );
-        Ok(())
     }
 
     #[test]

@@ -9,13 +9,9 @@ use crate::Error;
 /// [`Error::NotPositive`] for E, [`Error::OutOfRange`] unless −1 < ν ≤ ½.
 pub fn plane_strain_modulus(youngs_modulus: f64, poissons_ratio: f64) -> Result<f64, Error> {
     let e = Error::require_positive("Young's modulus", youngs_modulus)?;
-    if !(poissons_ratio > -1.0 && poissons_ratio <= 0.5) {
-        return Err(Error::OutOfRange {
-            quantity: "Poisson's ratio",
-            value: poissons_ratio,
-            expected: "above -1 and at most 1/2",
-        });
-    }
+    let is_one = poissons_ratio > -1.0 && poissons_ratio <= 0.5;
+    let expected = "above -1 and at most 1/2";
+    Error::require("Poisson's ratio", poissons_ratio, is_one, expected)?;
     Error::require_positive(
         "plane-strain modulus",
         e / (1.0 - poissons_ratio * poissons_ratio),

@@ -40,6 +40,9 @@
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
 //!
+//! Grids, heights, files, statistics and generators ([`surface`], [`io`]) are a crate of their own, `asperity-surfaces`, for
+//! those who need no solver. All of it is exported here; its errors ([`SurfaceError`]) are [`Error::Surface`].
+//!
 //! # Conventions
 //!
 //! * **Units**: any coherent system; the documentation uses SI. `E* = E / (1 − ν²)` against a rigid body, or
@@ -78,13 +81,10 @@ mod doubt;
 mod elasticity;
 mod error;
 pub mod fixed_load;
-mod grid;
-pub mod io;
 pub mod kernel;
 mod krylov;
 pub mod loading;
 mod memory;
-mod parallel;
 pub mod patches;
 mod problem;
 pub mod record;
@@ -92,26 +92,26 @@ pub mod reference;
 mod scale;
 #[cfg(test)]
 mod send_and_sync;
-pub mod surface;
 #[cfg(test)]
 mod test_chain;
 pub mod updater;
 
-pub use nalgebra;
+pub(crate) use asperity_surfaces::parallel;
+pub use asperity_surfaces::{
+    Error as SurfaceError, FileError, Grid, HeightMap, SelfAffine, Surface, io, nalgebra, surface,
+};
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use doubt::Doubt;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{Error, FileError, KernelError, UpdaterError};
+pub use error::{Error, KernelError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
-pub use grid::Grid;
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;
-pub use surface::{HeightMap, SelfAffine, Surface};
 pub use updater::{LinearUpdater, RecursiveCholesky};
 
 /// Compiles and runs the code of the README.

@@ -47,8 +47,8 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// Those of the surface and of [`KernelTable::new`]; [`Error::GridMismatch`] for heights of another
-    /// grid; [`Error::HeightNotFinite`]; [`Error::OutOfRange`] for heights, cells and a modulus that are too
+    /// Those of the surface and of [`KernelTable::new`]; [`Error::GridMismatch`] for heights of another grid;
+    /// [`SurfaceError::HeightNotFinite`](crate::SurfaceError::HeightNotFinite); [`Error::OutOfRange`] for heights, cells and a modulus that are too
     /// far apart, and if sums of coefficients overflow; [`KernelError::SymbolNotPositive`] for a periodic kernel that is
     /// not positive definite.
     ///

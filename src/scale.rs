@@ -79,12 +79,6 @@ fn within(
     greatest: f64,
     expected: &'static str,
 ) -> Result<(), Error> {
-    if value >= greatest.recip() && value <= greatest {
-        return Ok(());
-    }
-    Err(Error::OutOfRange {
-        quantity,
-        value,
-        expected,
-    })
+    let is_within = value >= greatest.recip() && value <= greatest;
+    Error::require(quantity, value, is_within, expected).map(drop)
 }

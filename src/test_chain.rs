@@ -11,7 +11,7 @@ use crate::{Boundary, ContactGrowth, Error, Grid, KernelTable, Problem};
 
 /// The grid of so many nodes.
 pub(crate) fn grid(nodes: usize) -> Result<Grid, Error> {
-    Grid::new(nodes, 1, 1.0, 2.0)
+    Ok(Grid::new(nodes, 1, 1.0, 2.0)?)
 }
 
 /// The influence of so many nodes.
@@ -31,7 +31,8 @@ pub(crate) fn kernel(nodes: usize) -> Result<KernelTable, Error> {
 
 /// A surface of these gaps, of which the least is 0.
 pub(crate) fn surface(gaps: &[f64]) -> Result<HeightMap, Error> {
-    HeightMap::new(DMatrix::from_fn(gaps.len(), 1, |node, _| -gaps[node]))
+    let heights = DMatrix::from_fn(gaps.len(), 1, |node, _| -gaps[node]);
+    Ok(HeightMap::new(heights)?)
 }
 
 /// The problem of these gaps, of which the least is 0.

@@ -13,6 +13,7 @@ use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{panel, say};
 use clap::Args;
 
+use crate::advice;
 use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::reading::Reading;
@@ -100,7 +101,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     eprintln!("bodies     {bodies}");
     let doubts = Doubt::of_surface(&surface).into_iter();
     for doubt in doubts.chain(Doubt::of_modulus(bodies.e_star)) {
-        eprintln!("warning: {doubt}");
+        eprintln!("warning: {}", advice::told(&doubt));
     }
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();

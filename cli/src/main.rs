@@ -1,5 +1,6 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
+mod advice;
 mod columns;
 mod contact_map;
 mod elasticity;

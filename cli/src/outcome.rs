@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use asperity::io::write_whole;
+use asperity::{FileError, SurfaceError};
 
 use crate::say;
 
@@ -69,11 +70,32 @@ impl Failure {
             let text = error.to_string();
             // Some errors quote their causes.
             if !said.ends_with(&text) {
-                eprintln!("  because: {text}");
+                match option(error) {
+                    Some(option) => eprintln!("  because: {text} (`{option}`)"),
+                    None => eprintln!("  because: {text}"),
+                }
             }
             said = text;
             cause = error.source();
         }
+    }
+}
+
+/// The option of the command line that supplies what an error says is not there.
+fn option(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    let error = match error.downcast_ref() {
+        Some(asperity::Error::Surface(error)) => Some(error),
+        _ => error.downcast_ref(),
+    };
+    match error? {
+        SurfaceError::HeightNotFinite { .. } => Some("--fill"),
+        SurfaceError::File(FileError::NoSide) => Some("--side"),
+        SurfaceError::File(FileError::WhichChannel { wanted: None, .. }) => Some("--channel"),
+        SurfaceError::File(FileError::NoUnit { quantity, .. }) => Some(match *quantity {
+            "heights" => "--height-unit",
+            _ => "--lateral-unit",
+        }),
+        _ => None,
     }
 }
 
@@ -164,5 +186,53 @@ impl Outcome {
         let first = failures.next();
         failures.for_each(|failure| failure.report());
         first.map_or(Ok(()), Err)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever is not in a file has an option, also where it comes out of the solver's crate; nothing else has.
+    #[test]
+    fn what_is_not_there_has_an_option() {
+        let no_unit = |quantity| FileError::NoUnit {
+            path: PathBuf::new(),
+            quantity,
+            found: None,
+            option: "",
+        };
+        let which = |wanted: Option<&str>| FileError::WhichChannel {
+            path: PathBuf::new(),
+            wanted: wanted.map(str::to_string),
+            channels: Vec::new(),
+        };
+        let missing = || SurfaceError::HeightNotFinite {
+            ix: 0,
+            iy: 0,
+            value: f64::NAN,
+            count: 1,
+        };
+        for (error, expected) in [
+            (missing(), Some("--fill")),
+            (FileError::NoSide.into(), Some("--side")),
+            (no_unit("heights").into(), Some("--height-unit")),
+            (
+                no_unit("lengths along x and y").into(),
+                Some("--lateral-unit"),
+            ),
+            (which(None).into(), Some("--channel")),
+            (which(Some("Height")).into(), None),
+            (SurfaceError::EmptyGrid { nx: 0, ny: 1 }, None),
+        ] {
+            assert_eq!(option(&error), expected, "{error}");
+        }
+        let of_solver = asperity::Error::from(missing());
+        assert_eq!(option(&of_solver), Some("--fill"));
+        assert_eq!(option(&asperity::Error::ForeignKernel), None);
+        assert_eq!(
+            option(&std::io::Error::from(std::io::ErrorKind::NotFound)),
+            None
+        );
     }
 }

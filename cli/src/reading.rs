@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use asperity::SurfaceError;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
 use asperity::surface::{Topography, Trend};
 use asperity_cli::number::quantity;
@@ -160,7 +161,7 @@ impl Reading {
     }
 
     /// Levels and inverts as asked, and says so on stderr.
-    pub(crate) fn prepare(&self, surface: Topography) -> Result<Topography, asperity::Error> {
+    pub(crate) fn prepare(&self, surface: Topography) -> Result<Topography, SurfaceError> {
         let mut surface = surface;
         if let Some(level) = self.level {
             let levelled = surface.level(level.into())?;

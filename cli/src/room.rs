@@ -1,6 +1,6 @@
 //! How large a grid the memory is enough for.
 
-use asperity::{Error, Grid};
+use asperity::{Error, Grid, SurfaceError};
 use asperity_cli::outcome::Failure;
 
 /// A failure because of an error. If that is for want of memory, or because a grid is larger than any, the largest square
@@ -12,7 +12,7 @@ pub(crate) fn failure(
 ) -> Failure {
     let is_too_large = matches!(
         error,
-        Error::MemoryBudget { .. } | Error::GridTooLarge { .. }
+        Error::MemoryBudget { .. } | Error::Surface(SurfaceError::GridTooLarge { .. })
     );
     let failure = Failure::new(what, error);
     if !is_too_large {
@@ -20,7 +20,7 @@ pub(crate) fn failure(
     }
     let fits = |side: usize| {
         let grid = Grid::square(side, 1.0);
-        grid.and_then(|grid| check(&grid)).is_ok()
+        grid.is_ok_and(|grid| check(&grid).is_ok())
     };
     // The first power of two that does not fit, and then by halves.
     let mut beyond = 1;

@@ -31,6 +31,6 @@ fn number(text: &str) -> Result<f64, String> {
 }
 
 /// A unit of length.
-pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::Error> {
+pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::SurfaceError> {
     text.parse()
 }

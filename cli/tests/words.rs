@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use common::{Scratch, asperity, data, said};
+use common::{Scratch, asperity, data, is_refused, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -213,6 +213,49 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
             fs::read(folder.join(&format!("out/contact_map_{k}.png")))?.starts_with(b"\x89PNG")
         );
     }
+    Ok(())
+}
+
+/// The library names its functions, and the program its options beside them.
+#[test]
+fn advice_names_an_option() -> Done {
+    let folder = with_surface("advice")?;
+    fs::copy(
+        data("surface_files/missing_f64.x3p"),
+        folder.join("holes.x3p"),
+    )?;
+    fs::write(
+        folder.join("tilted.txt"),
+        "0 1001 2000 3001\n1 1000 2001 3000\n0 1001 2000 3001\n1 1000 2001 3000\n",
+    )?;
+    let refused = |line: &str, words: &[&str]| -> Done {
+        let arguments: Vec<&OsStr> = line.split(' ').map(OsStr::new).collect();
+        is_refused(&asperity(&folder.0, &arguments).output()?, words);
+        Ok(())
+    };
+    let load = "--e-star 1 --load 1e-7";
+    refused(
+        &format!("load --surface holes.x3p {load}"),
+        &[
+            "2 of the heights are not finite",
+            "`surface::fill_missing` (`--fill`)",
+        ],
+    )?;
+    refused(
+        &format!("load --surface tilted.txt {load}"),
+        &[
+            "the heights have no unit",
+            "`ReadOptions::height_unit` (`--height-unit`)",
+        ],
+    )?;
+    refused(
+        &format!("load --surface tilted.txt --height-unit nm {load}"),
+        &["`ReadOptions::side` (`--side`)"],
+    )?;
+    let tilted = "info tilted.txt --height-unit nm --side 1e-3";
+    let words = printed(&run(&folder.0, tilted)?);
+    let advice = "level it (`Topography::level`) unless the tilt is meant (`--level plane`)";
+    assert!(words.contains(advice), "{words}");
     Ok(())
 }
 

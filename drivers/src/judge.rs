@@ -3,6 +3,7 @@
 use asperity::loading::History;
 use asperity::{
     ContactGrowth, ContactState, ContactTarget, Error, FixedLoadSolution, Grid, LoadingState,
+    SurfaceError,
 };
 use nalgebra::DVector;
 
@@ -61,9 +62,10 @@ impl Judge {
             (ContactTarget::AreaFraction(value), Error::OutOfRange { .. }) => {
                 !(value > 0.0 && value <= 1.0)
             }
-            (ContactTarget::AreaFraction(value), Error::LessThanOneNode { .. }) => {
-                value * (self.grid.nodes() as f64) < 1.0 + 1e-12
-            }
+            (
+                ContactTarget::AreaFraction(value),
+                Error::Surface(SurfaceError::LessThanOneNode { .. }),
+            ) => value * (self.grid.nodes() as f64) < 1.0 + 1e-12,
             // Nothing says that the mean gap of a body of which nothing is known falls below every value, or at all.
             (ContactTarget::MeanGap(value), Error::NoConvergence { .. }) => {
                 let mut states = states.iter();

@@ -2,7 +2,7 @@
 
 use asperity::loading::{LoadingBuilder, LoadingEnd};
 use asperity::updater::LinearUpdater;
-use asperity::{Error, Grid, LoadingState};
+use asperity::{Error, Grid, LoadingState, SurfaceError};
 
 use crate::draw::Draw;
 use crate::verdict::{Violation, ensure};
@@ -65,7 +65,7 @@ impl Limit {
             (Self::MeanGap(value), Error::OutOfRange { .. }) => !(value >= 0.0 && value < unloaded),
             (Self::Area(value), Error::OutOfRange { .. }) => !(value > 0.0 && value <= 1.0),
             // A fraction of one node is one node, whatever its last bits.
-            (Self::Area(value), Error::LessThanOneNode { .. }) => {
+            (Self::Area(value), Error::Surface(SurfaceError::LessThanOneNode { .. })) => {
                 value * (grid.nodes() as f64) < 1.0 + 1e-12
             }
             (Self::Nodes(nodes), Error::OutOfRange { .. }) => nodes == 0,

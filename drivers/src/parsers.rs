@@ -186,7 +186,7 @@ fn same(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
 
 /// What was read is written, and read again.
 fn write_again(surface: &MeasuredSurface, scratch: &Scratch) -> Result<(), Violation> {
-    let failed = |error: asperity::Error| Violation::new(format!("written again: {error}"));
+    let failed = |error: asperity::SurfaceError| Violation::new(format!("written again: {error}"));
     let heights = &surface.heights;
     let path = scratch.path("again");
     write_npy(&path, heights).map_err(failed)?;

@@ -1,12 +1,11 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
-mod file;
 mod kernel;
 mod updater;
 
+use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
-pub use file::FileError;
 pub use kernel::KernelError;
 pub use updater::UpdaterError;
 
@@ -16,26 +15,6 @@ pub use updater::UpdaterError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A grid needs at least one node in each direction.
-    #[error("a grid of {nx} x {ny} nodes is empty")]
-    EmptyGrid {
-        /// Nodes along x.
-        nx: usize,
-        /// Nodes along y.
-        ny: usize,
-    },
-
-    /// The grid is larger than any this crate can index.
-    #[error("a grid of {nx} x {ny} nodes is too large: at most {max_side} nodes a side")]
-    GridTooLarge {
-        /// Nodes along x.
-        nx: usize,
-        /// Nodes along y.
-        ny: usize,
-        /// Greatest number of nodes along either side.
-        max_side: usize,
-    },
-
     /// A quantity that must be positive and finite is not.
     #[error("{quantity} must be positive and finite, but is {value}")]
     NotPositive {
@@ -54,76 +33,6 @@ pub enum Error {
         value: f64,
         /// The admissible range, in words.
         expected: &'static str,
-    },
-
-    /// Heights that are NaN or infinite: missing data of a measurement, or an overflow.
-    #[error(
-        "{count} of the heights are not finite, the first at node ({ix}, {iy}), which is {value}; missing data of a \
-         measurement can be filled by `surface::fill_missing` (`--fill`)"
-    )]
-    HeightNotFinite {
-        /// Index of the first along x, in storage order.
-        ix: usize,
-        /// Its index along y.
-        iy: usize,
-        /// Its value.
-        value: f64,
-        /// How many there are.
-        count: usize,
-    },
-
-    /// A map without a single height that is finite: nothing to fill the others from.
-    #[error("none of the {nx} x {ny} heights is finite: there is nothing to fill them from")]
-    NothingMeasured {
-        /// Nodes along x.
-        nx: usize,
-        /// Nodes along y.
-        ny: usize,
-    },
-
-    /// A piece of a map that reaches beyond it.
-    #[error("nodes {start} to {end} along {axis} are no part of {nodes} nodes")]
-    CropOutOfGrid {
-        /// The direction, x or y.
-        axis: char,
-        /// First node of the piece.
-        start: usize,
-        /// The node after its last.
-        end: usize,
-        /// Nodes of the map.
-        nodes: usize,
-    },
-
-    /// A short cut-off wavelength has less than two nodes on the grid.
-    #[error(
-        "the short cut-off wavelength {wavelength} is shorter than {shortest}, \
-         two cells of the grid"
-    )]
-    CutoffBelowGrid {
-        /// The short cut-off wavelength.
-        wavelength: f64,
-        /// Shortest wavelength that has two nodes along x and along y.
-        shortest: f64,
-    },
-
-    /// No wave that is periodic on the grid lies between the cut-offs of a spectrum.
-    #[error("no wave of this grid has a wavelength between {shortest} and {longest}")]
-    NoWaves {
-        /// Short cut-off wavelength.
-        shortest: f64,
-        /// Long cut-off wavelength, infinite if there is none.
-        longest: f64,
-    },
-
-    /// A map with too few waves to fit a spectrum to.
-    #[error(
-        "a fit of the spectrum needs waves of {needed} lengths at least, but there are {found}"
-    )]
-    TooFewWaves {
-        /// Different wavelengths that the map has in the band.
-        found: usize,
-        /// How many are needed.
-        needed: usize,
     },
 
     /// A pressure or another field given by the caller is NaN or infinite.
@@ -172,15 +81,6 @@ pub enum Error {
     /// Influence coefficients that no elastic body has.
     #[error(transparent)]
     Kernel(#[from] KernelError),
-
-    /// A fraction of the nominal area is smaller than a node.
-    #[error("an area fraction of {fraction} is less than one node, which is {least}")]
-    LessThanOneNode {
-        /// The fraction given.
-        fraction: f64,
-        /// The fraction of one node.
-        least: f64,
-    },
 
     /// The kernel is not positive definite on the contact: no elastic body answers like this.
     #[error(
@@ -372,9 +272,47 @@ pub enum Error {
     #[error(transparent)]
     Updater(#[from] UpdaterError),
 
+    /// A surface, a grid or a map that is not what it should be.
+    #[error(transparent)]
+    Surface(SurfaceError),
+
     /// A file that could not be read or written, or does not say what it should.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+/// Arguments that both crates check are refused alike, whichever of them does it; files are [`Error::File`] here too.
+impl From<SurfaceError> for Error {
+    fn from(error: SurfaceError) -> Self {
+        match error {
+            SurfaceError::NotPositive { quantity, value } => Self::NotPositive { quantity, value },
+            SurfaceError::OutOfRange {
+                quantity,
+                value,
+                expected,
+            } => Self::OutOfRange {
+                quantity,
+                value,
+                expected,
+            },
+            SurfaceError::FieldNotFinite {
+                field,
+                ix,
+                iy,
+                value,
+            } => Self::FieldNotFinite {
+                field,
+                ix,
+                iy,
+                value,
+            },
+            SurfaceError::GridMismatch { expected, found } => {
+                Self::GridMismatch { expected, found }
+            }
+            SurfaceError::File(error) => Self::File(error),
+            error => Self::Surface(error),
+        }
+    }
 }
 
 /// A number of bytes with a prefix and one digit behind the point, with more if another number would look the same.
@@ -398,11 +336,17 @@ fn bytes(bytes: usize, other: usize) -> String {
 impl Error {
     /// `Ok(value)` if `value` is positive and finite, the typed error otherwise.
     pub(crate) fn require_positive(quantity: &'static str, value: f64) -> Result<f64, Self> {
-        if value > 0.0 && value.is_finite() {
-            Ok(value)
-        } else {
-            Err(Self::NotPositive { quantity, value })
-        }
+        Ok(SurfaceError::require_positive(quantity, value)?)
+    }
+
+    /// `Ok(value)` if it is as `expected`, the typed error otherwise.
+    pub(crate) fn require(
+        quantity: &'static str,
+        value: f64,
+        is_so: bool,
+        expected: &'static str,
+    ) -> Result<f64, Self> {
+        Ok(SurfaceError::require(quantity, value, is_so, expected)?)
     }
 }
 

@@ -45,7 +45,7 @@ impl TryFrom<Parts> for FixedLoadSolution {
     fn try_from(parts: Parts) -> Result<Self, Error> {
         let (nx, ny) = parts.shape;
         if nx == 0 || ny == 0 {
-            return Err(Error::EmptyGrid { nx, ny });
+            return Err(crate::SurfaceError::EmptyGrid { nx, ny }.into());
         }
         let mut state = parts.state;
         let pressure_rate = if parts.pressure_rate.is_empty() {

@@ -29,6 +29,7 @@ pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
 pub use mean::MeanDisplacement;
 pub use origin::KernelOrigin;
+pub(crate) use periodic::check_periodic_cells;
 pub use periodic::{PeriodicBoussinesq, Spectral};
 pub(crate) use table::Blocks;
 pub use table::KernelTable;

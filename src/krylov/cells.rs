@@ -1,5 +1,6 @@
 //! Which cells iterations are made for.
 
+use crate::kernel::check_periodic_cells;
 use crate::{Boundary, Error, Grid};
 
 /// `Ok` for cells that are at most so many times as long as wide, of a single row, or of a grid that does not repeat. Long waves
@@ -17,7 +18,7 @@ pub(crate) fn check_cells(
     if boundary == Boundary::Free || is_strip {
         return Ok(());
     }
-    grid.check_periodic_cells(most, expected)
+    check_periodic_cells(grid, most, expected)
 }
 
 #[cfg(test)]

@@ -228,7 +228,7 @@ mod tests {
     use crate::contact::ContactState;
 
     fn grid() -> Result<Grid, Error> {
-        Grid::new(5, 4, 1.0, 2.0)
+        Ok(Grid::new(5, 4, 1.0, 2.0)?)
     }
 
     /// Limits on surfaces that just touch with a mean gap of 3.

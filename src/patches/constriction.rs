@@ -35,7 +35,6 @@ pub fn constriction(
     connectivity: Connectivity,
     axis: Axis,
 ) -> Result<Option<Constriction>, Error> {
-    grid.check_shape(gap.shape())?;
     grid.check_shape(contact_map.shape())?;
     grid.check_finite("gap", gap)?;
     let mut open: Vec<usize> = (0..grid.nodes())

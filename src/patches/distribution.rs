@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{Bins, Histogram};
-use crate::Error;
+use crate::{Error, Grid};
 
 /// The distribution of a field over the nodes in contact, or over those out of contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub struct FieldDistribution {
 ///
 /// # Errors
 ///
-/// [`Error::EmptyGrid`] without nodes, [`Error::GridMismatch`] if the shapes differ, [`Error::FieldNotFinite`], and
+/// Those of [`Grid::new`] without nodes, [`Error::GridMismatch`] if the shapes differ, [`Error::FieldNotFinite`], and
 /// those of [`Histogram::new`].
 pub fn pressure_distribution(
     pressure: &DMatrix<f64>,
@@ -62,23 +62,9 @@ fn over(
     bins: Bins,
 ) -> Result<FieldDistribution, Error> {
     let (nx, ny) = field.shape();
-    if nx == 0 || ny == 0 {
-        return Err(Error::EmptyGrid { nx, ny });
-    }
-    if contact_map.shape() != (nx, ny) {
-        return Err(Error::GridMismatch {
-            expected: (nx, ny),
-            found: contact_map.shape(),
-        });
-    }
-    if let Some(node) = field.iter().position(|value| !value.is_finite()) {
-        return Err(Error::FieldNotFinite {
-            field: name,
-            ix: node % nx,
-            iy: node / nx,
-            value: field.as_slice()[node],
-        });
-    }
+    let grid = Grid::new(nx, ny, 1.0, 1.0)?;
+    grid.check_shape(contact_map.shape())?;
+    grid.check_finite(name, field)?;
     let nodes = field.iter().zip(contact_map.iter());
     let counted = nodes.filter(|(_, is_in)| **is_in == in_contact);
     let touching = contact_map.iter().filter(|is_in| **is_in).count();

@@ -52,9 +52,7 @@ impl Histogram {
     pub fn new(values: impl IntoIterator<Item = f64>, bins: Bins) -> Result<Self, Error> {
         let values: Vec<f64> = values.into_iter().collect();
         for &value in &values {
-            if !value.is_finite() {
-                return Err(out_of_range("value of a histogram", value, "finite"));
-            }
+            Error::require("value of a histogram", value, value.is_finite(), "finite")?;
         }
         let edges = match bins {
             Bins::Linear(count) => linear(&values, count)?,
@@ -74,11 +72,9 @@ impl Histogram {
     ) -> Result<Self, Error> {
         let mut last = f64::NEG_INFINITY;
         for &edge in &edges {
-            if !(edge > last && edge.is_finite()) {
-                let expected = "finite and above the one before it";
-                return Err(out_of_range("edge of a bin", edge, expected));
-            }
-            last = edge;
+            let is_next = edge > last && edge.is_finite();
+            let expected = "finite and above the one before it";
+            last = Error::require("edge of a bin", edge, is_next, expected)?;
         }
         let mut counts = vec![0; edges.len().saturating_sub(1)];
         let mut outside = 0;
@@ -137,18 +133,9 @@ impl Histogram {
     }
 }
 
-fn out_of_range(quantity: &'static str, value: f64, expected: &'static str) -> Error {
-    Error::OutOfRange {
-        quantity,
-        value,
-        expected,
-    }
-}
-
 fn linear(values: &[f64], count: usize) -> Result<Vec<f64>, Error> {
-    if !(1..=Histogram::MAX_BINS).contains(&count) {
-        return Err(out_of_range("number of bins", count as f64, "1 to 65536"));
-    }
+    let is_number = (1..=Histogram::MAX_BINS).contains(&count);
+    Error::require("number of bins", count as f64, is_number, "1 to 65536")?;
     let least = values.iter().copied().fold(0.0, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if greatest <= least {
@@ -160,9 +147,8 @@ fn linear(values: &[f64], count: usize) -> Result<Vec<f64>, Error> {
 }
 
 fn per_decade(values: &[f64], count: usize) -> Result<Vec<f64>, Error> {
-    if !(1..=Histogram::MAX_PER_DECADE).contains(&count) {
-        return Err(out_of_range("bins per decade", count as f64, "1 to 1000"));
-    }
+    let is_number = (1..=Histogram::MAX_PER_DECADE).contains(&count);
+    Error::require("bins per decade", count as f64, is_number, "1 to 1000")?;
     let positive = values.iter().copied().filter(|value| *value > 0.0);
     let least = positive.clone().fold(f64::INFINITY, f64::min);
     let greatest = positive.fold(0.0, f64::max);

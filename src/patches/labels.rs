@@ -146,7 +146,7 @@ impl Patches {
     ///
     /// [`Error::GridMismatch`] if the pressure has another shape, and [`Error::FieldNotFinite`].
     pub fn loads(&self, pressure: &DMatrix<f64>) -> Result<Vec<PatchLoad>, Error> {
-        self.grid.check_shape(pressure.shape())?;
+        self.grid.check_finite("pressure", pressure)?;
         let none = PatchLoad {
             load: 0.0,
             mean_pressure: 0.0,
@@ -154,16 +154,7 @@ impl Patches {
         };
         let mut loads = vec![none; self.patches.len()];
         let nodes = pressure.iter().zip(self.labels.iter());
-        for (node, (&pressure, &label)) in nodes.enumerate() {
-            if !pressure.is_finite() {
-                let (ix, iy) = self.grid.coordinates(node);
-                return Err(Error::FieldNotFinite {
-                    field: "pressure",
-                    ix,
-                    iy,
-                    value: pressure,
-                });
-            }
+        for (&pressure, &label) in nodes {
             if label > 0 {
                 let carried = &mut loads[label - 1];
                 carried.load += pressure;

@@ -82,14 +82,8 @@ pub fn activation_map(
 
 /// The index of a node.
 pub(super) fn node_of(grid: &Grid, ix: usize, iy: usize) -> Result<usize, Error> {
-    let outside = |quantity, index: usize| Error::OutOfRange {
-        quantity,
-        value: index as f64,
-        expected: "a node of the grid",
-    };
-    if ix >= grid.nx() {
-        return Err(outside("index ix of a node", ix));
-    }
-    grid.node(ix, iy)
-        .ok_or_else(|| outside("index iy of a node", iy))
+    let expected = "a node of the grid";
+    Error::require("index ix of a node", ix as f64, ix < grid.nx(), expected)?;
+    Error::require("index iy of a node", iy as f64, iy < grid.ny(), expected)?;
+    Ok(grid.index(ix, iy))
 }

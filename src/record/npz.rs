@@ -115,7 +115,7 @@ impl LoadingRecord {
         for (_, field) in fields {
             self.grid.check_shape(field.shape())?;
         }
-        write_whole(path, |output| self.write(output, fields))
+        Ok(write_whole(path, |output| self.write(output, fields))?)
     }
 
     fn write(

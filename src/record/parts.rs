@@ -11,10 +11,7 @@ use crate::{Error, Grid};
 /// What a record consists of.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Parts {
-    /// Nodes along x and y.
-    shape: (usize, usize),
-    /// Cell along x and y \[m\].
-    cell: (f64, f64),
+    grid: Grid,
     /// Heights \[m\], x fast.
     heights: Vec<f64>,
     kernel: KernelRecord,
@@ -25,10 +22,8 @@ pub(super) struct Parts {
 
 impl From<LoadingRecord> for Parts {
     fn from(record: LoadingRecord) -> Self {
-        let grid = record.grid;
         Self {
-            shape: grid.shape(),
-            cell: (grid.dx(), grid.dy()),
+            grid: record.grid,
             heights: record.heights.into_matrix().data.into(),
             kernel: record.kernel,
             settings: record.settings,
@@ -42,15 +37,14 @@ impl TryFrom<Parts> for LoadingRecord {
     type Error = Error;
 
     fn try_from(parts: Parts) -> Result<Self, Error> {
-        let ((nx, ny), (dx, dy)) = (parts.shape, parts.cell);
-        let grid = Grid::new(nx, ny, dx, dy)?;
+        let grid = parts.grid;
         if parts.heights.len() != grid.nodes() {
             return Err(Error::LengthMismatch {
                 expected: grid.nodes(),
                 found: parts.heights.len(),
             });
         }
-        let heights = HeightMap::new(DMatrix::from_vec(nx, ny, parts.heights))?;
+        let heights = HeightMap::new(DMatrix::from_vec(grid.nx(), grid.ny(), parts.heights))?;
         let mut states = parts.states;
         for state in &mut states {
             state.contact.restore_infinity();

@@ -61,13 +61,13 @@ pub fn contact_conductance(
     e_star: f64,
     resistivity: f64,
 ) -> Result<f64, Error> {
-    if contact_stiffness.is_nan() || contact_stiffness < 0.0 {
-        return Err(Error::OutOfRange {
-            quantity: "contact stiffness",
-            value: contact_stiffness,
-            expected: "not negative",
-        });
-    }
+    let is_one = contact_stiffness >= 0.0;
+    Error::require(
+        "contact stiffness",
+        contact_stiffness,
+        is_one,
+        "not negative",
+    )?;
     let e_star = Error::require_positive("plane-strain modulus", e_star)?;
     let resistivity = Error::require_positive("resistivity", resistivity)?;
     Ok(2.0 * contact_stiffness / e_star / resistivity)

@@ -46,13 +46,13 @@ impl HertzEllipse {
         let radius_y = Error::require_positive("radius along y", radius_y)?;
         let e_star = Error::require_positive("plane-strain modulus", e_star)?;
         let ratio = radius_x.min(radius_y) / radius_x.max(radius_y);
-        if ratio < Self::MIN_RADIUS_RATIO {
-            return Err(Error::OutOfRange {
-                quantity: "ratio of the smaller to the larger radius",
-                value: ratio,
-                expected: "at least 1e-12",
-            });
-        }
+        let quantity = "ratio of the smaller to the larger radius";
+        Error::require(
+            quantity,
+            ratio,
+            ratio >= Self::MIN_RADIUS_RATIO,
+            "at least 1e-12",
+        )?;
         let log_axis_ratio = log_axis_ratio(ratio.ln());
         let integrals = CompleteElliptic::from_log_complement(log_axis_ratio);
         Ok(Self {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use asperity::kernel::{KernelTable, MeanDisplacement};
 use asperity::nalgebra::DMatrix;
 use asperity::surface::{HeightMap, Paraboloid};
-use asperity::{ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid};
+use asperity::{ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid, SurfaceError};
 
 use crate::common::fixed_load::{check, relative};
 use crate::problems::{Kernel, rough, solver};
@@ -138,7 +138,10 @@ fn targets_that_cannot_be() {
         assert!(matches!(solved, Err(Error::OutOfRange { .. })), "{bad:?}");
     }
     let less = solver.solve_target(ContactTarget::AreaFraction(0.9 / 2304.0));
-    assert!(matches!(less, Err(Error::LessThanOneNode { .. })));
+    assert!(matches!(
+        less,
+        Err(Error::Surface(SurfaceError::LessThanOneNode { .. }))
+    ));
 }
 
 /// Four nodes of a symmetric shape touch together: numbers between are not to be had, unless the

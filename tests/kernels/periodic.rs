@@ -222,7 +222,7 @@ fn a_kernel_that_does_not_repeat_is_refused() -> Result<(), Error> {
         repeated,
     })) = KernelTable::new(&kernel)
     else {
-        return Err(Error::EmptyGrid { nx: 4, ny: 3 });
+        return Err(asperity::SurfaceError::EmptyGrid { nx: 4, ny: 3 }.into());
     };
     assert_eq!((di, dj, image_di, image_dj), (-3, -2, 1, -2));
     assert_eq!(value, kernel.coefficient(-3, -2));

@@ -2,7 +2,9 @@
 
 use asperity::contact::ContactSequence;
 use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, WindowFactor};
-use asperity::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface};
+use asperity::{
+    Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, SurfaceError,
+};
 use nalgebra::{DMatrix, DVector};
 
 /// Facets of different heights and slopes: nothing in it is symmetric.
@@ -27,7 +29,7 @@ impl Facets {
 }
 
 impl Surface for Facets {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
         let (lx, ly) = grid.sides();
         Ok(DMatrix::from_fn(grid.nx(), grid.ny(), |ix, iy| {
             let (x, y) = grid.position(ix, iy);

@@ -8,7 +8,7 @@ use asperity::{
     LoadingSolver, LoadingState, PeriodicBoussinesq, SelfAffine, Spectral, Surface,
 };
 
-fn rough() -> Result<SelfAffine, Error> {
+fn rough() -> Result<SelfAffine, asperity::SurfaceError> {
     SelfAffine::new(0.8, 1.2e-3, 4.5e-4, Amplitude::RmsHeight(1e-6), 3)
 }
 

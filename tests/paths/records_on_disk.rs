@@ -151,6 +151,22 @@ fn foreign_and_newer_files_are_refused() {
     ));
 }
 
+/// A pipe into which nobody writes: opening it would never return.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused() {
+    let pipe = Scratch::new("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe.0).status();
+    // Without the program there is nothing to try.
+    if made.is_ok_and(|status| status.success()) {
+        let error = LoadingRecord::read_npz(&pipe.0).map(drop).unwrap_err();
+        assert!(
+            matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == pipe.0 && reason.contains("regular")),
+            "{error}"
+        );
+    }
+}
+
 #[test]
 fn a_record_is_data() {
     let record = record(None);

@@ -7,7 +7,8 @@ use asperity::updater::{
     LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
 };
 use asperity::{
-    Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface, UpdaterError,
+    Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface,
+    SurfaceError, UpdaterError,
 };
 use nalgebra::DMatrix;
 
@@ -18,7 +19,7 @@ const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INF
 struct Told(DMatrix<f64>);
 
 impl Surface for Told {
-    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, Error> {
+    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
         Ok(self.0.clone())
     }
 }
@@ -28,10 +29,10 @@ impl Surface for Told {
 struct Refuses;
 
 impl Surface for Refuses {
-    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        Err(Error::LengthMismatch {
-            expected: 1,
-            found: 2,
+    fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
+        Err(SurfaceError::TooFewWaves {
+            found: 1,
+            needed: 2,
         })
     }
 }
@@ -62,22 +63,25 @@ fn grids() {
     for (nx, ny) in [(0, 0), (0, 5), (5, 0)] {
         assert!(matches!(
             Grid::new(nx, ny, 1.0, 1.0),
-            Err(Error::EmptyGrid { .. })
+            Err(SurfaceError::EmptyGrid { .. })
         ));
         assert!(matches!(
             Grid::with_sides(nx, ny, 1.0, 1.0),
-            Err(Error::EmptyGrid { .. })
+            Err(SurfaceError::EmptyGrid { .. })
         ));
     }
-    assert!(matches!(Grid::square(0, 1.0), Err(Error::EmptyGrid { .. })));
+    assert!(matches!(
+        Grid::square(0, 1.0),
+        Err(SurfaceError::EmptyGrid { .. })
+    ));
     for n in [Grid::MAX_SIDE + 1, usize::MAX / 2, usize::MAX] {
         for (nx, ny) in [(n, 1), (1, n), (n, n)] {
             assert!(matches!(
                 Grid::new(nx, ny, 1.0, 1.0),
-                Err(Error::GridTooLarge { .. })
+                Err(SurfaceError::GridTooLarge { .. })
             ));
             let sides = Grid::with_sides(nx, ny, 1.0, 1.0);
-            assert!(matches!(sides, Err(Error::GridTooLarge { .. })));
+            assert!(matches!(sides, Err(SurfaceError::GridTooLarge { .. })));
         }
     }
     for bad in NOT_POSITIVE {
@@ -88,14 +92,17 @@ fn grids() {
             Grid::with_sides(4, 4, 1.0, bad),
             Grid::square(4, bad),
         ] {
-            assert!(matches!(grid, Err(Error::NotPositive { .. })), "{bad}");
+            assert!(
+                matches!(grid, Err(SurfaceError::NotPositive { .. })),
+                "{bad}"
+            );
         }
     }
     // Areas that over- or underflow.
     for cell in [1e200, 1e-200] {
         assert!(matches!(
             Grid::new(4, 4, cell, cell),
-            Err(Error::NotPositive { .. })
+            Err(SurfaceError::NotPositive { .. })
         ));
     }
 }
@@ -123,19 +130,22 @@ fn heights() {
         heights[(3, 2)] = value;
         let error = HeightMap::new(heights.clone()).unwrap_err();
         assert!(
-            matches!(error, Error::HeightNotFinite { ix: 3, iy: 2, .. }),
+            matches!(error, SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. }),
             "{error}"
         );
         let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
         let error = LoadingSolver::new(&Told(heights), &kernel).unwrap_err();
         assert!(
-            matches!(error, Error::HeightNotFinite { ix: 3, iy: 2, .. }),
+            matches!(
+                error,
+                Error::Surface(SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. })
+            ),
             "{error}"
         );
     }
     assert!(matches!(
         HeightMap::new(DMatrix::zeros(0, 3)),
-        Err(Error::EmptyGrid { .. })
+        Err(SurfaceError::EmptyGrid { .. })
     ));
     for shape in [(4, 5), (5, 5), (20, 1), (0, 0)] {
         let heights = Told(DMatrix::zeros(shape.0, shape.1));
@@ -156,17 +166,20 @@ fn heights() {
     assert!(
         matches!(
             error,
-            Error::LengthMismatch {
-                expected: 1,
-                found: 2
-            }
+            Error::Surface(SurfaceError::TooFewWaves {
+                found: 1,
+                needed: 2
+            })
         ),
         "{error}"
     );
     // Waves too short for the grid.
     let rough = SelfAffine::new(0.8, 1.0, 0.1, Amplitude::RmsHeight(1.0), 1).unwrap();
     let error = LoadingSolver::new(&rough, &half_space(4)).unwrap_err();
-    assert!(matches!(error, Error::CutoffBelowGrid { .. }), "{error}");
+    assert!(
+        matches!(error, Error::Surface(SurfaceError::CutoffBelowGrid { .. })),
+        "{error}"
+    );
 }
 
 /// An updater that returns something malformed.

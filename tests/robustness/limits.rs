@@ -5,6 +5,7 @@ use asperity::loading::{ContactEvent, LoadingBuilder, LoadingEnd};
 use asperity::surface::HeightMap;
 use asperity::{
     Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
+    SurfaceError,
 };
 use nalgebra::DMatrix;
 
@@ -39,7 +40,10 @@ fn limits_that_make_no_sense() {
     // Less than a node is no contact.
     let error = sphere.builder().max_area_fraction(0.9 / 16.0).build();
     let error = error.unwrap_err();
-    assert!(matches!(error, Error::LessThanOneNode { .. }), "{error}");
+    assert!(
+        matches!(error, Error::Surface(SurfaceError::LessThanOneNode { .. })),
+        "{error}"
+    );
     let unloaded = sphere.states()[0].contact.mean_gap;
     for bad in [-1e-9, unloaded, 2.0 * unloaded, f64::NAN, f64::INFINITY] {
         let error = sphere.builder().min_mean_gap(bad).build().unwrap_err();

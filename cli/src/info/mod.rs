@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use asperity::Doubt;
 use asperity::io::MeasuredSurface;
-use asperity::surface::{Estimate, HeightMap, Topography, Trend, Window};
+use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
@@ -17,6 +17,7 @@ use asperity_cli::say;
 use clap::Args;
 use serde_json::{Value, json};
 
+use crate::advice;
 use crate::reading::Reading;
 use summary::Whole;
 
@@ -75,8 +76,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// What looks wrong; without a size there are no slopes.
 fn doubts(whole: &Whole) -> Vec<String> {
     let doubts = Doubt::of_surface(&whole.surface).into_iter();
-    let known = doubts.filter(|doubt| whole.has_size || !matches!(doubt, Doubt::Steep { .. }));
-    known.map(|doubt| doubt.to_string()).collect()
+    let known = doubts.filter(|doubt| {
+        whole.has_size || !matches!(doubt, Doubt::Surface(surface::Doubt::Steep { .. }))
+    });
+    known.map(|doubt| advice::told(&doubt)).collect()
 }
 
 /// One object for programs.

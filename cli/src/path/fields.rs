@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::Grid;
 use asperity::io::{write_gsf, write_npy, write_vti};
+use asperity::{Grid, SurfaceError};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
@@ -40,7 +40,7 @@ pub(super) fn write(
     format: Format,
     directory: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
-    let named = |name: PathBuf, written: Result<(), asperity::Error>| {
+    let named = |name: PathBuf, written: Result<(), SurfaceError>| {
         written
             .map(|()| name.clone())
             .map_err(|error| Failure::writing(&name, error))

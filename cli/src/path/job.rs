@@ -104,7 +104,8 @@ impl Job {
         };
         let heights = record.heights().matrix().clone();
         options.reading.only_sides("the surface of a record")?;
-        let surface = Topography::new(record.grid(), heights).map_err(failed)?;
+        let surface =
+            Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
         let grid = *surface.grid();
         let targets = options.targets(&grid, &record.settings().targets);
         let (history, passed) = record

@@ -93,7 +93,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     let job = Job::new(options)?;
     eprint!("{job}");
     for doubt in job.doubts() {
-        eprintln!("warning: {doubt}");
+        eprintln!("warning: {}", crate::advice::told(&doubt));
     }
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)

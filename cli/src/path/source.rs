@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::surface::{Amplitude, SelfAffine, Topography};
-use asperity::{Grid, LoadingSolver};
+use asperity::{Grid, LoadingSolver, SurfaceError};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use md5::{Digest, Md5};
@@ -64,7 +64,7 @@ impl Generated {
         let seed = options.seed.unwrap_or(SEED);
         let side = options.reading.side.unwrap_or(SIDE);
         let side_y = options.reading.side_y.unwrap_or(side);
-        let failed = |error| no_surface(options, nodes, error);
+        let failed = |error: SurfaceError| no_surface(options, nodes, error.into());
         let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
         let paper = SelfAffine::zhang2020(seed);
         let (cell, rolloff) = (longer_side(&grid), paper.rolloff_wavelength());
@@ -91,7 +91,7 @@ pub(super) fn generate(options: &Options) -> Result<Made, Failure> {
     let Generated { spectrum, grid } = Generated::new(options)?;
     let failed = |error| no_surface(options, grid.nx(), error);
     LoadingSolver::check_room(&grid, options.boundary(), options.memory_budget).map_err(failed)?;
-    let heights = Topography::sample(&spectrum, grid).map_err(failed)?;
+    let heights = Topography::sample(&spectrum, grid).map_err(|error| failed(error.into()))?;
     let shortest = spectrum.short_cutoff_wavelength();
     let name = format!(
         "generated as an example: self-affine, Hurst exponent {}, shortest wavelength {} ({}), roll-off at {}, seed {}",

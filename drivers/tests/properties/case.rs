@@ -62,7 +62,12 @@ pub(crate) fn case() -> impl Strategy<Value = Case> {
 
 impl Case {
     pub(crate) fn grid(&self) -> Result<Grid, Error> {
-        Grid::new(self.nodes.0, self.nodes.1, self.cell.0, self.cell.1)
+        Ok(Grid::new(
+            self.nodes.0,
+            self.nodes.1,
+            self.cell.0,
+            self.cell.1,
+        )?)
     }
 
     pub(crate) fn matrix(&self) -> DMatrix<f64> {
@@ -70,7 +75,7 @@ impl Case {
     }
 
     pub(crate) fn surface(&self) -> Result<HeightMap, Error> {
-        HeightMap::new(self.matrix())
+        Ok(HeightMap::new(self.matrix())?)
     }
 
     pub(crate) fn kernel(&self) -> Result<Box<dyn InfluenceKernel + Send + Sync>, Error> {

@@ -95,13 +95,13 @@ impl Boussinesq {
         let (dx, dy) = (grid.dx(), grid.dy());
         let (long, short) = (dx.max(dy), dx.min(dy));
         let aspect = grid.cell_aspect();
-        if aspect > Self::MAX_ASPECT {
-            return Err(Error::OutOfRange {
-                quantity: "ratio of the sides of a cell",
-                value: aspect,
-                expected: "at most 1e100",
-            });
-        }
+        let quantity = "ratio of the sides of a cell";
+        Error::require(
+            quantity,
+            aspect,
+            aspect <= Self::MAX_ASPECT,
+            "at most 1e100",
+        )?;
         let near_scale = short / (PI * e_star);
         let self_influence = near_scale * near::own_cell(aspect);
         Ok(Self {

@@ -67,16 +67,10 @@ impl Symmetric {
     }
 
     pub(super) fn set_gauge(&mut self, gauge: f64) -> Result<(), Error> {
-        if gauge >= 0.0 && gauge.is_finite() {
-            self.gauge = gauge;
-            Ok(())
-        } else {
-            Err(Error::OutOfRange {
-                quantity: "gauge of a periodic kernel",
-                value: gauge,
-                expected: "finite and not negative",
-            })
-        }
+        let is_gauge = gauge >= 0.0 && gauge.is_finite();
+        let quantity = "gauge of a periodic kernel";
+        self.gauge = Error::require(quantity, gauge, is_gauge, "finite and not negative")?;
+        Ok(())
     }
 
     /// s* of this kernel.
@@ -105,7 +99,12 @@ pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
 /// The grid with lengths in units of the long side of its cells.
 pub(super) fn in_long_sides(grid: &Grid) -> Result<Grid, Error> {
     let long = grid.dx().max(grid.dy());
-    Grid::new(grid.nx(), grid.ny(), grid.dx() / long, grid.dy() / long)
+    Ok(Grid::new(
+        grid.nx(),
+        grid.ny(),
+        grid.dx() / long,
+        grid.dy() / long,
+    )?)
 }
 
 /// Wave number of mode k of n on cells of `spacing`, for 0 ≤ k ≤ n / 2.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, dmatrix};
 use proptest::prelude::*;
 
 use super::super::*;
-use crate::Error;
+use crate::{Error, SurfaceError};
 
 /// The integral of a density.
 fn integral(histogram: &Histogram) -> f64 {
@@ -166,7 +166,7 @@ fn pressures_count_in_contact_and_gaps_out_of_it() -> Result<(), Error> {
     let nothing = DMatrix::zeros(0, 3);
     assert!(matches!(
         gap_distribution(&nothing, &contact, bins),
-        Err(Error::EmptyGrid { nx: 0, ny: 3 })
+        Err(Error::Surface(SurfaceError::EmptyGrid { nx: 0, ny: 3 }))
     ));
     let mut bad = pressure;
     bad[(2, 1)] = f64::NAN;

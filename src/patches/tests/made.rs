@@ -13,7 +13,7 @@ use crate::contact::ContactSequence;
 use crate::loading::History;
 use crate::reference::HertzSphere;
 use crate::surface::Paraboloid;
-use crate::{Boundary, Boussinesq, ContactEvent, Error, Grid, LoadingSolver};
+use crate::{Boundary, Boussinesq, ContactEvent, Error, Grid, LoadingSolver, SurfaceError};
 
 /// A map from a picture of rows along x.
 fn map(rows: &[&str]) -> DMatrix<bool> {
@@ -76,7 +76,7 @@ fn a_patch_across_the_border_is_put_together() -> Result<(), Error> {
     let grid = Grid::new(6, 4, 1.0, 2.0)?;
     let patches = Patches::new(&contact, &grid, Boundary::Periodic, Connectivity::Four)?;
     let [patch] = patches.patches() else {
-        return Err(Error::EmptyGrid { nx: 0, ny: 0 });
+        return Err(SurfaceError::EmptyGrid { nx: 0, ny: 0 }.into());
     };
     assert_eq!(patch.centroid, (0.5, 0.0));
     assert_eq!((patch.nodes, patch.area), (6, 12.0));

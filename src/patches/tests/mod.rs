@@ -24,7 +24,7 @@ struct Case {
 
 impl Case {
     fn grid(&self) -> Result<Grid, Error> {
-        Grid::new(self.shape.0, self.shape.1, 2e-6, 3e-6)
+        Ok(Grid::new(self.shape.0, self.shape.1, 2e-6, 3e-6)?)
     }
 
     fn contact(&self) -> Result<ContactSequence, Error> {

@@ -1,7 +1,10 @@
+#[path = "../../../surfaces/src/io/full_disk/disk.rs"]
+mod disk;
+
 use std::io::Cursor;
 
+use self::disk::is_refused_at_every_byte;
 use super::*;
-use crate::io::full_disk::is_refused_at_every_byte;
 use crate::surface::Paraboloid;
 use crate::{Boussinesq, LoadingSolver};
 

@@ -101,7 +101,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
 }
 
 /// Rough, without ties.
-fn rough(grid: &Grid) -> Result<HeightMap, asperity::Error> {
+fn rough(grid: &Grid) -> Result<HeightMap, asperity::SurfaceError> {
     let (nx, ny) = grid.shape();
     HeightMap::new(DMatrix::from_fn(nx, ny, |ix, iy| {
         let (x, y) = (ix as f64, iy as f64);

@@ -4,6 +4,7 @@ mod short_range;
 
 use super::even::{Even, cosine_of_turn};
 use super::symmetric::{Symmetric, in_long_sides, least_gauge, wave_number};
+use crate::kernel::check_periodic_cells;
 use crate::kernel::gauge::of_half_space;
 use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
 use crate::{Error, Grid};
@@ -118,7 +119,7 @@ impl PeriodicBoussinesq {
     /// [`Error::OutOfRange`] for cells more than [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as
     /// wide.
     pub fn new(grid: Grid, e_star: f64) -> Result<Self, Error> {
-        grid.check_periodic_cells(Self::MAX_ASPECT, "at most 1000")?;
+        check_periodic_cells(&grid, Self::MAX_ASPECT, "at most 1000")?;
         let cells = in_long_sides(&grid)?;
         let symbol = symbol(&cells)?;
         let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));

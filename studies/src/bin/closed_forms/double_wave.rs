@@ -153,7 +153,7 @@ fn area(solution: &FixedLoadSolution, grid: &Grid) -> Result<f64, Error> {
     corrected_area_fraction(&solution.contact_map, grid, asperity::Boundary::Periodic)
 }
 
-fn surface(crest: (f64, f64)) -> Result<BiWave, Error> {
+fn surface(crest: (f64, f64)) -> Result<BiWave, asperity::SurfaceError> {
     BiWave::new(AMPLITUDE, 1.0, 1.0)?.centered_at(crest.0, crest.1)
 }
 

@@ -97,7 +97,7 @@ pub(crate) fn solver(surface: &dyn Surface, grid: Grid) -> Result<FixedLoadSolve
 }
 
 /// A grid of unit cells around a contact of these semi-axes.
-pub(crate) fn grid_around(x: f64, y: f64) -> Result<Grid, Error> {
+pub(crate) fn grid_around(x: f64, y: f64) -> Result<Grid, asperity::SurfaceError> {
     Grid::new((WIDTH * x) as usize, (WIDTH * y) as usize, 1.0, 1.0)
 }
 

@@ -52,7 +52,7 @@ impl Mesh {
         self.band * self.cells * (1.0 / ROLLOFF) as usize
     }
 
-    fn surface(self, seed: u64) -> Result<SelfAffine, Error> {
+    fn surface(self, seed: u64) -> Result<SelfAffine, asperity::SurfaceError> {
         let cutoff = ROLLOFF / self.band as f64;
         SelfAffine::new(
             HURST,

@@ -72,7 +72,7 @@ impl Rough {
             seed,
         )?;
         match self {
-            Self::Table1 | Self::NoRollOff => HeightMap::sample(&surface, grid),
+            Self::Table1 | Self::NoRollOff => Ok(HeightMap::sample(&surface, grid)?),
             Self::AmplitudesC => with_amplitudes_c(&surface, grid),
         }
     }
@@ -110,12 +110,13 @@ fn with_amplitudes_c(surface: &SelfAffine, grid: &Grid) -> Result<HeightMap, Err
     let heights = HeightMap::sample(surface, grid)?;
     let filtered = Convolution::from_table(&table)?.convolve(heights.matrix())?;
     let filtered = HeightMap::new(filtered)?;
-    HeightMap::new(filtered.matrix() * (SQ / filtered.rms_height()))
+    let scaled = filtered.matrix() * (SQ / filtered.rms_height());
+    Ok(HeightMap::new(scaled)?)
 }
 
 /// The grid of the study.
 pub(crate) fn grid(nodes: usize) -> Result<Grid, Error> {
-    Grid::square(nodes, SIDE)
+    Ok(Grid::square(nodes, SIDE)?)
 }
 
 /// Short cut-off wavelength on so many nodes a side.

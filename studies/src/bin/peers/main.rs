@@ -64,7 +64,9 @@ fn run(options: &Options) -> Result<(), Failure> {
 
 /// Surfaces and pressures as NumPy's files, and everything else as `ours.csv`.
 fn write(directory: &Path) -> Result<(), Failure> {
-    let failed = |error: asperity::Error| Failure::new("cannot write the problems", error);
+    let what = "cannot write the problems";
+    let failed = |error: asperity::Error| Failure::new(what, error);
+    let unwritten = |error: asperity::SurfaceError| Failure::new(what, error);
     let lost = |error: csv::Error| Failure::new("cannot write ours.csv", error);
     std::fs::create_dir_all(directory)
         .map_err(|error| Failure::new(format!("cannot make {}", directory.display()), error))?;
@@ -84,10 +86,10 @@ fn write(directory: &Path) -> Result<(), Failure> {
     table.write_record(header).map_err(lost)?;
     for (place, rough) in surfaces::all().map_err(failed)?.iter().enumerate() {
         let heights = format!("surface{place}.npy");
-        write_npy(directory.join(&heights), rough.heights.matrix()).map_err(failed)?;
+        write_npy(directory.join(&heights), rough.heights.matrix()).map_err(unwritten)?;
         for (number, solved) in ours::solve(rough).map_err(failed)?.iter().enumerate() {
             let pressure = format!("pressure{place}_{number}.npy");
-            write_npy(directory.join(&pressure), &solved.solution.pressure).map_err(failed)?;
+            write_npy(directory.join(&pressure), &solved.solution.pressure).map_err(unwritten)?;
             let state = &solved.solution.state;
             let stiffness = state.interfacial_stiffness.unwrap_or(f64::NAN);
             let (lx, ly) = rough.grid.sides();

@@ -1,7 +1,7 @@
 //! Surfaces of many kinds, all on a side of 1.
 
 use asperity::surface::{Amplitude, HeightMap, Paraboloid, SelfAffine};
-use asperity::{Error, Grid, Surface};
+use asperity::{Error, Grid, Surface, SurfaceError};
 use nalgebra::DMatrix;
 
 /// Nodes a side of the square surfaces.
@@ -39,7 +39,7 @@ pub(crate) fn all() -> Result<Vec<Rough>, Error> {
             heights: HeightMap::new(heights)?,
         })
     };
-    let self_affine = |hurst, amplitude| -> Result<DMatrix<f64>, Error> {
+    let self_affine = |hurst, amplitude| -> Result<DMatrix<f64>, SurfaceError> {
         SelfAffine::new(hurst, ROLLOFF, CUTOFF, amplitude, SEED)?.heights(&square)
     };
     let height = Amplitude::RmsHeight(RMS_HEIGHT);
@@ -82,7 +82,7 @@ fn on_grid(name: &'static str, grid: Grid) -> Result<Rough, Error> {
 }
 
 /// An isotropic surface on a longer side, pressed together.
-fn anisotropic() -> Result<DMatrix<f64>, Error> {
+fn anisotropic() -> Result<DMatrix<f64>, SurfaceError> {
     let long = Grid::with_sides(NODES, NODES, 1.0, LAY)?;
     let amplitude = Amplitude::RmsHeight(RMS_HEIGHT);
     SelfAffine::new(0.8, 2.0 * ROLLOFF, LAY * CUTOFF, amplitude, SEED)?.heights(&long)

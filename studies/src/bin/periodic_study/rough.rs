@@ -57,12 +57,15 @@ pub(crate) struct Study {
     pub(crate) convolutions: f64,
 }
 
+fn failed(error: impl Into<asperity::Error>) -> Failure {
+    Failure::new("the study of rough surfaces failed", error.into())
+}
+
 impl Study {
     pub(crate) fn run(options: &Options) -> Result<Self, Failure> {
         if options.surfaces < 1 || options.loads < 2 {
             return Err(Failure::request("a study needs a surface and two loads"));
         }
-        let failed = |error| Failure::new("the study of rough surfaces failed", error);
         let grid = Grid::square(options.nodes, 1.0).map_err(failed)?;
         let bar = ProgressBar::new(options.surfaces * options.loads as u64);
         let (mut states, mut convolutions) = (Vec::new(), 0.0);

@@ -1,0 +1,187 @@
+//! Archives of arrays, `.npz`.
+
+use std::io::{Cursor, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use nalgebra::DMatrix;
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+use super::bytes::read_file;
+use super::fault::Fault;
+use super::npy::{self, header_of};
+use super::output::Output;
+use crate::Error;
+
+/// How many times the size of its archive a member may take: arrays of one number compress a thousand times.
+const MOST: usize = 1 << 11;
+/// Members from which on the archive needs longer numbers.
+const LARGE: usize = u32::MAX as usize / 2;
+
+/// What is wrong with a zip file, for people who do not know how one is made.
+pub(super) fn incomplete(error: ZipError) -> Fault {
+    Fault::malformed(match error {
+        ZipError::InvalidArchive(_) | ZipError::Io(_) => {
+            "it is no complete zip archive, which this format is; was it cut off, or is it of another kind?"
+                .to_string()
+        }
+        ZipError::FileNotFound => "it is not there".to_string(),
+        other => other.to_string(),
+    })
+}
+
+/// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
+pub struct ArchiveWriter<W: Write + Seek> {
+    zip: ZipWriter<Output<W>>,
+}
+
+impl<W: Write + Seek> ArchiveWriter<W> {
+    pub fn new(output: W) -> Self {
+        Self {
+            zip: ZipWriter::new(Output::new(output)),
+        }
+    }
+
+    fn begin(
+        &mut self,
+        name: &str,
+        descr: &str,
+        shape: &[usize],
+        bytes: usize,
+    ) -> std::io::Result<()> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .large_file(bytes > LARGE);
+        self.zip.start_file(format!("{name}.npy"), options)?;
+        self.zip.write_all(&header_of(descr, shape))
+    }
+
+    /// An array of no dimension that holds a text.
+    pub fn text(&mut self, name: &str, text: &str) -> std::io::Result<()> {
+        let length = text.chars().count();
+        self.begin(name, &format!("<U{length}"), &[], 4 * length)?;
+        for letter in text.chars() {
+            self.zip.write_all(&u32::from(letter).to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// An array of one dimension.
+    pub fn numbers(
+        &mut self,
+        name: &str,
+        length: usize,
+        values: impl Iterator<Item = f64>,
+    ) -> std::io::Result<()> {
+        self.begin(name, "<f8", &[length], 8 * length)?;
+        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+        self.zip.write_all(&bytes)
+    }
+
+    /// The same of whole numbers.
+    pub fn integers(
+        &mut self,
+        name: &str,
+        length: usize,
+        values: impl Iterator<Item = i64>,
+    ) -> std::io::Result<()> {
+        self.begin(name, "<i8", &[length], 8 * length)?;
+        let bytes: Vec<u8> = values.flat_map(i64::to_le_bytes).collect();
+        self.zip.write_all(&bytes)
+    }
+
+    /// An array `[ix, iy]`.
+    pub fn matrix(&mut self, name: &str, matrix: &DMatrix<f64>) -> std::io::Result<()> {
+        let (nx, ny) = matrix.shape();
+        self.begin(name, "<f8", &[nx, ny], 8 * nx * ny)?;
+        for row in matrix.row_iter() {
+            let bytes: Vec<u8> = row.iter().flat_map(|value| value.to_le_bytes()).collect();
+            self.zip.write_all(&bytes)?;
+        }
+        Ok(())
+    }
+
+    pub fn finish(self) -> std::io::Result<()> {
+        self.zip.finish()?.finish()
+    }
+}
+
+/// An archive whose members are read by name.
+pub struct Archive {
+    path: PathBuf,
+    /// What errors call it.
+    format: &'static str,
+    bytes: Vec<u8>,
+}
+
+impl Archive {
+    pub fn open(path: &Path, format: &'static str) -> Result<Self, Error> {
+        let bytes = read_file(path)
+            .and_then(|bytes| {
+                let opened = ZipArchive::new(Cursor::new(&bytes[..])).map(drop);
+                opened.map_err(incomplete)?;
+                Ok(bytes)
+            })
+            .map_err(|fault| fault.in_file(path, format))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            format,
+            bytes,
+        })
+    }
+
+    /// What `parse` makes of a member.
+    fn member<T>(&self, name: &str, parse: impl Fn(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
+        let parsed = self.bytes_of(name).and_then(|bytes| parse(&bytes));
+        let in_member = |fault| match fault {
+            Fault::Malformed { offset, reason } => Fault::Malformed {
+                offset,
+                reason: format!("member '{name}': {reason}"),
+            },
+            other => other,
+        };
+        parsed.map_err(|fault| in_member(fault).in_file(&self.path, self.format))
+    }
+
+    fn bytes_of(&self, name: &str) -> Result<Vec<u8>, Fault> {
+        let mut zip = ZipArchive::new(Cursor::new(&self.bytes[..])).map_err(incomplete)?;
+        let member = zip.by_name(&format!("{name}.npy")).map_err(incomplete)?;
+        let most = self.bytes.len().saturating_mul(MOST);
+        let mut bytes = Vec::new();
+        member
+            .take(most as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| Fault::malformed(error.to_string()))?;
+        if bytes.len() > most {
+            return Err(Fault::malformed(format!(
+                "it is more than {MOST} times as large as the file"
+            )));
+        }
+        Ok(bytes)
+    }
+
+    /// The text of a member.
+    pub fn text(&self, name: &str) -> Result<String, Error> {
+        self.member(name, npy::text)
+    }
+
+    /// An array of one dimension, of a length if one is given.
+    pub fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, Error> {
+        self.member(name, |bytes| {
+            let values = npy::vector(bytes)?;
+            match length {
+                Some(length) if length != values.len() => Err(Fault::malformed(format!(
+                    "it has {} numbers, but there are {length} states",
+                    values.len()
+                ))),
+                _ => Ok(values),
+            }
+        })
+    }
+
+    /// An array `[ix, iy]`.
+    pub fn matrix(&self, name: &str) -> Result<DMatrix<f64>, Error> {
+        self.member(name, npy::matrix)
+    }
+}

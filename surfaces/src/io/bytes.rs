@@ -1,0 +1,160 @@
+//! The bytes of a file, read from front to back, and never beyond their end.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use super::fault::Fault;
+use crate::Grid;
+
+/// All bytes of a regular file: opening a pipe would wait for somebody to write into it.
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Fault> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(Fault::malformed("it is not a regular file"));
+    }
+    let mut file = File::open(path)?;
+    let length = usize::try_from(file.metadata()?.len())
+        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    let mut bytes = reserved(length)?;
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// All bytes of a source.
+pub(super) fn read_all(mut source: impl Read) -> Result<Vec<u8>, Fault> {
+    let mut bytes = Vec::new();
+    source.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// An empty vector with room for so many elements.
+pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, Fault> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    Ok(values)
+}
+
+/// A place in the bytes of a file.
+#[derive(Debug, Clone)]
+pub(super) struct Bytes<'a> {
+    all: &'a [u8],
+    at: usize,
+}
+
+macro_rules! numbers {
+    ($($name:ident: $type:ty),*) => {$(
+        /// The next number, little-endian.
+        pub(super) fn $name(&mut self) -> Result<$type, Fault> {
+            self.array().map(<$type>::from_le_bytes)
+        }
+    )*};
+}
+
+#[cfg_attr(
+    not(feature = "io"),
+    expect(dead_code, reason = "NumPy's format needs few of these")
+)]
+impl<'a> Bytes<'a> {
+    pub(super) fn new(all: &'a [u8]) -> Self {
+        Self { all, at: 0 }
+    }
+
+    /// Bytes from the start of the file to here.
+    pub(super) fn offset(&self) -> usize {
+        self.at
+    }
+
+    /// Bytes from here to the end.
+    pub(super) fn left(&self) -> usize {
+        self.all.len() - self.at
+    }
+
+    /// Goes to a place given from the start of the file.
+    pub(super) fn seek(&mut self, offset: usize) -> Result<(), Fault> {
+        if offset > self.all.len() {
+            return Err(Fault::at(
+                self.at,
+                format!(
+                    "byte {offset} is referred to, but the file has {} bytes",
+                    self.all.len()
+                ),
+            ));
+        }
+        self.at = offset;
+        Ok(())
+    }
+
+    /// The next `count` bytes.
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+        let rest = &self.all[self.at..];
+        let taken = rest.get(..count).ok_or_else(|| {
+            Fault::at(
+                self.at,
+                format!(
+                    "expected {count} more bytes, but the file ends after {}",
+                    rest.len()
+                ),
+            )
+        })?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    /// The next `count` elements of `size` bytes each, checked against the file before anything is made of them.
+    pub(super) fn elements(&mut self, count: usize, size: usize) -> Result<&'a [u8], Fault> {
+        self.take(count.saturating_mul(size))
+    }
+
+    /// The bytes up to the next `end`, which is skipped.
+    pub(super) fn until(&mut self, end: u8) -> Result<&'a [u8], Fault> {
+        let rest = &self.all[self.at..];
+        let length = rest.iter().position(|byte| *byte == end).ok_or_else(|| {
+            Fault::at(
+                self.at,
+                format!("expected a byte {end:#04x}, but the file ends"),
+            )
+        })?;
+        self.at += length + 1;
+        Ok(&rest[..length])
+    }
+
+    /// `Ok` if nothing follows the contents, whose name the error says.
+    pub(super) fn end(&self, contents: fmt::Arguments<'_>) -> Result<(), Fault> {
+        match self.left() {
+            0 => Ok(()),
+            left => {
+                let reason = format!("{contents} end here, but {left} bytes follow");
+                Err(Fault::at(self.at, reason))
+            }
+        }
+    }
+
+    /// The next `N` bytes.
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+        let at = self.at;
+        self.take(N)?
+            .try_into()
+            .map_err(|_| Fault::at(at, "the file ends"))
+    }
+
+    numbers!(u8: u8, u16: u16, u32: u32, i32: i32, f32: f32, f64: f64);
+}
+
+/// A shape that a grid can have.
+pub(super) fn shape(nx: u64, ny: u64) -> Result<(usize, usize), Fault> {
+    let side = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
+    let (nx, ny) = (side(nx), side(ny));
+    Grid::check_nodes(nx, ny).map_err(Fault::Refused)?;
+    Ok((nx, ny))
+}
+
+/// Latin-1 without the blanks and zeros that pad it: any bytes have a meaning in it.
+#[cfg(feature = "io")]
+pub(super) fn latin1(bytes: &[u8]) -> String {
+    let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
+    text.trim_matches(|c: char| c == '\0' || c.is_whitespace())
+        .to_string()
+}

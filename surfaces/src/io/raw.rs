@@ -1,0 +1,70 @@
+//! What a reader finds in a file, before units and options are applied.
+
+use super::bytes::reserved;
+use super::fault::Fault;
+
+/// One map of a file, in the file's own units.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Channel {
+    /// Its name, or an empty text where the format has none.
+    pub(super) name: String,
+    /// Nodes along x and y.
+    pub(super) shape: (usize, usize),
+    /// Value of node (ix, iy) at `ix + nx * iy`, NaN where it is missing.
+    pub(super) values: Vec<f64>,
+    /// Unit of the values as the file writes it, `None` where it has none.
+    pub(super) height_unit: Option<String>,
+    /// Cell along x and y.
+    pub(super) cell: Option<(f64, f64)>,
+    /// Unit of the cell as the file writes it, `None` where it has none.
+    pub(super) lateral_unit: Option<String>,
+    /// Nodes that somebody marked in the file, in the order of the values.
+    pub(super) mask: Option<Vec<bool>>,
+    /// What the user should know: a checksum that does not match, a header that contradicts itself.
+    pub(super) notes: Vec<String>,
+}
+
+impl Channel {
+    /// A map without a name, in metres.
+    pub(super) fn in_metres(
+        shape: (usize, usize),
+        values: Vec<f64>,
+        cell: Option<(f64, f64)>,
+    ) -> Self {
+        Self {
+            name: String::new(),
+            shape,
+            values,
+            height_unit: Some("m".to_string()),
+            cell,
+            lateral_unit: Some("m".to_string()),
+            mask: None,
+            notes: Vec::new(),
+        }
+    }
+}
+
+/// What a reader makes of the bytes of a file: all maps in it.
+pub(super) type Parsed = Result<Vec<Channel>, Fault>;
+
+/// `Ok(value)` if it is positive and finite, the defect of the file at this place otherwise.
+pub(super) fn positive(name: &str, value: f64, offset: usize) -> Result<f64, Fault> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(Fault::at(
+        offset,
+        format!("{name} is {value}, but a positive number was expected"),
+    ))
+}
+
+/// Values decoded from elements of a fixed size, with memory asked for once.
+pub(super) fn decode(
+    bytes: &[u8],
+    size: usize,
+    decode: impl Fn(&[u8]) -> f64,
+) -> Result<Vec<f64>, Fault> {
+    let mut values = reserved(bytes.len() / size)?;
+    values.extend(bytes.chunks_exact(size).map(decode));
+    Ok(values)
+}

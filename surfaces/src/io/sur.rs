@@ -1,0 +1,269 @@
+//! Digital Surf, `.sur`, plain and compressed.
+//!
+//! Sources: the readers of surfalize, SurfaceTopography, RosettaSciIO and Gwyddion (`surffile.c`), which agree on the
+//! layout; two files of instruments.
+//!
+//! A header of 512 bytes, a comment and a private zone, then integers of 16 or 32 bits. The height of a node is its
+//! value times the spacing along z, plus the offset along z, both in the unit of that spacing; these readers differ in
+//! the offset, which changes no difference of heights. A node is missing if the header says that there are such nodes
+//! and its value lies two below the least height.
+//!
+//! Compressed heights are zlib streams. Deflate makes at most 1032 bytes of one: a stream that claims more is not
+//! read, so the memory for a file is bounded by its length, if by a larger multiple than in other formats.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::bytes::{Bytes, latin1, shape};
+use super::fault::Fault;
+use super::number::Number;
+use super::raw::{Channel, Parsed, decode, positive};
+use super::unit::LengthUnit;
+
+/// Bytes of the header.
+const HEADER: usize = 512;
+
+/// Bytes that deflate makes of one, at most: 258 of two bits.
+const MAX_EXPANSION: u64 = 1032;
+
+pub(super) fn parse(file: &[u8]) -> Parsed {
+    let mut bytes = Bytes::new(file);
+    let compressed = bytes.take(HEADER)?.starts_with(b"DSCOMPRESSED");
+    let header = Header::read(file)?;
+    bytes.seek(HEADER)?;
+    bytes.take(header.comments)?;
+    let length = (header.shape.0 * header.shape.1).saturating_mul(header.number.size());
+    let data = if compressed {
+        Cow::Owned(inflate(&mut bytes, length)?)
+    } else {
+        Cow::Borrowed(bytes.take(length)?)
+    };
+    let (nx, ny) = header.shape;
+    bytes.end(format_args!("{nx} x {ny} heights"))?;
+    let number = header.number;
+    let values = decode(&data, number.size(), |value| {
+        header.height(number.decode(value))
+    })?;
+    let (cell, lateral_unit) = header.cell();
+    Ok(vec![Channel {
+        name: header.name,
+        height_unit: header.units.2,
+        lateral_unit,
+        ..Channel::in_metres((nx, ny), values, Some(cell))
+    }])
+}
+
+/// What the header says of the heights.
+#[derive(Debug)]
+struct Header {
+    /// Name of the z axis.
+    name: String,
+    shape: (usize, usize),
+    number: Number,
+    /// Bytes between header and heights.
+    comments: usize,
+    /// Value of a missing node.
+    missing: Option<f64>,
+    /// Spacing along x, y and z.
+    spacing: (f64, f64, f64),
+    offset: f64,
+    /// Units of the spacings.
+    units: (Option<String>, Option<String>, Option<String>),
+}
+
+impl Header {
+    fn read(file: &[u8]) -> Result<Self, Fault> {
+        let field = |offset| {
+            let mut bytes = Bytes::new(file);
+            bytes.seek(offset).map(|()| bytes)
+        };
+        if field(12)?.u16()? == 257 {
+            return Err(Fault::at(
+                12,
+                "the format is 257, big-endian, but only files in little-endian order are read",
+            ));
+        }
+        let (nx, ny) = (field(108)?.u32()?, field(112)?.u32()?);
+        require_surface(field(18)?.u16()?, ny)?;
+        let objects = field(14)?.u16()?;
+        if objects > 1 {
+            return Err(Fault::at(
+                14,
+                format!(
+                    "there are {objects} objects in the file, but only files with one are read"
+                ),
+            ));
+        }
+        let bits = field(98)?.u16()?;
+        let number = match bits {
+            16 => Number::I16,
+            32 => Number::I32,
+            _ => {
+                return Err(Fault::at(
+                    98,
+                    format!("the heights have {bits} bits each, but 16 or 32 were expected"),
+                ));
+            }
+        };
+        let nodes = u64::from(field(116)?.u32()?);
+        if nodes != u64::from(nx) * u64::from(ny) {
+            return Err(Fault::at(
+                116,
+                format!("there are {nodes} points in the file, but {nx} x {ny} in a map"),
+            ));
+        }
+        let special_points = field(86)?.u16()? == 1;
+        let least = f64::from(field(100)?.i32()?);
+        let spacing = |offset| field(offset)?.f32().map(f64::from);
+        let unit = |offset| {
+            let text = latin1(field(offset)?.take(16)?);
+            Ok::<_, Fault>(Some(text).filter(|text| !text.is_empty()))
+        };
+        let offset = spacing(474)?;
+        if !offset.is_finite() {
+            return Err(Fault::at(
+                474,
+                format!("the offset of the heights is {offset}, which is not finite"),
+            ));
+        }
+        let step = positive("the spacing along z", spacing(128)?, 128)?;
+        let zone = |offset| field(offset)?.u16().map(usize::from);
+        Ok(Self {
+            name: latin1(field(164)?.take(16)?),
+            shape: shape(u64::from(nx), u64::from(ny))?,
+            number,
+            comments: zone(334)? + zone(336)?,
+            missing: special_points.then_some(least - 2.0),
+            spacing: (spacing(120)?, spacing(124)?, step),
+            offset,
+            units: (unit(180)?, unit(196)?, unit(212)?),
+        })
+    }
+
+    fn height(&self, value: f64) -> f64 {
+        if self.missing == Some(value) {
+            f64::NAN
+        } else {
+            value * self.spacing.2 + self.offset
+        }
+    }
+
+    /// The cell and its unit: metres where x and y have two units.
+    fn cell(&self) -> ((f64, f64), Option<String>) {
+        let (dx, dy, _) = self.spacing;
+        let (x, y, _) = &self.units;
+        if x == y {
+            return ((dx, dy), x.clone());
+        }
+        let length = |unit: &Option<String>| unit.as_ref()?.parse::<LengthUnit>().ok();
+        match (length(x), length(y)) {
+            (Some(x), Some(y)) => {
+                let metre = LengthUnit::METRE.symbol().to_string();
+                ((dx * x.metres(), dy * y.metres()), Some(metre))
+            }
+            // The unit that is no length is the one to be told.
+            (Some(_), None) => ((dx, dy), y.clone()),
+            (None, _) => ((dx, dy), x.clone()),
+        }
+    }
+}
+
+/// The types of studies that the format knows.
+const TYPES: [&str; 22] = [
+    "something unknown",
+    "a profile",
+    "a surface",
+    "a binary image",
+    "a series of profiles",
+    "a series of surfaces",
+    "a meridian disc",
+    "a profile with layers",
+    "a surface with layers",
+    "a parallel disc",
+    "an intensity image",
+    "a surface with intensities",
+    "a colour image",
+    "a surface with colours",
+    "a force curve",
+    "a series of force curves",
+    "a surface with colours and intensities",
+    "a parametric profile",
+    "a series of colour images",
+    "something unknown",
+    "a spectrum",
+    "a map of spectra",
+];
+
+fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
+    // Gwyddion calls the maps that it writes profiles.
+    if kind == 2 || (kind == 1 && ny > 1) {
+        return Ok(());
+    }
+    let name = TYPES.get(usize::from(kind)).unwrap_or(&TYPES[0]);
+    Err(Fault::at(
+        18,
+        format!("it holds {name} (type {kind}), but a surface (type 2) was expected"),
+    ))
+}
+
+/// The heights of a compressed file: a number of streams, the length of each before and after compression, and the
+/// streams.
+fn inflate(bytes: &mut Bytes, length: usize) -> Result<Vec<u8>, Fault> {
+    let at = bytes.offset();
+    let streams = bytes.u32()? as usize;
+    let directory = Bytes::new(bytes.elements(streams, 8)?);
+    let mut lengths = directory.clone();
+    let mut claimed = 0_u64;
+    while lengths.left() > 0 {
+        claimed = claimed.saturating_add(u64::from(lengths.u32()?));
+        let _compressed = lengths.u32()?;
+    }
+    if claimed != length as u64 {
+        return Err(Fault::at(
+            at,
+            format!(
+                "{streams} compressed streams hold {claimed} bytes, but the heights take {length}"
+            ),
+        ));
+    }
+    let mut data = Vec::new();
+    let mut lengths = directory;
+    while lengths.left() > 0 {
+        let length = u64::from(lengths.u32()?);
+        let compressed = lengths.u32()?;
+        let at = bytes.offset();
+        let stream = bytes.take(compressed as usize)?;
+        if length > MAX_EXPANSION * u64::from(compressed) {
+            return Err(Fault::at(
+                at,
+                format!("no {compressed} compressed bytes can hold {length}, as these claim"),
+            ));
+        }
+        // Nothing is reserved for what is only claimed, and one byte more than that shows a stream that is too long.
+        let found = ZlibDecoder::new(stream)
+            .take(length + 1)
+            .read_to_end(&mut data)
+            .map_err(|error| {
+                Fault::at(at, format!("the compressed heights are damaged: {error}"))
+            })?;
+        if found as u64 != length {
+            let more = if found as u64 > length {
+                "more"
+            } else {
+                "less"
+            };
+            return Err(Fault::at(
+                at,
+                format!(
+                    "this compressed stream holds {more} than the {length} bytes that it claims"
+                ),
+            ));
+        }
+    }
+    Ok(data)
+}
+
+#[cfg(test)]
+mod tests;

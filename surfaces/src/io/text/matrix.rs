@@ -1,0 +1,36 @@
+//! A text whose rows are those of the map.
+
+use super::header::Header;
+use super::table::Table;
+use crate::io::bytes::shape;
+use crate::io::fault::Fault;
+use crate::io::raw::Channel;
+
+/// Row iy of the text holds the nodes (·, iy).
+pub(super) fn channel(header: Header, table: Table) -> Result<Channel, Fault> {
+    let (columns, rows) = (table.columns as u64, table.rows() as u64);
+    let shape = shape(columns, rows)?;
+    let (cell, lateral_unit) = header.cell(shape)?;
+    let mut values = table.values;
+    finish(&header, &mut values);
+    Ok(Channel {
+        name: header.title,
+        height_unit: header.value_unit,
+        lateral_unit,
+        ..Channel::in_metres(shape, values, cell)
+    })
+}
+
+/// Heights in their unit, of the numbers in the file.
+pub(super) fn finish(header: &Header, heights: &mut [f64]) {
+    if let Some(missing) = header.missing {
+        for height in heights.iter_mut().filter(|height| **height == missing) {
+            *height = f64::NAN;
+        }
+    }
+    if let Some(factor) = header.factor {
+        for height in heights {
+            *height *= factor;
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! A text with a point x, y, z in every row.
+//!
+//! Nodes are found from the coordinates, so that points may come in any order, and need not all be there: scanners leave out
+//! what they did not see.
+
+use super::header::Header;
+use super::matrix::finish;
+use super::table::Table;
+use crate::Grid;
+use crate::io::bytes::{reserved, shape};
+use crate::io::fault::Fault;
+use crate::io::raw::Channel;
+
+/// How far a point may be off its node, in spacings: as much as rounding to two digits of a spacing.
+const TOLERANCE: f64 = 0.05;
+
+/// What is said of points that are further off than this.
+const NOTED: f64 = 1e-3;
+
+/// Coordinates of one column of nodes differ by less than this share of the spacing.
+const SAME: f64 = 4.0 * TOLERANCE;
+
+/// Most nodes of a grid for each point in the file, and most columns of it for each that has any point.
+const MAX_NODES: usize = 16;
+const MAX_COLUMNS: usize = 2;
+
+/// The map of which a table gives the points.
+pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
+    if table.columns < 3 {
+        return Err(Fault::malformed(format!(
+            "a list of points x, y, z has three columns, but there are {}",
+            table.columns
+        )));
+    }
+    let (x, y) = (Axis::find("x", table, 0)?, Axis::find("y", table, 1)?);
+    let (nx, ny) = shape(x.nodes as u64, y.nodes as u64)?;
+    let count = table.rows();
+    if nx * ny > count.saturating_mul(MAX_NODES) {
+        return Err(Fault::malformed(format!(
+            "a grid of {nx} x {ny} nodes would be needed for the {count} points of the list: more than \
+             {MAX_NODES} nodes a point; they do not lie on a regular grid, or are only a few of it"
+        )));
+    }
+    let mut values = reserved(nx * ny)?;
+    values.resize(nx * ny, f64::NAN);
+    let mut filled = vec![false; nx * ny];
+    let mut worst = 0.0_f64;
+    for (k, point) in table.values.chunks_exact(table.columns).enumerate() {
+        let &[px, py, z, ..] = point else { continue };
+        let (ix, off_x) = x.node(k, px)?;
+        let (iy, off_y) = y.node(k, py)?;
+        worst = worst.max(off_x).max(off_y);
+        let node = ix + nx * iy;
+        let (Some(value), Some(filled)) = (values.get_mut(node), filled.get_mut(node)) else {
+            continue;
+        };
+        if std::mem::replace(filled, true) {
+            return Err(Fault::malformed(format!(
+                "point {} at x = {px}, y = {py} is not the first at its node: spacings are {:e} and {:e}",
+                k + 1,
+                x.spacing,
+                y.spacing
+            )));
+        }
+        *value = z;
+    }
+    finish(&header, &mut values);
+    let mut notes = Vec::new();
+    if worst > NOTED {
+        notes.push(format!(
+            "points lie up to {worst:.3} of a spacing off the nodes of a regular grid; their heights are taken for \
+             those of the nodes"
+        ));
+    }
+    if table.columns > 3 {
+        notes.push(format!(
+            "of {} columns the first three are read, as x, y, z",
+            table.columns
+        ));
+    }
+    Ok(Channel {
+        name: header.title,
+        height_unit: header.value_unit,
+        lateral_unit: header.lateral_unit,
+        notes,
+        ..Channel::in_metres((nx, ny), values, Some((x.spacing, y.spacing)))
+    })
+}
+
+/// Evenly spaced coordinates.
+#[derive(Debug)]
+struct Axis {
+    name: &'static str,
+    start: f64,
+    spacing: f64,
+    nodes: usize,
+}
+
+impl Axis {
+    /// The nodes on which a column of coordinates lies.
+    fn find(name: &'static str, table: &Table, column: usize) -> Result<Self, Fault> {
+        let mut sorted = reserved(table.rows())?;
+        for (k, point) in table.values.chunks_exact(table.columns).enumerate() {
+            let coordinate = point.get(column).copied().unwrap_or(f64::NAN);
+            if !coordinate.is_finite() {
+                return Err(Fault::malformed(format!("point {} has no {name}", k + 1)));
+            }
+            sorted.push(coordinate);
+        }
+        sorted.sort_unstable_by(f64::total_cmp);
+        let (start, end) = match (sorted.first(), sorted.last()) {
+            (Some(start), Some(end)) => (*start, *end),
+            _ => (0.0, 0.0),
+        };
+        let extent = end - start;
+        if extent == 0.0 {
+            return Err(Fault::malformed(format!(
+                "all points have {name} = {start}: a profile is no surface"
+            )));
+        }
+        let (least, columns) = spacing(sorted, extent).ok_or_else(|| {
+            Fault::malformed(format!(
+                "{name} has more than {} different values from {start} to {end}: the points do not lie on a grid",
+                Grid::MAX_SIDE
+            ))
+        })?;
+        // At most MAX_SIDE - 1, see there.
+        let intervals = (extent / least).round();
+        let nodes = intervals as usize + 1;
+        if nodes > columns.saturating_mul(MAX_COLUMNS) {
+            return Err(Fault::malformed(format!(
+                "{name} is not evenly spaced: it has {columns} different values from {start} to {end}, some of them \
+                 {least:e} apart, which would make {nodes} columns"
+            )));
+        }
+        Ok(Self {
+            name,
+            start,
+            // That of all nodes together hardly feels how the last of them is rounded.
+            spacing: extent / intervals,
+            nodes,
+        })
+    }
+
+    /// The node at which point `k` lies, and how far off it is, in spacings.
+    fn node(&self, k: usize, coordinate: f64) -> Result<(usize, f64), Fault> {
+        let place = (coordinate - self.start) / self.spacing;
+        let off = (place - place.round()).abs();
+        if off > TOLERANCE {
+            return Err(Fault::malformed(format!(
+                "{name} is not evenly spaced: point {} at {name} = {coordinate} is {off:.3} of the spacing {:e} off its \
+                 node, and {TOLERANCE} is allowed",
+                k + 1,
+                self.spacing,
+                name = self.name
+            )));
+        }
+        Ok((place.round() as usize, off))
+    }
+}
+
+/// The smallest distance between coordinates that are not the same but for rounding, and how many such coordinates there are;
+/// `None` if the distance is too small for a grid.
+fn spacing(mut sorted: Vec<f64>, extent: f64) -> Option<(f64, usize)> {
+    let mut last = sorted.first().copied()?;
+    for coordinate in &mut sorted {
+        (*coordinate, last) = (*coordinate - last, *coordinate);
+    }
+    let mut gaps = sorted;
+    gaps.sort_unstable_by(f64::total_cmp);
+    // Rounded to the number of nodes, hence the half.
+    let least = extent / (Grid::MAX_SIDE as f64 - 0.5);
+    gaps.windows(2)
+        .enumerate()
+        .filter_map(|(k, pair)| Some((k, *pair.first()?, *pair.last()?)))
+        .find(|(_, below, gap)| *gap > least && *below <= SAME * *gap)
+        .map(|(k, _, gap)| (gap, gaps.len() - k))
+}

@@ -1,0 +1,77 @@
+//! Files that are whole once they have their name.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crate::Error;
+use crate::FileError;
+
+/// Lets `work` write a file under another name beside its place, and then gives it its own, in place of what may be there:
+/// a full disk or a killed process leaves no part of it that looks like the whole. What is no regular file, a device, is
+/// written to as it is.
+///
+/// All writers of this crate write so. It is there for tables and pictures that go with their files:
+///
+/// ```
+/// # fn main() -> Result<(), asperity_surfaces::Error> {
+/// use std::io::Write;
+///
+/// # let directory = std::env::temp_dir();
+/// asperity_surfaces::io::write_whole(directory.join("loads.csv"), |output| {
+///     writeln!(output, "load,contact_area_fraction")?;
+///     writeln!(output, "1e-3,0.017")
+/// })?;
+/// # std::fs::remove_file(directory.join("loads.csv")).unwrap();
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+///
+/// [`FileError::Io`] if `work` fails, or the file cannot be written; what was there before is there still.
+pub fn write_whole(
+    path: impl AsRef<Path>,
+    work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> Result<(), Error> {
+    let path = path.as_ref();
+    write(path, work).map_err(|source| {
+        Error::File(FileError::Io {
+            path: path.to_path_buf(),
+            source,
+        })
+    })
+}
+
+fn write(
+    path: &Path,
+    work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let fill = |place: &Path| -> std::io::Result<File> {
+        let mut output = BufWriter::new(File::create(place)?);
+        work(&mut output)?;
+        output.flush()?;
+        Ok(output.into_inner()?)
+    };
+    if fs::metadata(path).is_ok_and(|place| !place.is_file()) {
+        return fill(path).map(drop);
+    }
+    // A link stays one.
+    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let unfinished = unfinished(&place);
+    let written = fill(&unfinished)
+        .and_then(|file| file.sync_all())
+        .and_then(|()| fs::rename(&unfinished, &place));
+    if written.is_err() {
+        // It may not even be there.
+        let _ = fs::remove_file(&unfinished);
+    }
+    written
+}
+
+/// The name of a file while it is written.
+fn unfinished(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(format!(".{}.unfinished", std::process::id()));
+    path.with_file_name(name)
+}

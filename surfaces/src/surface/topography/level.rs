@@ -1,0 +1,283 @@
+//! What a measurement has of tilt and form, by least squares.
+
+use nalgebra::DMatrix;
+
+use super::Topography;
+use crate::Error;
+
+/// What is taken for the trend of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Trend {
+    /// The mean height.
+    Mean,
+    /// The plane of least squares.
+    Plane,
+    /// The polynomial of second degree of least squares: tilt and curvature.
+    Quadratic,
+}
+
+/// A polynomial that was fitted to a map, about the centre (x₀, y₀) of the map:
+///
+/// ```math
+/// t(x, y) = c + s_x X + s_y Y
+///     + \tfrac12 \kappa_{xx} X^2 + \kappa_{xy} X Y + \tfrac12 \kappa_{yy} Y^2,
+///     \qquad X = x - x_0, \quad Y = y - y_0
+/// ```
+///
+/// Made by [`Topography::trend`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedTrend {
+    center: (f64, f64),
+    height: f64,
+    slopes: (f64, f64),
+    curvatures: (f64, f64, f64),
+}
+
+impl FittedTrend {
+    /// Height c of the polynomial at the centre of the map \[m\].
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// Slopes (s_x, s_y) at the centre of the map, without unit.
+    #[must_use]
+    pub fn slopes(&self) -> (f64, f64) {
+        self.slopes
+    }
+
+    /// Angle between the tangent plane at the centre of the map and the horizontal \[rad\]:
+    /// $`\arctan \sqrt{s_x^2 + s_y^2}`$.
+    #[must_use]
+    pub fn tilt(&self) -> f64 {
+        libm::atan(libm::hypot(self.slopes.0, self.slopes.1))
+    }
+
+    /// Second derivatives (κ_xx, κ_xy, κ_yy) \[1/m\], 0 unless quadratic. A cap of radius R has
+    /// κ_xx = κ_yy = −1/R.
+    #[must_use]
+    pub fn curvatures(&self) -> (f64, f64, f64) {
+        self.curvatures
+    }
+
+    /// Height of the polynomial \[m\] at a position \[m\], as by [`Grid::position`](crate::Grid::position).
+    #[must_use]
+    pub fn at(&self, x: f64, y: f64) -> f64 {
+        let (x, y) = (x - self.center.0, y - self.center.1);
+        let (xx, xy, yy) = self.curvatures;
+        let tilted = self.height + self.slopes.0 * x + self.slopes.1 * y;
+        tilted + 0.5 * xx * x * x + xy * x * y + 0.5 * yy * y * y
+    }
+}
+
+impl Topography {
+    /// The polynomial that is closest to the heights in the sense of least squares.
+    ///
+    /// In the coordinates of the nodes from the centre of the map, X of nx nodes and Y of ny, the
+    /// polynomials 1, X, Y, X² − ⟨X²⟩, XY and Y² − ⟨Y²⟩ are orthogonal on every grid, so that each
+    /// coefficient is a mean, ⟨hφ⟩/⟨φ²⟩, and no system of equations has to be solved. A slope needs
+    /// two nodes in its direction, and a curvature three: with fewer it is 0.
+    ///
+    /// Ordinary least squares: differences are measured along z, which for the slopes of rough
+    /// surfaces is the same as at right angles to the plane.
+    #[must_use]
+    pub fn trend(&self, trend: Trend) -> FittedTrend {
+        let mean = self.map.mean_height();
+        let (x, y) = (Gram::new(self.grid.nx()), Gram::new(self.grid.ny()));
+        let mut fitted = FittedTrend {
+            center: self.grid.center(),
+            height: mean,
+            slopes: (0.0, 0.0),
+            curvatures: (0.0, 0.0, 0.0),
+        };
+        if trend == Trend::Mean {
+            return fitted;
+        }
+        let (dx, dy) = (self.grid.dx(), self.grid.dy());
+        let coefficient = |i: usize, j: usize| {
+            let norm = x.norms[i] * y.norms[j];
+            if norm > 0.0 {
+                projection(self.heights(), mean, &x.values[i], &y.values[j]) / norm
+            } else {
+                0.0
+            }
+        };
+        fitted.slopes = (coefficient(1, 0) / dx, coefficient(0, 1) / dy);
+        if trend == Trend::Quadratic {
+            let (xx, yy) = (coefficient(2, 0), coefficient(0, 2));
+            let per_area = [
+                2.0 * xx / dx / dx,
+                coefficient(1, 1) / dx / dy,
+                2.0 * yy / dy / dy,
+            ];
+            fitted.curvatures = per_area.into();
+            fitted.height -= xx * x.mean_square + yy * y.mean_square;
+        }
+        fitted
+    }
+
+    /// The heights without their [trend](Topography::trend): above the mean, the plane or the
+    /// polynomial of least squares.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::HeightNotFinite`] if differences of heights overflow.
+    pub fn level(&self, trend: Trend) -> Result<Self, Error> {
+        let fitted = self.trend(trend);
+        let (nx, ny) = self.grid.shape();
+        self.with_heights(DMatrix::from_fn(nx, ny, |ix, iy| {
+            let (x, y) = self.grid.position(ix, iy);
+            self.heights()[(ix, iy)] - fitted.at(x, y)
+        }))
+    }
+}
+
+/// The first three polynomials that are orthogonal on equidistant nodes, with cells of 1 and about
+/// their centre (Gram's).
+struct Gram {
+    /// 1, X and X² − ⟨X²⟩.
+    values: [Vec<f64>; 3],
+    /// The means of their squares.
+    norms: [f64; 3],
+    /// ⟨X²⟩.
+    mean_square: f64,
+}
+
+impl Gram {
+    fn new(nodes: usize) -> Self {
+        let n = nodes as f64;
+        let mean_square = (n * n - 1.0) / 12.0;
+        let x: Vec<f64> = (0..nodes).map(|i| i as f64 - 0.5 * (n - 1.0)).collect();
+        let second = x.iter().map(|x| x * x - mean_square).collect();
+        // Exactly 0 where there are too few nodes.
+        let norms = [1.0, mean_square, mean_square * (n * n - 4.0) / 15.0];
+        Self {
+            values: [vec![1.0; nodes], x, second],
+            norms,
+            mean_square,
+        }
+    }
+}
+
+/// ⟨(h − mean) φ(x) ψ(y)⟩, summed column by column.
+fn projection(heights: &DMatrix<f64>, mean: f64, phi: &[f64], psi: &[f64]) -> f64 {
+    let columns = heights.column_iter().zip(psi);
+    let sum: f64 = columns
+        .map(|(column, psi)| {
+            let row = column.iter().zip(phi).map(|(z, phi)| (z - mean) * phi);
+            psi * row.sum::<f64>()
+        })
+        .sum();
+    sum / heights.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+
+    #[test]
+    fn a_polynomial_is_found_and_taken_away() -> Result<(), Error> {
+        for (nx, ny) in [(30, 41), (3, 3), (7, 64)] {
+            let grid = Grid::new(nx, ny, 2e-6, 3e-6)?;
+            let (lx, ly) = grid.sides();
+            let (cx, cy) = grid.center();
+            let polynomial = |x: f64, y: f64| {
+                let (x, y) = ((x - cx) / lx, (y - cy) / ly);
+                1e-6 * (4.0 + 0.5 * x - 0.25 * y + 3.0 * x * x - 1.5 * x * y - 2.0 * y * y)
+            };
+            let heights = DMatrix::from_fn(nx, ny, |ix, iy| {
+                let (x, y) = grid.position(ix, iy);
+                polynomial(x, y)
+            });
+            let map = Topography::new(grid, heights)?;
+            let fitted = map.trend(Trend::Quadratic);
+            // Rounding of sums over at most 1230 nodes of heights of 5e-6.
+            let close = |a: f64, b: f64, unit: f64| {
+                assert!((a - b).abs() < 1e-13 * unit, "{a} {b}");
+            };
+            close(fitted.height(), 4e-6, 1e-6);
+            close(fitted.slopes().0, 0.5e-6 / lx, 1e-6 / lx);
+            close(fitted.slopes().1, -0.25e-6 / ly, 1e-6 / ly);
+            let (xx, xy, yy) = fitted.curvatures();
+            close(xx, 6e-6 / lx / lx, 1e-5 / lx / lx);
+            close(xy, -1.5e-6 / lx / ly, 1e-5 / lx / ly);
+            close(yy, -4e-6 / ly / ly, 1e-5 / ly / ly);
+            close(
+                fitted.at(0.3 * lx, 0.8 * ly),
+                polynomial(0.3 * lx, 0.8 * ly),
+                1e-5,
+            );
+            assert!(map.level(Trend::Quadratic)?.heights().amax() < 1e-18);
+        }
+        Ok(())
+    }
+
+    /// What is left of noise is orthogonal to the whole family: the condition of least squares.
+    #[test]
+    fn what_is_left_has_no_trend() -> Result<(), Error> {
+        let grid = Grid::new(23, 18, 1.5, 0.5)?;
+        let noise = |k: usize| (k as f64 * 0.618_033_988_749_894_9).fract();
+        let map = Topography::new(grid, DMatrix::from_fn(23, 18, |i, j| noise(i + 23 * j)))?;
+        for trend in [Trend::Mean, Trend::Plane, Trend::Quadratic] {
+            let left = map.level(trend)?;
+            let again = left.trend(trend);
+            // Rounding of means of numbers below 1.
+            assert!(again.height().abs() < 1e-15);
+            assert!(again.tilt() < 1e-15);
+            let (xx, xy, yy) = again.curvatures();
+            assert!(xx.abs().max(xy.abs()).max(yy.abs()) < 1e-15);
+            assert!(left.map().rms_height() <= map.map().rms_height());
+        }
+        Ok(())
+    }
+
+    /// A plane on an offset a million times its height loses six digits and no more.
+    #[test]
+    fn a_tilt_is_an_angle() -> Result<(), Error> {
+        let grid = Grid::square(50, 1.0)?;
+        let slope = (30.0_f64).to_radians().tan();
+        let heights = DMatrix::from_fn(50, 50, |ix, iy| {
+            let (x, y) = grid.position(ix, iy);
+            1e6 + slope * (0.6 * x - 0.8 * y)
+        });
+        let fitted = Topography::new(grid, heights)?.trend(Trend::Plane);
+        // Heights are rounded to 1e-10, which averages out over 2500 nodes.
+        assert!((fitted.tilt().to_degrees() - 30.0).abs() < 1e-8);
+        assert!((fitted.slopes().0 / slope - 0.6).abs() < 1e-10);
+        assert_eq!(fitted.curvatures(), (0.0, 0.0, 0.0));
+        Ok(())
+    }
+
+    #[test]
+    fn too_few_nodes_have_no_slope_and_no_curvature() -> Result<(), Error> {
+        let trend = |nx, ny, values: &[f64]| -> Result<FittedTrend, Error> {
+            let map = DMatrix::from_column_slice(nx, ny, values);
+            Ok(Topography::new(Grid::new(nx, ny, 1.0, 1.0)?, map)?.trend(Trend::Quadratic))
+        };
+        let one = trend(1, 1, &[7.0])?;
+        assert_eq!(
+            (one.height(), one.slopes(), one.curvatures()),
+            (7.0, (0.0, 0.0), (0.0, 0.0, 0.0))
+        );
+        let two = trend(2, 1, &[1.0, 3.0])?;
+        assert_eq!(
+            (two.height(), two.slopes(), two.curvatures()),
+            (2.0, (2.0, 0.0), (0.0, 0.0, 0.0))
+        );
+        let three = trend(1, 3, &[1.0, 0.0, 1.0])?;
+        // Eighths and thirds: a few roundings.
+        assert!((three.curvatures().2 - 2.0).abs() < 1e-15 && three.height().abs() < 1e-15);
+        Ok(())
+    }
+
+    #[test]
+    fn overflow_is_refused() -> Result<(), Error> {
+        let heights = DMatrix::from_column_slice(2, 1, &[f64::MAX, -f64::MAX]);
+        let map = Topography::new(Grid::new(2, 1, 1e-3, 1.0)?, heights)?;
+        let refused = map.level(Trend::Plane);
+        assert!(matches!(refused, Err(Error::HeightNotFinite { .. })));
+        Ok(())
+    }
+}
