@@ -276,7 +276,9 @@ impl Job {
         let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
         Expected {
             nodes: contact,
-            seconds: total(contact, |event| asperity::loading::event_seconds(grid.nodes(), event)),
+            seconds: total(contact, |event| {
+                asperity::loading::event_seconds(grid.nodes(), event)
+            }),
             bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
         }
     }
