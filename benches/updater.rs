@@ -11,8 +11,7 @@ use std::time::{Duration, Instant};
 use asperity::contact::ContactSequence;
 use asperity::surface::Paraboloid;
 use asperity::updater::{
-    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
-    UpdaterProfile, WindowFactor,
+    CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
 use criterion::measurement::WallTime;
@@ -83,14 +82,12 @@ impl LinearUpdater for Capture {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner.solve(problem, contact, request, solution)
-    }
-
-    fn profile(&self) -> UpdaterProfile {
-        self.inner.profile()
+        self.inner
+            .solve(problem, contact, count, approach, solution)
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
@@ -116,10 +113,11 @@ fn window(at: usize) -> Result<Window, Box<dyn Error>> {
     let mut path = LoadingSolver::builder(&surface, &kernel)
         .updater(capture)
         .build()?;
-    while !path.updater().complete {
+    while !path.updater().is_some_and(|capture| capture.complete) {
         path.next().ok_or("the path is too short")??;
     }
-    Ok(path.updater().window.clone().ok_or("no window")?)
+    let capture = path.updater().ok_or("no factor")?;
+    Ok(capture.window.clone().ok_or("no window")?)
 }
 
 /// The time that `part` of the updater's timings grows by in `count` calls of `work`.
@@ -187,16 +185,15 @@ fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
     // From the solution on the nodes before the last window, as at a refresh.
     let mut solution = Solution::default();
     let approach = problem.mean_gap();
-    let at = |count| SolveRequest::exact(count, approach);
     let mut group = short_group(criterion, "solution");
     group.throughput(Throughput::Bytes((n * n / 2 * NUMBER) as u64));
     group.bench_function(&id, |bencher| {
         bencher.iter_custom(|count| {
             let mut time = Duration::ZERO;
             for _ in 0..count {
-                succeed(working.solve(&problem, &contact, at(n - NEW), &mut solution));
+                succeed(working.solve(&problem, &contact, n - NEW, approach, &mut solution));
                 let start = Instant::now();
-                succeed(working.solve(&problem, &contact, at(n), black_box(&mut solution)));
+                succeed(working.solve(&problem, &contact, n, approach, black_box(&mut solution)));
                 time += start.elapsed();
             }
             time
@@ -226,7 +223,7 @@ fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
             |updater| {
                 succeed(updater.watch(&problem, &contact, &watched, &mut schur));
                 succeed(updater.join(&problem, &grown, &touched));
-                succeed(updater.solve(&problem, &grown, at(grown.len()), &mut solution));
+                succeed(updater.solve(&problem, &grown, grown.len(), approach, &mut solution));
             },
             BatchSize::PerIteration,
         );

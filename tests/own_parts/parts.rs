@@ -1,7 +1,7 @@
 //! A surface, a kernel and an updater of one's own.
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Schur, Solution, SolveRequest, WindowFactor};
+use asperity::updater::{LinearUpdater, Schur, Solution, WindowFactor};
 use asperity::{
     Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, SurfaceError,
 };
@@ -154,10 +154,10 @@ impl LinearUpdater for Bordering {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let count = request.count;
         let order = &contact.order()[..count];
         let mut prefix = Self::default();
         let inverse = if count == self.inverse.nrows() {
@@ -167,7 +167,7 @@ impl LinearUpdater for Bordering {
             &prefix.inverse
         };
         let gap = order.iter().map(|&node| problem.initial_gap()[node]);
-        let overlap = DVector::from_iterator(count, gap.map(|gap| request.approach - gap));
+        let overlap = DVector::from_iterator(count, gap.map(|gap| approach - gap));
         solution.pressure = (inverse * overlap).data.into();
         solution.rate = inverse.column_sum().data.into();
         Ok(())

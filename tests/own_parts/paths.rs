@@ -5,7 +5,7 @@ use asperity::contact::ContactSequence;
 use asperity::kernel::{self, KernelTable};
 use asperity::loading::History;
 use asperity::updater::{
-    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
+    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
@@ -179,10 +179,11 @@ impl LinearUpdater for Forgetful {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.0.solve(problem, contact, request, solution)
+        self.0.solve(problem, contact, count, approach, solution)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The factor hands over to iterations where it no longer fits: the path goes on as if it did.
 
 use crate::common::surface;
-use asperity::updater::{Handover, LinearUpdater, RecursiveCholesky};
+use asperity::loading::{event_seconds, last_factor};
+use asperity::updater::{Handover, LinearUpdater, Method, RecursiveCholesky};
 use asperity::{Boussinesq, Error, Grid, LoadingSolver, LoadingState};
 
 fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> LoadingSolver<U> {
@@ -73,7 +74,7 @@ fn the_same_path_on_both_sides_of_the_seam() {
                 Some(Ok(state)) => states.push(state),
                 Some(Err(error)) => break Err(error),
             }
-            seam = seam.or(path.updater().handed_over_at());
+            seam = seam.or(path.handed_over_at());
         };
         if let Err(error) = ended {
             // Not even the fields of the grid that an iteration needs: a factor up to where it fits. The message speaks of
@@ -89,7 +90,7 @@ fn the_same_path_on_both_sides_of_the_seam() {
             assert!((&found - &exact).amax() <= 1e-9 * exact.amax(), "{context}");
             assert!(path.certificate().unwrap().least_gap > -1e-9, "{context}");
             // What is left is less than one more node with its window takes.
-            let bytes = path.updater().bytes(states.len() + 1, 1) + fixed + (1 << 14);
+            let bytes = path.updater().unwrap().bytes(states.len() + 1, 1) + fixed + (1 << 14);
             assert!(bytes > budget, "{context}: {bytes}");
             cut += 1;
             continue;
@@ -119,15 +120,15 @@ fn the_same_path_on_both_sides_of_the_seam() {
 fn no_seam_without_need() {
     let mut path = path(Handover::new(), None, 300);
     assert_eq!(path.by_ref().map(Result::unwrap).count(), 300);
-    assert_eq!(path.updater().handed_over_at(), None);
+    assert_eq!(path.handed_over_at(), None);
 }
 
 /// A new one has a factor, and knows no seam.
 #[test]
 fn the_default_is_a_new_one() {
     let default = Handover::default();
-    assert!(default.profile().exact);
-    assert_eq!(default.handed_over_at(), None);
+    assert!(matches!(default.method(), Method::FactorWhileItPays));
+    assert_eq!(path(Handover::default(), None, 300).handed_over_at(), None);
     assert_eq!(default.bytes(100, 10), Handover::new().bytes(100, 10));
 }
 
@@ -142,11 +143,11 @@ fn a_factor_is_given_up_where_both_cost_the_same() {
         let root = (6e-9 + discriminant.sqrt()) / 2e-11;
         // The first number at which a factor is dearer, if there are so many nodes; rounding does not reach the next.
         let last = (root.floor() as usize + 1).min(nodes);
-        assert_eq!(Handover::last_factor(nodes), last, "{side}");
+        assert_eq!(last_factor(nodes), last, "{side}");
         for contact in [1, last / 2, last - 1, last, last + 1, 2 * last] {
             let n = contact as f64;
             let expected = (1e-11 * n * n).min(iterations(n));
-            let found = Handover::event_cost(nodes, contact);
+            let found = event_seconds(nodes, contact);
             // A few roundings of the same sum.
             assert!((found / expected - 1.0).abs() < 1e-14, "{side}: {contact}");
         }

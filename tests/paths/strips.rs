@@ -81,7 +81,7 @@ fn strips_have_the_events_of_the_factor() {
         .memory_budget(budget + 1_500_000);
     let mut path = path.build().unwrap();
     let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-    let seam = path.updater().handed_over_at();
+    let seam = path.handed_over_at();
     assert!(
         seam.is_some_and(|seam| (100..700).contains(&seam)),
         "{seam:?}"

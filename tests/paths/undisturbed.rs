@@ -88,7 +88,7 @@ fn by_questions_across_the_seam() {
             path.pressure_at(&states[states.len() / 2]).unwrap();
         }
         assert!(states == expected, "{extra} bytes");
-        let seam = path.updater().handed_over_at();
+        let seam = path.handed_over_at();
         seams += usize::from(seam.is_some_and(|seam| seam > 0 && seam < states.len()));
     }
     assert!(seams > 0, "{seams}");

@@ -285,7 +285,7 @@ fn the_default_hands_over_at_the_same_events() {
         .build()
         .unwrap();
     let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-    let seam = path.updater().handed_over_at().unwrap();
+    let seam = path.handed_over_at().unwrap();
     assert!(seam > 100 && seam < 1000, "{seam}");
     compare("handover", &found, &exact, &BETWEEN);
     // Before the seam states are exact to rounding.

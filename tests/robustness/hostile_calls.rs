@@ -9,7 +9,7 @@ use asperity::kernel::{self, KernelTable};
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{
     ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
-    SolveRequest, WindowFactor,
+    WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
@@ -117,7 +117,7 @@ fn offsets_and_nodes_that_are_none() {
 enum Call {
     Watch(usize, Vec<usize>),
     Join(usize, Vec<usize>, usize),
-    Solve(usize, usize, f64, f64),
+    Solve(usize, usize, f64),
     Truncate(usize, usize),
     Release(usize, usize, usize),
     /// The contact changes, and the updater is not told.
@@ -145,7 +145,7 @@ fn call() -> impl Strategy<Value = Call> {
         4 => (which(), nodes()).prop_map(|(p, nodes)| Call::Watch(p, nodes)),
         4 => (which(), prop::collection::vec(0_usize..5, 0..4), 0_usize..6)
             .prop_map(|(p, positions, size)| Call::Join(p, positions, size)),
-        3 => (which(), 0_usize..8, number(), number()).prop_map(|(p, n, a, s)| Call::Solve(p, n, a, s)),
+        3 => (which(), 0_usize..8, number()).prop_map(|(p, n, a)| Call::Solve(p, n, a)),
         1 => (which(), 0_usize..6).prop_map(|(p, n)| Call::Truncate(p, n)),
         1 => (which(), node(), 0_usize..6).prop_map(|(p, n, at)| Call::Release(p, n, at)),
         1 => node().prop_map(Call::Push),
@@ -190,15 +190,9 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                 }
                 let _ = updater.join(&problems[*p], &contact, &touched);
             }
-            Call::Solve(p, count, approach, span) => {
-                let request = SolveRequest {
-                    count: *count,
-                    approach: *approach,
-                    span: *span,
-                    gap_error: 0.0,
-                };
+            Call::Solve(p, count, approach) => {
                 let mut solution = Solution::default();
-                let _ = updater.solve(&problems[*p], &contact, request, &mut solution);
+                let _ = updater.solve(&problems[*p], &contact, *count, *approach, &mut solution);
             }
             Call::Truncate(p, count) => {
                 edit(&mut contact, |order| order.truncate(*count));

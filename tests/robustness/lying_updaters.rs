@@ -3,8 +3,7 @@
 use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest,
-    UpdaterProfile, WindowFactor,
+    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowCost, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Problem, Spectral};
 use nalgebra::DMatrix;
@@ -53,12 +52,6 @@ impl LinearUpdater for Lying {
         if self.lies("infinite sums") {
             schur.row_sums_mut().fill(f64::INFINITY);
         }
-        if self.lies("wild displacements") {
-            schur.set_displacements(vec![[f64::NAN, 1e300]; nodes.len()]);
-        }
-        if self.lies("few displacements") {
-            schur.set_displacements(Vec::new());
-        }
         Ok(())
     }
 
@@ -78,10 +71,12 @@ impl LinearUpdater for Lying {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner.solve(problem, contact, request, solution)?;
+        self.inner
+            .solve(problem, contact, count, approach, solution)?;
         for (what, value) in [
             ("NaN pressure", f64::NAN),
             ("infinite pressure", f64::INFINITY),
@@ -101,13 +96,6 @@ impl LinearUpdater for Lying {
             if self.lies(what) {
                 solution.rate.fill(value);
             }
-        }
-        if self.lies("wild fields") {
-            let nodes = problem.grid().nodes();
-            solution.displacement = [vec![f64::NAN; nodes], vec![f64::MAX; nodes]];
-        }
-        if self.lies("one field") {
-            solution.displacement = [vec![0.0; problem.grid().nodes()], Vec::new()];
         }
         Ok(())
     }
@@ -136,18 +124,14 @@ impl LinearUpdater for Lying {
         self.inner.release(problem, contact, node, position)
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        let mut profile = self.inner.profile();
+    fn window_cost(&self) -> WindowCost {
+        let mut cost = self.inner.window_cost();
         match self.what {
-            "other exactness" => profile.exact = !profile.exact,
-            "NaN tolerance" => profile.tolerance = f64::NAN,
-            "no tolerance" => profile.tolerance = 0.0,
-            "infinite tolerance" => profile.tolerance = f64::INFINITY,
-            "multiple" => profile.cost.multiple = usize::MAX,
-            "NaN cost" => profile.cost.solve = f64::NAN,
+            "multiple" => cost.multiple = usize::MAX,
+            "NaN cost" => cost.solve = f64::NAN,
             _ => (),
         }
-        profile
+        cost
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
@@ -158,14 +142,12 @@ impl LinearUpdater for Lying {
     }
 }
 
-const LIES: [&str; 27] = [
+const LIES: [&str; 19] = [
     "watch others",
     "watch nothing",
     "huge complement",
     "negative complement",
     "infinite sums",
-    "wild displacements",
-    "few displacements",
     "join nothing",
     "NaN pressure",
     "infinite pressure",
@@ -175,14 +157,8 @@ const LIES: [&str; 27] = [
     "infinite rate",
     "no rate",
     "negative rate",
-    "wild fields",
-    "one field",
     "truncate nothing",
     "release nothing",
-    "other exactness",
-    "NaN tolerance",
-    "no tolerance",
-    "infinite tolerance",
     "multiple",
     "NaN cost",
     "all memory",

@@ -4,8 +4,8 @@
 use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
 use asperity::updater::{
-    ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
-    SolveRequest, UpdaterProfile, WindowFactor,
+    ConjugateGradient, Dense, Handover, LinearUpdater, Method, RecursiveCholesky, Schur, Solution,
+    WindowFactor,
 };
 use asperity::{
     Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,
@@ -43,26 +43,32 @@ impl LinearUpdater for Seam {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, request, solution)
+        self.inner
+            .solve(problem, contact, count, approach, solution)
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         self.inner.truncate(problem, contact)
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        self.inner.profile()
+    /// More than there is for so many nodes and the least window that has to follow them.
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
+        match contact.checked_sub(64) {
+            Some(contact) if contact >= self.at => usize::MAX,
+            _ => self.inner.bytes(contact, watched),
+        }
     }
 
-    /// Room for a factor of so many nodes and for the window that has to follow it.
+    fn method(&self) -> Method {
+        self.inner.method()
+    }
+
     fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        let window = 64;
-        let factor = RecursiveCholesky::new().bytes(self.at + window, window);
-        let room = factor + 2 * window * window * size_of::<f64>();
-        self.inner.make_room(problem, bytes.min(room))
+        self.inner.make_room(problem, bytes)
     }
 }
 

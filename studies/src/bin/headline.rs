@@ -121,7 +121,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds,
         rayon::current_num_threads()
     );
-    phases::print(exact.solver.timings(), exact.solver.updater().timings());
+    let updater = exact.solver.updater().ok_or("the factor is gone")?;
+    phases::print(exact.solver.timings(), updater.timings());
     println!(
         "  {:.1} GFLOP/s as n^3/3 a second; peak memory {:.0} MB, factor 4n^2 = {:.0} MB",
         flops / exact.seconds / 1e9,

@@ -88,8 +88,8 @@ fn run<U: LinearUpdater>(
         certificate.least_gap * in_sq,
         certificate.greatest_contact_gap * in_sq
     );
-    if let Some(timings) = timings {
-        phases::print(path.timings(), timings(path.updater()));
+    if let (Some(timings), Some(updater)) = (timings, path.updater()) {
+        phases::print(path.timings(), timings(updater));
     }
     Ok(())
 }

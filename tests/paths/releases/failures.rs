@@ -5,9 +5,7 @@ use super::complementary::{complementary, from_first_touch};
 use super::table::{Table, case};
 use asperity::contact::ContactSequence;
 use asperity::loading::ContactEvent;
-use asperity::updater::{
-    Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, SolveRequest, WindowFactor,
-};
+use asperity::updater::{Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor};
 use asperity::{Error, LoadingState, Problem, UpdaterError};
 use nalgebra::DVector;
 
@@ -44,10 +42,11 @@ impl LinearUpdater for GrowsOnly {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.0.solve(problem, contact, request, solution)
+        self.0.solve(problem, contact, count, approach, solution)
     }
 }
 
@@ -116,10 +115,12 @@ impl LinearUpdater for Spoiled {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, request, solution)?;
+        self.inner
+            .solve(problem, contact, count, approach, solution)?;
         self.solutions += 1;
         if self.solutions == self.spoiled {
             solution.pressure.fill(f64::NAN);

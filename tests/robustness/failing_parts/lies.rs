@@ -37,7 +37,7 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
         let (mut count, mut failure) = (0, None);
         while let Some(item) = path.next() {
             match item {
-                Ok(state) if path.updater().struck.get().is_none() => {
+                Ok(state) if path.updater().unwrap().struck.get().is_none() => {
                     assert!(state == expected[count], "{context}: {state:?}");
                     count += 1;
                 }
@@ -53,9 +53,9 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
                 }
             }
         }
-        match path.updater().struck.get() {
+        match path.updater().unwrap().struck.get() {
             Some(_) => struck += 1,
-            None if at >= path.updater().calls() => return (struck, refused),
+            None if at >= path.updater().unwrap().calls() => return (struck, refused),
             None => assert!(count == expected.len() && failure.is_none(), "{context}"),
         }
         refused += usize::from(failure.is_some());

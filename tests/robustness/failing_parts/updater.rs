@@ -4,9 +4,7 @@ use std::cell::Cell;
 use std::panic::resume_unwind;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{
-    LinearUpdater, Schur, Solution, SolveRequest, UpdaterProfile, WindowFactor,
-};
+use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowCost, WindowFactor};
 use asperity::{Error, Problem};
 
 /// What happens at the call.
@@ -83,7 +81,7 @@ impl<U> Failing<U> {
         self.calls.set(call + 1);
         let possible = match (self.fault, method) {
             (Fault::PanicBefore | Fault::PanicAfter, _) => true,
-            (_, "profile" | "bytes") => false,
+            (_, "window_cost" | "bytes") => false,
             (Fault::Refuse, _) => true,
             (Fault::Forget, _) => method != "solve" && method != "watch",
             (
@@ -212,15 +210,16 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        request: SolveRequest,
+        count: usize,
+        approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let spoilt = self.call("solve", |inner| {
-            inner.solve(problem, contact, request, solution)
+            inner.solve(problem, contact, count, approach, solution)
         })?;
         match spoilt {
             // An empty answer has nothing to spoil.
-            Some(fault) if request.count == 0 && !matches!(fault, Fault::Length(1..)) => {
+            Some(fault) if count == 0 && !matches!(fault, Fault::Length(1..)) => {
                 self.struck.set(None);
             }
             Some(fault) => spoil_solution(fault, solution),
@@ -247,12 +246,20 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         .map(drop)
     }
 
-    fn profile(&self) -> UpdaterProfile {
-        self.ask("profile", U::profile)
+    fn window_cost(&self) -> WindowCost {
+        self.ask("window_cost", U::window_cost)
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         self.ask("bytes", |inner| inner.bytes(contact, watched))
+    }
+
+    /// Iterations are asked as an updater is: only so do their calls come by here.
+    fn method(&self) -> Method {
+        match self.inner.method() {
+            Method::Iterations(_) => Method::Factor,
+            method => method,
+        }
     }
 
     fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {

@@ -5,7 +5,7 @@ use std::error::Error;
 use asperity::contact::ContactSequence;
 use asperity::kernel::KernelTable;
 use asperity::surface::HeightMap;
-use asperity::updater::{ConjugateGradient, LinearUpdater, Solution, SolveRequest};
+use asperity::updater::{ConjugateGradient, LinearUpdater, Solution};
 use asperity::{FixedLoadSolver, Problem};
 
 use crate::recorded::Event;
@@ -46,8 +46,8 @@ pub(crate) fn compare(
         // The exact stiffness of the path's contact.
         let contact = ContactSequence::with_order(grid, order[..count].iter().copied())?;
         let mut exact = Solution::default();
-        let request = SolveRequest::exact(count, state.approach);
-        ConjugateGradient::new().solve(&problem, &contact, request, &mut exact)?;
+        let approach = state.approach;
+        ConjugateGradient::new().solve(&problem, &contact, count, approach, &mut exact)?;
         let stiffness = grid.cell_area() * exact.rate.iter().sum::<f64>();
         let found = solution.state.contact_stiffness.unwrap_or(f64::NAN);
         let error = (stiffness / found - 1.0).abs();
