@@ -1,17 +1,7 @@
 //! How many nodes to watch at a time.
 
+use super::tuning::{EVENT_PRODUCT, LEAST_YIELD, NEGLIGIBLE, WORTH_IT, YIELD};
 use crate::updater::WindowCost;
-
-/// Nanoseconds for one product of the events inside a window.
-const EVENT_PRODUCT: f64 = 0.08;
-/// Fraction of the watched nodes that touch before the horizon.
-const YIELD: f64 = 0.85;
-/// The same, of almost all windows.
-const LEAST_YIELD: f64 = 0.75;
-/// Watched nodes that are always worth it.
-const FEWEST: f64 = 16.0;
-/// Watched nodes whose columns cost little however few nodes are in contact.
-const NEGLIGIBLE: f64 = 320.0;
 
 /// The number of watched nodes that makes an event cheapest with `contact` nodes in contact on a
 /// grid of `nodes`, by a model of the work of a window.
@@ -26,7 +16,7 @@ pub(super) fn automatic_window(contact: usize, nodes: usize, cost: WindowCost) -
     };
     // An updater of one's own may say anything, infinity too.
     let most = (cost.most_watched * n).clamp(NEGLIGIBLE, NEGLIGIBLE.max(nodes as f64));
-    let mut best = FEWEST;
+    let mut best = WORTH_IT;
     let mut k = best;
     while k <= most {
         if per_event(k) < per_event(best) {

@@ -78,6 +78,7 @@ mod sum;
 #[cfg(test)]
 mod test_chain;
 mod tolerances;
+mod tuning;
 mod window;
 mod windowed;
 

@@ -2,6 +2,7 @@
 
 use super::gap_field;
 use super::run::LoadingRun;
+use super::tuning::{FACTOR, ITERATIONS, LEAST_WINDOW, WINDOW};
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
@@ -9,17 +10,6 @@ use crate::updater::{
     WindowFactor, join_all,
 };
 use crate::{Error, Problem};
-
-/// Watched nodes for which the factor must have room. With fewer, its solutions would be shared by
-/// so few events that iterations are no slower.
-const LEAST_WINDOW: usize = 64;
-/// Seconds of an event with a factor of n nodes, per n²: a matrix product.
-const FACTOR: f64 = 1.0e-11;
-/// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
-/// goes with them on the contact.
-const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];
-/// The same for any grid: local solutions and events.
-const WINDOW: f64 = 3.0e-4;
 
 /// What solves on the contact of a path.
 #[derive(Debug)]

@@ -3,8 +3,9 @@
 use std::time::Instant;
 
 use super::gap_field::GapLine;
-use super::run::{LoadingRun, TOLERANCE};
+use super::run::LoadingRun;
 use super::tolerances::ties_from;
+use super::tuning::TOLERANCE;
 use crate::Error;
 
 /// (time, node) of the nodes out of contact, whatever the time is that decides.

@@ -1,5 +1,6 @@
 //! A path under way: what its procedures share.
 
+use super::tuning::TOLERANCE;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -12,12 +13,6 @@ use super::window::{BadPivot, Window};
 use crate::contact::{ContactSequence, ContactState};
 use crate::updater::{Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
-
-/// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
-/// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
-/// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the
-/// influence matrix grows with the side of the grid only, so that pressures lose two or three digits.
-pub(super) const TOLERANCE: f64 = 1e-10;
 
 /// Where a path spent its time, besides its updater.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! The solution at a state, and whether the state lies on the path.
 
+use super::tuning::{ESTIMATED, RECOGNISED};
 use nalgebra::DMatrix;
 
 use super::phase::Phase;
@@ -8,11 +9,6 @@ use super::state::LoadingState;
 use crate::Error;
 use crate::contact::Certificate;
 use crate::updater::{LinearUpdater, Solution};
-
-/// How far a state of this path may be off, relative to its load, pressures and lengths, to be recognised.
-const RECOGNISED: f64 = 1e-6;
-/// The same where the approach of its event is an estimate: loads err by 1e-5 at worst.
-const ESTIMATED: f64 = 1e-4;
 
 /// How far a state may be off to be recognised.
 fn allowed(state: &LoadingState) -> f64 {

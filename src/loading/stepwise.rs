@@ -1,5 +1,6 @@
 //! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is known.
 
+use super::tuning::{LEAST_RATE, TIED_EVENTS};
 use std::time::Instant;
 
 use super::phase::Phase;
@@ -9,14 +10,6 @@ use super::tolerances::{WindowTolerances, ties_until};
 use super::window::Window;
 use crate::Error;
 use crate::updater::{LinearUpdater, Solution};
-
-/// Events at a single approach, for each node of the grid, after which no end of them is expected.
-/// Nodes that touch and leave together are sorted out by the least index among them, which comes to
-/// an end (Murty, Opsearch 11 (1974) 123–130), in practice after one or two events a node.
-const TIED_EVENTS: usize = 20;
-/// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
-/// otherwise nodes that neither gain nor lose pressure could touch and leave without end.
-const LEAST_RATE: f64 = 1e-12;
 
 /// What happens next if nothing else does.
 #[derive(Debug, Clone, Copy)]

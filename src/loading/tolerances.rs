@@ -2,18 +2,7 @@
 
 use super::gap_field::GapLine;
 use super::run::LoadingRun;
-
-/// Events closer than this, relative to the approach, are ties: the lowest index comes first.
-const TIE: f64 = 1e-9;
-/// The same with an exact updater, of gaps: those that are as small as this part of the approach when one of them closes close with
-/// it. Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state may be off.
-pub(super) const EXACT_TIE: f64 = 1e-13;
-/// The same relative to the greatest initial gap: rounding of heights.
-const ROUNDING: f64 = 1e-14;
-/// Bounds of the tolerance of rates.
-const RATE_TOLERANCE: [f64; 2] = [5e-7, 1e-5];
-/// What the gap of a node that is not watched may be off by, over the tolerance.
-const UNWATCHED: f64 = 100.0;
+use super::tuning::{EXACT_TIE, RATE_TOLERANCE, ROUNDING, TIE, UNWATCHED};
 
 /// Up to which approach events tie with one at some approach, with an exact updater.
 pub(super) fn ties_until(approach: f64) -> f64 {

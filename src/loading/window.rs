@@ -1,11 +1,8 @@
 //! The nodes that may touch next, and the events among them.
 
 use super::gap_field::GapLine;
-use super::tolerances::EXACT_TIE;
+use super::tuning::{EXACT_TIE, NEWTON};
 use crate::updater::{Schur, WindowFactor};
-
-/// Newton steps to the root of a cubic that is nearly a line.
-const NEWTON: usize = 8;
 
 /// The course of a gap as long as no watched node touches: a line, `gap − t closing`, and what is known of its curvature,
 /// `c₂ t² + c₃ t³`.

@@ -1,5 +1,6 @@
 //! Events in windows, of kernels whose contact only grows, with an updater.
 
+use super::tuning::ROUNDINGS;
 use std::time::Instant;
 
 use super::cost::{automatic_window, watched_for};
@@ -10,11 +11,6 @@ use super::tolerances::ties_until;
 use super::window::Window;
 use crate::updater::{LinearUpdater, WindowCost};
 use crate::{ContactGrowth, Error};
-
-/// How far below zero a gap may lie at the end of a window before events are taken back, as a multiple of the greatest gap that
-/// the solution there leaves in contact: of what rounds. What is taken back without need costs time and changes nothing, so
-/// that the bound need not be as wide as that of an error, [`TOLERANCE`](super::run::TOLERANCE).
-const ROUNDINGS: f64 = 8.0;
 
 /// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
 /// did is a lower bound, and only the nodes with the smallest ones need be watched until the *horizon*, the

@@ -4,19 +4,8 @@ use super::Refined;
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
 use crate::loading::tolerances::WindowTolerances;
+use crate::loading::tuning::{CUT, FEWEST, MOST_TIES, PART};
 use crate::loading::window::WindowEvent;
-
-/// A window watches this part of the contact at most, as long as that is small.
-const PART: usize = 4;
-/// Where windows have few events, so many nodes are watched for each of them.
-const AHEAD: usize = 2;
-/// And so many nodes always: what ties with them is watched too, and told apart.
-pub(super) const FEWEST: usize = 8;
-/// Ties with the last watched node are watched too, up to so many times the window.
-const MOST_TIES: usize = 3;
-
-/// The window ends at its widest spacing behind this part of its events.
-const CUT: f64 = 0.85;
 
 /// The nodes to watch.
 #[derive(Debug)]
@@ -38,8 +27,7 @@ impl Refined {
         extra: &[usize],
     ) -> Candidates {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let wanted = self.most_events().saturating_mul(AHEAD);
-        let wanted = wanted.min(run.contact.len() / PART);
+        let wanted = self.most_events().min(run.contact.len() / PART);
         let ranking = &mut self.ranking;
         let size = self.size.min(wanted.max(FEWEST));
         if ranking.len() <= size {

@@ -1,13 +1,11 @@
 //! A window played anew with what the exact solution at its end shows.
 
+use crate::loading::tuning::LEAST_DETERMINANT;
 use nalgebra::{Matrix2, Vector2};
 
 use crate::loading::run::LoadingRun;
 use crate::loading::window::{Course, Window};
 use crate::updater::Schur;
-
-/// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted.
-const LEAST_DETERMINANT: f64 = 1e-6;
 
 /// What the solution at a window's end says of a watched node.
 #[derive(Debug, Clone, Copy, Default)]

@@ -19,29 +19,13 @@ use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::Error;
+use crate::loading::tuning::{
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
+    WATCHED_UNSETTLED,
+};
 use crate::updater::{Iterations, Schur, WindowFactor};
-use candidates::{Candidates, FEWEST, cut, with_ties};
+use candidates::{Candidates, cut, with_ties};
 use near_ties::Settled;
-
-/// Nodes watched at a time: the error of the order grows with their number.
-const WATCHED: usize = 60;
-/// The same if near ties are not settled.
-const WATCHED_UNSETTLED: usize = 128;
-/// How often a contact that contradicts the conditions of contact is mended before the path gives up.
-const MOST_TRIES: usize = 10;
-/// What is left of a window that let a node overlap that was not watched.
-const SHORTER: f64 = 0.7;
-/// Events of a window times the part of a pivot that its Schur complement leaves out: windows have no more. Schur complements of
-/// square domains leave out 10⁻³, so that nothing is limited; those of a periodic strip of two rows 0.5, and each event has a
-/// solution of its own.
-const LEFT_OUT: f64 = 0.2;
-/// What was left out counts for the next windows too, each time by this part.
-const REMEMBERED: f64 = 0.8;
-/// What the end of a window may change of the times in it on average, over the mean spacing of events: 0.1 at worst on square domains.
-/// A window whose end changes more is taken back.
-const MOST_CHANGE: f64 = 0.3;
-/// Events that the solution at a window's end determines, whatever its Schur complement is.
-const CERTAIN: usize = 2;
 
 /// Finds events in windows that are corrected at their end.
 #[derive(Debug)]

@@ -1,5 +1,9 @@
 //! Events that are too close to each other to be told apart without a solution of their own.
 
+use crate::loading::tuning::{
+    BETWEEN_CORRECTIONS, CONTRADICTED, OF_CHANGE, OF_CHANGE_UNCORRECTED, OF_ERROR, OF_SPACING,
+    OF_WAY, POOR, RATE_ERROR, SAME_GAP, SAME_PIVOT, SAME_RATE,
+};
 use std::ops::Range;
 
 use super::correction::Correction;
@@ -9,31 +13,6 @@ use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::Iterations;
-
-/// The error of a time is estimated as the greatest of
-/// * this many times the difference of the two corrections, by the Schur complement and by cubics,
-const BETWEEN_CORRECTIONS: f64 = 2.0;
-/// * this part of what the correction changed, for this event and on average,
-const OF_CHANGE: f64 = 0.1;
-/// * the same if the Schur complement could not be updated,
-const OF_CHANGE_UNCORRECTED: f64 = 0.5;
-/// * this part of the mean spacing of events.
-const OF_SPACING: f64 = 1e-3;
-/// To this comes what closing rates may be off by, over the rate.
-const RATE_ERROR: f64 = 5e-7;
-/// An error above this part of the approach is settled by a solution wherever the neighbours are.
-const POOR: f64 = 1e-3;
-/// A solution first leaves this part of the errors.
-const OF_ERROR: f64 = 0.04;
-/// After a solution, errors grow with the way from it by this part.
-const OF_WAY: f64 = 0.05;
-/// Closing rates and pivots of nodes that symmetry maps to each other differ by less, relatively, and their gaps and the
-/// ways to their contact by so many times the tolerance; so do no others that touch at nearly the same time.
-const SAME_RATE: f64 = 2e-5;
-const SAME_PIVOT: f64 = 1e-4;
-const SAME_GAP: f64 = 20.0;
-/// A solution that finds an event so many times its estimated error away contradicts the whole window.
-const CONTRADICTED: f64 = 10.0;
 
 /// The events of a window in their final order.
 #[derive(Debug)]

@@ -4,16 +4,8 @@ use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
+use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
 use crate::loading::window::Window;
-
-/// What near ties take for the error of a time is exceeded by up to a hundredth of the events, by a factor of two: states say so many
-/// times as much.
-const OF_TIME: f64 = 2.0;
-/// The error of a load at a given approach is estimated as so many times what its window lacks at the end, and what the errors of
-/// events so far make of it.
-const OF_LOAD: f64 = 3.0;
-/// The load at the window's end is that of an approach which is off by this part of the mean spacing of events.
-const OF_END: f64 = 1e-5;
 
 /// Queues the states of the events of a corrected window, from a mark to the present approach.
 ///

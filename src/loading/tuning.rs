@@ -1,0 +1,154 @@
+//! The tuned numbers of the path: value, unit, what a wrong one costs, and how it was chosen.
+//!
+//! Those of paths without a factor were halved and doubled, one at a time, on four paths to full contact:
+//!
+//! ```text
+//! cargo run --release -p asperity-studies --bin without_factor -- --nodes 48 --surface rough
+//!     --nodes 40 --surface white --half-space periodic
+//!     --nodes 200 --ny 2 --surface strip --half-space periodic
+//!     --nodes 32 --surface tiled --half-space spectral
+//! ```
+//!
+//! which take 835, 419, 1899 and 245 convolutions. "No effect" means that these, the windows, the near ties and all errors stayed as
+//! they were: such a number guards against what these surfaces do not show, and the comment says against what.
+
+// Windows without a factor
+
+/// Nodes watched at a time. Half: 1.46 times the convolutions. Twice: three times the near ties, loads twice as wrong.
+pub(super) const WATCHED: usize = 60;
+/// The same if near ties are not settled: the error of the order grows with their number.
+pub(super) const WATCHED_UNSETTLED: usize = 128;
+/// A window watches one node for so many in contact, as long as that is less. Half: 0.97 of the convolutions. Twice: 1.1 times,
+/// and errors closer to their estimates.
+pub(super) const PART: usize = 4;
+/// So many nodes are watched always: what ties with them is watched too, and told apart. Half: 1.05 times the convolutions. Twice:
+/// no fewer convolutions, and errors twice as close to their estimates.
+pub(super) const FEWEST: usize = 8;
+/// Ties with the last watched node are watched too, up to so many times the window. No effect; plateaus with more of them join
+/// as a group, at one approach.
+pub(super) const MOST_TIES: usize = 3;
+/// The window ends at its widest spacing behind this part of its events. Half: 1.2 times the convolutions. 1: a tenth fewer, but windows
+/// are taken back, since more of them end between near ties.
+pub(super) const CUT: f64 = 0.85;
+/// How often a contact that contradicts the conditions of contact is mended before the path gives up. No effect: two are needed
+/// at most on the drivers' cases.
+pub(super) const MOST_TRIES: usize = 10;
+/// What is left of a window in which a node overlapped that was not watched. No effect: rare.
+pub(super) const SHORTER: f64 = 0.7;
+/// Events of a window times the part of a pivot that its Schur complement leaves out: windows have no more. Schur complements of
+/// square domains leave out 10⁻³, so that nothing is limited; those of a periodic strip of two rows 0.5, and each event has a
+/// solution of its own. Half: loads of the strip 1.3 times as wrong. Twice: a twentieth fewer convolutions there, windows are taken
+/// back, and interfacial stiffnesses three times as wrong.
+pub(super) const LEFT_OUT: f64 = 0.2;
+/// What was left out counts for the next windows too, each time by this part. Half: windows of the strip are taken back ten times as
+/// often. It must be below 1: what was left out once would limit all later windows.
+pub(super) const REMEMBERED: f64 = 0.8;
+/// What the end of a window may change of the times in it on average, over the mean spacing of events: 0.1 at worst on square domains.
+/// A window whose end changes more is taken back. No effect: on strips the limit of events comes first.
+pub(super) const MOST_CHANGE: f64 = 0.3;
+/// Events that the solution at a window's end determines, whatever its Schur complement is: a matter of counting, not tuned.
+pub(super) const CERTAIN: usize = 2;
+/// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted: rounding of these products.
+/// No effect.
+pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
+/// Newton steps to the root of a cubic that is nearly a line: three suffice, the others cost nothing measurable.
+pub(super) const NEWTON: usize = 8;
+
+// Near ties: the error of a time is estimated as the greatest of
+
+/// this many times the difference of the two corrections, by the Schur complement and by cubics. Half: fewer near ties, and errors
+/// of the strip closer to their estimates. Twice: on the strip five times the near ties.
+pub(super) const BETWEEN_CORRECTIONS: f64 = 2.0;
+/// this part of what the correction changed, for this event and on average. Half: a fifth fewer near ties, and errors 1.7 times as
+/// close to their estimates. Twice: twice the near ties, a tenth more convolutions.
+pub(super) const OF_CHANGE: f64 = 0.1;
+/// the same if the Schur complement could not be updated. Half: errors of the strip 1.6 times as close to their estimates. Twice: no
+/// effect.
+pub(super) const OF_CHANGE_UNCORRECTED: f64 = 0.5;
+/// this part of the mean spacing of events.
+pub(super) const OF_SPACING: f64 = 1e-3;
+/// To this comes what closing rates may be off by, over the rate.
+pub(super) const RATE_ERROR: f64 = 5e-7;
+/// An error above this part of the approach is settled by a solution wherever the neighbours are.
+pub(super) const POOR: f64 = 1e-3;
+/// The first solution of a near tie is solved to this part of the estimated errors.
+pub(super) const OF_ERROR: f64 = 0.04;
+/// After a solution, errors grow with the way from it by this part.
+pub(super) const OF_WAY: f64 = 0.05;
+/// Closing rates of nodes that symmetry maps to each other differ by less, relatively.
+pub(super) const SAME_RATE: f64 = 2e-5;
+/// The same of their pivots.
+pub(super) const SAME_PIVOT: f64 = 1e-4;
+/// Their gaps differ by less than so many times the tolerance.
+pub(super) const SAME_GAP: f64 = 20.0;
+/// A solution that finds an event so many times its estimated error away contradicts the whole window.
+pub(super) const CONTRADICTED: f64 = 10.0;
+/// States report so many times what near ties take for the error of a time: up to a hundredth of the events exceed that, by a factor
+/// of two. Half: an error of the strip comes to 0.91 of its estimate, others to 0.55.
+pub(super) const OF_TIME: f64 = 2.0;
+/// The error of a load at a given approach is estimated as so many times what its window lacks at the end, and what the errors of
+/// events so far make of it. No effect on these paths, where times decide; late on periodic paths loads do.
+pub(super) const OF_LOAD: f64 = 3.0;
+/// The load at the window's end is that of an approach which is off by this part of the mean spacing of events. No effect, as before.
+pub(super) const OF_END: f64 = 1e-5;
+
+// Lengths that are not told apart
+
+/// Events closer than this, relative to the approach, are ties without a factor: the lowest index comes first.
+pub(super) const TIE: f64 = 1e-9;
+/// The same with a factor, of gaps: those that are as small as this part of the approach when one of them closes close with
+/// it. Well above the rounding of a gap (3·10⁻¹⁴ on symmetric surfaces of 128 × 128 nodes), and below what a state may be off.
+pub(super) const EXACT_TIE: f64 = 1e-13;
+/// The same as [`TIE`], relative to the greatest initial gap: rounding of heights.
+pub(super) const ROUNDING: f64 = 1e-14;
+/// Bounds of the tolerance of rates, relative to their greatest value, 1.
+pub(super) const RATE_TOLERANCE: [f64; 2] = [5e-7, 1e-5];
+/// What the gap of a node that is not watched may be off by, over the tolerance of solutions.
+pub(super) const UNWATCHED: f64 = 100.0;
+/// How far below zero a gap may lie at the end of an exact window before events are taken back, as a multiple of the greatest gap
+/// that the solution there leaves in contact, which is rounding. What is taken back without need costs time and changes nothing,
+/// so that the bound need not be as wide as that of an error.
+pub(super) const ROUNDINGS: f64 = 8.0;
+/// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
+/// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
+/// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the
+/// influence matrix grows with the side of the grid only, so that pressures lose two or three digits.
+pub(super) const TOLERANCE: f64 = 1e-10;
+/// How far a state of a path may be off, relative to its load, pressures and lengths, to be recognised: an exact path is right to
+/// some 10⁻¹².
+pub(super) const RECOGNISED: f64 = 1e-6;
+/// The same where the approach of its event is an estimate: loads err by 3·10⁻⁵ at worst.
+pub(super) const ESTIMATED: f64 = 1e-4;
+
+// Events one at a time
+
+/// Events at a single approach, for each node of the grid, after which no end of them is expected.
+/// Nodes that touch and leave together are sorted out by the least index among them, which comes to
+/// an end (Murty, Opsearch 11 (1974) 123–130), in practice after one or two events a node.
+pub(super) const TIED_EVENTS: usize = 20;
+/// Rates below this, relative to the greatest, are nothing but rounding where either sign is possible:
+/// otherwise nodes that neither gain nor lose pressure could touch and leave without end.
+pub(super) const LEAST_RATE: f64 = 1e-12;
+
+// The work of a window with a factor, and of an event: only time depends on these (study `scale`, bench `updater`)
+
+/// Nanoseconds for one product of the events inside a window.
+pub(super) const EVENT_PRODUCT: f64 = 0.08;
+/// Fraction of the watched nodes that touch before the horizon.
+pub(super) const YIELD: f64 = 0.85;
+/// The same, of almost all windows.
+pub(super) const LEAST_YIELD: f64 = 0.75;
+/// Watched nodes that are always worth it.
+pub(super) const WORTH_IT: f64 = 16.0;
+/// Watched nodes whose columns cost little however few nodes are in contact.
+pub(super) const NEGLIGIBLE: f64 = 320.0;
+/// Watched nodes for which a factor must have room, or it is given up. With fewer, its solutions would be shared by
+/// so few events that iterations are no slower.
+pub(super) const LEAST_WINDOW: usize = 64;
+/// Seconds of an event with a factor of n nodes, per n²: a matrix product. With the next two it decides when a factor is given up.
+pub(super) const FACTOR: f64 = 1.0e-11;
+/// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
+/// goes with them on the contact.
+pub(super) const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];
+/// The same for any grid: local solutions and events.
+pub(super) const WINDOW: f64 = 3.0e-4;
