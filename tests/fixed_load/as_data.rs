@@ -34,7 +34,7 @@ fn a_solution_is_data() {
 
 #[test]
 fn fields_of_another_shape_are_refused() {
-    let grid = Grid::square(4, 1.0).unwrap();
+    let grid = Grid::square(16, 1.0).unwrap();
     let mut solver = solver(&rough(&grid, 4), &Kernel::free(grid, 1.0), 1e-8);
     let text = written(&solver.solve(1e-2).unwrap());
     let fields = [
@@ -49,12 +49,12 @@ fn fields_of_another_shape_are_refused() {
         fewer[field].as_array_mut().unwrap().pop();
         let refused = serde_json::from_value::<FixedLoadSolution>(fewer).unwrap_err();
         let expected = Error::LengthMismatch {
-            expected: 16,
-            found: 15,
+            expected: 256,
+            found: 255,
         };
         assert_eq!(refused.to_string(), expected.to_string(), "{field}");
     }
     let mut none: Value = serde_json::from_str(&text).unwrap();
-    none["shape"] = serde_json::json!([0, 4]);
+    none["shape"] = serde_json::json!([0, 16]);
     assert!(serde_json::from_value::<FixedLoadSolution>(none).is_err());
 }
