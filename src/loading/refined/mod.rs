@@ -25,6 +25,7 @@ use crate::loading::tuning::{
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use candidates::{Candidates, cut, with_ties};
+use correction::Correction;
 use near_ties::Settled;
 
 /// Finds events in windows that are corrected at their end.
@@ -261,8 +262,8 @@ impl Refined {
                 let at = (&mark, time);
                 let passed =
                     self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
-                if let Some((window, settled)) = passed {
-                    self.finish(run, window, &settled, at)?;
+                if let Some((correction, settled)) = passed {
+                    self.finish(run, correction, &settled, at)?;
                     return Ok(Outcome::Done);
                 }
             }
@@ -293,7 +294,7 @@ impl Refined {
         window: &Window,
         (first, joined): (&[WindowEvent], &[usize]),
         (mark, time): (&Mark, f64),
-    ) -> Result<Option<(Window, Settled)>, Error> {
+    ) -> Result<Option<(Correction, Settled)>, Error> {
         let ends = correction::at_end(window, run);
         let correction = correction::correct(window, &ends, time);
         let settled = near_ties::second_pass(window, &correction, (first, joined, time));
@@ -318,7 +319,7 @@ impl Refined {
         if settled.is_none() {
             self.left_out = self.left_out.max(LEFT_OUT / half as f64);
         }
-        Ok(settled.map(|settled| (correction.window, settled)))
+        Ok(settled.map(|settled| (correction, settled)))
     }
 
     /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with
@@ -376,16 +377,17 @@ impl Refined {
     fn finish(
         &mut self,
         run: &mut LoadingRun,
-        window: Window,
+        correction: Correction,
         settled: &Settled,
         (mark, time): (&Mark, f64),
     ) -> Result<(), Error> {
         self.last_span = time;
         let events = settled.events.iter();
+        let window = &correction.window;
         let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
-        states::enqueue(run, window, settled, (mark, time))
+        states::enqueue(run, correction, settled, (mark, time))
     }
 }
 

@@ -1,11 +1,12 @@
 //! States of a window, pinned to the exact ones at both ends.
 
+use super::correction::Correction;
 use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
-use crate::loading::window::Window;
+use crate::loading::window::{BadPivot, Window};
 
 /// Queues the states of the events of a corrected window, from a mark to the present approach.
 ///
@@ -14,16 +15,18 @@ use crate::loading::window::Window;
 /// is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
-    mut window: Window,
+    correction: Correction,
     settled: &Settled,
     (mark, time): (&Mark, f64),
 ) -> Result<(), Error> {
     let start = &mark.scalars;
-    for event in &settled.events {
-        window
-            .touch(event.position, event.time)
-            .map_err(|bad| run.not_positive_definite(bad))?;
-    }
+    let Correction {
+        window, by_courses, ..
+    } = correction;
+    // A complement that was corrected may have a bad pivot in this order; the one before has none in any.
+    let window = touched(window, settled)
+        .or_else(|_| touched(by_courses, settled))
+        .map_err(|bad| run.not_positive_definite(bad))?;
     let steps = window.increments();
     let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
@@ -66,6 +69,14 @@ pub(super) fn enqueue(
         )?;
     }
     Ok(())
+}
+
+/// A window whose nodes have touched in the order of the events.
+fn touched(mut window: Window, settled: &Settled) -> Result<Window, BadPivot> {
+    for event in &settled.events {
+        window.touch(event.position, event.time)?;
+    }
+    Ok(window)
 }
 
 #[cfg(test)]

@@ -295,10 +295,12 @@ impl LinearUpdater for ConjugateGradient {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        if count < contact.len() {
+        check_prefix(contact, count)?;
+        let solutions = self.solutions(problem, contact)?;
+        // A contact that has been solved may be asked about: what follows must not depend on it.
+        if count < contact.len() || solutions.count() == count && solutions.are_known() {
             return self.solve_apart(problem, contact, count, approach, solution);
         }
-        check_prefix(contact, count)?;
         let mut solved = Solved::default();
         self.advance(problem, contact, approach, f64::INFINITY, &mut solved)?;
         *solution = solved.solution;
