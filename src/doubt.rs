@@ -83,32 +83,56 @@ impl fmt::Display for Doubt {
             ),
             Self::Modulus { e_star } if e_star > *SOLIDS.end() => write!(
                 f,
-                "E* = {e_star:.3e} Pa is above that of diamond: is the modulus in Pa?"
+                "E* = {} is above that of diamond: is the modulus in Pa?",
+                pascals(e_star)
             ),
             Self::Modulus { e_star } => {
-                write!(f, "E* = {e_star:.3e} Pa is softer than rubber")?;
+                write!(f, "E* = {} is softer than rubber", pascals(e_star))?;
                 let units = [(1e9, "GPa"), (1e6, "MPa")];
                 let fits = |(factor, _): &&(f64, &str)| SOLIDS.contains(&(e_star * factor));
                 match units.iter().find(fits) {
                     Some((factor, unit)) => write!(
                         f,
-                        ": if the modulus was given in {unit}, it is {:.3e} Pa",
-                        factor * e_star
+                        ": if the modulus was given in {unit}, it is {}",
+                        pascals(factor * e_star)
                     ),
                     None => write!(f, ": is the modulus in Pa?"),
                 }
             }
             Self::HighPressure { pressure, e_star } => write!(
                 f,
-                "the greatest pressure is {pressure:.3e} Pa, {} of E* = {e_star:.3e} Pa. The model is elastic; \
+                "the greatest pressure is {}, {} of E* = {}. The model is elastic; \
                  metals yield at some 0.01 to 0.03 of E*",
+                pascals(pressure),
                 // Nobody reads a hundred digits.
                 match pressure / e_star {
                     ratio if ratio < 1e3 => format!("{ratio:.3}"),
                     ratio => format!("{ratio:.1e}"),
-                }
+                },
+                pascals(e_star)
             ),
         }
+    }
+}
+
+/// A pressure in the unit in which it is read easily.
+fn pascals(value: f64) -> String {
+    let units = [(1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")];
+    let fits = |(unit, _): &&(f64, &str)| (1.0..1e3).contains(&(value / unit));
+    match units.iter().find(fits) {
+        Some((unit, name)) => {
+            let number = value / unit;
+            // Four digits.
+            let decimals = if number < 10.0 {
+                3
+            } else if number < 100.0 {
+                2
+            } else {
+                1
+            };
+            format!("{number:.decimals$} {name}")
+        }
+        None => format!("{value:.3e} Pa"),
     }
 }
 
@@ -154,7 +178,7 @@ mod tests {
     fn pressures_that_metals_do_not_bear_are_noticed() {
         assert_eq!(Doubt::of_pressure(2e9, 115e9), None);
         let high = Doubt::of_pressure(2.5e9, 115e9).map(|doubt| doubt.to_string());
-        assert!(high.is_some_and(|text| text.contains("2.500e9 Pa, 0.022 of E*")));
+        assert!(high.is_some_and(|text| text.contains("2.500 GPa, 0.022 of E*")));
     }
 
     #[test]
@@ -163,8 +187,8 @@ mod tests {
             assert_eq!(Doubt::of_modulus(e_star), None);
         }
         for (e_star, said) in [
-            (230.8, "in GPa, it is 2.308e11 Pa"),
-            (230_769.0, "in MPa, it is 2.308e11 Pa"),
+            (230.8, "in GPa, it is 230.8 GPa"),
+            (230_769.0, "in MPa, it is 230.8 GPa"),
             (1e-9, "is the modulus in Pa?"),
             (2.3e13, "above that of diamond"),
         ] {

@@ -130,7 +130,7 @@ fn units_that_were_mistaken_are_said_in_every_command() -> Done {
     };
     for words in all("--side 1e-2 --material 210,0.3")? {
         assert!(words.contains("is softer than rubber"), "{words}");
-        assert!(words.contains("it is 2.308e11 Pa"), "{words}");
+        assert!(words.contains("it is 230.8 GPa"), "{words}");
         assert!(
             words.contains("E = 210 Pa, ν = 0.30 against rigid"),
             "{words}"

@@ -6,8 +6,9 @@ use std::path::Path;
 use asperity_cli::outcome::Failure;
 
 /// Columns besides the load, and whether they are linear in the load between two events; others change at events.
-pub(super) const COLUMNS: [(&str, bool); 5] = [
+pub(super) const COLUMNS: [(&str, bool); 6] = [
     ("contact_area_fraction", false),
+    ("corrected_contact_area", false),
     ("approach", true),
     ("mean_gap", true),
     ("contact_stiffness", false),
