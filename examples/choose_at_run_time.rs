@@ -27,7 +27,7 @@ fn half_space(name: &str, grid: Grid) -> Result<Box<dyn InfluenceKernel>, Error>
 }
 
 fn main() -> Result<(), Error> {
-    let grid = Grid::square(64, 2.5e-3)?;
+    let grid = Grid::square(128, 2.5e-3)?;
     println!("surface  half-space  load at 10 % contact [N]");
     for surface_name in ["sphere", "rough"] {
         let surface = surface(surface_name)?;

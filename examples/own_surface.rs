@@ -30,7 +30,7 @@ impl Surface for Ridges {
 
 /// Contact area and approach as the load grows.
 fn press(name: &str, surface: impl Surface) -> Result<(), Error> {
-    let half_space = Boussinesq::new(Grid::square(64, 2.5e-3)?, 115e9)?;
+    let half_space = Boussinesq::new(Grid::square(128, 2.5e-3)?, 115e9)?;
     let path = LoadingSolver::builder(&surface, &half_space)
         .max_area_fraction(0.3)
         .build()?;

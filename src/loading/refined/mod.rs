@@ -12,6 +12,8 @@ mod plateau;
 mod states;
 #[cfg(test)]
 mod window_tests;
+#[cfg(test)]
+mod wrong_complements;
 
 use super::gap_field::GapLine;
 use super::ranking::{Ranking, fill};
