@@ -265,7 +265,7 @@ impl Refined {
                 let passed =
                     self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
                 if let Some((correction, settled)) = passed {
-                    self.finish(run, correction, &settled, at)?;
+                    self.finish(run, &correction, &settled, at)?;
                     return Ok(Outcome::Done);
                 }
             }
@@ -379,7 +379,7 @@ impl Refined {
     fn finish(
         &mut self,
         run: &mut LoadingRun,
-        correction: Correction,
+        correction: &Correction,
         settled: &Settled,
         (mark, time): (&Mark, f64),
     ) -> Result<(), Error> {

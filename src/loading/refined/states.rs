@@ -1,12 +1,14 @@
 //! States of a window, pinned to the exact ones at both ends.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::correction::Correction;
 use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
-use crate::loading::window::{BadPivot, Window};
+use crate::loading::window::Window;
 
 /// Queues the states of the events of a corrected window, from a mark to the present approach.
 ///
@@ -15,19 +17,18 @@ use crate::loading::window::{BadPivot, Window};
 /// is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
-    correction: Correction,
+    correction: &Correction,
     settled: &Settled,
     (mark, time): (&Mark, f64),
 ) -> Result<(), Error> {
     let start = &mark.scalars;
-    let Correction {
-        window, by_courses, ..
-    } = correction;
-    // A complement that was corrected may have a bad pivot in this order; the one before has none in any.
-    let window = touched(window, settled)
-        .or_else(|_| touched(by_courses, settled))
-        .map_err(|bad| run.not_positive_definite(bad))?;
-    let steps = window.increments();
+    let window = &correction.window;
+    let mut touched = window.clone();
+    let mut events = settled.events.iter();
+    let steps = match events.try_for_each(|event| touched.touch(event.position, event.time)) {
+        Ok(()) => touched.increments().to_vec(),
+        Err(_) => increments(window, settled),
+    };
     let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
     let scaled = [0, 1].map(|k| {
@@ -39,7 +40,7 @@ pub(super) fn enqueue(
     });
     let mut walked = *start;
     let mut along = Vec::with_capacity(settled.events.len());
-    for (k, (event, step)) in settled.events.iter().zip(steps).enumerate() {
+    for (k, (event, step)) in settled.events.iter().zip(&steps).enumerate() {
         walked.advance(start.approach() + event.time);
         walked.touch([0, 1].map(|k| scaled[k] * step[k]), mark.count + k + 1);
         along.push(walked);
@@ -71,12 +72,30 @@ pub(super) fn enqueue(
     Ok(())
 }
 
-/// A window whose nodes have touched in the order of the events.
-fn touched(mut window: Window, settled: &Settled) -> Result<Window, BadPivot> {
-    for event in &settled.events {
-        window.touch(event.position, event.time)?;
-    }
-    Ok(window)
+/// What each event adds to stiffness and takes off the sum of closing rates, from the first events and from those up to it. A
+/// corrected complement acts as it should on all of them together, and may be indefinite on the first ones.
+fn increments(window: &Window, settled: &Settled) -> Vec<[f64; 2]> {
+    let places: Vec<usize> = settled.events.iter().map(|event| event.position).collect();
+    let mut before = [0.0; 2];
+    let increment = |count: usize| {
+        let first = &places[..count];
+        let schur = DMatrix::from_fn(count, count, |i, j| {
+            window.schur().entry(first[i], first[j])
+        });
+        let rates = first.iter().map(|&place| window.course(place).line.closing);
+        let rates = DVector::from_iterator(count, rates);
+        let sums = first.iter().map(|&place| window.schur().row_sums()[place]);
+        let sums = DVector::from_iterator(count, sums);
+        let answer = schur
+            .lu()
+            .solve(&rates)
+            .unwrap_or_else(|| DVector::zeros(count));
+        let total = [answer.dot(&rates), answer.dot(&sums)];
+        let step = [0, 1].map(|k| total[k] - before[k]);
+        before = total;
+        step
+    };
+    (1..=places.len()).map(increment).collect()
 }
 
 #[cfg(test)]

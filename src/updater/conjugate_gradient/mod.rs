@@ -253,6 +253,8 @@ impl LinearUpdater for ConjugateGradient {
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
+        // Solutions begin with this one. Only here it moves, so that no answer depends on what was asked before.
+        self.advance(problem, contact, 0.0, f64::INFINITY, &mut Solved::default())?;
         let criteria = self.criteria;
         let solutions = self.solutions(problem, contact)?;
         schur.resize(nodes.len())?;
@@ -295,16 +297,7 @@ impl LinearUpdater for ConjugateGradient {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        check_prefix(contact, count)?;
-        let solutions = self.solutions(problem, contact)?;
-        // A contact that has been solved may be asked about: what follows must not depend on it.
-        if count < contact.len() || solutions.count() == count && solutions.are_known() {
-            return self.solve_apart(problem, contact, count, approach, solution);
-        }
-        let mut solved = Solved::default();
-        self.advance(problem, contact, approach, f64::INFINITY, &mut solved)?;
-        *solution = solved.solution;
-        Ok(())
+        self.solve_apart(problem, contact, count, approach, solution)
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

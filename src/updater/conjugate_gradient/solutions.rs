@@ -78,11 +78,6 @@ impl Solutions {
         self.now.count
     }
 
-    /// Whether they are solved there, and not only started.
-    pub(super) fn are_known(&self) -> bool {
-        self.now.load.is_known()
-    }
-
     /// Proposes nodes out of contact: returns their Schur complement, and improves the displacements that the present solution and
     /// its rate cause there.
     pub(super) fn propose(
@@ -199,12 +194,7 @@ impl Solutions {
         at: (usize, f64),
         solved: &mut Solved,
     ) -> Result<(), Error> {
-        let is_solved = self.now.count == at.0 && self.now.load.is_known();
-        if is_solved && self.now.approach == at.1 && self.now.serves == f64::INFINITY {
-            self.now.write(contact, solved);
-            return Ok(());
-        }
-        let equilibrium = if is_solved {
+        let equilibrium = if self.now.count <= at.0 && self.now.load.is_known() {
             let now = mem::take(&mut self.now);
             let found = self.solve_from(criteria, problem, contact, at, Aim::Exact, &now);
             self.now = now;
