@@ -30,8 +30,7 @@ pub(super) const MOST_TIES: usize = 3;
 /// The window ends at its widest spacing behind this part of its events. Half: 1.2 times the convolutions. 1: a tenth fewer, but windows
 /// are taken back, since more of them end between near ties.
 pub(super) const CUT: f64 = 0.85;
-/// How often a contact that contradicts the conditions of contact is mended before the path gives up. No effect: two are needed
-/// at most on the drivers' cases.
+/// How often a contact that contradicts the conditions of contact is mended before the path gives up. No effect.
 pub(super) const MOST_TRIES: usize = 10;
 /// What is left of a window in which a node overlapped that was not watched. No effect: rare.
 pub(super) const SHORTER: f64 = 0.7;
@@ -51,7 +50,7 @@ pub(super) const CERTAIN: usize = 2;
 /// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted: rounding of these products.
 /// No effect.
 pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
-/// Newton steps to the root of a cubic that is nearly a line: three suffice, the others cost nothing measurable.
+/// Newton steps to the root of a cubic that is nearly a line. Half or twice: no effect, for they converge quadratically.
 pub(super) const NEWTON: usize = 8;
 
 // Near ties: the error of a time is estimated as the greatest of

@@ -1,14 +1,9 @@
 //! Schur complements from local solutions.
 
 use super::local::Local;
+use super::tuning::{FAR, POINTS};
 use crate::kernel::KernelTable;
 use crate::{Boundary, Grid, Problem, parallel};
-
-/// Interpolation points along one side of the box of a source seen from afar.
-const POINTS: usize = 6;
-/// Two sources are far from each other if their centres are more than this times the sum of their radii
-/// apart. Cubic interpolation of 1/r then errs by some (1/4)⁴ of what is small already.
-const FAR: f64 = 1.3;
 
 /// Unit pressure on a watched node and the answer of the contact near it, `e_j − x_j`.
 struct Source {

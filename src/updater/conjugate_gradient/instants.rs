@@ -1,5 +1,7 @@
 //! What local solutions leave out of the pressure inside a window.
 
+use super::tuning::MOST;
+
 /// Instants of a window at which the pressure is known, and what the local solutions left out of it there.
 ///
 /// That grows from nothing as nodes join, and the more pressure they take the more it is: in between it is
@@ -28,9 +30,6 @@ impl Instant {
         }
     }
 }
-
-/// As many as pay for their memory: the end of the window, and the last ones before.
-const MOST: usize = 3;
 
 impl Instants {
     /// How many there are.

@@ -1,20 +1,12 @@
 //! How a watched node acts on the contact near it.
 
+use super::tuning::{CANDIDATES, NEAREST, REACH, SAME};
 use crate::Problem;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
 
-/// Nodes in contact that a local solution takes into account at least, if there are so many in reach.
-const NEAREST: usize = 144;
-/// Nodes among which they are looked for: those of a circle of 32 square cells, the centre left out.
-const CANDIDATES: usize = 3208;
-const REACH: f64 = 32.0;
-/// Squared distances that differ by less, relatively, are those of one shell.
-const SAME: f64 = 1e-9;
-/// Products, and look-ups that take as long, of a local solution.
-pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
 /// Lanes of the sums in single precision.
 const LANES: usize = 16;
 

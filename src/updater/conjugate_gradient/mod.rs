@@ -11,6 +11,7 @@ mod solver;
 #[cfg(test)]
 mod tests;
 mod tolerances;
+mod tuning;
 
 use super::{
     Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor, check_count,
@@ -21,11 +22,7 @@ use crate::parallel::inside;
 use crate::{Error, Problem};
 use solutions::Solutions;
 use tolerances::{Aim, Criteria};
-
-/// Bytes held at most for each node of the grid, and in addition for each one in contact. Measured on grids from
-/// 20 × 20 to 96 × 96: 315 to 470, and 390 to 800; see `tests/robustness/memory_peaks.rs`.
-const BYTES_A_NODE: usize = 480;
-const BYTES_A_CONTACT_NODE: usize = 1000;
+use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).

@@ -2,8 +2,9 @@
 
 use super::equilibrium::Equilibrium;
 use super::galerkin;
-use super::local::{self, Local, Neighbourhood};
+use super::local::{Local, Neighbourhood};
 use super::solver::Solver;
+use super::tuning::PRODUCTS;
 use crate::contact::ContactSequence;
 use crate::krylov::Field;
 use crate::updater::{Schur, Solved, WindowFactor};
@@ -33,7 +34,7 @@ impl Proposed {
             ..Local::default()
         };
         let mut locals: Vec<Local> = nodes.iter().map(of).collect();
-        let products = locals.len() * local::PRODUCTS;
+        let products = locals.len() * PRODUCTS;
         parallel::for_each(products, &mut locals, |local| {
             *local = neighbourhood.solve(problem.table(), solver.set(), local.node);
         });

@@ -1,5 +1,6 @@
 //! What the contact makes of the row sums of the influence matrix, for the rate of the mean gap.
 
+use super::tuning::{STALE, SUMS_OPEN, SUMS_TOLERANCE};
 use std::mem;
 
 use super::local::Local;
@@ -8,15 +9,6 @@ use super::solver::Solver;
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::{Error, Problem};
-
-/// Residual of the row sums relative to the greatest one: the rate of the mean gap, which depends on them, is
-/// exact at the ends of windows anyway, and local solutions know nearly all of what a residual leaves.
-const SUMS_TOLERANCE: f64 = 3e-3;
-/// The row sums are solved for when one node in so many is new in contact. Until then local solutions tell what
-/// those near a proposed node make of it.
-const STALE: usize = 200;
-/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left.
-const SUMS_OPEN: f64 = 0.03;
 
 /// `C_II⁻¹ s_I` for the row sums s of C.
 #[derive(Debug, Clone)]

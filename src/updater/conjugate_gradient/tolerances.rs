@@ -1,24 +1,9 @@
 //! How exact solutions have to be.
 
-/// Residual of the rate, which is 1 in contact, where the solution itself is wanted: rounding.
-const LEAST_RATE_TOLERANCE: f64 = 1e-11;
-/// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
-/// puts a time off by some 10⁻⁵ of their spacing.
-const RATE_TOLERANCE: f64 = 1.5e-5;
-/// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events.
-const OF_SPAN: f64 = 2e-6;
-/// And relative to the approach, on which loads depend: near first touch windows are long beside it.
-const OF_LENGTH: f64 = 1e-8;
-/// The same, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests.
-const OF_OPEN: f64 = 1e-3;
-/// So many times the tolerance residuals may be where gaps of watched nodes are all that matters: what is
-/// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
-/// few per cent.
-const ADJOINT: f64 = 30.0;
-/// Part of the least residual.
-const DRIFT: f64 = 0.25;
-/// Part of it that comes from the rate in a window: it comes again in each.
-const RATE_DRIFT: f64 = 0.1;
+use super::tuning::{
+    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE,
+};
+
 /// What a solution is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Aim {
