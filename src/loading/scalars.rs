@@ -204,7 +204,7 @@ mod tests {
         let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;
         let mut scalars = PathScalars::new(&problem);
         scalars.renew_gap(sum(&[0.0, 1.0, 2.0, 5.0]), sum(&[1.0; 4]));
-        scalars.touch(0.25, 1.0, 1);
+        scalars.touch([0.25, 1.0], 1);
         Ok(scalars)
     }
 
@@ -236,7 +236,7 @@ mod tests {
         // Full contact by identity; before it by arithmetic.
         for (nodes, closing) in [(3, true), (4, false)] {
             let mut scalars = touched()?;
-            scalars.touch(0.25, 1.0, nodes);
+            scalars.touch([0.25, 1.0], nodes);
             assert_eq!(scalars.closing > 0.0, closing);
             assert_eq!(scalars.state(nodes).mean_gap > 0.0, closing);
         }
@@ -250,7 +250,7 @@ mod tests {
         let mut walked = start;
         walked.advance(2.0);
         let mut end = walked;
-        end.touch(0.125, 0.5, 2);
+        end.touch([0.125, 0.5], 2);
         assert_eq!(start.missing(&end), [0.125, 0.5]);
         (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
         let mut scalars = start;
@@ -310,7 +310,7 @@ mod tests {
         let per_load = problem.table().gauge().unwrap_or_default() / 0.25;
         assert!(per_load > 0.0);
         let mut scalars = PathScalars::new(&problem);
-        scalars.touch(1.0, 1.0, 1);
+        scalars.touch([1.0, 1.0], 1);
         scalars.advance(8.0);
         // W = 8/4, U = 8.
         let state = scalars.state(1);

@@ -1,8 +1,12 @@
 use super::*;
 use crate::convolution::Convolution;
+use crate::loading::LoadingSolver;
 use crate::loading::phase::Phase;
+use crate::loading::ranking::rank;
 use crate::loading::test_chain::{self, Altered};
-use crate::updater::{Dense, RecursiveCholesky};
+use crate::surface::{Amplitude, SelfAffine};
+use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky};
+use crate::{Boussinesq, InfluenceKernel, PeriodicBoussinesq};
 
 /// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a convolution, all
 /// gaps four fields and another convolution.
@@ -220,5 +224,94 @@ fn errors_say_where_the_path_is() -> Result<(), Error> {
         }
     ));
     assert!(matches!(run.not_finite(), Error::NotFinite { step: 2 }));
+    Ok(())
+}
+
+/// A step that is taken back leaves contact and scalars as they were, or without its last nodes, and whoever solves on the contact is
+/// told of what is left.
+#[test]
+fn steps_are_taken_back() -> Result<(), Error> {
+    for (last, left) in [(0, &[0, 2][..]), (1, &[0]), (9, &[])] {
+        let mut run = test_chain::surveyed(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0, 2.5], &[0, 2], 1.5)?;
+        let before = run.scalars.state(2);
+        let mark = run.mark().without_last(last);
+        run.contact.push(4)?;
+        run.contact.push(6)?;
+        run.scalars.advance(3.0);
+        run.scalars.touch([0.25, 1.0], 4);
+        let mut told = Vec::new();
+        run.roll_back(&mark, |_, contact| {
+            told = contact.order().to_vec();
+            Ok(())
+        })?;
+        assert_eq!((run.contact.order(), &told[..]), (left, left));
+        assert_eq!(run.scalars.state(2), before);
+        // Where nobody can follow the path has gone back all the same.
+        run.contact.push(5)?;
+        let refused = run.roll_back(&mark, |problem, contact| {
+            Dense.solve(problem, contact, 9, 0.0, &mut Solution::default())
+        });
+        assert!(matches!(refused, Err(Error::LengthMismatch { .. })));
+        assert_eq!(run.contact.order(), left);
+    }
+    Ok(())
+}
+
+/// The events of a window on nodes until a horizon.
+fn played<U: LinearUpdater>(
+    run: &mut LoadingRun,
+    updater: &mut U,
+    (nodes, horizon): (&[usize], f64),
+) -> Result<Window, Error> {
+    let mut window = Window::default();
+    run.watch(updater, &mut window, nodes.iter().copied(), horizon)?;
+    assert_eq!(window.play(usize::MAX), None);
+    Ok(window)
+}
+
+/// The events of a window are the same whoever eliminates the contact from its Schur complement, to what that leaves.
+#[test]
+fn windows_are_those_of_any_updater() -> Result<(), Error> {
+    let grid = Grid::new(14, 12, 1.0, 1.5)?;
+    let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+    let kernels: [&dyn InfluenceKernel; 2] = [
+        &Boussinesq::new(grid, 1.0)?,
+        &PeriodicBoussinesq::new(grid, 1.0)?,
+    ];
+    for kernel in kernels {
+        let builder = LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new());
+        let mut path = builder.max_nodes(40).build()?;
+        path.by_ref().try_for_each(|state| state.map(drop))?;
+        let Phase::Factor { updater, .. } = &mut path.phase else {
+            unreachable!("a factor stays");
+        };
+        let run = &mut path.run;
+        assert_eq!(run.contact.len(), 40);
+        run.renew_field(updater, run.scalars.approach())?;
+        let mut ranking = Vec::new();
+        rank(run, &mut ranking)?;
+        ranking.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let nodes: Vec<usize> = ranking[..12].iter().map(|&(_, node)| node).collect();
+        let opened = (&nodes[..], ranking[12].0);
+        let expected = played(run, &mut Dense, opened)?;
+        assert!(expected.events().len() > 2);
+        for found in [
+            played(run, updater, opened)?,
+            played(run, &mut ConjugateGradient::new(), opened)?,
+        ] {
+            assert!(found.touched().eq(expected.touched()));
+            for (found, expected) in found.events().iter().zip(expected.events()) {
+                let error = (found.time - expected.time).abs();
+                assert!(error < 1e-8 * opened.1, "{error:e}");
+            }
+            let increments = found.increments().iter().flatten();
+            for (found, expected) in increments.zip(expected.increments().iter().flatten()) {
+                assert!(
+                    (found - expected).abs() < 1e-8 * expected.abs(),
+                    "{found} {expected}"
+                );
+            }
+        }
+    }
     Ok(())
 }
