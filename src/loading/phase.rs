@@ -67,7 +67,7 @@ impl<U: LinearUpdater> Phase<U> {
             return None;
         };
         let nodes = run.problem.grid().nodes();
-        let iterations = Box::<ConjugateGradient>::default();
+        let iterations: Box<dyn Iterations> = Box::<ConjugateGradient>::default();
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);
         let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
         let fits = run.memory.check(needed, count).is_ok();
@@ -79,7 +79,7 @@ impl<U: LinearUpdater> Phase<U> {
             .memory
             .check(iterations.bytes(nodes, count), count)
             .is_ok();
-        (has_room || count == 0).then_some(iterations as Box<dyn Iterations>)
+        (has_room || count == 0).then_some(iterations)
     }
 
     /// Makes the gap field of a path that of its contact at an approach.
