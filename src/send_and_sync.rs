@@ -20,8 +20,7 @@ use crate::reference::{
 };
 use crate::surface::{HeightMap, SelfAffine, Topography};
 use crate::updater::{
-    ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, SolveRequest,
-    UpdaterReport,
+    ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
 use crate::{Doubt, Error, FileError, Grid, KernelError, Problem, UpdaterError};
 
@@ -114,6 +113,5 @@ send_and_sync!(
     RecursiveCholesky,
     Schur,
     Solution,
-    SolveRequest,
     UpdaterReport,
 );

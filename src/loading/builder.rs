@@ -341,7 +341,7 @@ mod tests {
         let window = RecursiveCholesky::new().bytes(64, 64) + WindowFactor::bytes(64);
         for (budget, handed_over_at) in [(fixed + window, None), (fixed + window - 1, Some(0))] {
             let builder = LoadingSolver::builder(&surface, &kernel).memory_budget(budget);
-            assert_eq!(builder.build()?.updater().handed_over_at(), handed_over_at);
+            assert_eq!(builder.build()?.handed_over_at(), handed_over_at);
         }
         for (budget, has_room) in [(fixed, true), (fixed - 1, false)] {
             let found =

@@ -229,7 +229,6 @@ pub(super) fn solve<U: LinearUpdater + ?Sized>(
 mod tests {
     use super::*;
     use crate::loading::test_chain;
-    use crate::updater::Dense;
 
     fn near(found: &[f64], expected: &[f64]) {
         assert_eq!(found.len(), expected.len());
@@ -246,8 +245,9 @@ mod tests {
         let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         for (ahead, gaps) in [(0.0, [2.25, 5.5]), (2.0, [1.25, 4.0])] {
-            let lines: Vec<Line> = field.lines(problem, contact, 3.0 + ahead).collect();
-            assert_eq!([lines[0].node, lines[1].node], [1, 3]);
+            let (nodes, lines): (Vec<_>, Vec<_>) =
+                field.lines(problem, contact, 3.0 + ahead).unzip();
+            assert_eq!(nodes, [1, 3]);
             near(&[lines[0].gap, lines[1].gap], &gaps);
             near(&[lines[0].closing, lines[1].closing], &[0.5, 0.75]);
             let [one, three] = gaps;
@@ -270,10 +270,7 @@ mod tests {
 
     #[test]
     fn gaps_that_do_not_close_never_touch() {
-        let touches = |gap, closing| {
-            let node = 0;
-            Line { node, gap, closing }.touches()
-        };
+        let touches = |gap, closing| GapLine { gap, closing }.touches();
         assert_eq!([touches(1.0, 0.0), touches(-1.0, -1.0)], [f64::INFINITY; 2]);
         assert_eq!([touches(-1.0, 0.5), touches(3.0, 2.0)], [-2.0, 1.5]);
     }
@@ -311,78 +308,36 @@ mod tests {
         Ok(())
     }
 
-    /// Answers with vectors of these lengths: pressures, rates, displacements of both.
-    struct Lengths([usize; 4]);
-
-    impl LinearUpdater for Lengths {
-        fn watch(
-            &mut self,
-            problem: &Problem,
-            contact: &ContactSequence,
-            nodes: &[usize],
-            schur: &mut crate::updater::Schur,
-        ) -> Result<(), Error> {
-            Dense.watch(problem, contact, nodes, schur)
-        }
-
-        fn join(
-            &mut self,
-            _: &Problem,
-            _: &ContactSequence,
-            _: &crate::updater::WindowFactor,
-        ) -> Result<(), Error> {
-            Ok(())
-        }
-
-        fn solve(
-            &mut self,
-            _: &Problem,
-            _: &ContactSequence,
-            _: SolveRequest,
-            solution: &mut Solution,
-        ) -> Result<(), Error> {
-            let [pressure, rate, u, u_rate] = self.0.map(|length| vec![0.5; length]);
-            *solution = Solution {
-                pressure,
-                rate,
-                displacement: [u, u_rate],
-            };
-            Ok(())
-        }
-    }
-
-    /// A value for each node in contact, here two, and displacements of all four nodes or of none; rates only where they
-    /// are asked for.
+    /// A value for each node in contact, here two.
     #[test]
     fn there_is_a_value_for_each_node() -> Result<(), Error> {
         let problem = crate::test_chain::problem(&[0.0; 4])?;
         let contact = ContactSequence::with_order(problem.grid(), [0, 2])?;
-        for (lengths, with_rate, without) in [
-            ([2, 2, 0, 0], true, true),
-            ([2, 2, 4, 4], true, true),
-            ([2, 0, 0, 0], false, true),
-            ([2, 3, 4, 4], false, true),
-            ([2, 2, 4, 0], false, true),
-            ([2, 2, 0, 4], false, true),
-            ([1, 2, 0, 0], false, false),
-            ([3, 2, 4, 4], false, false),
-            ([2, 2, 3, 4], false, false),
-            ([2, 2, 3, 3], false, false),
+        for (lengths, refused) in [
+            ([2, 2], None),
+            ([2, 0], Some(("pressures per unit of approach", 0))),
+            ([2, 3], Some(("pressures per unit of approach", 3))),
+            ([1, 2], Some(("pressures", 1))),
+            ([3, 2], Some(("pressures", 3))),
         ] {
-            for (span, accepted) in [(f64::INFINITY, with_rate), (0.0, without)] {
-                let request = SolveRequest {
-                    span,
-                    ..SolveRequest::exact(2, 1.0)
-                };
-                let mut solution = Solution::default();
-                let solved = solve(
-                    &problem,
-                    &contact,
-                    request,
-                    &mut Lengths(lengths),
-                    &mut solution,
-                );
-                assert_eq!(solved.is_ok(), accepted, "{lengths:?} {span}: {solved:?}");
+            let [pressure, rate] = lengths.map(|length| vec![0.5; length]);
+            let mut updater = test_chain::Altered::solutions(move |solution| {
+                solution.pressure.clone_from(&pressure);
+                solution.rate.clone_from(&rate);
+            });
+            let mut solution = Solution::default();
+            let solved = solve(&problem, &contact, &mut updater, (2, 1.0), &mut solution);
+            match (solved, refused) {
+                (Ok(()), None) => {}
+                (
+                    Err(Error::Updater(UpdaterError::UpdaterMismatch {
+                        quantity,
+                        expected: 2,
+                        found,
+                    })),
+                    Some(refused),
+                ) => assert_eq!((quantity, found), refused),
+                (found, _) => unreachable!("{lengths:?}: {found:?}"),
             }
         }
         Ok(())

@@ -67,7 +67,7 @@ impl<U: LinearUpdater> Phase<U> {
             return None;
         };
         let nodes = run.problem.grid().nodes();
-        let iterations = Box::<ConjugateGradient>::default();
+        let iterations: Box<dyn Iterations> = Box::<ConjugateGradient>::default();
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);
         let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
         let fits = run.memory.check(needed, count).is_ok();
@@ -79,7 +79,7 @@ impl<U: LinearUpdater> Phase<U> {
             .memory
             .check(iterations.bytes(nodes, count), count)
             .is_ok();
-        (has_room || count == 0).then_some(iterations as Box<dyn Iterations>)
+        (has_room || count == 0).then_some(iterations)
     }
 
     /// Makes the gap field of a path that of its contact at an approach.
@@ -249,4 +249,245 @@ fn factor_seconds(contact: usize) -> f64 {
 
 fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
     WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::run::Memory;
+    use crate::loading::test_chain::{self, Altered};
+    use crate::loading::{LoadingSolver, LoadingState};
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::updater::Handover;
+    use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, Spectral};
+
+    /// 10 ps · n², and 0.3 ms, 4 ns a node and 6 ns a node in contact.
+    #[test]
+    fn costs_of_an_event() {
+        for (nodes, contact, cost) in [
+            (0, 1000, 1e-5),
+            (1_000_000, 10_000, 1e-3),
+            (10_000, 10_000, 3e-4 + 4e-5 + 6e-5),
+            (1_000_000, 100_000, 3e-4 + 4e-3 + 6e-4),
+        ] {
+            let found = event_seconds(nodes, contact);
+            assert!(
+                (found / cost - 1.0).abs() < 1e-14,
+                "{nodes} {contact}: {found:e}"
+            );
+        }
+    }
+
+    /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 4·10⁻⁹ N + 6·10⁻⁹ n`, rounded up; all nodes if there is none among them.
+    #[test]
+    fn a_factor_is_given_up_where_costs_meet() {
+        for nodes in [128 * 128, 256 * 256, 512 * 512] {
+            let fixed = 3e-4 + 4e-9 * nodes as f64;
+            let root = (6e-9 + (36e-18 + 4e-11 * fixed).sqrt()) / 2e-11;
+            assert_eq!(last_factor(nodes), root.ceil() as usize);
+        }
+        assert_eq!([100, 1000].map(last_factor), [100, 1000]);
+    }
+
+    /// A path on a flat surface of 128 × 128 nodes, of which the updater may hold so many bytes.
+    fn flat(kernel: &dyn InfluenceKernel, budget: usize) -> Result<LoadingRun, Error> {
+        let surface = HeightMap::new(nalgebra::DMatrix::zeros(128, 128))?;
+        let mut run = LoadingSolver::builder(&surface, kernel).build()?.run;
+        run.memory = Memory { budget, fixed: 0 };
+        Ok(run)
+    }
+
+    /// Bytes of a factor of so many nodes and one more window: of 64 nodes more in contact and 64 watched, and of their Schur
+    /// complement and its factor, 1024 · 64.
+    fn with_window(contact: usize) -> usize {
+        RecursiveCholesky::new().bytes(contact + 64, 64) + 1024 * 64
+    }
+
+    #[test]
+    fn a_factor_fits_with_one_more_window() -> Result<(), Error> {
+        let phase = Phase::new(Handover::new());
+        let has_successor = |run: &LoadingRun, count: usize| phase.successor(run, count).is_some();
+        let square = Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?;
+        // There is no other way on cells that iterations are not made for, while it fits.
+        let long = Spectral::new(Grid::new(128, 128, 1.0, 1e4)?, 1.0)?;
+        for kernel in [&square as &dyn InfluenceKernel, &long] {
+            for (less, is_given_up) in [(0, false), (1, true)] {
+                let run = flat(kernel, with_window(2000) - less)?;
+                assert_eq!(has_successor(&run, 2000), is_given_up);
+            }
+            // 480 bytes a node and 1000 a node in contact are more than that: nothing else has room, but before first touch there
+            // is nothing to stay with.
+            for count in [300, 0] {
+                let run = flat(kernel, with_window(count) - 1)?;
+                assert_eq!(has_successor(&run, count), count == 0);
+            }
+        }
+        let last = last_factor(128 * 128);
+        for (kernel, given_up) in [
+            (&square as &dyn InfluenceKernel, [false, true]),
+            (&long, [false; 2]),
+        ] {
+            let run = flat(kernel, usize::MAX)?;
+            let found = [last - 1, last].map(|count| has_successor(&run, count));
+            assert_eq!(found, given_up);
+            // A factor that was asked for stays.
+            let chosen = Phase::new(RecursiveCholesky::new());
+            assert!(chosen.successor(&run, last).is_none());
+        }
+        Ok(())
+    }
+
+    /// Two of six nodes are in contact, with a factor that fits.
+    fn two_in_contact() -> Result<(LoadingRun, Phase<Handover>), Error> {
+        let mut run = test_chain::run(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0])?;
+        let mut phase = Phase::new(Handover::new());
+        assert!(!phase.restore(&mut run, &[2, 0])?);
+        assert_eq!((run.contact.order(), phase.tolerance()), (&[2, 0][..], 0.0));
+        Ok((run, phase))
+    }
+
+    /// Where one more window does not fit iterations go on from the solution of the factor, if there is room for them: here for six
+    /// nodes and two in contact.
+    #[test]
+    fn a_factor_is_given_up_for_iterations() -> Result<(), Error> {
+        let iterations = 6 * 480 + 2 * 1000;
+        for (budget, is_given_up) in [
+            (with_window(2), false),
+            (with_window(2) - 1, true),
+            (iterations, true),
+            (iterations - 1, false),
+        ] {
+            let (mut run, mut phase) = two_in_contact()?;
+            run.memory.budget = run.memory.fixed + budget;
+            assert_eq!(phase.hand_over(&mut run)?, is_given_up, "{budget}");
+            assert_eq!(matches!(phase, Phase::Iterations(_)), is_given_up);
+            assert_eq!(phase.tolerance(), if is_given_up { 1e-10 } else { 0.0 });
+            // Once.
+            assert!(!phase.hand_over(&mut run)?);
+            phase.renew_field(&mut run, 3.0)?;
+            assert!(run.field.belongs_to(&run.contact, 3.0));
+            let Solution { pressure, rate } = run.field.solution();
+            let found = pressure.iter().chain(rate);
+            for (found, expected) in found.zip([0.5, 0.75, 0.25, 0.25]) {
+                assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+            }
+        }
+        Ok(())
+    }
+
+    /// A contact that is known begins with a factor that fits, and without one otherwise.
+    #[test]
+    fn contacts_are_restored() -> Result<(), Error> {
+        let (mut run, _) = two_in_contact()?;
+        for (budget, is_given_up) in [(with_window(2), false), (with_window(2) - 1, true)] {
+            run.memory.budget = run.memory.fixed + budget;
+            let mut phase = Phase::new(Handover::new());
+            assert_eq!(phase.restore(&mut run, &[0, 2])?, is_given_up);
+            assert_eq!(matches!(phase, Phase::Iterations(_)), is_given_up);
+            assert_eq!(run.contact.order(), [0, 2]);
+        }
+        Ok(())
+    }
+
+    /// Before first touch there is nothing to solve, and iterations need room for the grid.
+    #[test]
+    fn without_room_for_a_window_there_is_no_factor() -> Result<(), Error> {
+        for (budget, hands_over, has_room) in [
+            (with_window(0), false, true),
+            (with_window(0) - 1, true, true),
+            (6 * 480, true, true),
+            (6 * 480 - 1, true, false),
+        ] {
+            let mut run = test_chain::run(&[0.0; 6])?;
+            run.memory.budget = run.memory.fixed + budget;
+            let mut phase = Phase::new(Handover::new());
+            assert_eq!(phase.hand_over(&mut run)?, hands_over, "{budget}");
+            assert_eq!(phase.make_room(&run).is_ok(), has_room, "{budget}");
+        }
+        Ok(())
+    }
+
+    /// Errors speak of all bytes, those of the grid included.
+    #[test]
+    fn what_does_not_fit_is_told() -> Result<(), Error> {
+        let mut run = test_chain::solved(&[0.0; 9], &[0, 1, 2], 1.0)?;
+        let fixed = run.memory.fixed;
+        let mut needing = Phase::new(Altered::needing(1000));
+        let iterations = Phase::new(ConjugateGradient::new());
+        let bytes = 9 * 480 + 4 * 1000;
+        for (budget, of_updater, of_iterations) in [
+            (1000, true, false),
+            (999, false, false),
+            (bytes, true, true),
+            (bytes - 1, true, false),
+        ] {
+            run.memory.budget = fixed + budget;
+            let [found, other] = [needing.make_room(&run), iterations.check_room(&run, 4)];
+            for (found, fits, needed, contact) in [
+                (found, of_updater, 1000, 0),
+                (other, of_iterations, bytes, 3),
+            ] {
+                assert!(
+                    match found {
+                        Ok(()) => fits,
+                        Err(Error::MemoryBudget {
+                            needed: found,
+                            budget: of,
+                            nodes_that_fit,
+                        }) =>
+                            !fits
+                                && found == fixed + needed
+                                && of == fixed + budget
+                                && nodes_that_fit == contact,
+                        Err(_) => false,
+                    },
+                    "{budget}"
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Nodes that touch alone: with a factor they join it, and `1/4` is what the stiffness grows by; iterations find them in the contact.
+    #[test]
+    fn single_nodes_are_admitted() -> Result<(), Error> {
+        let (mut run, mut factor) = two_in_contact()?;
+        run.scalars.place_at(1.5);
+        factor.renew_field(&mut run, 1.5)?;
+        let mut window = Window::default();
+        factor.admit(&mut run, &mut window, (4, 0.5))?;
+        assert_eq!(
+            (run.contact.order(), window.nodes()),
+            (&[2, 0, 4][..], &[4][..])
+        );
+        assert!((window.increments()[0][0] - 0.25).abs() < 1e-15);
+        let mut iterations = Phase::new(ConjugateGradient::new());
+        iterations.admit(&mut run, &mut window, (1, 0.5))?;
+        assert_eq!(run.contact.order(), [2, 0, 4, 1]);
+        run.memory.budget = run.memory.fixed + 6 * 480 + 5 * 1000 - 1;
+        assert!(iterations.admit(&mut run, &mut window, (3, 0.5)).is_err());
+        assert_eq!(run.contact.len(), 4);
+        Ok(())
+    }
+
+    /// The states of a path with a factor and of one without are the same, to what the latter say of their approaches.
+    #[test]
+    fn both_phases_find_the_same_states() -> Result<(), Error> {
+        let kernel = Boussinesq::new(Grid::new(14, 12, 1.0, 1.5)?, 1.0)?;
+        let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+        fn states<U: LinearUpdater>(path: LoadingSolver<U>) -> Result<Vec<LoadingState>, Error> {
+            path.collect()
+        }
+        let builder = || LoadingSolver::builder(&surface, &kernel).window_size(12);
+        let exact = states(builder().updater(RecursiveCholesky::new()).build()?)?;
+        let found = states(builder().updater(ConjugateGradient::new()).build()?)?;
+        assert_eq!((exact.len(), found.len()), (168, 168));
+        for (found, exact) in found.iter().zip(&exact) {
+            assert_eq!(found.node, exact.node);
+            let error = (found.contact.approach - exact.contact.approach).abs();
+            let allowed = found.approach_error + 1e-12 * exact.contact.approach;
+            assert!(error <= allowed, "{error:e} of {allowed:e}: {found:?}");
+        }
+        Ok(())
+    }
 }

@@ -50,12 +50,12 @@ mod tests {
 
     /// Nodes 0 and 2 are in contact, with rates of 1/2 and another one.
     fn ranked(rate: f64) -> Result<Ranking, Error> {
-        let given = test_chain::Altered::given(vec![1.0; 2], vec![0.5, rate]);
-        let mut run = test_chain::run(&[0.0, 4.0, 0.0, 9.0, 3.0], given)?;
+        let mut given = test_chain::Altered::given(vec![1.0; 2], vec![0.5, rate]);
+        let mut run = test_chain::run(&[0.0, 4.0, 0.0, 9.0, 3.0])?;
         run.contact.push(0)?;
         run.contact.push(2)?;
-        run.solve_field(2.0, 1.0)?;
-        run.front.place_at(2.0);
+        run.advance_field(&mut given, 2.0, 1.0)?;
+        run.scalars.place_at(2.0);
         let mut ranking = Ranking::new();
         let first = rank(&mut run, &mut ranking)?;
         assert!(rate != 0.25 || (first - 1.0).abs() < 1e-12, "{first}");

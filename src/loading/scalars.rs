@@ -202,43 +202,43 @@ mod tests {
     /// `eᵀ C⁻¹ e`, and takes 1 off the closing rates.
     fn touched() -> Result<PathScalars, Error> {
         let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;
-        let mut front = PathScalars::new(&problem);
-        front.renew_gap(sum(&[0.0, 1.0, 2.0, 5.0]), sum(&[1.0; 4]));
-        front.touch(0.25, 1.0, 1);
-        Ok(front)
+        let mut scalars = PathScalars::new(&problem);
+        scalars.renew_gap(sum(&[0.0, 1.0, 2.0, 5.0]), sum(&[1.0; 4]));
+        scalars.touch([0.25, 1.0], 1);
+        Ok(scalars)
     }
 
     /// Load and energy are integrals of the stiffness 2/4 and of the load, mean gap of the rate 3/4.
     #[test]
     fn scalars_follow_the_approach() -> Result<(), Error> {
-        let mut front = touched()?;
-        assert_eq!(front.state(0).mean_gap, 2.0);
-        front.advance(2.0);
-        let state = front.state(1);
+        let mut scalars = touched()?;
+        assert_eq!(scalars.state(0).mean_gap, 2.0);
+        scalars.advance(2.0);
+        let state = scalars.state(1);
         assert_eq!(
             (state.approach, state.load, state.energy, state.mean_gap),
             (2.0, 1.0, 1.0, 0.5)
         );
         assert_eq!(state.contact_stiffness, Some(0.5));
         assert_eq!(state.interfacial_stiffness, Some(0.5 / 0.75));
-        front.advance(3.0);
-        let state = front.state(1);
+        scalars.advance(3.0);
+        let state = scalars.state(1);
         // 1 + (1 + 1.5)/2.
         assert_eq!(
             (state.load, state.energy, state.mean_gap),
             (1.5, 2.25, -0.25)
         );
-        front.clamp_mean_gap();
-        assert_eq!(front.state(1).mean_gap, 0.0);
+        scalars.clamp_mean_gap();
+        assert_eq!(scalars.state(1).mean_gap, 0.0);
         // Back again, as under the paper's rule.
-        front.advance(2.0);
-        assert_eq!((front.approach(), front.state(1).energy), (2.0, 1.0));
+        scalars.advance(2.0);
+        assert_eq!((scalars.approach(), scalars.state(1).energy), (2.0, 1.0));
         // Full contact by identity; before it by arithmetic.
         for (nodes, closing) in [(3, true), (4, false)] {
-            let mut front = touched()?;
-            front.touch(0.25, 1.0, nodes);
-            assert_eq!(front.closing > 0.0, closing);
-            assert_eq!(front.state(nodes).mean_gap > 0.0, closing);
+            let mut scalars = touched()?;
+            scalars.touch([0.25, 1.0], nodes);
+            assert_eq!(scalars.closing > 0.0, closing);
+            assert_eq!(scalars.state(nodes).mean_gap > 0.0, closing);
         }
         Ok(())
     }
@@ -250,14 +250,14 @@ mod tests {
         let mut walked = start;
         walked.advance(2.0);
         let mut end = walked;
-        end.touch(0.125, 0.5, 2);
+        end.touch([0.125, 0.5], 2);
         assert_eq!(start.missing(&end), [0.125, 0.5]);
         (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
-        let mut front = start;
-        front.pin(&walked, &end, 0.5);
+        let mut scalars = start;
+        scalars.pin(&walked, &end, 0.5);
         // Half of 0.5 and of −0.25, a quarter of 2.
         assert_eq!(
-            (front.load, front.mean_gap, front.energy),
+            (scalars.load, scalars.mean_gap, scalars.energy),
             (0.25, 1.875, 0.5)
         );
         Ok(())
@@ -265,16 +265,16 @@ mod tests {
 
     #[test]
     fn states_without_a_stiffness_are_none() -> Result<(), Error> {
-        let mut front = touched()?;
-        assert!(front.is_sound(&front.state(1)));
+        let mut scalars = touched()?;
+        assert!(scalars.is_sound(&scalars.state(1)));
         for stiffness in [0.0, -1.0, f64::INFINITY, f64::NAN] {
-            let state = front.state(1);
-            front.unit_stiffness = stiffness;
-            assert!(!front.is_sound(&state), "{stiffness}");
+            let state = scalars.state(1);
+            scalars.unit_stiffness = stiffness;
+            assert!(!scalars.is_sound(&state), "{stiffness}");
         }
-        front = touched()?;
-        front.load = f64::NAN;
-        assert!(!front.is_sound(&front.state(1)));
+        scalars = touched()?;
+        scalars.load = f64::NAN;
+        assert!(!scalars.is_sound(&scalars.state(1)));
         Ok(())
     }
 
@@ -284,13 +284,14 @@ mod tests {
     fn a_solution_renews_load_and_energy() -> Result<(), Error> {
         let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         for (approach, load, energy) in [(3.0, 2.5, 3.25), (3.5, 3.0, 0.875 * 3.5 + 0.625 * 2.5)] {
-            run.front.place_at(approach);
-            run.front.renew_load(&run.problem, &run.contact, &run.field);
-            let front = &run.front;
+            run.scalars.place_at(approach);
+            run.scalars
+                .renew_load(&run.problem, &run.contact, &run.field);
+            let scalars = &run.scalars;
             for (found, expected) in [
-                (front.load, load),
-                (front.energy, energy),
-                (front.unit_stiffness, 0.5),
+                (scalars.load, load),
+                (scalars.energy, energy),
+                (scalars.unit_stiffness, 0.5),
             ] {
                 // Roundings of numbers up to 5.
                 assert!((found - expected).abs() < 1e-14, "{found} {expected}");
@@ -308,16 +309,16 @@ mod tests {
         let problem = Problem::new(&surface, &PeriodicBoussinesq::new(grid, 1.0)?)?;
         let per_load = problem.table().gauge().unwrap_or_default() / 0.25;
         assert!(per_load > 0.0);
-        let mut front = PathScalars::new(&problem);
-        front.touch(1.0, 1.0, 1);
-        front.advance(8.0);
+        let mut scalars = PathScalars::new(&problem);
+        scalars.touch([1.0, 1.0], 1);
+        scalars.advance(8.0);
         // W = 8/4, U = 8.
-        let state = front.state(1);
+        let state = scalars.state(1);
         let expected = [
             (state.approach, 8.0 - 2.0 * per_load),
             (state.energy, 8.0 - 2.0 * per_load),
-            (front.own_approach(&state), 8.0),
-            (front.uniform_displacement(3.0), 3.0 * per_load),
+            (scalars.own_approach(&state), 8.0),
+            (scalars.uniform_displacement(3.0), 3.0 * per_load),
         ];
         for (found, expected) in expected {
             assert!(
@@ -329,7 +330,7 @@ mod tests {
         // K = 1/4 N/m: of an approach 1 − s K / ΔA is that of the mean planes, and all of what a load is off by.
         let of_approach = (1.0 - 0.25 * per_load).abs() * 1e-3;
         for (load, expected) in [(0.0, of_approach), (2e-3, of_approach + 2e-3 * per_load)] {
-            let found = front.reported_error(1e-3, load);
+            let found = scalars.reported_error(1e-3, load);
             assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
         }
         let free = Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)?;

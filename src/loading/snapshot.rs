@@ -214,7 +214,7 @@ mod tests {
         }
 
         fn refused_with(&self, updater: impl LinearUpdater) -> Result<Option<&'static str>, Error> {
-            let mut run = test_chain::run(self.gaps, updater)?;
+            let mut run = test_chain::run(self.gaps)?;
             for &node in self.contact {
                 run.contact.push(node)?;
             }
@@ -233,7 +233,7 @@ mod tests {
                 ContactState::new(&grid, self.pressures.len(), self.approach, self.load, 0.0);
             let mut state = LoadingState::new(self.step, ContactEvent::Touch, (0, 0), contact);
             state.approach_error = self.error;
-            match snapshot.recognise(&mut run, &state, true) {
+            match snapshot.recognise(&mut run, &Phase::new(updater), &state, true) {
                 Err(Error::NotOnPath { quantity, .. }) => Ok(Some(quantity)),
                 done => done.map(|()| None),
             }
@@ -374,10 +374,10 @@ mod tests {
     /// Pressures by node, the approach, and the stiffness 2 · (1/4 + 1/4).
     #[test]
     fn snapshots_are_solutions() -> Result<(), Error> {
-        let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         let contact = ContactState::new(&run.problem.grid(), 2, 3.0, 2.5, 0.0);
         let state = LoadingState::new(2, ContactEvent::Touch, (2, 0), contact);
-        let found = Snapshot::of(&mut run, &state)?;
+        let found = Snapshot::of(&run, &mut Phase::new(Dense), &state)?;
         assert_eq!((&found.nodes[..], found.approach), (&[0, 2][..], 3.0));
         for (found, expected) in found.pressure.iter().zip([0.75, 0.0, 0.5, 0.0]) {
             assert!((found - expected).abs() < 1e-15);

@@ -366,7 +366,7 @@ mod tests {
     #[test]
     fn bytes_are_those_of_grid_and_updater() -> Result<(), Error> {
         let path = path()?;
-        let updater = path.updater().bytes(4, 0);
+        let updater = path.updater().map_or(0, |updater| updater.bytes(4, 0));
         assert!(updater > 0);
         assert_eq!(path.bytes(), path.run.memory.fixed + updater);
         assert_eq!(

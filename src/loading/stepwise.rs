@@ -179,12 +179,11 @@ impl Stepwise {
 mod tests {
     use super::*;
     use crate::loading::test_chain;
-    use crate::updater::Dense;
 
     /// Twenty events for each of five nodes and one more, all at one approach.
     #[test]
     fn events_at_one_approach_come_to_an_end() -> Result<(), Error> {
-        let mut run = test_chain::run(&[0.0; 5], Dense)?;
+        let mut run = test_chain::run(&[0.0; 5])?;
         run.scalars.place_at(1.0);
         let mut stepwise = Stepwise::default();
         for _ in 0..120 {
@@ -224,11 +223,11 @@ mod tests {
         pressure: [f64; 2],
         rate: [f64; 2],
     ) -> Result<Option<(ContactEvent, usize, f64, f64)>, Error> {
-        let (pressure, rate) = (pressure.to_vec(), rate.to_vec());
-        let mut run = test_chain::run(&[0.0; 6], test_chain::Altered::given(pressure, rate))?;
+        let mut given = test_chain::Altered::given(pressure.to_vec(), rate.to_vec());
+        let mut run = test_chain::run(&[0.0; 6])?;
         run.contact.push(3)?;
         run.contact.push(5)?;
-        run.solve_field(2.0, 1.0)?;
+        run.advance_field(&mut given, 2.0, 1.0)?;
         run.scalars.place_at(2.0);
         let stepwise = Stepwise {
             touches: touches.to_vec(),
@@ -282,10 +281,11 @@ mod tests {
     /// rate 1/2, touches at 2; gaps may be off by 10⁻⁴ of the approach, 1.
     #[test]
     fn events_come_one_at_a_time() -> Result<(), Error> {
-        let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0], test_chain::Altered::inexact(1e-6))?;
+        let mut run = test_chain::run(&[0.0, 1.25, 1.0, 9.0])?;
+        let mut phase = Phase::new(test_chain::Altered::inexact(1e-6));
         let mut stepwise = Stepwise::default();
         for _ in 0..4 {
-            stepwise.produce(&mut run, 3)?;
+            stepwise.produce(&mut run, &mut phase, 3)?;
         }
         let found: Vec<_> = run
             .queue

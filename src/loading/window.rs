@@ -316,3 +316,271 @@ impl Window {
         Ok(remaining)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::loading::test_chain::{self, course, pairs};
+
+    /// Nodes 7, 8 and 9 with S = C and σ = row sums of C, before any contact and from the approach 0 on.
+    fn window(c: [[f64; 3]; 3], lines: [[f64; 2]; 3], horizon: f64) -> Window {
+        let matrix = DMatrix::from_fn(3, 3, |i, j| c[i][j]);
+        let sums = c.map(|row| row.iter().sum());
+        let lines = [0, 1, 2].map(|k| (7 + k, lines[k]));
+        let mut window = test_chain::window(&lines, &matrix, &sums, horizon);
+        window.approach = 0.0;
+        window
+    }
+
+    /// (node, time) of the events.
+    fn found(window: &Window) -> Vec<(usize, f64)> {
+        let times = window.events().iter().map(|event| event.time);
+        window.touched().zip(times).collect()
+    }
+
+    const C: [[f64; 3]; 3] = [[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]];
+    /// Nodes that do not act on each other.
+    const ALONE: [[f64; 3]; 3] = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+
+    /// `3 − 2 t + t²/2 + t³/4` and its slope, in numbers that are short in binary.
+    #[test]
+    fn courses_are_cubics() {
+        let course = course([3.0, 2.0, 0.5, 0.25]);
+        assert_eq!([course.gap(0.0), course.gap(2.0)], [3.0, 3.0]);
+        assert_eq!([course.closing(0.0), course.closing(2.0)], [2.0, -3.0]);
+    }
+
+    /// The root of `(1 − t) (1 + t²/10)`, which Newton's steps find to rounding, and that of a line; none of a
+    /// gap that opens; and none before the present.
+    #[test]
+    fn gaps_close_at_their_roots() {
+        let cubic = course([1.0, 1.0, 0.1, -0.1]);
+        assert!((cubic.closes(0.0) - 1.0).abs() < 1e-15);
+        assert_eq!(cubic.closes(1.25), 1.25);
+        // `1.1 − t − t³/10`, and `(1 − t)(1 − t/4)`: one of both powers alone.
+        for of_one_power in [[1.1, 1.0, 0.0, -0.1], [1.0, 1.25, 0.25, 0.0]] {
+            assert!((course(of_one_power).closes(0.0) - 1.0).abs() < 1e-15);
+        }
+        let line = course([3.0, 2.0, 0.0, 0.0]);
+        assert_eq!([line.closes(0.0), line.closes(2.0)], [1.5, 2.0]);
+        for opening in [
+            [1.0, -1.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0, 0.0],
+            [1.0, -1.0, 0.5, 0.0],
+            [f64::NAN, 1.0, 0.1, 0.0],
+        ] {
+            assert_eq!(course(opening).closes(0.0), f64::INFINITY);
+        }
+    }
+
+    #[test]
+    fn a_node_that_touches_delays_its_neighbour() {
+        // Node 7 touches at 0; then node 8 rises by half of the approach, and touches at 2 instead of 1.
+        let mut window = window(C, [[0.0, 1.0], [1.0, 1.0], [5.0, 1.0]], 10.0);
+        assert_eq!(window.nodes(), [7, 8, 9]);
+        assert_eq!(window.play(2), None);
+        let found = found(&window);
+        assert_eq!(found[0], (7, 0.0));
+        // A few roundings of numbers near 1.
+        assert!(
+            found[1].0 == 8 && (found[1].1 - 2.0).abs() < 1e-14,
+            "{found:?}"
+        );
+        let [[first, _], [second, _]] = *window.increments() else {
+            unreachable!("two were asked for");
+        };
+        // eᵀ C⁻¹ e of the first node alone, and of the first two: 1/2 and 2/3.
+        assert!((first - 0.5).abs() < 1e-15);
+        assert!((first + second - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
+    }
+
+    /// Three nodes of which the second feels half of what the first carries, and the third nothing:
+    /// `2 − t + (t − 1)/2` closes at t = 3.
+    #[test]
+    fn a_node_that_carries_holds_its_neighbours_back() {
+        let schur = DMatrix::from_row_slice(3, 3, &[1.0, 0.5, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        let lines = [(7, [1.0, 1.0]), (8, [2.0, 1.0]), (9, [2.5, 1.0])];
+        let window = test_chain::window(&lines, &schur, &[3.0, 2.0, 5.0], f64::INFINITY);
+        let mut all = window.clone();
+        assert!(all.play(9).is_none());
+        assert_eq!(pairs(all.events()), [(0, 1.0), (2, 2.5), (1, 3.0)]);
+        // Up to the horizon, that included, and up to a number; the first is played in any case.
+        for (horizon, count) in [(2.5, 2), (2.4, 1), (0.5, 1)] {
+            let [mut until, mut other] = [window.clone(), window.clone()];
+            until.horizon = horizon;
+            assert_eq!([until.play(9), other.play_until(horizon)], [None; 2]);
+            assert_eq!([until.events().len(), other.events().len()], [count; 2]);
+            assert_eq!(other.horizon(), horizon);
+        }
+        let mut few = window.clone();
+        assert_eq!((few.play(2), few.events().len()), (None, 2));
+        // 1 / (1 − 1/4) of what is left of closing rate and row sum, 1/2 and 2 − 3/2.
+        let mut two = window;
+        for (position, time) in [(0, 1.0), (1, 3.0)] {
+            assert_eq!(two.touch(position, time), Ok(()));
+        }
+        let expected = [1.0, 3.0, 0.25 / 0.75, 0.25 / 0.75];
+        for (found, expected) in two.increments().iter().flatten().zip(expected) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_horizon_ends_a_window_but_not_before_its_first_event() {
+        let mut early = window(C, [[0.5, 1.0], [1.0, 1.0], [5.0, 1.0]], 0.1);
+        assert_eq!(early.play(3), None);
+        assert_eq!(early.events().len(), 1);
+        // Until the horizon, and at it.
+        let lines = [[0.0, 1.0], [1.0, 1.0], [9.0, 1.0]];
+        let mut free = window(C, lines, 100.0);
+        free.play(2);
+        let second = free.events()[1].time;
+        for (horizon, events) in [(second, 2), (second * (1.0 - 1e-12), 1)] {
+            let mut until = window(C, lines, horizon);
+            assert_eq!(until.play(3), None);
+            assert_eq!(until.events().len(), events, "horizon {horizon}");
+        }
+        let mut late = window(C, [[0.5, 1.0], [1.0, 1.0], [5.0, 1.0]], 100.0);
+        assert_eq!(late.play(3), None);
+        assert_eq!(late.events().len(), 3);
+    }
+
+    /// A gap that is nothing and does not close is no contact, and keeps no other one from being found.
+    #[test]
+    fn gaps_that_do_not_close_never_touch() {
+        let mut window = window(C, [[0.0, 0.0], [1.0, 1.0], [5.0, -1.0]], 100.0);
+        assert_eq!(window.play(3), None);
+        assert_eq!(found(&window), [(8, 1.0)]);
+    }
+
+    #[test]
+    fn ties_go_to_the_lowest_index_and_times_never_fall() {
+        let (near, far) = ([0.0, 1.0], [1.0, 1.0]);
+        for (c, lines, order) in [
+            (C, [far, near, near], [8, 9, 7]),
+            (ALONE, [[2.0, 1.0], far, far], [8, 9, 7]),
+            (ALONE, [far, [2.0, 1.0], far], [7, 9, 8]),
+        ] {
+            let mut window = window(c, lines, 100.0);
+            assert_eq!(window.play(3), None);
+            assert!(window.touched().eq(order));
+            assert!(window.events().is_sorted_by(|a, b| a.time <= b.time));
+        }
+        // Wherever they are among the watched ones.
+        let mut window = test_chain::apart(&[(9, 1.0), (8, 2.0), (7, 1.0)], 100.0);
+        assert_eq!(window.play(3), None);
+        assert!(window.touched().eq([7, 9, 8]));
+    }
+
+    /// Node 9 seems to touch first, by less than a tie: node 8 comes first all the same, and both at times that do not fall.
+    /// However slowly they close, it is their gaps that tell.
+    #[test]
+    fn rounding_does_not_order_ties() {
+        let fast = [[5.0, 1.0], [1.0, 1.0], [1.0 - 1e-12, 1.0]];
+        let slow = [[5.0, 1.0], [1e-3, 1e-3], [1e-3 - 1e-12, 1e-3]];
+        // 10⁻¹³ of the approach, 1 and 21.
+        for (approach, lines, order) in [
+            (0.0, fast, [9, 8]),
+            (20.0, fast, [8, 9]),
+            (0.0, slow, [9, 8]),
+            (20.0, slow, [8, 9]),
+        ] {
+            let mut window = window(ALONE, lines, 4.0);
+            window.approach = approach;
+            assert_eq!(window.play(3), None);
+            assert!(window.touched().eq(order));
+            assert!(window.events().is_sorted_by(|a, b| a.time <= b.time));
+        }
+    }
+
+    /// A pivot that is not positive names its node and when it would have touched, and ends the window. Then nothing has changed.
+    #[test]
+    fn bad_pivots_are_named() {
+        for (matrix, second, time, pivot) in [
+            // 4 − t − 2 (t − 1) closes at t = 2, with the pivot 1 − 4.
+            ([1.0, -2.0, -2.0, 1.0], [4.0, 1.0], 2.0, -3.0),
+            // 4 − 2 t and what the first one carries, t − 1, closes at t = 3: with nothing left of its pivot, or NaN.
+            ([1.0, 1.0, 1.0, 1.0], [4.0, 2.0], 3.0, 0.0),
+            ([1.0, 1.0, 1.0, f64::NAN], [4.0, 2.0], 3.0, f64::NAN),
+        ] {
+            let matrix = DMatrix::from_row_slice(2, 2, &matrix);
+            let lines = [(7, [1.0, 1.0]), (8, second)];
+            let mut window = test_chain::window(&lines, &matrix, &[0.0; 2], f64::INFINITY);
+            let bad = window.play(9);
+            assert!(bad.is_some_and(|bad| (bad.node, bad.time) == (8, time)));
+            assert!(
+                bad.is_some_and(|bad| bad.pivot == pivot || pivot.is_nan() && bad.pivot.is_nan())
+            );
+            assert_eq!((window.events().len(), window.factor().len()), (1, 1));
+            assert_eq!(window.untouched().collect::<Vec<_>>(), [8]);
+        }
+        let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut window = window(singular, [[0.0, 1.0], [0.0, 2.0], [9.0, 1.0]], 100.0);
+        let bad = window.play(3);
+        assert!(
+            bad.is_some_and(|bad| (bad.node, bad.pivot) == (8, 0.0)),
+            "{bad:?}"
+        );
+        assert_eq!(window.events().len(), 1);
+    }
+
+    #[test]
+    fn nodes_of_forgotten_events_are_not_watched_any_more() {
+        let mut window = window(C, [[0.0, 1.0], [1.0, 1.0], [5.0, 1.0]], 100.0);
+        window.play(2);
+        window.truncate(1);
+        assert_eq!((window.events().len(), window.factor().len()), (1, 1));
+        assert_eq!((window.increments().len(), window.touched().len()), (1, 1));
+        assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
+    }
+
+    /// Node 7 has touched at 1: of C it leaves (3/2, 1; 1, 2), of row sums 4 − 3/2 and 3, of rates 1 − 1/2 and 1 − 1/4.
+    #[test]
+    fn what_remains_is_a_window() -> Result<(), crate::Error> {
+        let mut window = window(C, [[1.0, 1.0], [2.0, 1.0], [5.0, 1.0]], 100.0);
+        window.set_courses(
+            [
+                [1.0, 1.0, 0.0, 0.0],
+                [2.0, 1.0, 0.0, 0.0],
+                [5.0, 1.0, 0.125, 0.0],
+            ]
+            .map(course)
+            .into_iter(),
+        );
+        assert_eq!(window.touch(0, 1.0), Ok(()));
+        let remaining = window.remaining(&[2, 1], 1.0, &[0.25, 0.5])?;
+        assert_eq!(remaining.nodes(), [9, 8]);
+        assert_eq!(
+            (remaining.approach, remaining.horizon),
+            (1.0, f64::INFINITY)
+        );
+        assert_eq!(
+            (remaining.position(8), remaining.position(7)),
+            (Some(1), None)
+        );
+        let schur = remaining.schur();
+        let found = [
+            schur.entry(0, 0),
+            schur.entry(0, 1),
+            schur.entry(1, 1),
+            schur.row_sums()[0],
+            schur.row_sums()[1],
+        ];
+        let lines = remaining
+            .courses()
+            .map(|course| [course.line.gap, course.line.closing]);
+        let lines: Vec<f64> = lines.flatten().collect();
+        let expected = [2.0, 1.0, 1.5, 3.0, 2.5, 0.25, 0.75, 0.5, 0.5];
+        for (found, expected) in found.iter().chain(&lines).zip(expected) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+        let mut remaining = remaining;
+        // Node 9 after 1/3; node 8 rises by half of that rate then: 1/2 − t/2 + (3/4) (t − 1/3)/2.
+        assert_eq!(remaining.play(9), None);
+        assert_eq!(remaining.touched().collect::<Vec<_>>(), [9, 8]);
+        Ok(())
+    }
+}

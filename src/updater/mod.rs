@@ -15,6 +15,8 @@
 //! Every updater answers exactly. Iterations offer a path more than that, cheap Schur complements that are nearly
 //! exact: with [`ConjugateGradient`] a path uses these and corrects them ([`loading`](crate::loading)).
 
+#[cfg(test)]
+pub(crate) mod altered;
 mod check;
 mod cholesky;
 mod conjugate_gradient;

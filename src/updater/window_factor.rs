@@ -222,6 +222,8 @@ fn subtract_products(events: &[f64], column: &mut [f64], row: usize) {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
     use crate::updater::dominant;
 
@@ -305,6 +307,59 @@ mod tests {
             (touched.len(), touched.watched(), touched.is_empty()),
             (2, 2, false)
         );
+    }
+
+    /// `(4, 2; 2, 5)` times (1, 2) and (3, −1), in either order of the nodes.
+    #[test]
+    fn factors_solve_for_the_whole_matrix() {
+        let (x, b) = ([[1.0, 3.0], [2.0, -1.0]], [[8.0, 10.0], [12.0, 1.0]]);
+        for order in [[0, 1], [1, 0]] {
+            let factor = WindowFactor::of(two_by_two(), &order).unwrap();
+            let mut found = order.map(|node| b[node]);
+            factor.solve_both(&mut found);
+            for (found, expected) in found
+                .concat()
+                .iter()
+                .zip(order.map(|node| x[node]).concat())
+            {
+                // Roundings of numbers up to 12.
+                assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+            }
+        }
+        let mut first = [[8.0]];
+        let factor = WindowFactor::of(two_by_two(), &[0]).unwrap();
+        factor.solve_both(&mut first);
+        assert_eq!(first, [[2.0]]);
+    }
+
+    /// After any number of events, in blocks and beside them, the Schur complement is that of the nodes that have not touched; once.
+    #[test]
+    fn all_events_are_subtracted_in_the_end() {
+        let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
+        let part = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+                dominant(rows[i], columns[j])
+            })
+        };
+        for events in [0, 1, BLOCK - 1, BLOCK, BLOCK + 3, 2 * BLOCK] {
+            let (done, open) = order.split_at(events);
+            let (mut schur, mut factor) = (schur(), WindowFactor::default());
+            factor.reset(WATCHED, WATCHED);
+            for &position in done {
+                factor.push(&mut schur, position).unwrap();
+            }
+            let coupling = part(done, open);
+            let solved = part(done, done).cholesky().unwrap().solve(&coupling);
+            let expected = part(open, open) - coupling.transpose() * solved;
+            for _ in 0..2 {
+                factor.finish(&mut schur);
+                let found =
+                    DMatrix::from_fn(open.len(), open.len(), |i, j| schur.entry(open[i], open[j]));
+                // A few dozen roundings of numbers up to 400.
+                let error = (found - &expected).amax();
+                assert!(error < 1e-12, "{events}: {error:e}");
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@ use nalgebra::DMatrix;
 
 use super::*;
 use crate::convolution::Convolution;
-use crate::krylov::{LinearSystem, Operator};
+use crate::krylov::{Directions, Equation, Field, LinearSystem, Operator};
 use crate::surface::{Amplitude, SelfAffine};
 use crate::{Boussinesq, Error, FixedLoadSolver, Grid, PeriodicBoussinesq};
 
@@ -74,22 +74,25 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
     preconditioner.update(&contact);
     let mut operator = Operator::new(Convolution::from_table(&table)?);
     let mut steps = |preconditioner: &mut Preconditioner| {
-        let b = vec![1.0; contact.len()];
         let mut system = LinearSystem {
             operator: &mut operator,
             preconditioner,
             contact: &contact,
+        };
+        let equation = Equation {
+            rhs: |_| 1.0,
             tolerance: 1e-9,
+            most_drift: f64::INFINITY,
             max_iterations: 1000,
         };
-        let (mut x, mut residual) = (vec![0.0; b.len()], b.clone());
-        system.solve(&b, &mut x, &mut residual)
+        let nothing = Field::zero(grid.nodes());
+        let start = nothing.pressure.clone();
+        let solved = system.solve(&equation, start, &nothing, &mut Directions::default());
+        solved.map(|(_, iterations)| iterations)
     };
-    let two_levels = steps(&mut preconditioner)?;
+    let two = steps(&mut preconditioner)?;
     preconditioner.coarse = None;
-    let one_level = steps(&mut preconditioner)?;
-    assert!(two_levels.converged && one_level.converged);
-    let (two, one) = (two_levels.iterations, one_level.iterations);
+    let one = steps(&mut preconditioner)?;
     assert!(4 * two <= 3 * one, "{two} steps instead of {one}");
     Ok(())
 }

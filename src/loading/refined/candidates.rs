@@ -127,34 +127,26 @@ mod tests {
     use crate::Error;
     use crate::loading::test_chain;
 
-    /// Lengths of which ties alone matter: with no node in contact all gaps close at the rate 1.
-    fn scales(tie: f64) -> Scales {
-        Scales {
-            length: 1.0,
-            tolerance: 0.0,
-            tie,
-        }
-    }
-
-    /// What is chosen of nodes that touch at `times`, the last node first, with `contact` nodes in contact.
+    /// What is chosen of nodes that touch at `times`, the last node first, with `contact` nodes in contact. Ties alone matter: all
+    /// gaps close at the rate 1.
     fn choose(
         (size, contact): (usize, usize),
         times: &[f64],
         tie: f64,
         extra: &[usize],
-    ) -> Result<Choice, Error> {
-        let mut run = test_chain::run(&[0.0; 100], crate::updater::Dense)?;
+    ) -> Result<Candidates, Error> {
+        let mut run = test_chain::run(&[0.0; 100])?;
         for node in 60..60 + contact {
             run.contact.push(node)?;
         }
-        let mut corrected = Corrected::new(Some(size), true);
-        corrected.ranking = times.iter().copied().zip(0..).collect();
-        corrected.ranking.reverse();
-        Ok(corrected.choose(&run, &scales(tie), extra))
+        let mut refined = Refined::new(Some(size), true);
+        refined.ranking = times.iter().copied().zip(0..).collect();
+        refined.ranking.reverse();
+        Ok(refined.choose(&run, &test_chain::tolerances(1.0, 0.0, tie), extra))
     }
 
-    fn nodes(choice: &Choice) -> Vec<usize> {
-        candidates.watched.iter().map(|&(_, node)| node).collect()
+    fn nodes(candidates: &Candidates) -> Vec<usize> {
+        candidates.nodes.iter().map(|&(_, node)| node).collect()
     }
 
     /// One time a metre: node k touches at k.
@@ -172,8 +164,8 @@ mod tests {
             (9, 9, f64::INFINITY),
             (12, 9, 9.0),
         ] {
-            let choice = choose((60, 0), &times(count), 1e-9, &[])?;
-            assert_eq!(nodes(&choice), (0..watched).collect::<Vec<_>>());
+            let candidates = choose((60, 0), &times(count), 1e-9, &[])?;
+            assert_eq!(nodes(&candidates), (0..watched).collect::<Vec<_>>());
             assert_eq!(
                 (candidates.horizon, candidates.group),
                 (horizon, None),
@@ -182,8 +174,8 @@ mod tests {
         }
         // A quarter of 40 nodes in contact, and of 38, but no more than the size.
         for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
-            let choice = choose((size, contact), &times(30), 1e-9, &[])?;
-            assert_eq!(nodes(&choice).len(), watched, "{contact}");
+            let candidates = choose((size, contact), &times(30), 1e-9, &[])?;
+            assert_eq!(nodes(&candidates).len(), watched, "{contact}");
         }
         Ok(())
     }
@@ -193,17 +185,17 @@ mod tests {
         // At 8.5, as far as a tie behind the next one, which is at 8; not at 8.75.
         let mut near = times(9);
         near.extend([8.75, 8.5, 20.0, 8.25]);
-        let choice = choose((8, 0), &near, 0.5, &[])?;
-        assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 10]);
+        let candidates = choose((8, 0), &near, 0.5, &[])?;
+        assert_eq!(nodes(&candidates), [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 10]);
         assert_eq!((candidates.horizon, candidates.group), (8.75, None));
         // Up to three times the window: 23 of them, not 24.
         for (ties, watched, horizon) in [(23, 32, 20.0), (24, 8, 8.0)] {
             let mut tied = times(9);
             tied.extend(vec![8.0; ties]);
             tied.push(20.0);
-            let choice = choose((8, 0), &tied, 1e-9, &[])?;
+            let candidates = choose((8, 0), &tied, 1e-9, &[])?;
             assert_eq!(
-                (nodes(&choice).len(), candidates.horizon),
+                (nodes(&candidates).len(), candidates.horizon),
                 (watched, horizon)
             );
             assert_eq!(candidates.group, None);
@@ -226,9 +218,9 @@ mod tests {
         ] {
             let mut times = vec![others; 40];
             times[0] = first;
-            let choice = choose((8, 0), &times, tie, &[])?;
+            let candidates = choose((8, 0), &times, tie, &[])?;
             assert_eq!(candidates.group, group, "{first} {others}");
-            assert_eq!((nodes(&choice).len(), candidates.horizon), (8, others));
+            assert_eq!((nodes(&candidates).len(), candidates.horizon), (8, others));
         }
         Ok(())
     }
@@ -236,13 +228,65 @@ mod tests {
     #[test]
     fn nodes_that_are_asked_for_are_watched_once() -> Result<(), Error> {
         // 3 is watched anyway, 9 is the next one behind, 11 is further away.
-        let choice = choose((8, 0), &times(20), 1e-9, &[11, 3, 9])?;
-        assert_eq!(nodes(&choice), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11]);
+        let candidates = choose((8, 0), &times(20), 1e-9, &[11, 3, 9])?;
+        assert_eq!(nodes(&candidates), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11]);
         assert_eq!(candidates.horizon, 10.0);
         let all: Vec<usize> = (9..20).collect();
-        let choice = choose((8, 0), &times(20), 1e-9, &all)?;
-        assert_eq!(nodes(&choice), (0..20).collect::<Vec<_>>());
+        let candidates = choose((8, 0), &times(20), 1e-9, &all)?;
+        assert_eq!(nodes(&candidates), (0..20).collect::<Vec<_>>());
         assert_eq!(candidates.horizon, f64::INFINITY);
         Ok(())
+    }
+
+    fn cut_of(times: &[f64], horizon: f64, most: usize) -> (usize, f64) {
+        let events: Vec<(usize, f64)> = times.iter().copied().enumerate().collect();
+        let tolerances = test_chain::tolerances(1e9, 0.0, 0.25);
+        cut(&test_chain::events(&events), horizon, most, &tolerances)
+    }
+
+    /// Ends in the middle of the widest spacing behind 85 of 100 events, the first of the widest.
+    #[test]
+    fn windows_end_where_events_are_far_apart() {
+        let all = usize::MAX;
+        // Ten events: behind the eighth, ninth or tenth.
+        let even: Vec<f64> = (1..=10).map(f64::from).collect();
+        assert_eq!(cut_of(&even, 11.0, all), (8, 8.5));
+        assert_eq!(cut_of(&even, 13.0, all), (10, 11.5));
+        // No other node touches before the last event: the horizon is rounding.
+        assert_eq!(cut_of(&even, 9.5, all), (8, 8.5));
+        let mut wide = even.clone();
+        wide[9] = 12.0;
+        assert_eq!(cut_of(&wide, 13.0, all), (9, 10.5));
+        // A wider spacing in front of them is none of the window's end.
+        wide = even
+            .iter()
+            .map(|time| if *time > 3.0 { time + 5.0 } else { *time })
+            .collect();
+        assert_eq!(cut_of(&wide, 16.0, all), (8, 13.5));
+        // No more than are wanted: behind the fourth or fifth.
+        assert_eq!(cut_of(&even, 11.0, 5), (4, 4.5));
+        // Where these are ties, the widest of all; where all are, the window goes to its first event.
+        let ties = [1.0, 2.0, 4.0, 4.25, 4.5, 4.75];
+        assert_eq!(cut_of(&ties, 5.0, all), (2, 3.0));
+        assert_eq!(cut_of(&ties[2..], 5.0, all), (1, 4.125));
+    }
+
+    /// Without a horizon a window goes on by a twentieth, and 10⁻¹² of the length, here 10⁻³.
+    #[test]
+    fn windows_without_a_horizon_end_a_little_behind() {
+        let (kept, end) = cut_of(&[2.0, 16.0], f64::INFINITY, usize::MAX);
+        // (16 + 16.8 + 0.001) / 2, rounded; the spacing of 14 is the wider one.
+        assert_eq!((kept, end), (1, 9.0));
+        let (kept, end) = cut_of(&[16.0], f64::INFINITY, usize::MAX);
+        assert!(kept == 1 && (end - 16.4005).abs() < 1e-12, "{end}");
+    }
+
+    #[test]
+    fn ties_stay_together() {
+        let events = test_chain::events(&[(0, 0.5), (0, 1.0), (0, 1.0 + 1e-10), (0, 2.0)]);
+        let tolerances = test_chain::tolerances(1.0, 0.0, 1e-9);
+        for (most, kept) in [(0, 1), (1, 1), (2, 3), (3, 3), (4, 4), (9, 4)] {
+            assert_eq!(with_ties(&events, most, &tolerances), kept, "{most}");
+        }
     }
 }

@@ -172,7 +172,11 @@ fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
+
     use super::*;
+    use crate::Error;
+    use crate::loading::test_chain;
 
     const TIME: f64 = 2.0;
     /// Pressures and rates at the end of two nodes that have joined, and of one that has not.
@@ -204,7 +208,12 @@ mod tests {
             pressure,
             gap: if pressure == [0.0; 2] { LAST } else { [0.0; 2] },
         });
-        correct(schur, &LINES, &ends, TIME)
+        correct(&window(schur, &LINES), &ends, TIME)
+    }
+
+    fn window(schur: &DMatrix<f64>, lines: &[[f64; 2]]) -> Window {
+        let lines: Vec<_> = (0..).zip(lines.iter().copied()).collect();
+        test_chain::window(&lines, schur, &vec![0.0; lines.len()], f64::INFINITY)
     }
 
     /// An error of rank two, or one, is seen whole at the end. With E = S̃ − S of (1, 0, 1/2) and (0, 1, 1) the end
@@ -217,19 +226,23 @@ mod tests {
             (1.0, [0.0, 1.0, 1.0]),
         ]));
         let cubics = [[-1.0, 0.25], [-0.25, 0.0], [-0.75, 0.125]];
-        for ((course, [a, b]), [c2, c3]) in two.hermite.iter().zip(LINES).zip(cubics) {
-            assert_eq!(*course, Course([a, b, c2, c3]));
+        let courses = two.by_courses.courses();
+        for ((course, [a, b]), [c2, c3]) in courses.zip(LINES).zip(cubics) {
+            assert_eq!(*course, test_chain::course([a, b, c2, c3]));
         }
         // The same and the opposite sign of what p and q see of the error.
         let one = corrected(&with_error(&[(1.0, [1.0, 1.0, 0.5])]));
         let opposite = corrected(&with_error(&[(1.0, [1.0, -1.5, 0.5])]));
         for correction in [two, one, opposite] {
-            assert!(correction.updated);
+            assert!(correction.is_updated);
             // Roundings of numbers up to 5, times a condition number of 40.
-            let error = (&correction.schur - exact()).abs().max();
+            let error = (test_chain::matrix(&correction.window) - exact())
+                .abs()
+                .max();
             assert!(error < 1e-12, "{error:e}");
-            for (Course([a, b, c2, c3]), line) in correction.courses.iter().zip(LINES) {
-                assert_eq!([*a, *b], line);
+            for (course, line) in correction.window.courses().zip(LINES) {
+                assert_eq!([course.line.gap, course.line.closing], line);
+                let [c2, c3] = course.curve;
                 assert!(c2.abs() < 1e-12 && c3.abs() < 1e-12, "{c2:e} {c3:e}");
             }
         }
@@ -244,9 +257,12 @@ mod tests {
         ] {
             let schur = with_error(parts);
             let correction = corrected(&schur);
-            assert!(!correction.updated);
-            assert_eq!(correction.schur, schur);
-            assert_eq!(correction.courses, correction.hermite);
+            let Correction {
+                window, by_courses, ..
+            } = &correction;
+            assert!(!correction.is_updated && correction.left_out() == 0.0);
+            assert_eq!(test_chain::matrix(window), schur);
+            assert!(window.courses().eq(by_courses.courses()));
         }
         // One node of which less than nothing, or nothing, would be left: 1 − 2 and 1 − 1.
         for (a, left) in [(1.0, -1.0), (1.0, 0.0), (1.0, 0.5)] {
@@ -257,8 +273,8 @@ mod tests {
             // With t = 1: b = S q = left, and a = b − S p = 0.
             let line = [0.0, left];
             let schur = DMatrix::from_element(1, 1, a);
-            let correction = correct(&schur, &[line], &[end], 1.0);
-            assert_eq!(correction.updated, left > 0.0, "{left}");
+            let correction = correct(&window(&schur, &[line]), &[end], 1.0);
+            assert_eq!(correction.is_updated, left > 0.0, "{left}");
         }
     }
 
@@ -313,5 +329,47 @@ mod tests {
             assert_eq!(inverse_of(a, 0.5, c), None, "{a} {c}");
             assert_eq!(inverse_of(a, 0.0, c), None, "{a} {c}");
         }
+    }
+
+    /// The pivots of nodes alone are 4, 4 and 17/4, of which the error is 1, 1 and 5/4.
+    #[test]
+    fn the_greatest_part_of_a_pivot_is_told() {
+        let correction = corrected(&with_error(&[
+            (1.0, [1.0, 0.0, 0.5]),
+            (1.0, [0.0, 1.0, 1.0]),
+        ]));
+        let left_out = correction.left_out();
+        assert!((left_out - 1.25 / 4.25).abs() < 1e-12, "{left_out}");
+    }
+
+    /// Of nodes that joined pressure and rate, of others gap and slope: with nodes 0 and 2 in contact at the approach 3, which
+    /// carry 3/4 and 1/2, node 1 between them has sunk by 5/4 and sinks by a half more for each metre.
+    #[test]
+    fn the_end_of_a_window_is_that_of_its_solution() -> Result<(), Error> {
+        let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
+        let of_node = [
+            ([0.75, 0.25], [0.0; 2]),
+            ([0.0; 2], [2.25, -0.5]),
+            ([0.5, 0.25], [0.0; 2]),
+            ([0.0; 2], [5.5, -0.75]),
+        ];
+        for nodes in [&[1, 2, 3][..], &[2], &[3, 2, 1, 0]] {
+            let gaps: Vec<_> = nodes.iter().map(|&node| (node, 0.0)).collect();
+            let window = test_chain::apart(&gaps, 1.0);
+            let ends = at_end(&window, &run);
+            assert_eq!(ends.len(), nodes.len());
+            for (end, &node) in ends.iter().zip(nodes) {
+                let (pressure, gap) = of_node[node];
+                for k in 0..2 {
+                    // Roundings of a transform of numbers up to 8.
+                    let errors = [end.pressure[k] - pressure[k], end.gap[k] - gap[k]];
+                    assert!(
+                        errors.iter().all(|error| error.abs() < 1e-13),
+                        "{node} {end:?}"
+                    );
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -62,8 +62,7 @@ impl Refined {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::loading::test_chain;
-    use crate::updater::Dense;
+    use crate::loading::test_chain::{self, Altered};
 
     /// Node 0 is in contact at the approach 1, and nodes 2, 4 and 6 touch after one metre, nearly; node 8 after three.
     fn entered(
@@ -71,22 +70,17 @@ mod tests {
         tie: f64,
         known: &[usize],
         most: usize,
-    ) -> Result<(LoadingRun<Dense>, Corrected), Error> {
+    ) -> Result<(LoadingRun, Refined), Error> {
         let mut gaps = [9.0; 9];
         (gaps[0], gaps[2], gaps[4], gaps[6], gaps[8]) = (0.0, 2.0, 2.0, 2.0, 4.0);
-        let mut run = test_chain::solved(&gaps, &[0], 1.0)?;
-        run.front.renew_load(&run.problem, &run.contact, &run.field);
-        run.survey(false, |_| ())?;
-        let mut corrected = Corrected::new(None, true);
-        corrected.ranking = vec![(3.0, 8), (times[2], 6), (times[0], 2), (times[1], 4)];
-        corrected.last_span = 0.5;
-        let scales = Scales {
-            length: 1.0,
-            tolerance: 0.0,
-            tie,
-        };
-        corrected.enter(&mut run, &scales, (1.0, known), most)?;
-        Ok((run, corrected))
+        let mut run = test_chain::surveyed(&gaps, &[0], 1.0)?;
+        let mut refined = Refined::new(None, true);
+        refined.ranking = vec![(3.0, 8), (times[2], 6), (times[0], 2), (times[1], 4)];
+        refined.last_span = 0.5;
+        let tolerances = test_chain::tolerances(1.0, 0.0, tie);
+        let iterations = &mut Altered::inexact(0.0);
+        refined.enter(&mut run, iterations, &tolerances, (1.0, known), most)?;
+        Ok((run, refined))
     }
 
     /// All that touch within a tie or are known to, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
@@ -102,13 +96,10 @@ mod tests {
             ([1.3, 1.0, f64::INFINITY], 0.25, &[6], 9, &[0, 4, 6]),
             ([1.3, 1.3, f64::INFINITY], 0.25, &[2], 9, &[0, 2]),
         ] {
-            let (run, corrected) = entered(times, tie, known, most)?;
+            let (run, refined) = entered(times, tie, known, most)?;
             assert_eq!(run.contact.order(), order);
-            assert_eq!(run.front.approach(), 2.0);
-            assert_eq!(
-                (corrected.last_span, corrected.rate_span),
-                (1.0, f64::INFINITY)
-            );
+            assert_eq!(run.scalars.approach(), 2.0);
+            assert_eq!((refined.last_span, refined.rate_span), (1.0, f64::INFINITY));
             assert_eq!(run.queue.len(), order.len() - 1);
             for (k, state) in run.queue.iter().enumerate() {
                 assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));

@@ -100,21 +100,14 @@ fn increments(window: &Window, settled: &Settled) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
-
-    use super::super::play::Played;
     use super::*;
     use crate::loading::test_chain;
-    use crate::updater::Dense;
 
     const GAPS: [f64; 6] = [0.0, 9.0, 1.5, 9.0, 2.5, 9.0];
 
-    /// The path with some nodes in contact, and everything at the front known.
-    fn at(contact: &[usize], approach: f64) -> Result<LoadingRun<Dense>, Error> {
-        let mut run = test_chain::solved(&GAPS, contact, approach)?;
-        run.front.renew_load(&run.problem, &run.contact, &run.field);
-        run.survey(false, |_| ())?;
-        Ok(run)
+    /// The path with some nodes in contact, and all scalars known.
+    fn at(contact: &[usize], approach: f64) -> Result<LoadingRun, Error> {
+        test_chain::surveyed(&GAPS, contact, approach)
     }
 
     /// From the approach 1 to 3, nodes 2 and 4 touch at 1.5 and 2.5: states are those of solutions there, if pivots are right and
@@ -122,43 +115,22 @@ mod tests {
     #[test]
     fn states_between_solutions_are_theirs() -> Result<(), Error> {
         for factor in [1.0, 2.0] {
-            let start = at(&[0], 1.0)?.front;
+            let mark = at(&[0], 1.0)?.mark();
             let mut run = at(&[0, 2, 4], 3.0)?;
-            let watched = Watched {
-                nodes: vec![4, 2],
-                lines: vec![[1.5, 1.0], [0.5, 1.0]],
-                schur: DMatrix::identity(2, 2),
-                // Each acts on itself and two neighbours.
-                row_sums: vec![6.0, 6.0],
-                horizon: 9.0,
-            };
-            let correction = Correction {
-                schur: DMatrix::from_diagonal_element(2, 2, 4.0 * factor),
-                courses: watched.courses(),
-                hermite: watched.courses(),
-                updated: true,
-            };
+            let mut window = test_chain::apart(&[(4, 1.5), (2, 0.5)], 9.0);
+            window.schur_mut().matrix_mut().scale_mut(factor);
             let settled = Settled {
-                events: vec![
-                    Played {
-                        position: 1,
-                        time: 0.5,
-                    },
-                    Played {
-                        position: 0,
-                        time: 1.5,
-                    },
-                ],
+                events: test_chain::events(&[(1, 0.5), (0, 1.5)]),
                 errors: vec![1e-3, 2e-3],
             };
-            enqueue(&mut run, &watched, &correction, &settled, (&start, 2.0))?;
+            enqueue(&mut run, window, &settled, (&mark, 2.0))?;
             let found: Vec<_> = run.queue.drain(..).collect();
             assert_eq!(found.len(), 2);
             for (k, state) in found.iter().enumerate() {
                 assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));
                 assert_eq!(state.node, ([2, 4][k], 0));
                 assert_eq!(state.approach_error, [2e-3, 4e-3][k]);
-                let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.front.state(k + 2);
+                let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.scalars.state(k + 2);
                 let pairs = [
                     (state.contact.approach, expected.approach),
                     (state.contact.load, expected.load),
@@ -186,30 +158,15 @@ mod tests {
     /// What is lacking at the end, here twice the load that was walked to, comes in proportion to the way.
     #[test]
     fn what_is_lacking_is_spread() -> Result<(), Error> {
-        let start = at(&[0], 1.0)?.front;
+        let mark = at(&[0], 1.0)?.mark();
         let mut run = at(&[0, 2], 3.0)?;
-        let watched = Watched {
-            nodes: vec![2],
-            lines: vec![[0.5, 1.0]],
-            schur: DMatrix::identity(1, 1),
-            row_sums: vec![6.0],
-            horizon: 9.0,
-        };
-        let correction = Correction {
-            schur: DMatrix::from_diagonal_element(1, 1, 4.0),
-            courses: watched.courses(),
-            hermite: watched.courses(),
-            updated: true,
-        };
         // The event is known to be at 0.5; at 1.0 load and stiffness lack what half a metre of 2/4 N/m gives, 1/4 N.
         let settled = Settled {
-            events: vec![Played {
-                position: 0,
-                time: 1.0,
-            }],
+            events: test_chain::events(&[(0, 1.0)]),
             errors: vec![0.0],
         };
-        enqueue(&mut run, &watched, &correction, &settled, (&start, 2.0))?;
+        let window = test_chain::apart(&[(2, 0.5)], 9.0);
+        enqueue(&mut run, window, &settled, (&mark, 2.0))?;
         let load = run.queue[0].contact.load;
         // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
         assert!((load - 1.125).abs() < 1e-14, "{load}");

@@ -1,7 +1,12 @@
 use super::*;
 use crate::convolution::Convolution;
-use crate::loading::test_chain;
-use crate::updater::Dense;
+use crate::loading::LoadingSolver;
+use crate::loading::phase::Phase;
+use crate::loading::ranking::rank;
+use crate::loading::test_chain::{self, Altered};
+use crate::surface::{Amplitude, SelfAffine};
+use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky};
+use crate::{Boussinesq, InfluenceKernel, PeriodicBoussinesq};
 
 /// The ranking takes 16 bytes for each of 15 nodes, a problem two fields, a table of 9 × 5 coefficients and a convolution, all
 /// gaps four fields and another convolution.
@@ -9,7 +14,7 @@ use crate::updater::Dense;
 fn bytes_of_the_grid_add_up() -> Result<(), Error> {
     let grid = Grid::new(5, 3, 1.0, 1.0)?;
     for boundary in [Boundary::Free, Boundary::Periodic] {
-        let found = LoadingRun::<Dense>::bytes_on(&grid, boundary);
+        let found = LoadingRun::bytes_on(&grid, boundary);
         let convolutions = 2 * Convolution::bytes_on(&grid, boundary);
         let contact = ContactSequence::bytes_on(&grid);
         assert_eq!(found - convolutions - contact, 240 + 240 + 360 + 480);
@@ -30,10 +35,10 @@ fn windows_are_halved_until_they_fit() -> Result<(), Error> {
         (needed(1), 1),
     ] {
         run.memory.budget = fixed + budget;
-        assert_eq!(run.affordable(8)?, size);
+        assert_eq!(run.affordable(&Dense, 8)?, size);
     }
     run.memory.budget = fixed + needed(1) - 1;
-    let refused = run.affordable(8);
+    let refused = run.affordable(&Dense, 8);
     assert!(
         matches!(
             refused,
@@ -54,15 +59,15 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
     run.contact.push(4)?;
     run.releases.push(4, 2, 1);
     run.contact.push(2)?;
-    let mut solution = Solution::default();
+    let (mut phase, mut solution) = (Phase::new(Dense), Solution::default());
     // 16 · 3² bytes of a dense updater.
     run.memory.budget = run.memory.fixed + 144 + RecursiveCholesky::bytes_of(3);
-    assert_eq!(run.solve_at(3, 3.0, &mut solution)?, [0, 2, 4]);
+    assert_eq!(phase.solve_at(&run, (3, 3.0), &mut solution)?, [0, 2, 4]);
     for (found, expected) in solution.pressure.iter().zip([0.75, 0.5, 0.25]) {
         assert!((found - expected).abs() < 1e-15);
     }
     run.memory.budget -= 1;
-    let refused = run.solve_at(3, 3.0, &mut solution);
+    let refused = phase.solve_at(&run, (3, 3.0), &mut solution);
     assert!(
         matches!(
             refused,
@@ -71,42 +76,44 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
         "{refused:?}"
     );
     // What the updater holds needs no room.
-    assert_eq!(run.solve_at(5, 3.0, &mut solution)?, [0, 4, 2]);
+    assert_eq!(phase.solve_at(&run, (5, 3.0), &mut solution)?, [0, 4, 2]);
     Ok(())
 }
 
 /// Gaps of 0, 1, 2 and 5 m at the approach δ, before any contact: a mean of 2 − δ. An overlap of 10⁻¹⁰ (5 + δ) m is rounding.
 #[test]
 fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
-    let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0], Dense)?;
-    run.front.place_at(0.5);
+    let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0])?;
+    run.scalars.place_at(0.5);
     let mut seen = Vec::new();
-    run.survey(false, |line| seen.push((line.node, line.gap, line.closing)))?;
+    run.survey(false, |node, line| {
+        seen.push((node, line.gap, line.closing))
+    })?;
     assert_eq!(
         seen,
         [(0, -0.5, 1.0), (1, 0.5, 1.0), (2, 1.5, 1.0), (3, 4.5, 1.0)]
     );
-    assert_eq!(run.front.state(0).mean_gap, 1.5);
+    assert_eq!(run.scalars.state(0).mean_gap, 1.5);
     // One metre of approach takes one off.
-    run.front.advance(1.5);
-    assert_eq!(run.front.state(0).mean_gap, 0.5);
+    run.scalars.advance(1.5);
+    assert_eq!(run.scalars.state(0).mean_gap, 0.5);
     for (approach, is_refused) in [(4.9e-10, false), (5.1e-10, true)] {
-        run.front.place_at(approach);
+        run.scalars.place_at(approach);
         assert_eq!(
-            run.survey(true, |_| ()).is_err(),
+            run.survey(true, |_, _| ()).is_err(),
             is_refused,
             "{approach:e}"
         );
-        run.survey(false, |_| ())?;
+        run.survey(false, |_, _| ())?;
     }
     // Node 3 alone is out of contact, and the greatest gap is that of node 2: 10⁻¹⁰ (5 + 3) m.
-    let mut run = test_chain::run(&[0.0, 1.0, 5.0, 3.0], Dense)?;
+    let mut run = test_chain::run(&[0.0, 1.0, 5.0, 3.0])?;
     for node in 0..3 {
         run.contact.push(node)?;
     }
     for (overlap, is_refused) in [(7.9e-10, false), (8.1e-10, true)] {
-        run.front.place_at(3.0 + overlap);
-        let found = run.survey(true, |_| ());
+        run.scalars.place_at(3.0 + overlap);
+        let found = run.survey(true, |_, _| ());
         assert_eq!(found.is_err(), is_refused, "{overlap:e} {found:?}");
     }
     Ok(())
@@ -128,12 +135,10 @@ fn tension_beyond_rounding_is_found() -> Result<(), Error> {
         // A hundredth further it is pressure.
         assert!(run.negative_pressure(4.01, overlap).is_none());
     }
-    let mut run = test_chain::run(
-        &[0.0, 8.0],
-        test_chain::Altered::given(vec![f64::NAN], vec![1.0]),
-    )?;
+    let mut run = test_chain::run(&[0.0, 8.0])?;
     run.contact.push(0)?;
-    run.solve_field(1.0, 1.0)?;
+    let mut given = Altered::given(vec![f64::NAN], vec![1.0]);
+    run.advance_field(&mut given, 1.0, 1.0)?;
     assert!(run.negative_pressure(1.0, 0.0).is_some());
     Ok(())
 }
@@ -149,13 +154,10 @@ fn the_greatest_rate_is_found() -> Result<(), Error> {
 }
 
 /// Dense solutions whose pressures and rates are too large by a part.
-fn off(pressure: f64, rate: f64) -> test_chain::Altered {
-    test_chain::Altered::solutions(move |solution| {
-        let parts = [pressure, rate];
-        for (values, part) in [&mut solution.pressure, &mut solution.rate]
-            .into_iter()
-            .zip(parts)
-        {
+fn off(pressure: f64, rate: f64) -> Altered {
+    Altered::solutions(move |solution| {
+        let values = [&mut solution.pressure, &mut solution.rate];
+        for (values, part) in values.into_iter().zip([pressure, rate]) {
             values.iter_mut().for_each(|value| *value *= 1.0 + part);
         }
     })
@@ -173,9 +175,9 @@ fn solutions_close_the_contact() -> Result<(), Error> {
         (0.0, -2.1e-10, Some("rate of the gap")),
         (f64::NAN, 0.0, Some("gap")),
     ] {
-        let mut run = test_chain::run(&[0.0, 4.0, 4.0], off(pressure, rate))?;
+        let mut run = test_chain::run(&[0.0, 4.0, 4.0])?;
         run.contact.push(0)?;
-        match (run.solve_field(2.0, f64::INFINITY), refused) {
+        match (run.renew_field(&mut off(pressure, rate), 2.0), refused) {
             (Ok(()), None) => {}
             (
                 Err(Error::Updater(UpdaterError::ContactNotClosed {
@@ -194,9 +196,9 @@ fn solutions_close_the_contact() -> Result<(), Error> {
 
 #[test]
 fn errors_say_where_the_path_is() -> Result<(), Error> {
-    let mut run = test_chain::run(&[0.0; 6], Dense)?;
+    let mut run = test_chain::run(&[0.0; 6])?;
     run.contact.push(3)?;
-    run.front.place_at(1.5);
+    run.scalars.place_at(1.5);
     let bad = BadPivot {
         node: 5,
         time: 0.25,
@@ -222,5 +224,94 @@ fn errors_say_where_the_path_is() -> Result<(), Error> {
         }
     ));
     assert!(matches!(run.not_finite(), Error::NotFinite { step: 2 }));
+    Ok(())
+}
+
+/// A step that is taken back leaves contact and scalars as they were, or without its last nodes, and whoever solves on the contact is
+/// told of what is left.
+#[test]
+fn steps_are_taken_back() -> Result<(), Error> {
+    for (last, left) in [(0, &[0, 2][..]), (1, &[0]), (9, &[])] {
+        let mut run = test_chain::surveyed(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0, 2.5], &[0, 2], 1.5)?;
+        let before = run.scalars.state(2);
+        let mark = run.mark().without_last(last);
+        run.contact.push(4)?;
+        run.contact.push(6)?;
+        run.scalars.advance(3.0);
+        run.scalars.touch([0.25, 1.0], 4);
+        let mut told = Vec::new();
+        run.roll_back(&mark, |_, contact| {
+            told = contact.order().to_vec();
+            Ok(())
+        })?;
+        assert_eq!((run.contact.order(), &told[..]), (left, left));
+        assert_eq!(run.scalars.state(2), before);
+        // Where nobody can follow the path has gone back all the same.
+        run.contact.push(5)?;
+        let refused = run.roll_back(&mark, |problem, contact| {
+            Dense.solve(problem, contact, 9, 0.0, &mut Solution::default())
+        });
+        assert!(matches!(refused, Err(Error::LengthMismatch { .. })));
+        assert_eq!(run.contact.order(), left);
+    }
+    Ok(())
+}
+
+/// The events of a window on nodes until a horizon.
+fn played<U: LinearUpdater>(
+    run: &mut LoadingRun,
+    updater: &mut U,
+    (nodes, horizon): (&[usize], f64),
+) -> Result<Window, Error> {
+    let mut window = Window::default();
+    run.watch(updater, &mut window, nodes.iter().copied(), horizon)?;
+    assert_eq!(window.play(usize::MAX), None);
+    Ok(window)
+}
+
+/// The events of a window are the same whoever eliminates the contact from its Schur complement, to what that leaves.
+#[test]
+fn windows_are_those_of_any_updater() -> Result<(), Error> {
+    let grid = Grid::new(14, 12, 1.0, 1.5)?;
+    let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+    let kernels: [&dyn InfluenceKernel; 2] = [
+        &Boussinesq::new(grid, 1.0)?,
+        &PeriodicBoussinesq::new(grid, 1.0)?,
+    ];
+    for kernel in kernels {
+        let builder = LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new());
+        let mut path = builder.max_nodes(40).build()?;
+        path.by_ref().try_for_each(|state| state.map(drop))?;
+        let Phase::Factor { updater, .. } = &mut path.phase else {
+            unreachable!("a factor stays");
+        };
+        let run = &mut path.run;
+        assert_eq!(run.contact.len(), 40);
+        run.renew_field(updater, run.scalars.approach())?;
+        let mut ranking = Vec::new();
+        rank(run, &mut ranking)?;
+        ranking.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let nodes: Vec<usize> = ranking[..12].iter().map(|&(_, node)| node).collect();
+        let opened = (&nodes[..], ranking[12].0);
+        let expected = played(run, &mut Dense, opened)?;
+        assert!(expected.events().len() > 2);
+        for found in [
+            played(run, updater, opened)?,
+            played(run, &mut ConjugateGradient::new(), opened)?,
+        ] {
+            assert!(found.touched().eq(expected.touched()));
+            for (found, expected) in found.events().iter().zip(expected.events()) {
+                let error = (found.time - expected.time).abs();
+                assert!(error < 1e-8 * opened.1, "{error:e}");
+            }
+            let increments = found.increments().iter().flatten();
+            for (found, expected) in increments.zip(expected.increments().iter().flatten()) {
+                assert!(
+                    (found - expected).abs() < 1e-8 * expected.abs(),
+                    "{found} {expected}"
+                );
+            }
+        }
+    }
     Ok(())
 }

@@ -1,35 +1,20 @@
 use super::*;
 use crate::loading::test_chain;
-use crate::updater::{Dense, Schur};
+use crate::updater::Dense;
 
 fn windowed(size: Option<usize>) -> Windowed {
-    Windowed::new(ContactGrowth::Monotone, size, true)
-}
-
-/// A window whose nodes have not touched, each with its gap, and all with the closing rate 1 and S = 4 I.
-fn open(windowed: &mut Windowed, nodes: &[(usize, f64)]) -> Result<(), Error> {
-    let lines = nodes.iter().map(|&(node, gap)| Line {
-        node,
-        gap,
-        closing: 1.0,
-    });
-    let (nodes, schur): (&[usize], &mut Schur) = windowed.window.open(lines, (f64::INFINITY, 0.0));
-    schur.resize(nodes.len())?;
-    schur.matrix_mut().fill_with_identity();
-    schur.matrix_mut().scale_mut(4.0);
-    schur.row_sums_mut().fill(1.0);
-    Ok(())
+    Windowed::new(ContactGrowth::Monotone, size)
 }
 
 /// What is chosen of ten nodes, of which node k touches at 10 − k.
-fn chosen(open_nodes: &[usize], size: usize, multiple: usize) -> Result<(Vec<usize>, f64), Error> {
+fn chosen(open_nodes: &[usize], size: usize, multiple: usize) -> (Vec<usize>, f64) {
     let mut windowed = windowed(None);
     let nodes: Vec<(usize, f64)> = open_nodes.iter().map(|&node| (node, 1.0)).collect();
-    open(&mut windowed, &nodes)?;
+    windowed.window = test_chain::apart(&nodes, f64::INFINITY);
     windowed.ranking = (0..10).map(|node| (10.0 - node as f64, node)).collect();
     let (size, horizon) = windowed.choose(size, multiple, [0.0, 1.0]);
     let nodes = windowed.ranking[..size].iter().map(|(_, node)| *node);
-    Ok((nodes.collect(), horizon))
+    (nodes.collect(), horizon)
 }
 
 /// Six of ten nodes tie with one that touches after 1: of these the lowest are watched, and played whatever the others do, up to
@@ -66,14 +51,14 @@ fn of_nodes_that_touch_at_once_the_lowest_are_chosen() {
 }
 
 #[test]
-fn the_next_nodes_are_chosen() -> Result<(), Error> {
+fn the_next_nodes_are_chosen() {
     // The last three by index, up to the time of the fourth from behind.
-    let (nodes, horizon) = chosen(&[], 3, 1)?;
+    let (nodes, horizon) = chosen(&[], 3, 1);
     assert!(nodes == [7, 8, 9] && horizon == 4.0);
-    assert_eq!(chosen(&[], 10, 1)?, ((0..10).collect(), f64::INFINITY));
+    assert_eq!(chosen(&[], 10, 1), ((0..10).collect(), f64::INFINITY));
     // In multiples of four, unless there are no more.
     for (size, count) in [(3, 3), (4, 4), (5, 4), (7, 4), (8, 8), (9, 8)] {
-        let (nodes, horizon) = chosen(&[], size, 4)?;
+        let (nodes, horizon) = chosen(&[], size, 4);
         assert_eq!(nodes, (10 - count..10).collect::<Vec<_>>(), "{size}");
         assert_eq!(horizon, 1.0 + count as f64);
     }
@@ -85,28 +70,28 @@ fn the_next_nodes_are_chosen() -> Result<(), Error> {
         (7, 1, vec![8, 5, 3, 4, 6, 7, 9]),
         (3, 4, vec![8, 7, 9]),
     ] {
-        let (nodes, horizon) = chosen(&[8, 0, 5], size, multiple)?;
+        let (nodes, horizon) = chosen(&[8, 0, 5], size, multiple);
         assert_eq!(nodes, expected);
         let until = 1.0 + expected.len() as f64;
         assert_eq!(horizon, until);
     }
-    Ok(())
 }
 
 #[test]
 fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
-    let mut run = test_chain::run(&[0.0; 100], Dense)?;
-    assert_eq!(windowed(Some(7)).next_size(&run, 100), 7);
-    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 100);
+    let mut run = test_chain::run(&[0.0; 100])?;
+    let cost = Dense.window_cost();
+    assert_eq!(windowed(Some(7)).next_size(&run, cost, 100), 7);
+    assert_eq!(windowed(Some(1000)).next_size(&run, cost, 100), 100);
     // Four to have three of them touch.
-    assert_eq!(windowed(None).next_size(&run, 3), 4);
+    assert_eq!(windowed(None).next_size(&run, cost, 3), 4);
     for node in 0..90 {
         run.contact.push(node)?;
     }
-    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 10);
-    assert_eq!(windowed(None).next_size(&run, 93), 4);
-    assert_eq!(windowed(Some(7)).multiple(&run), 1);
-    assert_eq!(windowed(None).multiple(&run), 96);
+    assert_eq!(windowed(Some(1000)).next_size(&run, cost, 100), 10);
+    assert_eq!(windowed(None).next_size(&run, cost, 93), 4);
+    assert_eq!(windowed(Some(7)).multiple(cost), 1);
+    assert_eq!(windowed(None).multiple(cost), 96);
     Ok(())
 }
 
@@ -139,10 +124,10 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
     );
     // A millionth of a metre is left at node 0, so that eight of them are what rounds.
     for (overlap, is_one) in [(7.99e-6, false), (8.01e-6, true)] {
-        let given = test_chain::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
-        let mut run = test_chain::run(&[0.0, 9.0, 1.0 - overlap], given)?;
+        let mut given = test_chain::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
+        let mut run = test_chain::run(&[0.0, 9.0, 1.0 - overlap])?;
         run.contact.push(0)?;
-        run.solve_field(1.0, 1.0)?;
+        run.advance_field(&mut given, 1.0, 1.0)?;
         assert_eq!(contradiction(&run, 1.0).is_some(), is_one, "{overlap:e}");
     }
     // Where next to nothing is left it is eight times 2⁻⁵² of 9 + 1 m, 1.8·10⁻¹⁴ m.
@@ -154,30 +139,31 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
     // by 3/4 m each for each metre.
     let tension = test_chain::solved(&[0.0, 9.0, 1.5], &[0, 2], 1.0)?;
     assert_eq!(contradiction(&tension, 1.0), Some(f64::NEG_INFINITY));
-    let given = test_chain::Altered::given(vec![1.0; 2], vec![0.75; 2]);
-    let mut run = test_chain::run(&[0.0, 1.5, 0.0, 9.0], given)?;
+    let mut given = test_chain::Altered::given(vec![1.0; 2], vec![0.75; 2]);
+    let mut run = test_chain::run(&[0.0, 1.5, 0.0, 9.0])?;
     run.contact.push(0)?;
     run.contact.push(2)?;
-    run.solve_field(4.0, 1.0)?;
+    run.advance_field(&mut given, 4.0, 1.0)?;
     assert_eq!(contradiction(&run, 4.0), Some(f64::NEG_INFINITY));
     Ok(())
 }
 
 /// A path with nodes 0, 2, 4, 6 and 8 in contact, the last four of a window that began at the approach 1/2; node 10 closes at
 /// `watcher`.
-fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun<Dense>, usize), Error> {
+fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun, usize), Error> {
     let far = 20.0;
     let gaps = [
         0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher,
     ];
-    let mut run = test_chain::run(&gaps, Dense)?;
+    let mut run = test_chain::run(&gaps)?;
     run.contact.push(0)?;
-    run.front.place_at(0.5);
+    run.scalars.place_at(0.5);
     let mut windowed = windowed(Some(8));
-    open(&mut windowed, &[(2, 0.5), (4, 0.75), (6, 1.25), (8, 1.5)])?;
+    let watched = [(2, 0.5), (4, 0.75), (6, 1.25), (8, 1.5)];
+    windowed.window = test_chain::apart(&watched, f64::INFINITY);
     assert_eq!(windowed.window.play(4), None);
-    run.join(&windowed.window)?;
-    windowed.verify(&mut run)?;
+    run.join(&mut Dense, &windowed.window)?;
+    windowed.verify(&mut run, &mut Dense)?;
     Ok((run, windowed.window.events().len()))
 }
 
@@ -200,10 +186,10 @@ fn events_behind_a_contradiction_are_taken_back() -> Result<(), Error> {
 /// cell area of 2 m².
 #[test]
 fn events_become_states() -> Result<(), Error> {
-    let mut run = test_chain::run(&[0.0, 20.0, 1.0, 20.0, 1.25], Dense)?;
-    run.front.place_at(0.5);
+    let mut run = test_chain::run(&[0.0, 20.0, 1.0, 20.0, 1.25])?;
+    run.scalars.place_at(0.5);
     let mut windowed = windowed(Some(8));
-    open(&mut windowed, &[(2, 0.5), (4, 0.75)])?;
+    windowed.window = test_chain::apart(&[(2, 0.5), (4, 0.75)], f64::INFINITY);
     windowed.window.play(2);
     windowed.enqueue(&mut run, 0)?;
     let found: Vec<_> = run
@@ -231,7 +217,7 @@ fn events_become_states() -> Result<(), Error> {
 
 #[test]
 fn the_first_node_that_is_left_is_named() -> Result<(), Error> {
-    let run = test_chain::run(&[0.0; 9], Dense)?;
+    let run = test_chain::run(&[0.0; 9])?;
     let mut windowed = windowed(None);
     windowed.ranking = vec![(1.0, 5), (3.0, 3), (2.0, 8)];
     assert!(matches!(

@@ -162,7 +162,7 @@ mod tests {
         let known = Equilibrium {
             count: 2,
             approach: 3.0,
-            span: 1.0,
+            serves: 1.0,
             load: field([1.0, 2.0], &[10.0, 20.0], 0.5),
             rate: field([0.25, 0.5], &[2.0, 4.0], 0.125),
         };
@@ -198,7 +198,7 @@ mod tests {
         let solved = Equilibrium {
             count: 2,
             approach: 3.0,
-            span: 1.0,
+            serves: 1.0,
             load: of([0.5, 7.0, 0.25, 0.0], [2.5, 1.5, 1.125, 0.0]),
             rate: of([0.25, 7.0, 0.5, 0.0], [0.5, 0.25, 1.0, 0.0]),
         };
@@ -231,7 +231,6 @@ mod tests {
             let mut solution = Solution {
                 pressure: vec![0.5, 0.25],
                 rate: vec![0.25, 0.5],
-                ..Solution::default()
             };
             solved.scale(&problem, &contact, &mut solution);
             [solution.pressure, solution.rate].concat()

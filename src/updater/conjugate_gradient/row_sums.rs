@@ -94,7 +94,6 @@ mod tests {
     use super::super::tests::problem;
     use super::*;
     use crate::test_chain;
-    use crate::updater::Schur;
     use crate::updater::conjugate_gradient::local::Neighbourhood;
 
     /// Row sums in a row of four are 5, 6, 6 and 5. Of node 1 an answer to two nodes takes 1/4 each of what is left there.
@@ -143,14 +142,11 @@ mod tests {
             solver.choose(&contact, before);
             let mut sums = RowSums::start(0, vec![0.0; 240]);
             let parts = (&mut solver, &mut directions);
-            sums.follow(parts, &Watched::default(), 1000, &problem, &contact, 1.0)?;
+            sums.follow(parts, &Proposed::default(), 1000, &problem, &contact, 1.0)?;
             assert_eq!(sums.count(), before);
-            let mut schur = Schur::default();
-            schur.resize(2)?;
-            let neighbourhood = Neighbourhood::new(&problem);
-            let beside = (&neighbourhood, solver.set());
-            let mut watched = Watched::new(&problem, beside, &[3, 7], before, &mut schur);
-            watched.find_row_sums(|local| sums.left_at(&problem, local));
+            let beside = (&Neighbourhood::new(&problem), &solver);
+            let left = |local: &Local| sums.left_at(&problem, local);
+            let proposed = Proposed::new(&problem, beside, (&[3, 7], before), left)?;
             for &node in joined {
                 contact.push(node)?;
             }
@@ -158,7 +154,7 @@ mod tests {
             solver.choose(&contact, contact.len());
             sums.follow(
                 (&mut solver, &mut directions),
-                &watched,
+                &proposed,
                 1000,
                 &problem,
                 &contact,

@@ -1,30 +1,26 @@
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
-use crate::updater::Dense;
-use crate::{Boussinesq, Grid, HeightMap, Spectral};
+use crate::updater::altered::Altered;
+use crate::updater::{Dense, check};
+use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
-/// 480 bytes for each of 240 nodes, and 1000 for each one in contact.
+/// 480 bytes for each of 240 nodes, and 1000 for each one in contact: as iterations on any grid, and as an updater on that of the
+/// problem once it is known.
 #[test]
 fn bytes_are_in_proportion_to_the_grid() -> Result<(), Error> {
-    let problem = problem()?;
     let mut updater = ConjugateGradient::new();
+    let bytes = |updater: &ConjugateGradient, contact| {
+        let of_grid = Iterations::bytes(updater, 240, contact);
+        [of_grid, LinearUpdater::bytes(updater, contact, 9)]
+    };
     let fixed = 240 * 480;
-    updater.make_room(&problem, fixed)?;
-    assert_eq!(
-        [updater.bytes(0, 9), updater.bytes(7, 9)],
-        [fixed, fixed + 7000]
-    );
-    updater.check_room(&problem, fixed + 7000, 7)?;
-    let refused = updater.check_room(&problem, fixed + 6999, 7);
-    assert!(
-        matches!(
-            refused,
-            Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 6 })
-                if needed == fixed + 7000 && budget == fixed + 6999
-        ),
-        "{refused:?}"
-    );
-    assert!(updater.make_room(&problem, fixed - 1).is_err());
+    assert_eq!(bytes(&updater, 0), [fixed, 0]);
+    let problem = problem()?;
+    let contact = ContactSequence::new(problem.grid());
+    updater.solve(&problem, &contact, 0, 0.0, &mut Solution::default())?;
+    assert_eq!(bytes(&updater, 0), [fixed; 2]);
+    assert_eq!(bytes(&updater, 7), [fixed + 7000; 2]);
+    assert_eq!(bytes(&updater, usize::MAX), [usize::MAX; 2]);
     Ok(())
 }
 
@@ -40,7 +36,7 @@ fn tolerances_lie_between_0_and_1() {
     ] {
         let updater = ConjugateGradient::with_tolerance(tolerance);
         assert_eq!(updater.is_ok(), is_one, "{tolerance}");
-        assert!(updater.is_ok_and(|updater| updater.profile().tolerance == tolerance) == is_one);
+        assert!(updater.is_ok_and(|updater| updater.tolerance() == tolerance) == is_one);
     }
 }
 
@@ -61,62 +57,98 @@ fn error(found: &[f64], expected: &[f64]) -> f64 {
     errors.fold(0.0, f64::max) / most
 }
 
-/// A window of a path: 60 nodes in contact are solved, ten watched, six of them join and are solved again. Then other parts of the
-/// contact are asked for, inside the window and before it, without a rate and as exactly as it goes; and the whole once
-/// more. All are those of a dense solution, whatever was known before.
+/// Nodes in the order of their gaps.
+pub(super) fn by_gap(problem: &Problem) -> Vec<usize> {
+    let gap = problem.initial_gap();
+    let mut nodes: Vec<usize> = (0..gap.len()).collect();
+    nodes.sort_by(|a, b| gap[*a].total_cmp(&gap[*b]));
+    nodes
+}
+
+/// A dense solution, and the displacements that it causes.
+fn dense(
+    problem: &Problem,
+    contact: &ContactSequence,
+    (count, approach): (usize, f64),
+) -> Result<(Solution, Vec<f64>), Error> {
+    let mut solution = Solution::default();
+    Dense.solve(problem, contact, count, approach, &mut solution)?;
+    let mut pressure = vec![0.0; problem.grid().nodes()];
+    for (&node, value) in contact.order().iter().zip(&solution.pressure) {
+        pressure[node] = *value;
+    }
+    let mut displacement = vec![0.0; pressure.len()];
+    problem.convolution().apply(&pressure, &mut displacement)?;
+    Ok((solution, displacement))
+}
+
+/// A window of a path: 60 nodes in contact are solved, ten proposed, six of them join and are solved again. Then other parts of the
+/// contact are asked for, inside the window and before it, displacements alone and solutions as exact as they go; and the whole
+/// once more. All are those of a dense solution, whatever was known before.
 #[test]
 fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     let problem = problem()?;
-    let gap = problem.initial_gap();
-    let mut nodes: Vec<usize> = (0..240).collect();
-    nodes.sort_by(|a, b| gap[*a].total_cmp(&gap[*b]));
+    let nodes = by_gap(&problem);
     let (approach, span) = (3.0, 0.1);
     let mut contact = ContactSequence::with_order(problem.grid(), nodes[..60].iter().copied())?;
     let mut updater = ConjugateGradient::new();
-    let mut solution = Solution::default();
-    let of_path = |contact: &ContactSequence| SolveRequest {
-        span,
-        ..SolveRequest::exact(contact.len(), approach)
-    };
-    updater.solve(&problem, &contact, of_path(&contact), &mut solution)?;
-    let mut schur = Schur::default();
-    updater.watch(&problem, &contact, &nodes[60..70], &mut schur)?;
-    let positions: Vec<usize> = (0..6).collect();
-    let touched = WindowFactor::of(schur, &positions)?;
+    let (mut solved, mut schur) = (Solved::default(), Schur::default());
+    updater.advance(&problem, &contact, approach, span, &mut solved)?;
+    updater.propose(&problem, &contact, &nodes[60..70], &mut schur)?;
+    assert_eq!(schur.size(), 10);
     for &node in &nodes[60..66] {
         contact.push(node)?;
     }
-    updater.join(&problem, &contact, &touched)?;
-    updater.solve(&problem, &contact, of_path(&contact), &mut solution)?;
-    let end = solution.clone();
-    for (count, asked_span, at) in [
-        (63, 0.0, approach),
-        (60, 0.0, approach),
-        (30, 0.0, approach),
-        (63, f64::INFINITY, approach),
-        (30, f64::INFINITY, approach),
-        (66, f64::INFINITY, approach),
-        (66, f64::INFINITY, 2.5),
-        (66, 0.0, 3.5),
+    let mut end = Solved::default();
+    updater.advance(&problem, &contact, approach, span, &mut end)?;
+    for (count, at) in [
+        (63, approach),
+        (60, approach),
+        (30, approach),
+        (66, approach),
+        (66, 2.5),
+        (66, 3.5),
     ] {
-        let request = SolveRequest {
-            span: asked_span,
-            ..SolveRequest::exact(count, at)
-        };
-        updater.solve(&problem, &contact, request, &mut solution)?;
-        let mut expected = Solution::default();
-        Dense.solve(&problem, &contact, request, &mut expected)?;
-        // Exact solutions leave 10⁻¹⁰ of the approach, those inside a path some 10⁻⁸, and the condition number is some ten.
-        let allowed = if asked_span > 0.0 { 1e-7 } else { 1e-5 };
-        let found = error(&solution.pressure, &expected.pressure);
-        assert!(found < allowed, "{count} {asked_span} {at}: {found:e}");
-        if asked_span > 0.0 {
-            assert!(error(&solution.rate, &expected.rate) < allowed);
-        }
+        let (expected, displacement) = dense(&problem, &contact, (count, at))?;
+        let found = updater.probe(&problem, &contact, count, at, 0.0)?;
+        // Gaps are exact to some 10⁻⁸ of the approach inside a path.
+        let off = error(&found, &displacement);
+        assert!(off < 1e-7, "{count} {at}: {off:e}");
+        // Exact solutions leave 10⁻¹⁰ of it, and the condition number is some ten.
+        let mut found = Solution::default();
+        updater.solve_apart(&problem, &contact, count, at, &mut found)?;
+        let off = error(&found.pressure, &expected.pressure);
+        assert!(off < 1e-7, "{count} {at}: {off:e}");
+        assert!(error(&found.rate, &expected.rate) < 1e-7);
     }
     // The path has noticed nothing.
-    updater.solve(&problem, &contact, of_path(&contact), &mut solution)?;
-    assert_eq!(solution, end);
+    updater.advance(&problem, &contact, approach, span, &mut solved)?;
+    assert_eq!(solved.solution, end.solution);
+    assert_eq!(solved.displacement, end.displacement);
+    Ok(())
+}
+
+/// Schur complements are exact to the tolerance, on a kernel of free and of periodic boundaries, and after nodes have been taken back:
+/// everything that is asked of an updater.
+#[test]
+fn as_an_updater_it_is_exact() -> Result<(), Error> {
+    let grid = Grid::new(14, 12, 1.0, 1.5)?;
+    let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+    let kernels: [&dyn InfluenceKernel; 3] = [
+        &Boussinesq::new(grid, 1.0)?,
+        &PeriodicBoussinesq::new(grid, 1.0)?,
+        &Spectral::new(grid, 1.0)?,
+    ];
+    for kernel in kernels {
+        let problem = Problem::new(&surface, kernel)?;
+        for tolerance in [1e-10, 1e-6] {
+            let mut updater = ConjugateGradient::with_tolerance(tolerance)?;
+            let report = check(&mut updater, &problem)?;
+            assert!(report.truncates && report.releases, "{report:?}");
+            // Of the coefficient of a node on itself.
+            assert!(report.schur_error < 10.0 * tolerance, "{report:?}");
+        }
+    }
     Ok(())
 }
 
@@ -127,12 +159,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     let mut contact = ContactSequence::with_order(problem.grid(), 0..60)?;
     let mut updater = ConjugateGradient::new();
     let mut solution = Solution::default();
-    updater.solve(
-        &problem,
-        &contact,
-        SolveRequest::exact(60, 3.0),
-        &mut solution,
-    )?;
+    updater.solve(&problem, &contact, 60, 3.0, &mut solution)?;
     let mut schur = Schur::default();
     updater.watch(&problem, &contact, &[70, 71, 72, 73, 74, 75], &mut schur)?;
     let touched = WindowFactor::of(schur, &[0, 1, 2, 3, 4, 5])?;
@@ -152,12 +179,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     // More may join.
     updater.join(&problem, &contact, &touched)?;
     assert!(matches!(
-        updater.solve(
-            &problem,
-            &contact,
-            SolveRequest::exact(68, 3.0),
-            &mut solution
-        ),
+        updater.solve(&problem, &contact, 68, 3.0, &mut solution),
         Err(Error::LengthMismatch {
             expected: 67,
             found: 68
@@ -169,34 +191,34 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
             .join(&problem, &contact, &WindowFactor::default())
             .is_err()
     );
-    let mut schur = Schur::default();
-    let refused = updater.watch(&problem, &contact, &[90], &mut schur);
-    assert!(refused.is_err());
+    let propose = |updater: &mut ConjugateGradient, contact: &_| {
+        updater.propose(&problem, contact, &[90], &mut Schur::default())
+    };
+    assert!(propose(&mut updater, &contact).is_err());
     // Told of the cut, and of a node that has left, it goes on from there.
     updater.truncate(&problem, &contact)?;
-    updater.watch(&problem, &contact, &[90], &mut schur)?;
+    propose(&mut updater, &contact)?;
     let position = contact.remove(7)?;
     updater.release(&problem, &contact, 7, position)?;
-    updater.watch(&problem, &contact, &[90], &mut schur)
+    propose(&mut updater, &contact).map(drop)
 }
 
-/// On periodic cells that are too long nothing is watched; pressures on a known contact are those of a dense solution.
+/// On periodic cells that are too long nothing is proposed; pressures on a known contact are those of a dense solution.
 #[test]
-fn long_periodic_cells_are_not_watched() -> Result<(), Error> {
+fn on_long_periodic_cells_nothing_is_proposed() -> Result<(), Error> {
     let grid = Grid::new(6, 5, 1.0, 1e4)?;
     let heights = nalgebra::DMatrix::from_fn(6, 5, |ix, iy| ((ix * ix + 3 * iy) as f64).sin());
     let problem = Problem::new(&HeightMap::new(heights)?, &Spectral::new(grid, 1.0)?)?;
     let contact = ContactSequence::with_order(grid, (0..30).step_by(3))?;
     let mut updater = ConjugateGradient::new();
-    let refused = updater.watch(&problem, &contact, &[1], &mut Schur::default());
+    let refused = updater.propose(&problem, &contact, &[1], &mut Schur::default());
     assert!(
         matches!(refused, Err(Error::OutOfRange { value: 1e4, .. })),
         "{refused:?}"
     );
-    let request = SolveRequest::exact(10, 3.0);
-    let (mut found, mut expected) = (Solution::default(), Solution::default());
-    updater.solve(&problem, &contact, request, &mut found)?;
-    Dense.solve(&problem, &contact, request, &mut expected)?;
+    let mut found = Solution::default();
+    updater.solve(&problem, &contact, 10, 3.0, &mut found)?;
+    let (expected, _) = dense(&problem, &contact, (10, 3.0))?;
     // Gaps are exact to 1e-10, and the condition number of the matrix is some 1e5.
     assert!(error(&found.pressure, &expected.pressure) < 1e-5);
     Ok(())
@@ -206,10 +228,11 @@ fn long_periodic_cells_are_not_watched() -> Result<(), Error> {
 #[test]
 fn boxes_pass_everything_on() -> Result<(), Error> {
     let problem = problem()?;
-    let mut boxed: Box<dyn LinearUpdater> = Box::new(ConjugateGradient::with_tolerance(1e-6)?);
-    assert!(boxed.make_room(&problem, 240 * 480 - 1).is_err());
-    boxed.make_room(&problem, 240 * 480)?;
-    assert_eq!(boxed.bytes(1, 0), 240 * 480 + 1000);
-    assert!(!boxed.profile().exact && boxed.profile().tolerance == 1e-6);
+    let mut boxed: Box<dyn LinearUpdater> = Box::new(Altered::needing(1000));
+    assert!(boxed.make_room(&problem, 999).is_err());
+    boxed.make_room(&problem, 1000)?;
+    boxed = Box::new(ConjugateGradient::with_tolerance(1e-6)?);
+    assert_eq!(boxed.bytes(1, 0), 1000);
+    assert!(matches!(boxed.method(), Method::Iterations(found) if found.tolerance() == 1e-6));
     Ok(())
 }

@@ -1,23 +1,28 @@
 use super::*;
+use crate::updater::Solution;
 use crate::{Error, test_chain};
 
 /// Nodes 1 and 3 of a row are watched beside 0 and 2 in contact: x = (1/4, 1/4) and 1/4 of node 2, and
 /// S = (4 − 1/2, −1/4; −1/4, 4 − 1/4). Their gaps are 1 m and 3 m.
-fn watched() -> Result<(Problem, Watched), Error> {
+fn proposed() -> Result<(Problem, Proposed), Error> {
     let problem = test_chain::problem(&[0.0, 1.0, 2.0, 3.0, 9.0])?;
     let local = |node: usize, contact: &[u32]| Local {
         node,
         contact: contact.to_vec(),
         weights: vec![0.25; contact.len()],
     };
-    let watched = Watched {
+    let mut complement = Schur::default();
+    complement.resize(2)?;
+    // Above the diagonal there is nothing.
+    let matrix = [3.5, -0.25, f64::NAN, 3.75];
+    complement.as_mut_slice().copy_from_slice(&matrix);
+    complement.row_sums_mut().copy_from_slice(&[7.0, 1.5]);
+    let proposed = Proposed {
         locals: vec![local(1, &[0, 2]), local(3, &[2])],
         count: 2,
-        // Above the diagonal there is nothing.
-        complement: vec![3.5, -0.25, f64::NAN, 3.75],
-        row_sums: vec![7.0, 1.5],
+        complement,
     };
-    Ok((problem, watched))
+    Ok((problem, proposed))
 }
 
 fn near(found: &[f64], expected: &[f64]) {
@@ -32,7 +37,7 @@ fn near(found: &[f64], expected: &[f64]) {
 /// quarter of that off each neighbour.
 #[test]
 fn nodes_that_join_are_carried() -> Result<(), Error> {
-    let (problem, watched) = watched()?;
+    let (problem, proposed) = proposed()?;
     let mut field = Field {
         pressure: vec![1.0, 0.0, 0.5, 0.0, 0.0],
         displacement: vec![4.0, 1.5, 2.0, 0.5, 0.0],
@@ -40,7 +45,7 @@ fn nodes_that_join_are_carried() -> Result<(), Error> {
     };
     let overlap = |node: usize| 4.0 - problem.initial_gap()[node];
     let one = 1.5 / 3.5;
-    let (pressure, sum) = watched.carried(&field, &[1], overlap);
+    let (pressure, sum) = proposed.carried(&field, &[1], overlap);
     near(
         &pressure,
         &[1.0 - one / 4.0, one, 0.5 - one / 4.0, 0.0, 0.0],
@@ -50,7 +55,7 @@ fn nodes_that_join_are_carried() -> Result<(), Error> {
     let p1 = (1.5 * 3.75 + 0.5 * 0.25) / 13.0625;
     let p3 = (0.5 * 3.5 + 1.5 * 0.25) / 13.0625;
     for joined in [[1, 3], [3, 1]] {
-        let (pressure, sum) = watched.carried(&field, &joined, overlap);
+        let (pressure, sum) = proposed.carried(&field, &joined, overlap);
         near(
             &pressure,
             &[1.0 - p1 / 4.0, p1, 0.5 - p1 / 4.0 - p3 / 4.0, p3, 0.0],
@@ -60,13 +65,13 @@ fn nodes_that_join_are_carried() -> Result<(), Error> {
     // Nobody, a node that was not watched, and displacements that are not known.
     for joined in [&[][..], &[4], &[1, 4]] {
         assert_eq!(
-            watched.carried(&field, joined, overlap),
+            proposed.carried(&field, joined, overlap),
             (field.pressure.clone(), 0.0)
         );
     }
     field.displacement.clear();
     assert_eq!(
-        watched.carried(&field, &[1], overlap),
+        proposed.carried(&field, &[1], overlap),
         (field.pressure.clone(), 0.0)
     );
     Ok(())
@@ -75,7 +80,7 @@ fn nodes_that_join_are_carried() -> Result<(), Error> {
 /// Row sums of 7 and 1.5 are left: 7/3.5 is carried by node 1.
 #[test]
 fn row_sums_are_carried() -> Result<(), Error> {
-    let (problem, watched) = watched()?;
+    let (problem, proposed) = proposed()?;
     for (contact, follows, expected) in [
         (&[0, 2][..], true, [1.0; 5]),
         (&[2, 0, 1], true, [0.5, 3.0, 0.5, 1.0, 1.0]),
@@ -84,12 +89,27 @@ fn row_sums_are_carried() -> Result<(), Error> {
     ] {
         let contact = ContactSequence::with_order(problem.grid(), contact.iter().copied())?;
         let mut pressure = vec![1.0; 5];
-        assert_eq!(watched.carry_row_sums(&contact, &mut pressure), follows);
+        assert_eq!(proposed.carry_row_sums(&contact, &mut pressure), follows);
         near(&pressure, &expected);
     }
-    let mut watched = watched;
-    watched.find_row_sums(|local| local.node as f64);
-    assert_eq!(watched.row_sums(), [1.0, 3.0]);
+    Ok(())
+}
+
+/// The same as found from the problem: in single precision, and with row sums as they are told.
+#[test]
+fn nodes_are_proposed() -> Result<(), Error> {
+    let (problem, expected) = proposed()?;
+    let contact = ContactSequence::with_order(problem.grid(), [0, 2])?;
+    let mut solver = Solver::new(&problem);
+    solver.choose(&contact, 2);
+    let beside = (&Neighbourhood::new(&problem), &solver);
+    let found = Proposed::new(&problem, beside, (&[1, 3], 2), |local| local.node as f64)?;
+    assert_eq!((found.count, found.complement().size()), (2, 2));
+    assert_eq!(found.complement().row_sums(), [1.0, 3.0]);
+    for (i, j) in [(0, 0), (1, 0), (1, 1)] {
+        let [found, expected] = [&found, &expected].map(|all| all.complement().entry(i, j));
+        assert!((found - expected).abs() < 1e-6, "{i} {j}: {found}");
+    }
     Ok(())
 }
 
@@ -103,7 +123,7 @@ fn solved(count: usize) -> Equilibrium {
     Equilibrium {
         count,
         approach: 4.0,
-        span: 1.0,
+        serves: 1.0,
         load: of([3.5, 2.0, 1.75, 0.5, 0.0]),
         rate: of([0.75, 0.5, 0.0, 0.25, 0.0]),
     }
@@ -112,8 +132,8 @@ fn solved(count: usize) -> Equilibrium {
 /// Displacements and what residuals nearby add to them: (1/2 + 1/4)/4 and 1/16, and of rates (1/4 + 1)/4 and 1/4.
 #[test]
 fn residuals_improve_displacements() -> Result<(), Error> {
-    let (problem, watched) = watched()?;
-    let improved = watched.improved(&problem, &solved(2));
+    let (problem, proposed) = proposed()?;
+    let improved = proposed.improved(&problem, &solved(2));
     near(&improved.concat(), &[2.1875, 0.8125, 0.5625, 0.5]);
     Ok(())
 }
@@ -122,45 +142,48 @@ fn residuals_improve_displacements() -> Result<(), Error> {
 /// by 1/16 and −1/4 of that. Of rates it is 1/2 − 5/16, and 1/4.
 #[test]
 fn residuals_improve_solutions_inside_a_window() -> Result<(), Error> {
-    let (problem, watched) = watched()?;
+    let (problem, proposed) = proposed()?;
     let contact = ContactSequence::with_order(problem.grid(), [0, 2, 1])?;
-    let fresh = || Solution {
-        pressure: vec![1.0, 2.0, 3.0],
-        rate: vec![4.0, 5.0, 6.0],
+    let fresh = || Solved {
+        solution: Solution {
+            pressure: vec![1.0, 2.0, 3.0],
+            rate: vec![4.0, 5.0, 6.0],
+        },
         displacement: [vec![0.0; 5], vec![10.0; 5]],
     };
-    let flat = |solution: &Solution| {
-        let [u, rate] = &solution.displacement;
-        [&solution.pressure[..], &solution.rate, u, rate].concat()
+    let flat = |solved: &Solved| {
+        let (Solution { pressure, rate }, [u, u_rate]) = (&solved.solution, &solved.displacement);
+        [&pressure[..], rate, u, u_rate].concat()
+    };
+    let improved = |equilibrium: &Equilibrium| {
+        let mut solved = fresh();
+        proposed.improve(&problem, &contact, equilibrium, &mut solved);
+        flat(&solved)
     };
     let [change, of_rate] = [0.8125 / 3.5, 0.1875 / 3.5];
-    let mut solution = fresh();
-    watched.improve(&problem, &contact, &solved(3), &mut solution);
+    let found = improved(&solved(3));
     let mut expected = fresh();
-    expected.pressure[2] += change;
-    expected.rate[2] += of_rate;
+    expected.solution.pressure[2] += change;
+    expected.solution.rate[2] += of_rate;
     expected.displacement[0][3] += 0.0625 - 0.25 * change;
     expected.displacement[1][3] += 0.25 - 0.25 * of_rate;
-    near(&flat(&solution), &flat(&expected));
+    near(&found, &flat(&expected));
     // Without a rate that stays as it is.
     let mut without = solved(3);
     without.rate.displacement.clear();
-    let mut solution = fresh();
-    watched.improve(&problem, &contact, &without, &mut solution);
-    (expected.rate, expected.displacement[1]) = (fresh().rate, vec![10.0; 5]);
-    near(&flat(&solution), &flat(&expected));
+    let found = improved(&without);
+    (expected.solution.rate, expected.displacement[1]) = (fresh().solution.rate, vec![10.0; 5]);
+    near(&found, &flat(&expected));
     // Before any of them has joined, all displacements improve and no pressure does.
-    let mut solution = fresh();
-    watched.improve(&problem, &contact, &solved(2), &mut solution);
+    let found = improved(&solved(2));
     expected = fresh();
     expected.displacement[0][1] += 0.1875;
     expected.displacement[0][3] += 0.0625;
     expected.displacement[1][1] += 0.3125;
     expected.displacement[1][3] += 0.25;
-    near(&flat(&solution), &flat(&expected));
+    near(&found, &flat(&expected));
     // Of fewer nodes than were in contact then, nothing is known.
-    let mut solution = fresh();
-    watched.improve(&problem, &contact, &solved(1), &mut solution);
-    assert_eq!(solution, fresh());
+    let found = improved(&solved(1));
+    assert_eq!(found, flat(&fresh()));
     Ok(())
 }

@@ -1,4 +1,4 @@
-use super::super::tests::problem;
+use super::super::tests::{by_gap, problem};
 use super::*;
 
 const CRITERIA: Criteria = Criteria {
@@ -6,87 +6,105 @@ const CRITERIA: Criteria = Criteria {
     max_iterations: 1000,
 };
 
-/// A window at its end: 60 nodes were in contact and ten watched, of which six have joined.
+/// A window at its end: 60 nodes were in contact and ten proposed, of which six have joined.
 struct Window {
     problem: Problem,
     contact: ContactSequence,
-    state: State,
-    solution: Solution,
+    solutions: Solutions,
 }
 
 impl Window {
     fn new() -> Result<Self, Error> {
         let problem = problem()?;
-        let gap = problem.initial_gap();
-        let mut nodes: Vec<usize> = (0..240).collect();
-        nodes.sort_by(|a, b| gap[*a].total_cmp(&gap[*b]));
+        let nodes = by_gap(&problem);
         let mut window = Self {
             contact: ContactSequence::with_order(problem.grid(), nodes[..60].iter().copied())?,
-            state: State::new(&problem),
-            solution: Solution::default(),
+            solutions: Solutions::new(&problem),
             problem,
         };
-        window.solve(60, 3.0, 0.1)?;
-        let Self {
-            problem,
-            contact,
-            state,
-            ..
-        } = &mut window;
-        let mut schur = Schur::default();
-        state.watch(CRITERIA, problem, contact, &nodes[60..70], &mut schur)?;
-        assert_eq!(state.sums.count(), 60);
+        window.ask(Asked::Advance(0.1), 60, 3.0)?;
+        window.propose(&nodes[60..70])?;
+        assert_eq!(window.solutions.sums.count(), 60);
         for &node in &nodes[60..66] {
-            contact.push(node)?;
+            window.contact.push(node)?;
         }
-        window.solve(66, 3.0, 0.1)?;
+        window.ask(Asked::Advance(0.1), 66, 3.0)?;
         Ok(window)
     }
 
-    fn solve(&mut self, count: usize, approach: f64, span: f64) -> Result<(), Error> {
+    fn propose(&mut self, nodes: &[usize]) -> Result<(), Error> {
         let Self {
             problem,
             contact,
-            state,
-            solution,
+            solutions,
         } = self;
-        let request = SolveRequest {
-            span,
-            ..SolveRequest::exact(count, approach)
-        };
-        state.solve(CRITERIA, problem, contact, request, solution)
+        let proposed = solutions.propose(CRITERIA, problem, contact, nodes);
+        proposed.map(|_| ())
     }
+
+    /// Asks for a solution, and checks that there is a value for each node: of rates where they are known.
+    fn ask(&mut self, asked: Asked, count: usize, approach: f64) -> Result<(), Error> {
+        let Self {
+            problem,
+            contact,
+            solutions,
+        } = self;
+        let (at, mut solved) = ((count, approach), Solved::default());
+        match asked {
+            Asked::Advance(span) => {
+                let at = (approach, Aim::Span(span));
+                solutions.advance(CRITERIA, problem, contact, at, &mut solved)?;
+            }
+            Asked::Apart => solutions.solve_apart(CRITERIA, problem, contact, at, &mut solved)?,
+            Asked::Probe => {
+                let displacement = solutions.probe(CRITERIA, problem, contact, at, 0.0)?;
+                assert_eq!(displacement.len(), 240);
+                return Ok(());
+            }
+        }
+        let Solution { pressure, rate } = &solved.solution;
+        assert_eq!([pressure.len(), rate.len()], [count; 2]);
+        assert!(solved.displacement.iter().all(|field| field.len() == 240));
+        Ok(())
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Asked {
+    Advance(f64),
+    Apart,
+    Probe,
 }
 
 /// The end of a window is an instant of it, and solutions inside are others; questions are none.
 #[test]
 fn solutions_inside_a_window_are_kept() -> Result<(), Error> {
     let mut window = Window::new()?;
-    assert_eq!((window.state.count(), window.state.instants.len()), (66, 1));
-    for (count, approach, span, known) in [
+    let solutions = &window.solutions;
+    assert_eq!((solutions.count(), solutions.instants.len()), (66, 1));
+    for (count, approach, asked, known) in [
         // Of the whole contact: as it is, more exactly, and elsewhere.
-        (66, 3.0, 0.1, 1),
-        (66, 3.0, f64::INFINITY, 1),
-        (66, 2.5, 0.0, 1),
+        (66, 3.0, Asked::Advance(0.1), 1),
+        (66, 3.0, Asked::Apart, 1),
+        (66, 2.5, Asked::Apart, 1),
         // Before the window, and inside it exactly: from nothing.
-        (40, 3.0, 0.0, 1),
-        (63, 3.0, f64::INFINITY, 1),
+        (40, 3.0, Asked::Probe, 1),
+        (63, 3.0, Asked::Apart, 1),
         // Where it begins nothing has joined.
-        (60, 3.0, 0.0, 1),
-        (63, 3.0, 0.0, 2),
-        (64, 3.0, 0.0, 3),
-        (65, 3.0, 0.0, 3),
+        (60, 3.0, Asked::Probe, 1),
+        (63, 3.0, Asked::Probe, 2),
+        (64, 3.0, Asked::Probe, 3),
+        (65, 3.0, Asked::Probe, 3),
+        (66, 2.5, Asked::Probe, 3),
     ] {
-        window.solve(count, approach, span)?;
+        window.ask(asked, count, approach)?;
+        let Window { solutions, .. } = &window;
         assert_eq!(
-            window.state.instants.len(),
+            solutions.instants.len(),
             known,
-            "{count} {approach} {span}"
+            "{count} {approach} {asked:?}"
         );
-        assert_eq!((window.state.count(), window.state.now.approach), (66, 3.0));
-        assert_eq!(window.solution.pressure.len(), count);
-        // No rate is solved for that is not asked for.
-        assert_eq!(window.solution.displacement[1].is_empty(), span == 0.0);
+        assert_eq!((solutions.count(), solutions.now.approach), (66, 3.0));
     }
     Ok(())
 }
@@ -97,13 +115,19 @@ fn windows_are_taken_back() -> Result<(), Error> {
     for (left, is_known) in [(60, true), (63, false), (50, false)] {
         let mut window = Window::new()?;
         window.contact.truncate(left);
-        window.state.truncate(&window.contact);
-        let state = &window.state;
-        assert_eq!((state.count(), state.now.load.is_known()), (left, is_known));
-        assert_eq!((state.instants.len(), state.before.is_none()), (0, true));
+        window.solutions.truncate(&window.contact);
+        let solutions = &window.solutions;
+        assert_eq!(
+            (solutions.count(), solutions.now.load.is_known()),
+            (left, is_known)
+        );
+        assert_eq!(
+            (solutions.instants.len(), solutions.before.is_none()),
+            (0, true)
+        );
         // Row sums that were solved for are kept where the window began.
-        assert_eq!(state.sums.count(), left);
-        let pressures = state
+        assert_eq!(solutions.sums.count(), left);
+        let pressures = solutions
             .now
             .load
             .pressure
@@ -119,20 +143,35 @@ fn windows_are_taken_back() -> Result<(), Error> {
 #[test]
 fn row_sums_are_taken_back() -> Result<(), Error> {
     let mut window = Window::new()?;
-    let Window {
-        problem,
-        contact,
-        state,
-        ..
-    } = &mut window;
-    let watched = (0..240).find(|&node| !contact.contains(node));
-    let watched: Vec<usize> = watched.into_iter().collect();
-    state.watch(CRITERIA, problem, contact, &watched, &mut Schur::default())?;
-    assert_eq!(state.sums.count(), 66);
-    contact.truncate(60);
-    state.truncate(contact);
-    assert_eq!((state.count(), state.sums.count()), (60, 60));
-    assert!(state.now.load.is_known());
+    let free = (0..240).find(|&node| !window.contact.contains(node));
+    window.propose(&[free.unwrap_or_default()])?;
+    assert_eq!(window.solutions.sums.count(), 66);
+    window.contact.truncate(60);
+    window.solutions.truncate(&window.contact);
+    let solutions = &window.solutions;
+    assert_eq!((solutions.count(), solutions.sums.count()), (60, 60));
+    assert!(solutions.now.load.is_known());
+    Ok(())
+}
+
+/// Pressures that displace the contact as they are told to, of 4 on a node alone and 1 on its neighbour.
+#[test]
+fn contacts_respond() -> Result<(), Error> {
+    let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 9.0])?;
+    let contact = ContactSequence::with_order(problem.grid(), [2, 0])?;
+    let mut solutions = Solutions::new(&problem);
+    for rhs in [[8.0, 4.0], [-1.0, 0.0], [0.0; 2]] {
+        let of = |node: usize| rhs[node / 2];
+        let found = solutions.respond(CRITERIA, &problem, &contact, of)?;
+        let [p0, p2] = rhs.map(|u| u / 4.0);
+        let expected = [p0, 0.0, p2, 0.0, rhs[0], p0 + p2, rhs[1], p2];
+        let found = [found.pressure, found.displacement].concat();
+        assert_eq!(found.len(), 8);
+        for (found, expected) in found.into_iter().zip(expected) {
+            // The tolerance of residuals, of up to 8.
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+    }
     Ok(())
 }
 
@@ -141,18 +180,20 @@ fn row_sums_are_taken_back() -> Result<(), Error> {
 fn solutions_are_taken_over() -> Result<(), Error> {
     let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0])?;
     let contact = ContactSequence::with_order(problem.grid(), [2, 0])?;
-    let mut state = State::new(&problem);
+    let mut solutions = Solutions::new(&problem);
     let solution = Solution {
         pressure: vec![5.0, 6.0],
         rate: vec![7.0, 8.0],
-        ..Solution::default()
     };
-    state.take_over(&contact, 3.0, &solution);
-    let now = &state.now;
-    assert_eq!((state.count(), now.approach, now.span), (2, 3.0, 0.0));
+    solutions.take_over(&contact, 3.0, &solution);
+    let now = &solutions.now;
+    assert_eq!((solutions.count(), now.approach, now.serves), (2, 3.0, 0.0));
     assert_eq!(now.load.pressure, [6.0, 0.0, 5.0]);
     assert_eq!(now.rate.pressure, [8.0, 0.0, 7.0]);
     assert!(!now.load.is_known() && !now.rate.is_known());
-    assert_eq!((state.sums.count(), state.grid()), (2, problem.grid()));
+    assert_eq!(
+        (solutions.sums.count(), solutions.grid()),
+        (2, problem.grid())
+    );
     Ok(())
 }

@@ -1,0 +1,250 @@
+//! Dense solutions and Schur complements for tests, whose answers are changed on their way.
+
+use std::sync::Arc;
+
+use super::{Dense, Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor};
+use crate::contact::ContactSequence;
+use crate::{Error, Problem};
+
+/// What is done to an answer on its way.
+type Alteration<T> = Arc<dyn Fn(&mut T) + Send + Sync>;
+/// A Schur complement, and the displacements of its nodes.
+pub(crate) type Proposal = (Schur, Vec<[f64; 2]>);
+
+/// Dense solutions and Schur complements, as an updater and as iterations, whose answers are changed on their way.
+#[derive(Clone)]
+pub(crate) struct Altered {
+    proposal: Alteration<Proposal>,
+    solution: Alteration<Solution>,
+    tolerance: f64,
+    /// Whether a path takes it for iterations.
+    iterates: bool,
+    /// Bytes that it asks for before the first node is in contact.
+    room: usize,
+    /// Displacements of all nodes under the last solution, and under its rate.
+    displacement: [Vec<f64>; 2],
+}
+
+impl Altered {
+    /// Iterations that leave `tolerance`; nothing is changed.
+    pub(crate) fn inexact(tolerance: f64) -> Self {
+        Self {
+            proposal: Arc::new(|_| {}),
+            solution: Arc::new(|_| {}),
+            tolerance,
+            iterates: true,
+            room: 0,
+            displacement: [Vec::new(), Vec::new()],
+        }
+    }
+
+    /// Iterations with one answer to all questions.
+    pub(crate) fn given(pressure: Vec<f64>, rate: Vec<f64>) -> Self {
+        Self {
+            solution: Arc::new(move |solution| {
+                solution.pressure.clone_from(&pressure);
+                solution.rate.clone_from(&rate);
+            }),
+            ..Self::inexact(1e-12)
+        }
+    }
+
+    /// Iterations with other proposals.
+    pub(crate) fn estimates(
+        tolerance: f64,
+        proposal: impl Fn(&mut Proposal) + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            proposal: Arc::new(proposal),
+            ..Self::inexact(tolerance)
+        }
+    }
+
+    /// An updater with other solutions.
+    pub(crate) fn solutions(solution: impl Fn(&mut Solution) + Send + Sync + 'static) -> Self {
+        Self {
+            solution: Arc::new(solution),
+            iterates: false,
+            ..Self::inexact(0.0)
+        }
+    }
+
+    /// An updater with other Schur complements.
+    pub(crate) fn complements(proposal: impl Fn(&mut Proposal) + Send + Sync + 'static) -> Self {
+        Self {
+            iterates: false,
+            ..Self::estimates(0.0, proposal)
+        }
+    }
+
+    /// An updater that asks for room.
+    pub(crate) fn needing(room: usize) -> Self {
+        Self {
+            room,
+            ..Self::complements(|_| {})
+        }
+    }
+
+    /// The displacements of all nodes under pressures on the first nodes of a contact.
+    fn displace(problem: &Problem, contact: &ContactSequence, pressure: &[f64]) -> Vec<f64> {
+        let at = |node: usize| {
+            let carrying = contact.order().iter().zip(pressure);
+            let terms = carrying
+                .map(|(&other, p)| problem.coefficient(node, other).unwrap_or(f64::NAN) * p);
+            terms.sum()
+        };
+        (0..problem.grid().nodes()).map(at).collect()
+    }
+}
+
+impl std::fmt::Debug for Altered {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Altered").finish_non_exhaustive()
+    }
+}
+
+impl Iterations for Altered {
+    fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn take_over(
+        &mut self,
+        _: &Problem,
+        _: &ContactSequence,
+        _: f64,
+        _: &Solution,
+    ) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn propose(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let mut complement = Schur::default();
+        Dense.watch(problem, contact, nodes, &mut complement)?;
+        let [u, rate] = &self.displacement;
+        let known = nodes.iter().map(|&node| [u[node], rate[node]]).collect();
+        let mut proposal = (complement, known);
+        (self.proposal)(&mut proposal);
+        *schur = proposal.0;
+        Ok(proposal.1)
+    }
+
+    fn advance(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        _: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let count = contact.len();
+        self.solve_apart(problem, contact, count, approach, &mut solved.solution)?;
+        let Solution { pressure, rate } = &solved.solution;
+        self.displacement = [pressure, rate].map(|values| Self::displace(problem, contact, values));
+        solved.displacement.clone_from(&self.displacement);
+        Ok(())
+    }
+
+    fn probe(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        _: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let mut solution = Solution::default();
+        self.solve_apart(problem, contact, count, approach, &mut solution)?;
+        Ok(Self::displace(problem, contact, &solution.pressure))
+    }
+
+    fn solve_apart(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        Dense.solve(problem, contact, count, approach, solution)?;
+        (self.solution)(solution);
+        Ok(())
+    }
+
+    fn cut(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn leave(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn bytes(&self, _: usize, _: usize) -> usize {
+        0
+    }
+
+    fn check_cells(&self, _: &Problem) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+impl LinearUpdater for Altered {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        let mut proposal = (Schur::default(), Vec::new());
+        Dense.watch(problem, contact, nodes, &mut proposal.0)?;
+        (self.proposal)(&mut proposal);
+        *schur = proposal.0;
+        Ok(())
+    }
+
+    fn join(&mut self, _: &Problem, _: &ContactSequence, _: &WindowFactor) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        self.solve_apart(problem, contact, count, approach, solution)
+    }
+
+    fn truncate(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn make_room(&mut self, _: &Problem, budget: usize) -> Result<(), Error> {
+        let needed = self.room;
+        if needed <= budget {
+            return Ok(());
+        }
+        Err(Error::MemoryBudget {
+            needed,
+            budget,
+            nodes_that_fit: 0,
+        })
+    }
+
+    fn method(&self) -> Method {
+        if self.iterates {
+            Method::Iterations(Box::new(self.clone()))
+        } else {
+            Method::Factor
+        }
+    }
+}
