@@ -389,7 +389,7 @@ impl Refined {
         let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
-        states::enqueue(run, correction, settled, (mark, time))
+        states::enqueue(run, window, settled, (mark, time))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::correction::Correction;
 use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
@@ -17,12 +16,11 @@ use crate::loading::window::Window;
 /// is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
-    correction: &Correction,
+    window: &Window,
     settled: &Settled,
     (mark, time): (&Mark, f64),
 ) -> Result<(), Error> {
     let start = &mark.scalars;
-    let window = &correction.window;
     let mut touched = window.clone();
     let mut events = settled.events.iter();
     let steps = match events.try_for_each(|event| touched.touch(event.position, event.time)) {
@@ -123,7 +121,7 @@ mod tests {
                 events: test_chain::events(&[(1, 0.5), (0, 1.5)]),
                 errors: vec![1e-3, 2e-3],
             };
-            enqueue(&mut run, window, &settled, (&mark, 2.0))?;
+            enqueue(&mut run, &window, &settled, (&mark, 2.0))?;
             let found: Vec<_> = run.queue.drain(..).collect();
             assert_eq!(found.len(), 2);
             for (k, state) in found.iter().enumerate() {
@@ -166,7 +164,7 @@ mod tests {
             errors: vec![0.0],
         };
         let window = test_chain::apart(&[(2, 0.5)], 9.0);
-        enqueue(&mut run, window, &settled, (&mark, 2.0))?;
+        enqueue(&mut run, &window, &settled, (&mark, 2.0))?;
         let load = run.queue[0].contact.load;
         // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
         assert!((load - 1.125).abs() < 1e-14, "{load}");

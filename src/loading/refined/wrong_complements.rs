@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::loading::LoadingState;
-use crate::loading::test_chain::{Altered, Proposal};
+use crate::updater::altered::{Altered, Proposal};
 use crate::surface::{Amplitude, HeightMap, SelfAffine};
 use crate::updater::RecursiveCholesky;
 use crate::{
