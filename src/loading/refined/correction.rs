@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::loading::run::LoadingRun;
 use crate::loading::window::{Course, Window};
-use crate::updater::Schur;
+use crate::updater::{Schur, WindowFactor};
 
 /// What the solution at a window's end says of a watched node.
 #[derive(Debug, Clone, Copy, Default)]
@@ -79,6 +79,8 @@ pub(super) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction 
     let is_updated = update(&mut updated, ends, time);
     if is_updated {
         complete(&mut updated, window, ends, time);
+    } else {
+        updated.clone_from(&by_courses);
     }
     Correction {
         window: updated,
@@ -112,8 +114,8 @@ fn complete(target: &mut Window, window: &Window, ends: &[AtEnd], time: f64) {
     target.set_courses(courses.into_iter());
 }
 
-/// Updates the Schur complement of a window whose courses end as they should; false if the result would be none, and nothing has
-/// changed then.
+/// Updates the Schur complement of a window whose courses end as they should; false if the result is none: then the window is of no
+/// use.
 fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     let t = time;
     // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
@@ -134,16 +136,15 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     };
     let taken = |i: usize, j: usize| (missing[i].transpose() * inverse * missing[j])[0];
     let size = missing.len();
-    if !(0..size).all(|i| window.schur().entry(i, i) - taken(i, i) > 0.0) {
-        return false;
-    }
     let mut matrix = window.schur_mut().matrix_mut();
     for j in 0..size {
         for i in j..size {
             matrix[(i, j)] -= taken(i, j);
         }
     }
-    true
+    // Whatever the order of events.
+    let all: Vec<usize> = (0..size).collect();
+    WindowFactor::of(window.schur().clone(), &all).is_ok()
 }
 
 /// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;

@@ -265,7 +265,7 @@ impl Refined {
                 let passed =
                     self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
                 if let Some((correction, settled)) = passed {
-                    self.finish(run, &correction, &settled, at)?;
+                    self.finish(run, correction, &settled, at)?;
                     return Ok(Outcome::Done);
                 }
             }
@@ -379,13 +379,13 @@ impl Refined {
     fn finish(
         &mut self,
         run: &mut LoadingRun,
-        correction: &Correction,
+        correction: Correction,
         settled: &Settled,
         (mark, time): (&Mark, f64),
     ) -> Result<(), Error> {
         self.last_span = time;
         let events = settled.events.iter();
-        let window = &correction.window;
+        let window = correction.window;
         let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));

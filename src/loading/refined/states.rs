@@ -1,7 +1,5 @@
 //! States of a window, pinned to the exact ones at both ends.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
@@ -16,17 +14,17 @@ use crate::loading::window::Window;
 /// is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
-    window: &Window,
+    mut window: Window,
     settled: &Settled,
     (mark, time): (&Mark, f64),
 ) -> Result<(), Error> {
     let start = &mark.scalars;
-    let mut touched = window.clone();
-    let mut events = settled.events.iter();
-    let steps = match events.try_for_each(|event| touched.touch(event.position, event.time)) {
-        Ok(()) => touched.increments().to_vec(),
-        Err(_) => increments(window, settled),
-    };
+    for event in &settled.events {
+        window
+            .touch(event.position, event.time)
+            .map_err(|bad| run.not_positive_definite(bad))?;
+    }
+    let steps = window.increments();
     let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
     let scaled = [0, 1].map(|k| {
@@ -38,7 +36,7 @@ pub(super) fn enqueue(
     });
     let mut walked = *start;
     let mut along = Vec::with_capacity(settled.events.len());
-    for (k, (event, step)) in settled.events.iter().zip(&steps).enumerate() {
+    for (k, (event, step)) in settled.events.iter().zip(steps).enumerate() {
         walked.advance(start.approach() + event.time);
         walked.touch([0, 1].map(|k| scaled[k] * step[k]), mark.count + k + 1);
         along.push(walked);
@@ -70,32 +68,6 @@ pub(super) fn enqueue(
     Ok(())
 }
 
-/// What each event adds to stiffness and takes off the sum of closing rates, from the first events and from those up to it. A
-/// corrected complement acts as it should on all of them together, and may be indefinite on the first ones.
-fn increments(window: &Window, settled: &Settled) -> Vec<[f64; 2]> {
-    let places: Vec<usize> = settled.events.iter().map(|event| event.position).collect();
-    let mut before = [0.0; 2];
-    let increment = |count: usize| {
-        let first = &places[..count];
-        let schur = DMatrix::from_fn(count, count, |i, j| {
-            window.schur().entry(first[i], first[j])
-        });
-        let rates = first.iter().map(|&place| window.course(place).line.closing);
-        let rates = DVector::from_iterator(count, rates);
-        let sums = first.iter().map(|&place| window.schur().row_sums()[place]);
-        let sums = DVector::from_iterator(count, sums);
-        let answer = schur
-            .lu()
-            .solve(&rates)
-            .unwrap_or_else(|| DVector::zeros(count));
-        let total = [answer.dot(&rates), answer.dot(&sums)];
-        let step = [0, 1].map(|k| total[k] - before[k]);
-        before = total;
-        step
-    };
-    (1..=places.len()).map(increment).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,7 +93,7 @@ mod tests {
                 events: test_chain::events(&[(1, 0.5), (0, 1.5)]),
                 errors: vec![1e-3, 2e-3],
             };
-            enqueue(&mut run, &window, &settled, (&mark, 2.0))?;
+            enqueue(&mut run, window, &settled, (&mark, 2.0))?;
             let found: Vec<_> = run.queue.drain(..).collect();
             assert_eq!(found.len(), 2);
             for (k, state) in found.iter().enumerate() {
@@ -164,7 +136,7 @@ mod tests {
             errors: vec![0.0],
         };
         let window = test_chain::apart(&[(2, 0.5)], 9.0);
-        enqueue(&mut run, &window, &settled, (&mark, 2.0))?;
+        enqueue(&mut run, window, &settled, (&mark, 2.0))?;
         let load = run.queue[0].contact.load;
         // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
         assert!((load - 1.125).abs() < 1e-14, "{load}");

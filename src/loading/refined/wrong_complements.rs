@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use crate::loading::LoadingState;
-use crate::updater::altered::{Altered, Proposal};
 use crate::surface::{Amplitude, HeightMap, SelfAffine};
 use crate::updater::RecursiveCholesky;
+use crate::updater::altered::{Altered, Proposal};
 use crate::{
     Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral,
 };
