@@ -70,8 +70,6 @@ mod descent;
 mod hierarchy;
 mod iterate;
 mod level;
-#[cfg(feature = "serde")]
-mod parts;
 mod release;
 mod search;
 mod settings;
