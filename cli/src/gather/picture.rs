@@ -9,8 +9,9 @@ use asperity_cli::outcome::Failure;
 use super::{Row, table};
 
 /// What stands beside each column: its name, and its unit.
-const NAMES: [(&str, &str); 5] = [
+const NAMES: [(&str, &str); table::COLUMNS.len()] = [
     ("contact area / nominal area", ""),
+    ("corrected contact area", "m²"),
     ("approach", "m"),
     ("mean gap", "m"),
     ("contact stiffness", "N/m"),

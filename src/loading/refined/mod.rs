@@ -193,8 +193,9 @@ impl Refined {
         let nodes: Vec<usize> = candidates.nodes.iter().map(|&(_, node)| node).collect();
         let (approach, count) = (run.scalars.approach(), run.contact.len());
         let (problem, contact) = (&run.problem, &run.contact);
-        let grown = iterations.bytes(problem.grid().nodes(), count + nodes.len());
-        let needed = grown.saturating_add(WindowFactor::bytes(nodes.len()));
+        // One node at least joins.
+        let grown = iterations.bytes(problem.grid().nodes(), count + 1);
+        let needed = grown.saturating_add(WindowFactor::bytes(1));
         run.memory.check(needed, count)?;
         let mut schur = Schur::default();
         let displacements = iterations.propose(problem, contact, &nodes, &mut schur)?;
