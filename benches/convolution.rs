@@ -66,9 +66,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let grid = Grid::square(side, 1.0)?;
         let mut convolution = Convolution::new(&PointLoad(grid))?;
         // Nowhere zero: no row is skipped.
-        let pressure: Vec<f64> = (0..grid.nodes())
-            .map(|node| 2.0 + (node as f64 * 0.1).sin())
-            .collect();
+        let pressure: Vec<f64> =
+            (0..grid.nodes()).map(|node| 2.0 + (node as f64 * 0.1).sin()).collect();
         let mut first = vec![0.0; grid.nodes()];
         let mut second = vec![0.0; grid.nodes()];
         let mut group = criterion.benchmark_group(format!("convolution of {side} x {side}"));
@@ -91,9 +90,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for side in [128, 251, 256, 270, 509, 512, 1024] {
         let grid = Grid::square(side, 1.0)?;
         let mut convolution = Convolution::new(&Spectral::new(grid, 1.0)?)?;
-        let pressure: Vec<f64> = (0..grid.nodes())
-            .map(|node| 2.0 + (node as f64 * 0.1).sin())
-            .collect();
+        let pressure: Vec<f64> =
+            (0..grid.nodes()).map(|node| 2.0 + (node as f64 * 0.1).sin()).collect();
         let mut displacement = vec![0.0; grid.nodes()];
         group.throughput(Throughput::Elements(grid.nodes() as u64));
         for threads in &all_threads {

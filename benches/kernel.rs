@@ -16,13 +16,7 @@ fn kernel(nodes: usize, aspect: f64) -> Boussinesq {
 fn quadrants(c: &mut Criterion) {
     let mut group = c.benchmark_group("boussinesq_quadrant");
     group.sample_size(10);
-    for (nodes, aspect) in [
-        (64, 1.0),
-        (512, 1.0),
-        (2048, 1.0),
-        (512, 10.0),
-        (512, 100.0),
-    ] {
+    for (nodes, aspect) in [(64, 1.0), (512, 1.0), (2048, 1.0), (512, 10.0), (512, 100.0)] {
         let kernel = kernel(nodes, aspect);
         group.throughput(Throughput::Elements((nodes * nodes) as u64));
         let id = BenchmarkId::new(format!("aspect_{aspect}"), nodes);
@@ -46,17 +40,7 @@ fn offsets(c: &mut Criterion) {
     let mut group = c.benchmark_group("boussinesq_offset");
     group.throughput(Throughput::Elements(1));
     let kernel = kernel(4096, 1.0);
-    for offset in [
-        (0, 0),
-        (0, 1),
-        (1, 2),
-        (3, 3),
-        (5, 5),
-        (9, 9),
-        (15, 15),
-        (40, 40),
-        (400, 400),
-    ] {
+    for offset in [(0, 0), (0, 1), (1, 2), (3, 3), (5, 5), (9, 9), (15, 15), (40, 40), (400, 400)] {
         let id = BenchmarkId::from_parameter(format!("{},{}", offset.0, offset.1));
         group.bench_with_input(id, &offset, |b, &(di, dj)| {
             b.iter(|| kernel.coefficient(black_box(di), black_box(dj)));

@@ -53,11 +53,7 @@ fn paths(
         let builder = LoadingSolver::builder(surface, &kernel).max_area_fraction(fraction);
         bench(&mut group, nodes.to_string(), &builder);
         if nodes == 64 {
-            bench(
-                &mut group,
-                "64/window 1".to_owned(),
-                &builder.window_size(1),
-            );
+            bench(&mut group, "64/window 1".to_owned(), &builder.window_size(1));
         }
     }
     group.finish();
@@ -71,9 +67,8 @@ fn pressure(criterion: &mut Criterion) -> Result<(), asperity::Error> {
     let surface = SelfAffine::zhang2020(1);
     for (nodes, fraction) in CASES {
         let kernel = Boussinesq::new(Grid::square(nodes, SIDE)?, 1.0)?;
-        let mut path = LoadingSolver::builder(&surface, &kernel)
-            .max_area_fraction(fraction)
-            .build()?;
+        let mut path =
+            LoadingSolver::builder(&surface, &kernel).max_area_fraction(fraction).build()?;
         let mut states = Vec::new();
         let n = (nodes * nodes) as f64 * fraction;
         group.throughput(Throughput::Bytes((4.0 * n * n) as u64));

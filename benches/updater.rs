@@ -86,8 +86,7 @@ impl LinearUpdater for Capture {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner
-            .solve(problem, contact, count, approach, solution)
+        self.inner.solve(problem, contact, count, approach, solution)
     }
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
@@ -103,16 +102,9 @@ fn sphere() -> Result<(Paraboloid, Boussinesq), asperity::Error> {
 
 /// A window of the path of the sphere.
 fn window(at: usize) -> Result<Window, Box<dyn Error>> {
-    let capture = Capture {
-        inner: RecursiveCholesky::new(),
-        at,
-        window: None,
-        complete: false,
-    };
+    let capture = Capture { inner: RecursiveCholesky::new(), at, window: None, complete: false };
     let (surface, kernel) = sphere()?;
-    let mut path = LoadingSolver::builder(&surface, &kernel)
-        .updater(capture)
-        .build()?;
+    let mut path = LoadingSolver::builder(&surface, &kernel).updater(capture).build()?;
     while !path.updater().is_some_and(|capture| capture.complete) {
         path.next().ok_or("the path is too short")??;
     }
@@ -143,13 +135,7 @@ fn succeed<T>(result: Result<T, asperity::Error>) -> T {
 }
 
 fn verbs(criterion: &mut Criterion, at: usize) -> Result<(), Box<dyn Error>> {
-    let Window {
-        updater,
-        contact,
-        watched,
-        touched,
-        grown,
-    } = window(at)?;
+    let Window { updater, contact, watched, touched, grown } = window(at)?;
     let (surface, kernel) = sphere()?;
     let problem = Problem::new(&surface, &kernel)?;
     let n = contact.len();

@@ -33,9 +33,8 @@ fn main() -> Result<(), Error> {
         let surface = surface(surface_name)?;
         for name in ["free", "periodic", "spectral"] {
             let half_space = half_space(name, grid)?;
-            let path = LoadingSolver::builder(&surface, &half_space)
-                .max_area_fraction(0.1)
-                .build()?;
+            let path =
+                LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.1).build()?;
             if let Some(last) = path.last() {
                 println!("{surface_name:7}  {name:10}  {:24.4e}", last?.contact.load);
             }

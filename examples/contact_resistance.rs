@@ -29,9 +29,7 @@ fn resistances(
     e_star: f64,
 ) -> Result<Vec<(f64, f64)>, Error> {
     let [.., greatest] = LOADS;
-    let path = LoadingSolver::builder(surface, half_space)
-        .max_load(greatest)
-        .build()?;
+    let path = LoadingSolver::builder(surface, half_space).max_load(greatest).build()?;
     let history: History = path.collect::<Result<_, _>>()?;
     let mut resistances = Vec::new();
     for state in LOADS.iter().filter_map(|&load| history.at_load(load)) {

@@ -28,9 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Steel against something rigid.
     let half_space = Boussinesq::new(grid, plane_strain_modulus(210e9, 0.3)?)?;
-    let path = LoadingSolver::builder(&heights, &half_space)
-        .max_area_fraction(0.2)
-        .build()?;
+    let path = LoadingSolver::builder(&heights, &half_space).max_area_fraction(0.2).build()?;
 
     // One state for each node that touches; every 50th is enough to look at.
     println!("contact [%]    load [N]  approach [m]  mean gap [m]");

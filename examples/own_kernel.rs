@@ -26,11 +26,7 @@ impl InfluenceKernel for Coated {
     }
 
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        let coating = if (di, dj) == (0, 0) {
-            self.compliance
-        } else {
-            0.0
-        };
+        let coating = if (di, dj) == (0, 0) { self.compliance } else { 0.0 };
         self.half_space.coefficient(di, dj) + coating
     }
 }
@@ -40,13 +36,8 @@ fn main() -> Result<(), Error> {
     let sphere = Paraboloid::new(5e-3)?; // radius 5 mm
     println!("coating [m/Pa]    load [N]  radius of contact [m]");
     for compliance in [0.0, 1e-16, 1e-15, 1e-14] {
-        let coated = Coated {
-            half_space: Boussinesq::new(grid, 115e9)?,
-            compliance,
-        };
-        let path = LoadingSolver::builder(&sphere, &coated)
-            .max_load(50.0)
-            .build()?;
+        let coated = Coated { half_space: Boussinesq::new(grid, 115e9)?, compliance };
+        let path = LoadingSolver::builder(&sphere, &coated).max_load(50.0).build()?;
         if let Some(last) = path.last() {
             let contact = last?.contact;
             let radius = (contact.contact_area / std::f64::consts::PI).sqrt();

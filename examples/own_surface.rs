@@ -31,26 +31,18 @@ impl Surface for Ridges {
 /// Contact area and approach as the load grows.
 fn press(name: &str, surface: impl Surface) -> Result<(), Error> {
     let half_space = Boussinesq::new(Grid::square(128, 2.5e-3)?, 115e9)?;
-    let path = LoadingSolver::builder(&surface, &half_space)
-        .max_area_fraction(0.3)
-        .build()?;
+    let path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.3).build()?;
     println!("{name}\ncontact [%]    load [N]  approach [m]");
     for state in path.step_by(200) {
         let contact = state?.contact;
         let area = 100.0 * contact.contact_area_fraction;
-        println!(
-            "{area:11.2} {:11.4e} {:13.4e}",
-            contact.load, contact.approach
-        );
+        println!("{area:11.2} {:11.4e} {:13.4e}", contact.load, contact.approach);
     }
     Ok(())
 }
 
 fn main() -> Result<(), Error> {
-    let ridges = Ridges {
-        amplitude: 20e-6,
-        wavelength: 0.5e-3,
-    };
+    let ridges = Ridges { amplitude: 20e-6, wavelength: 0.5e-3 };
     press("ridges", ridges)?;
     press("rough ridges", ridges.plus(SelfAffine::zhang2020(1)))
 }

@@ -14,9 +14,8 @@ fn main() -> Result<(), Error> {
     let grid = Grid::square(128, 2.5e-3)?;
     let half_space = Boussinesq::new(grid, E_STAR)?;
     let surface = SelfAffine::zhang2020(1);
-    let mut path = LoadingSolver::builder(&surface, &half_space)
-        .max_mean_pressure(PRESSURE)
-        .build()?;
+    let mut path =
+        LoadingSolver::builder(&surface, &half_space).max_mean_pressure(PRESSURE).build()?;
     for state in path.by_ref() {
         state?;
     }
@@ -26,16 +25,10 @@ fn main() -> Result<(), Error> {
     let contact = path.present()?.contact;
     let pressure = path.pressure()?;
     println!("nodes in contact     {}", contact.contact_nodes);
-    println!(
-        "contact area         {:.4} of the nominal",
-        contact.contact_area_fraction
-    );
+    println!("contact area         {:.4} of the nominal", contact.contact_area_fraction);
     println!("approach             {:.4e} m", contact.approach);
     println!("mean gap             {:.4e} m", contact.mean_gap);
-    println!(
-        "mean pressure there  {:.4e} Pa",
-        contact.load / contact.contact_area
-    );
+    println!("mean pressure there  {:.4e} Pa", contact.load / contact.contact_area);
     println!("greatest pressure    {:.4e} Pa", pressure.max());
     Ok(())
 }

@@ -23,10 +23,7 @@ fn path(seed: u64) -> Result<History, Error> {
     let height = Amplitude::RmsHeight(1e-6);
     let surface = SelfAffine::new(0.8, side / 4.0, side / 16.0, height, seed)?;
     let [.., greatest] = PRESSURES;
-    LoadingSolver::builder(&surface, &half_space)
-        .max_mean_pressure(greatest)
-        .build()?
-        .collect()
+    LoadingSolver::builder(&surface, &half_space).max_mean_pressure(greatest).build()?.collect()
 }
 
 /// Mean and standard deviation of a sample.
@@ -40,10 +37,7 @@ fn spread(values: &[f64]) -> (f64, f64) {
 fn main() -> Result<(), Error> {
     let seeds: Vec<u64> = SEEDS.collect();
     // Results are the same with any number of threads.
-    let paths: Vec<History> = seeds
-        .par_iter()
-        .map(|&seed| path(seed))
-        .collect::<Result<_, _>>()?;
+    let paths: Vec<History> = seeds.par_iter().map(|&seed| path(seed)).collect::<Result<_, _>>()?;
 
     println!(
         "pressure [MPa]      contact [%]       mean gap [µm]    interfacial stiffness [GN/m³]"

@@ -24,9 +24,7 @@ fn main() -> Result<(), Error> {
     // Much shorter waves than the side: a piece stands for the whole seal.
     let surface = SelfAffine::new(0.8, side / 6.0, side / 24.0, Amplitude::RmsHeight(1e-6), 1)?;
     let half_space = PeriodicBoussinesq::new(grid, E_STAR)?;
-    let mut path = LoadingSolver::builder(&surface, &half_space)
-        .max_area_fraction(0.6)
-        .build()?;
+    let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.6).build()?;
     let history: History = path.by_ref().collect::<Result<_, _>>()?;
     let events = history.events();
     let contact = contact_sequence(grid, events.iter().map(|state| (state.event, state.node)))?;
@@ -34,10 +32,9 @@ fn main() -> Result<(), Error> {
     println!(
         "joined across      event                       load [MPa]   contact [%]   mean gap [µm]"
     );
-    for (name, connectivity) in [
-        ("sides, corners", Connectivity::Eight),
-        ("sides", Connectivity::Four),
-    ] {
+    for (name, connectivity) in
+        [("sides, corners", Connectivity::Eight), ("sides", Connectivity::Four)]
+    {
         let found = Percolation::of(&contact, half_space.boundary(), connectivity);
         for (what, nodes) in [
             ("a patch along x", found.contact_x),

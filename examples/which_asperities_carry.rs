@@ -20,12 +20,8 @@ fn main() -> Result<(), Error> {
     let half_space = Boussinesq::new(grid, E_STAR)?;
     let solution = FixedLoadSolver::new(&surface, &half_space)?.solve(LOAD)?;
 
-    let patches = Patches::new(
-        &solution.contact_map,
-        &grid,
-        half_space.boundary(),
-        Connectivity::Four,
-    )?;
+    let patches =
+        Patches::new(&solution.contact_map, &grid, half_space.boundary(), Connectivity::Four)?;
     let loads = patches.loads(&solution.pressure)?;
     let mut both: Vec<_> = patches.patches().iter().zip(&loads).collect();
     both.sort_by(|a, b| b.1.load.total_cmp(&a.1.load));

@@ -49,10 +49,8 @@ impl Doubt {
     /// What looks wrong with the patches of a contact.
     #[must_use]
     pub fn of_patches(patches: usize, contact_nodes: usize) -> Option<Self> {
-        ((contact_nodes as f64) < PATCH * patches as f64).then_some(Self::SmallPatches {
-            patches,
-            contact_nodes,
-        })
+        ((contact_nodes as f64) < PATCH * patches as f64)
+            .then_some(Self::SmallPatches { patches, contact_nodes })
     }
 
     /// What looks wrong with a composite modulus.
@@ -72,10 +70,7 @@ impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Surface(doubt) => doubt.fmt(f),
-            Self::SmallPatches {
-                patches,
-                contact_nodes,
-            } => write!(
+            Self::SmallPatches { patches, contact_nodes } => write!(
                 f,
                 "patches of contact have {:.1} nodes on average. Those of fewer than some ten nodes are not resolved: \
                  contact area and greatest pressure depend on the mesh",
@@ -157,10 +152,7 @@ mod tests {
         let (pressure, e_star) = (60.0, 115.0);
         for doubt in [
             Doubt::Surface(surface::Doubt::Smooth { rms_height: 1e-13 }),
-            Doubt::SmallPatches {
-                patches: 3,
-                contact_nodes: 7,
-            },
+            Doubt::SmallPatches { patches: 3, contact_nodes: 7 },
             Doubt::Modulus { e_star },
             Doubt::Modulus { e_star: 1e-9 },
             Doubt::Modulus { e_star: 1e13 },
@@ -193,10 +185,7 @@ mod tests {
             (2.3e13, "above that of diamond"),
         ] {
             let found = Doubt::of_modulus(e_star).map(|doubt| doubt.to_string());
-            assert!(
-                found.as_ref().is_some_and(|text| text.contains(said)),
-                "{found:?}"
-            );
+            assert!(found.as_ref().is_some_and(|text| text.contains(said)), "{found:?}");
         }
     }
 

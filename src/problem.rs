@@ -135,10 +135,8 @@ impl Problem {
     #[must_use]
     pub fn coefficient(&self, node: usize, other: usize) -> Option<f64> {
         let nodes = self.gap.len();
-        (node < nodes && other < nodes).then(|| {
-            self.table
-                .between(self.table.place(node), self.table.place(other))
-        })
+        (node < nodes && other < nodes)
+            .then(|| self.table.between(self.table.place(node), self.table.place(other)))
     }
 
     /// Displacement of every node under unit pressure on all of them \[m/Pa\], `sᵢ = Σⱼ Cᵢⱼ`: what turns

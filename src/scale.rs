@@ -33,10 +33,7 @@ impl Scale {
     pub(crate) fn of(table: &KernelTable) -> Result<Self, Error> {
         let (own, cell_area) = (table.self_influence(), table.grid().cell_area());
         check("influence coefficient C(0, 0)", own)?;
-        check_product(
-            "stiffness of a cell, its area over C(0, 0)",
-            cell_area / own,
-        )?;
+        check_product("stiffness of a cell, its area over C(0, 0)", cell_area / own)?;
         Ok(Self::new(own, cell_area))
     }
 

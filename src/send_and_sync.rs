@@ -31,22 +31,8 @@ macro_rules! send_and_sync {
     ($($t:ty),+ $(,)?) => { const _: () = { $(asserted::<$t>();)+ }; };
 }
 
-send_and_sync!(
-    Grid,
-    Problem,
-    Doubt,
-    Error,
-    FileError,
-    KernelError,
-    UpdaterError
-);
-send_and_sync!(
-    Certificate,
-    ContactSequence,
-    ContactState,
-    ContactTarget,
-    Convolution
-);
+send_and_sync!(Grid, Problem, Doubt, Error, FileError, KernelError, UpdaterError);
+send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
 send_and_sync!(
     FixedLoadSolution,
     FixedLoadSolver,

@@ -21,12 +21,7 @@ pub(crate) fn kernel(nodes: usize) -> Result<KernelTable, Error> {
         1 => 1.0,
         _ => 0.0,
     };
-    KernelTable::from_fn(
-        grid(nodes)?,
-        Boundary::Free,
-        ContactGrowth::Monotone,
-        coefficient,
-    )
+    KernelTable::from_fn(grid(nodes)?, Boundary::Free, ContactGrowth::Monotone, coefficient)
 }
 
 /// A surface of these gaps, of which the least is 0.

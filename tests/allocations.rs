@@ -22,9 +22,8 @@ where
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(|| {
         let kernel = Boussinesq::new(Grid::square(64, 2.5e-3).unwrap(), 1.0).unwrap();
-        let mut builder = LoadingSolver::builder(&surface, &kernel)
-            .updater(updater)
-            .max_area_fraction(0.2);
+        let mut builder =
+            LoadingSolver::builder(&surface, &kernel).updater(updater).max_area_fraction(0.2);
         if let Some(size) = window {
             builder = builder.window_size(size);
         }
@@ -66,16 +65,8 @@ fn the_counter_counts() {
 #[test]
 fn states_of_a_window_allocate_nothing() {
     for window in [16, 32, 100] {
-        let rough = calls(
-            SelfAffine::zhang2020(1),
-            RecursiveCholesky::new(),
-            Some(window),
-        );
-        let smooth = calls(
-            Paraboloid::new(1.0).unwrap(),
-            RecursiveCholesky::new(),
-            Some(window),
-        );
+        let rough = calls(SelfAffine::zhang2020(1), RecursiveCholesky::new(), Some(window));
+        let smooth = calls(Paraboloid::new(1.0).unwrap(), RecursiveCholesky::new(), Some(window));
         for calls in [rough, smooth] {
             // The factor inside a window grows by doubling up to the first window that is all used:
             // a steady state after the first third of the path.

@@ -26,11 +26,7 @@ impl Axis {
         Self {
             label: format!("{quantity} [{name}]"),
             logarithmic: false,
-            ends: if from < to {
-                (from, to)
-            } else {
-                (from - 0.5, from + 0.5)
-            },
+            ends: if from < to { (from, to) } else { (from - 0.5, from + 0.5) },
             unit,
         }
     }
@@ -51,20 +47,12 @@ impl Axis {
 
     /// A linear axis of a quantity without unit, or whose label has it.
     pub fn plain(label: &str, from: f64, to: f64) -> Self {
-        Self {
-            label: label.to_string(),
-            logarithmic: false,
-            ends: (from, to),
-            unit: 1.0,
-        }
+        Self { label: label.to_string(), logarithmic: false, ends: (from, to), unit: 1.0 }
     }
 
     /// A logarithmic axis of a quantity without unit, or whose label has it, between positive ends.
     pub fn plain_logarithmic(label: &str, from: f64, to: f64) -> Self {
-        Self {
-            label: label.to_string(),
-            ..Self::logarithmic("", "", from, to)
-        }
+        Self { label: label.to_string(), ..Self::logarithmic("", "", from, to) }
     }
 
     /// The same axis with some room at both ends, given as fractions of its length.
@@ -97,18 +85,12 @@ impl Axis {
 
     /// Ticks, of which about `most` or fewer are labelled.
     pub(crate) fn ticks(&self, most: usize) -> Vec<Tick> {
-        let ticks = if self.logarithmic {
-            self.logarithmic_ticks(most)
-        } else {
-            self.linear_ticks(most)
-        };
+        let ticks =
+            if self.logarithmic { self.logarithmic_ticks(most) } else { self.linear_ticks(most) };
         let (from, to) = self.ends;
         ticks
             .into_iter()
-            .map(|(value, label)| Tick {
-                place: (value - from) / (to - from),
-                label,
-            })
+            .map(|(value, label)| Tick { place: (value - from) / (to - from), label })
             .filter(|tick| (-1e-9..=1.0 + 1e-9).contains(&tick.place))
             .collect()
     }
@@ -141,10 +123,7 @@ impl Axis {
         let mut ticks = Vec::new();
         for exponent in first..=last {
             let labelled = exponent.rem_euclid(every) == 0;
-            ticks.push((
-                f64::from(exponent),
-                labelled.then(|| power_of_ten(exponent)),
-            ));
+            ticks.push((f64::from(exponent), labelled.then(|| power_of_ten(exponent))));
             if every > 1 {
                 continue;
             }

@@ -66,12 +66,7 @@ impl Series {
         style: Style,
         points: impl IntoIterator<Item = (f64, f64)>,
     ) -> Self {
-        Self {
-            name: name.into(),
-            colour,
-            style,
-            points: points.into_iter().collect(),
-        }
+        Self { name: name.into(), colour, style, points: points.into_iter().collect() }
     }
 }
 
@@ -105,16 +100,10 @@ pub struct Chart {
 /// Draws charts into a PNG file, so many in a row.
 pub fn draw(charts: &[Chart], columns: usize, name: &Path) -> Result<PathBuf, Failure> {
     let rows = charts.len().div_ceil(columns);
-    let size = (
-        SIZE.0 * columns.min(charts.len()) as i32,
-        SIZE.1 * rows as i32,
-    );
+    let size = (SIZE.0 * columns.min(charts.len()) as i32, SIZE.1 * rows as i32);
     draw_fine(name, size, |area| {
         for (place, chart) in charts.iter().enumerate() {
-            let at = (
-                SIZE.0 * (place % columns) as i32,
-                SIZE.1 * (place / columns) as i32,
-            );
+            let at = (SIZE.0 * (place % columns) as i32, SIZE.1 * (place / columns) as i32);
             chart.draw(area, at)?;
         }
         Ok(())
@@ -162,11 +151,7 @@ impl Chart {
         }
         let size = FINE * (FONT - 2);
         let line = FINE * (FONT + 4);
-        let widest = named
-            .iter()
-            .map(|s| s.name.chars().count())
-            .max()
-            .unwrap_or(0) as i32;
+        let widest = named.iter().map(|s| s.name.chars().count()).max().unwrap_or(0) as i32;
         let width = FINE * 44 + widest * size * 11 / 20;
         let height = line * named.len() as i32 + FINE * 6;
         let inset = FINE * 8;
@@ -178,10 +163,7 @@ impl Chart {
             Corner::TopLeft | Corner::TopRight => panel.top + inset,
             Corner::BottomLeft | Corner::BottomRight => panel.top + panel.height - height - inset,
         };
-        area.draw(&Rectangle::new(
-            [(x, y), (x + width, y + height)],
-            WHITE.mix(0.85).filled(),
-        ))?;
+        area.draw(&Rectangle::new([(x, y), (x + width, y + height)], WHITE.mix(0.85).filled()))?;
         for (place, series) in (0_i32..).zip(named) {
             let middle = y + FINE * 3 + line * place + line / 2;
             let (from, to) = (x + FINE * 4, x + FINE * 34);

@@ -45,11 +45,7 @@ impl Column {
             true => "-".to_string(),
             false => significant(value / scale, DIGITS),
         };
-        Self {
-            name,
-            unit,
-            cells: values.map(cell).collect(),
-        }
+        Self { name, unit, cells: values.map(cell).collect() }
     }
 
     pub(crate) fn name(&self) -> &str {

@@ -44,14 +44,10 @@ fn square(
         let (a, b) = SIDES[side];
         let share = share(values[a], values[b], level);
         let along = |from: usize, to: usize| from as f64 + share * (to as f64 - from as f64);
-        (
-            along(corners[a].0, corners[b].0),
-            along(corners[a].1, corners[b].1),
-        )
+        (along(corners[a].0, corners[b].0), along(corners[a].1, corners[b].1))
     };
-    let crossed: Vec<usize> = (0..4)
-        .filter(|&side| below[SIDES[side].0] != below[SIDES[side].1])
-        .collect();
+    let crossed: Vec<usize> =
+        (0..4).filter(|&side| below[SIDES[side].0] != below[SIDES[side].1]).collect();
     match crossed[..] {
         [one, other] => pieces.push([crossing(one), crossing(other)]),
         [_, _, _, _] => {
@@ -68,11 +64,7 @@ fn square(
 /// How far from a to b the level is met.
 fn share(a: f64, b: f64, level: f64) -> f64 {
     let share = (level - a) / (b - a);
-    if a.is_finite() && b.is_finite() && share.is_finite() {
-        share.clamp(0.0, 1.0)
-    } else {
-        0.5
-    }
+    if a.is_finite() && b.is_finite() && share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 }
 }
 
 #[cfg(test)]
@@ -84,9 +76,7 @@ mod tests {
     /// Distance from the middle of a square of nodes.
     fn cone(nodes: usize) -> DMatrix<f64> {
         let middle = 0.5 * (nodes as f64 - 1.0);
-        DMatrix::from_fn(nodes, nodes, |ix, iy| {
-            (ix as f64 - middle).hypot(iy as f64 - middle)
-        })
+        DMatrix::from_fn(nodes, nodes, |ix, iy| (ix as f64 - middle).hypot(iy as f64 - middle))
     }
 
     /// How many pieces end at each point.
@@ -107,15 +97,9 @@ mod tests {
         let middle = 0.5 * (nodes as f64 - 1.0);
         for (x, y) in pieces.iter().flatten() {
             let found = (x - middle).hypot(y - middle);
-            assert!(
-                (found - radius).abs() < 1.0 / (8.0 * (radius - 1.0)),
-                "{found}"
-            );
+            assert!((found - radius).abs() < 1.0 / (8.0 * (radius - 1.0)), "{found}");
         }
-        let length: f64 = pieces
-            .iter()
-            .map(|[a, b]| (a.0 - b.0).hypot(a.1 - b.1))
-            .sum();
+        let length: f64 = pieces.iter().map(|[a, b]| (a.0 - b.0).hypot(a.1 - b.1)).sum();
         let circle = std::f64::consts::TAU * radius;
         let error = 1.0 / (8.0 * (radius - 1.0)) / radius + 2.0 / (24.0 * radius * radius);
         assert!((length / circle - 1.0).abs() < error);

@@ -39,11 +39,7 @@ pub(crate) struct Bodies {
 impl Bodies {
     /// Bodies of which only E* is known, and where from.
     pub(crate) fn of_modulus(e_star: f64, source: &str) -> Self {
-        Self {
-            e_star,
-            elastic: Vec::new(),
-            words: source.to_string(),
-        }
+        Self { e_star, elastic: Vec::new(), words: source.to_string() }
     }
 }
 
@@ -86,10 +82,9 @@ impl Elasticity {
 impl Bodies {
     fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
         let (e_star, against) = match second {
-            Some(second) => (
-                composite_modulus((first.e, first.nu), (second.e, second.nu)),
-                second.to_string(),
-            ),
+            Some(second) => {
+                (composite_modulus((first.e, first.nu), (second.e, second.nu)), second.to_string())
+            }
             None => (plane_strain_modulus(first.e, first.nu), "rigid".to_string()),
         };
         Ok(Self {
@@ -118,11 +113,7 @@ impl Material {
     const STEEL: Self = Self::named(MATERIALS[0]);
 
     const fn named((name, e, nu): (&'static str, f64, f64)) -> Self {
-        Self {
-            name: Some(name),
-            e,
-            nu,
-        }
+        Self { name: Some(name), e, nu }
     }
 }
 
@@ -196,10 +187,7 @@ mod tests {
     fn bodies_are_named_or_given_in_numbers() {
         assert_eq!(modulus("steel", None), modulus("210e9,0.3", None));
         assert_eq!(modulus("steel", None), Ok(Some(210e9 / (1.0 - 0.3 * 0.3))));
-        assert_eq!(
-            modulus("glass", Some("pmma")),
-            modulus("3e9, 0.37", Some("70e9, 0.22"))
-        );
+        assert_eq!(modulus("glass", Some("pmma")), modulus("3e9, 0.37", Some("70e9, 0.22")));
     }
 
     /// One body alone presses against a rigid one, whether it was named or assumed.
@@ -220,11 +208,7 @@ mod tests {
             said("70e9,0.33", Some("rubber"))?,
             "E = 70 GPa, ν = 0.33 against rubber (2 MPa, 0.50): E* 2.667 MPa"
         );
-        let nothing = |e_star| Elasticity {
-            e_star,
-            material: None,
-            against: None,
-        };
+        let nothing = |e_star| Elasticity { e_star, material: None, against: None };
         let assumed = nothing(None).or_steel().map_err(|_| "refused")?;
         assert_eq!(assumed.to_string(), format!("assumed: {steel}"));
         assert!(nothing(None).required().is_err());
@@ -235,15 +219,7 @@ mod tests {
 
     #[test]
     fn what_is_no_material_is_refused() {
-        for text in [
-            "",
-            "stone",
-            "210e9",
-            "210e9;0.3",
-            "a,b",
-            "210e9,0.7",
-            "-1,0.3",
-        ] {
+        for text in ["", "stone", "210e9", "210e9;0.3", "a,b", "210e9,0.7", "-1,0.3"] {
             assert!(modulus(text, None).is_err(), "{text}");
         }
     }
@@ -251,10 +227,7 @@ mod tests {
     #[test]
     fn every_named_material_exists() {
         for (name, ..) in MATERIALS {
-            assert!(
-                matches!(modulus(name, Some("steel")), Ok(Some(_))),
-                "{name}"
-            );
+            assert!(matches!(modulus(name, Some("steel")), Ok(Some(_))), "{name}");
         }
     }
 }

@@ -78,9 +78,7 @@ impl Ensemble {
     /// The first seed of this task, how far apart its seeds are, and the last one that may be one.
     fn span(&self) -> Option<(u64, u64, u64)> {
         let Seeds { first, last } = self.seeds?;
-        let (which, of) = self
-            .task
-            .map_or((0, 1), |task| (task.which % task.of, task.of));
+        let (which, of) = self.task.map_or((0, 1), |task| (task.which % task.of, task.of));
         let first = first.checked_add(which)?;
         (first <= last).then_some((first, of, last))
     }
@@ -97,9 +95,7 @@ impl Ensemble {
 
     /// How many there are.
     pub(crate) fn count(&self) -> u128 {
-        self.span().map_or(0, |(first, step, last)| {
-            u128::from((last - first) / step) + 1
-        })
+        self.span().map_or(0, |(first, step, last)| u128::from((last - first) / step) + 1)
     }
 
     /// Those of them whose folders are there: found by what is in the folder, however many seeds there may be.
@@ -127,10 +123,7 @@ impl Ensemble {
 impl Member {
     /// The path of a seed, in its folder.
     pub(crate) fn new(seed: u64, out: &Path) -> Self {
-        Self {
-            seed,
-            folder: out.join(format!("seed_{seed}")),
-        }
+        Self { seed, folder: out.join(format!("seed_{seed}")) }
     }
 
     /// Where the files are written before the folder gets its name.

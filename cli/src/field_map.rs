@@ -20,12 +20,7 @@ const SHORTEST: i32 = 60;
 /// Pixels along x that the caption needs.
 const CAPTION: i32 = 640;
 const FONT: i32 = 20;
-const MARGIN: Margin = Margin {
-    left: 130,
-    right: 200,
-    top: 80,
-    bottom: 100,
-};
+const MARGIN: Margin = Margin { left: 130, right: 200, top: 80, bottom: 100 };
 /// Values below the range.
 const BELOW: RGBColor = RGBColor(230, 0, 0);
 
@@ -70,10 +65,7 @@ impl FieldMap<'_> {
     pub fn write(&self, name: &Path, caption: &str) -> Result<PathBuf, Failure> {
         let (width, height) = map_size(self.grid);
         let inner = (CAPTION - MARGIN.left - MARGIN.right).max(width);
-        let size = (
-            inner + MARGIN.left + MARGIN.right,
-            height + MARGIN.top + MARGIN.bottom,
-        );
+        let size = (inner + MARGIN.left + MARGIN.right, height + MARGIN.top + MARGIN.bottom);
         let panel = Panel {
             left: MARGIN.left + (inner - width) / 2,
             top: MARGIN.top,
@@ -185,21 +177,12 @@ impl FieldMap<'_> {
         panel: &Panel,
         colours: &Axis,
     ) -> Drawn<DB> {
-        let bar = Panel {
-            left: panel.left + panel.width + 28,
-            width: 26,
-            ..*panel
-        };
+        let bar = Panel { left: panel.left + panel.width + 28, width: 26, ..*panel };
         bar.colour_bar(area, colours, |share| self.shade(share))?;
         let across = Axis::plain("", 0.0, 1.0);
         for &level in self.contours {
             let ends = [(0.0, level), (1.0, level)].into_iter();
-            bar.curve(
-                area,
-                (&across, colours),
-                ends,
-                self.ink_on(colours.place(level)),
-            )?;
+            bar.curve(area, (&across, colours), ends, self.ink_on(colours.place(level)))?;
         }
         if self.values.iter().any(|value| self.is_below(*value)) {
             let at = (bar.left + bar.width, bar.top - FONT);
@@ -251,11 +234,7 @@ fn map_size(grid: &Grid) -> (i32, i32) {
         let exact = SIDE * side / lx.max(ly);
         let nodes = nodes as f64;
         let whole = (exact / nodes).round().max(1.0) * nodes;
-        let pixels = if whole < 1.2 * SIDE && nodes <= exact {
-            whole
-        } else {
-            exact
-        };
+        let pixels = if whole < 1.2 * SIDE && nodes <= exact { whole } else { exact };
         (pixels.round() as i32).max(SHORTEST)
     };
     (pixels(lx, grid.nx()), pixels(ly, grid.ny()))

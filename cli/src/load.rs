@@ -49,12 +49,7 @@ pub(crate) struct Options {
     periodic: Option<Periodic>,
 
     /// Greatest error of the gaps, relative to the approach
-    #[arg(
-        long,
-        value_name = "T",
-        allow_negative_numbers = true,
-        default_value_t = 1e-8
-    )]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, default_value_t = 1e-8)]
     tolerance: f64,
 
     /// Greatest memory in bytes, for example 2e9 [default: three quarters of the memory]
@@ -88,9 +83,7 @@ impl Loads {
     fn on(&self, nominal_area: f64) -> Vec<f64> {
         let pressures = self.mean_pressure.iter();
         let given = self.load.iter().copied();
-        given
-            .chain(pressures.map(|pressure| pressure * nominal_area))
-            .collect()
+        given.chain(pressures.map(|pressure| pressure * nominal_area)).collect()
     }
 }
 
@@ -135,12 +128,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     let mut table = format!("{}\n", COLUMNS.join(","));
     for (k, &load) in loads.iter().enumerate() {
-        eprintln!(
-            "load {} of {}: {}",
-            k + 1,
-            loads.len(),
-            quantity(load, "N", 6)
-        );
+        eprintln!("load {} of {}: {}", k + 1, loads.len(), quantity(load, "N", 6));
         let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
             let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
             let resolution = resolution
@@ -155,12 +143,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         match solved {
             Ok(solution) => {
                 let picture = options.out.join(format!("contact_map_{k}.png"));
-                let FixedLoadSolution {
-                    state,
-                    pressure,
-                    contact_map,
-                    ..
-                } = &solution;
+                let FixedLoadSolution { state, pressure, contact_map, .. } = &solution;
                 outcome.written(draw_map(&grid, state, pressure, contact_map, &picture));
                 if let Some(directory) = &options.save {
                     outcome.all_written(save(directory, &solution, k));
@@ -184,10 +167,7 @@ fn solve(
 ) -> Result<(FixedLoadSolution, (f64, f64)), Failure> {
     let failed = |error| {
         Failure::new(
-            format!(
-                "cannot solve for the contact under {}",
-                quantity(load, "N", 6)
-            ),
+            format!("cannot solve for the contact under {}", quantity(load, "N", 6)),
             error,
         )
     };
@@ -237,14 +217,8 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
 /// The line for programs.
 fn print_line(numbers: &[String; 11], solution: &FixedLoadSolution, seconds: f64) {
     let named = COLUMNS.iter().zip(numbers);
-    let named: Vec<String> = named
-        .map(|(name, number)| format!("{name}={number}"))
-        .collect();
-    say!(
-        "{} iterations={} seconds={seconds:.6}",
-        named.join(" "),
-        solution.effort.iterations,
-    );
+    let named: Vec<String> = named.map(|(name, number)| format!("{name}={number}")).collect();
+    say!("{} iterations={} seconds={seconds:.6}", named.join(" "), solution.effort.iterations,);
 }
 
 /// The lines for people.

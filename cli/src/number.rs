@@ -96,11 +96,7 @@ fn round(value: f64, digits: usize) -> f64 {
 
 /// Places after the point that a number with so many digits has.
 fn decimals(value: f64, digits: usize) -> usize {
-    let place = if value == 0.0 {
-        0.0
-    } else {
-        value.abs().log10().floor()
-    };
+    let place = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
     (digits as f64 - 1.0 - place).max(0.0) as usize
 }
 
@@ -139,8 +135,7 @@ fn prefix(value: f64) -> Option<(f64, &'static str)> {
 /// How many times a number has the factor 1000, `None` if it has no end.
 fn thousands(value: f64) -> Option<i32> {
     let size = value.abs().log10();
-    size.is_finite()
-        .then(|| ((size + 1e-9) / 3.0).floor() as i32)
+    size.is_finite().then(|| ((size + 1e-9) / 3.0).floor() as i32)
 }
 
 /// The power of ten of the SI prefix that suits numbers up to `greatest`, and the unit with it: a

@@ -19,11 +19,7 @@ pub struct Failure {
 impl Failure {
     /// Something that failed because of an error.
     pub fn new(what: impl Into<String>, source: impl Into<Box<dyn Error>>) -> Self {
-        Self {
-            what: what.into(),
-            source: Some(source.into()),
-            code: 1,
-        }
+        Self { what: what.into(), source: Some(source.into()), code: 1 }
     }
 
     /// That a file cannot be written.
@@ -38,11 +34,7 @@ impl Failure {
 
     /// An end that has an exit code of its own.
     pub fn with_code(what: impl Into<String>, code: u8) -> Self {
-        Self {
-            what: what.into(),
-            source: None,
-            code,
-        }
+        Self { what: what.into(), source: None, code }
     }
 
     /// The same, with what can be done.
@@ -129,9 +121,7 @@ pub fn check_place(name: &Path) -> Result<(), Failure> {
     let mut probe = place.file_name().unwrap_or_default().to_os_string();
     probe.push(format!(".{}.probe", std::process::id()));
     let probe = place.with_file_name(probe);
-    std::fs::File::create(&probe)
-        .and_then(|_| std::fs::remove_file(&probe))
-        .map_err(failed)
+    std::fs::File::create(&probe).and_then(|_| std::fs::remove_file(&probe)).map_err(failed)
 }
 
 /// Collects failures and the names of the files that were written.
@@ -207,20 +197,12 @@ mod tests {
             wanted: wanted.map(str::to_string),
             channels: Vec::new(),
         };
-        let missing = || SurfaceError::HeightNotFinite {
-            ix: 0,
-            iy: 0,
-            value: f64::NAN,
-            count: 1,
-        };
+        let missing = || SurfaceError::HeightNotFinite { ix: 0, iy: 0, value: f64::NAN, count: 1 };
         for (error, expected) in [
             (missing(), Some("--fill")),
             (FileError::NoSide.into(), Some("--side")),
             (no_unit("heights").into(), Some("--height-unit")),
-            (
-                no_unit("lengths along x and y").into(),
-                Some("--lateral-unit"),
-            ),
+            (no_unit("lengths along x and y").into(), Some("--lateral-unit")),
             (which(None).into(), Some("--channel")),
             (which(Some("Height")).into(), None),
             (SurfaceError::EmptyGrid { nx: 0, ny: 1 }, None),
@@ -230,9 +212,6 @@ mod tests {
         let of_solver = asperity::Error::from(missing());
         assert_eq!(option(&of_solver), Some("--fill"));
         assert_eq!(option(&asperity::Error::ForeignKernel), None);
-        assert_eq!(
-            option(&std::io::Error::from(std::io::ErrorKind::NotFound)),
-            None
-        );
+        assert_eq!(option(&std::io::Error::from(std::io::ErrorKind::NotFound)), None);
     }
 }

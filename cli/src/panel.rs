@@ -58,9 +58,7 @@ impl Panel {
         size: i32,
         pos: Pos,
     ) -> Drawn<DB> {
-        let style = TextStyle::from((FONT, size).into_font())
-            .color(&INK)
-            .pos(pos);
+        let style = TextStyle::from((FONT, size).into_font()).color(&INK).pos(pos);
         let rise = match pos.v_pos {
             VPos::Center => (self.text_rise * f64::from(size)).round() as i32,
             _ => 0,
@@ -76,11 +74,7 @@ impl Panel {
 
     /// Length of the line of a tick.
     fn tick(&self, labelled: bool) -> i32 {
-        if labelled {
-            self.font * 2 / 5
-        } else {
-            self.font / 4
-        }
+        if labelled { self.font * 2 / 5 } else { self.font / 4 }
     }
 
     /// The pixel at a place from 0 to 1 along both axes, with y upwards.
@@ -112,10 +106,7 @@ impl Panel {
 
     fn line<DB: DrawingBackend>(&self, area: &Area<DB>, ends: [(f64, f64); 2]) -> Drawn<DB> {
         let ends = ends.map(|(x, y)| rounded(self.pixel(x, y)));
-        area.draw(&PathElement::new(
-            ends.to_vec(),
-            GRID.stroke_width(self.stroke),
-        ))
+        area.draw(&PathElement::new(ends.to_vec(), GRID.stroke_width(self.stroke)))
     }
 
     /// Frame, ticks and labels of both axes.
@@ -132,10 +123,7 @@ impl Panel {
         for tick in x.ticks(self.room()[0]) {
             let (at, _) = rounded(self.pixel(tick.place, 0.0));
             let length = self.tick(tick.label.is_some());
-            area.draw(&PathElement::new(
-                vec![(at, bottom), (at, bottom - length)],
-                ink,
-            ))?;
+            area.draw(&PathElement::new(vec![(at, bottom), (at, bottom - length)], ink))?;
             if let Some(label) = tick.label {
                 let pos = anchor(HPos::Center, VPos::Top);
                 self.write(area, &label, (at, bottom + self.font / 2), self.font, pos)?;
@@ -161,20 +149,11 @@ impl Panel {
             area.draw(&PathElement::new(line, ink))?;
             if let Some(label) = tick.label {
                 let pos = anchor(HPos::Right, VPos::Center);
-                self.write(
-                    area,
-                    &label,
-                    (self.left - self.font / 2, at),
-                    self.font,
-                    pos,
-                )?;
+                self.write(area, &label, (self.left - self.font / 2, at), self.font, pos)?;
                 widest = widest.max(label_width(&label, self.font));
             }
         }
-        let at = (
-            self.left - widest - self.font * 5 / 4,
-            self.top + self.height / 2,
-        );
+        let at = (self.left - widest - self.font * 5 / 4, self.top + self.height / 2);
         upwards(area, y.label(), at, self.font * 9 / 8)
     }
 
@@ -207,21 +186,12 @@ impl Panel {
             area.draw(&PathElement::new(line, INK.stroke_width(self.stroke)))?;
             if let Some(label) = tick.label {
                 let pos = anchor(HPos::Left, VPos::Center);
-                self.write(
-                    area,
-                    &label,
-                    (right + self.font * 3 / 4, at),
-                    self.font,
-                    pos,
-                )?;
+                self.write(area, &label, (right + self.font * 3 / 4, at), self.font, pos)?;
                 widest = widest.max(label_width(&label, self.font));
             }
         }
         let size = self.font * 9 / 8;
-        let at = (
-            right + self.font * 3 / 4 + widest + size * 7 / 4,
-            self.top + self.height / 2,
-        );
+        let at = (right + self.font * 3 / 4 + widest + size * 7 / 4, self.top + self.height / 2);
         upwards(area, y.label(), at, size)
     }
 
@@ -242,10 +212,7 @@ impl Panel {
         points: impl Iterator<Item = (f64, f64)>,
         colour: RGBColor,
     ) -> Drawn<DB> {
-        area.draw(&PathElement::new(
-            self.trace(axes, points),
-            colour.stroke_width(2 * self.stroke),
-        ))
+        area.draw(&PathElement::new(self.trace(axes, points), colour.stroke_width(2 * self.stroke)))
     }
 
     /// The pixels of [`Self::curve`].
@@ -263,10 +230,7 @@ impl Panel {
         for place in places.filter(|(a, b)| inside(*a) && inside(*b)) {
             let point = self.pixel(place.0, place.1);
             let far = kept.last().is_none_or(|previous| {
-                (point.0 - previous.0)
-                    .abs()
-                    .max((point.1 - previous.1).abs())
-                    >= apart
+                (point.0 - previous.0).abs().max((point.1 - previous.1).abs()) >= apart
             });
             if far {
                 kept.push(point);
@@ -300,10 +264,7 @@ fn upwards<DB: DrawingBackend>(
 
 /// Width of a label in pixels.
 fn label_width(label: &str, size: i32) -> i32 {
-    (FONT, size)
-        .into_font()
-        .box_size(label)
-        .map_or(0, |(width, _)| width as i32)
+    (FONT, size).into_font().box_size(label).map_or(0, |(width, _)| width as i32)
 }
 
 fn rounded((x, y): (f64, f64)) -> (i32, i32) {

@@ -24,15 +24,9 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
         &["viscoel", "creep", "relax", "rate", "frequency"],
         "time plays no part: only the modulus at the rate of loading can be given, by --e-star or --material",
     ),
-    (
-        &["temperature", "thermal", "heat"],
-        "temperature plays no part",
-    ),
+    (&["temperature", "thermal", "heat"], "temperature plays no part"),
     (&["wear"], "surfaces do not wear"),
-    (
-        &["lubric", "viscosity", "fluid", "leak"],
-        "there is nothing between the surfaces",
-    ),
+    (&["lubric", "viscosity", "fluid", "leak"], "there is nothing between the surfaces"),
     (
         &["unload"],
         "unloading needs no option: elastic contact without friction goes back through the same states",
@@ -46,12 +40,8 @@ pub(crate) fn left_out(error: &clap::Error) -> Option<String> {
     };
     let asks = |names: &[&str]| names.iter().any(|name| option.contains(name));
     let is_unknown = error.kind() == ErrorKind::UnknownArgument;
-    let (_, sentence) = LEFT_OUT
-        .iter()
-        .find(|(names, _)| is_unknown && asks(names))?;
-    Some(format!(
-        "error: there is no {option}: {sentence}.\n{MODEL}.\n"
-    ))
+    let (_, sentence) = LEFT_OUT.iter().find(|(names, _)| is_unknown && asks(names))?;
+    Some(format!("error: there is no {option}: {sentence}.\n{MODEL}.\n"))
 }
 
 #[cfg(test)]

@@ -77,36 +77,23 @@ impl Reading {
         let flag = |is_given: bool| is_given.then_some(Value::Bool(true));
         let level = self.level.and_then(|level| level.to_possible_value());
         let options = [
-            (
-                "height-unit",
-                text(self.height_unit.map(|unit| unit.to_string())),
-            ),
-            (
-                "lateral-unit",
-                text(self.lateral_unit.map(|unit| unit.to_string())),
-            ),
+            ("height-unit", text(self.height_unit.map(|unit| unit.to_string()))),
+            ("lateral-unit", text(self.lateral_unit.map(|unit| unit.to_string()))),
             ("channel", text(self.channel.clone())),
             ("ignore-mask", flag(self.ignore_mask)),
             ("fill", flag(self.fill)),
-            (
-                "level",
-                text(level.map(|level| level.get_name().to_string())),
-            ),
+            ("level", text(level.map(|level| level.get_name().to_string()))),
             ("invert", flag(self.invert)),
         ];
         let given = options.into_iter();
-        given
-            .filter_map(|(name, value)| Some((name.to_string(), value?)))
-            .collect()
+        given.filter_map(|(name, value)| Some((name.to_string(), value?))).collect()
     }
 
     /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for this one.
     pub(crate) fn only_sides(&self, this: &str) -> Result<(), Failure> {
         match self.given().keys().next() {
             None => Ok(()),
-            Some(option) => Err(Failure::request(format!(
-                "--{option} has no effect on {this}"
-            ))),
+            Some(option) => Err(Failure::request(format!("--{option} has no effect on {this}"))),
         }
     }
 

@@ -42,11 +42,7 @@ impl fmt::Display for Resolution {
         if self.patches == 0 {
             return write!(f, "no patch");
         }
-        let plural = if self.patches == 1 {
-            "patch"
-        } else {
-            "patches"
-        };
+        let plural = if self.patches == 1 { "patch" } else { "patches" };
         write!(
             f,
             "{} {plural} of {:.1} nodes on average; contact area {} as counted in cells, {} corrected ({:.1} % less)",

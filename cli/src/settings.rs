@@ -35,10 +35,7 @@ impl Settings {
         let failed = |error: Box<dyn std::error::Error>| {
             let name = file.display();
             Failure::new(
-                format!(
-                    "cannot read the settings of the path in {}: {name}",
-                    folder.display()
-                ),
+                format!("cannot read the settings of the path in {}: {name}", folder.display()),
                 error,
             )
         };
@@ -70,10 +67,7 @@ impl Settings {
             .filter(|key| value(&own, key) != value(&others, key))
             .map(|key| {
                 let values = (value(&own, key), value(&others, key));
-                format!(
-                    "{key} is {} in {name} and {} in {other_name}",
-                    values.0, values.1
-                )
+                format!("{key} is {} in {name} and {} in {other_name}", values.0, values.1)
             })
             .collect();
         if differences.is_empty() {
@@ -93,11 +87,7 @@ fn flatten(name: &str, value: &Value, into: &mut Vec<(String, String)>) {
         return;
     };
     for (key, value) in group {
-        let name = if name.is_empty() {
-            key.clone()
-        } else {
-            format!("{name}.{key}")
-        };
+        let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
         flatten(&name, value, into);
     }
 }

@@ -25,9 +25,6 @@ pub fn print(line: Arguments<'_>) {
 pub fn check() -> Result<(), Failure> {
     match LOST.get() {
         None => Ok(()),
-        Some(kind) => Err(Failure::new(
-            "cannot write to stdout",
-            std::io::Error::from(*kind),
-        )),
+        Some(kind) => Err(Failure::new("cannot write to stdout", std::io::Error::from(*kind))),
     }
 }

@@ -16,10 +16,7 @@ type Done = Result<(), Box<dyn Error>>;
 
 /// The program with two threads in an address space of so many megabytes.
 fn run(folder: &Path, megabytes: usize, line: &str) -> std::io::Result<Output> {
-    let limit = format!(
-        "export RAYON_NUM_THREADS=2 && ulimit -v {}",
-        megabytes * 1024
-    );
+    let limit = format!("export RAYON_NUM_THREADS=2 && ulimit -v {}", megabytes * 1024);
     let arguments: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
     limited(folder, &limit, &arguments)
 }

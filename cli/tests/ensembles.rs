@@ -31,14 +31,8 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     assert!(told.contains("1 paths to follow, 2 finished"), "{told}");
     for (other, words) in [
         ("--max-area-fraction 0.2", &["targets", "0.2", "0.1"][..]),
-        (
-            "--max-area-fraction 0.1 --periodic love",
-            &["half_space", "free", "Love"],
-        ),
-        (
-            "--max-area-fraction 0.1 --e-star 1e9",
-            &["e_star", "1000000000"],
-        ),
+        ("--max-area-fraction 0.1 --periodic love", &["half_space", "free", "Love"]),
+        ("--max-area-fraction 0.1 --e-star 1e9", &["e_star", "1000000000"]),
         ("--max-area-fraction 0.1 --side 2e-2", &["grid.sides"]),
         (
             "--max-area-fraction 0.1 --short-cutoff 2e-3",
@@ -50,16 +44,9 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
         ),
         ("--max-area-fraction 0.1 --rule smallest-gap", &["rule"]),
         ("--max-area-fraction 0.1 --updater iterative", &["updater"]),
-        (
-            "--max-area-fraction 0.1 --nodes 16",
-            &["grid.nodes", "[16,16]", "[32,32]"],
-        ),
+        ("--max-area-fraction 0.1 --nodes 16", &["grid.nodes", "[16,16]", "[32,32]"]),
     ] {
-        let nodes = if other.contains("--nodes") {
-            ""
-        } else {
-            "--nodes 32"
-        };
+        let nodes = if other.contains("--nodes") { "" } else { "--nodes 32" };
         for dry in ["", "--dry-run"] {
             let line = format!("path {nodes} {other} --seeds 1..4 --out runs {dry}");
             let done = run(&folder.0, &line)?;
@@ -72,10 +59,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     // Without settings nobody can tell.
     fs::remove_file(folder.join("runs/seed_2/settings.json"))?;
     is_refused(&run(&folder.0, more)?, &["seed_2", "settings.json"]);
-    is_refused(
-        &run(&folder.0, "gather runs")?,
-        &["seed_2", "settings.json"],
-    );
+    is_refused(&run(&folder.0, "gather runs")?, &["seed_2", "settings.json"]);
     Ok(())
 }
 
@@ -108,24 +92,15 @@ fn all_seeds_there_are_can_be_asked_for() -> Done {
     assert!(done.status.success(), "{}", said(&done));
     assert!(start.elapsed() < Duration::from_secs(20));
     let told = String::from_utf8(done.stdout)?;
-    assert!(
-        told.contains("18446744073709551616 paths to follow, 0 finished"),
-        "{told}"
-    );
+    assert!(told.contains("18446744073709551616 paths to follow, 0 finished"), "{told}");
     for (task, count) in [
         ("--seeds 1..1000000000000 --task 3/7", "142857142857 paths"),
         ("--seeds 1..10 --task 0/3", "4 paths"),
         ("--seeds 1..10 --task 1/3", "3 paths"),
         ("--seeds 1..2 --task 5/7", "0 paths"),
-        (
-            "--seeds 18446744073709551615..18446744073709551615 --task 1/2",
-            "0 paths",
-        ),
+        ("--seeds 18446744073709551615..18446744073709551615 --task 1/2", "0 paths"),
     ] {
-        let done = run(
-            &folder.0,
-            &format!("path --nodes 32 {task} --dry-run --out runs"),
-        )?;
+        let done = run(&folder.0, &format!("path --nodes 32 {task} --dry-run --out runs"))?;
         let told = String::from_utf8(done.stdout)?;
         assert!(told.starts_with(count), "{task}: {told}");
     }
@@ -164,12 +139,7 @@ fn settings_lie_beside_every_path() -> Done {
         ),
         (
             "path --resume r.npz --max-load 4",
-            &[
-                "\"record\": \"r.npz\"",
-                "\"heights_md5\": \"",
-                "spectral",
-                "\"Load\": 4.0",
-            ],
+            &["\"record\": \"r.npz\"", "\"heights_md5\": \"", "spectral", "\"Load\": 4.0"],
         ),
     ] {
         let done = run(&folder.0, line)?;

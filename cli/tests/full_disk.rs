@@ -65,10 +65,8 @@ fn whole_or_not_there(name: &str, arguments: &str, inputs: &[&str]) -> Done {
             assert!(expected.get(name) == Some(bytes), "{blocks}: {name} {said}");
             whole += 1;
         }
-        let missing: Vec<&String> = expected
-            .keys()
-            .filter(|name| !found.contains_key(*name))
-            .collect();
+        let missing: Vec<&String> =
+            expected.keys().filter(|name| !found.contains_key(*name)).collect();
         if !missing.is_empty() {
             // Of files that belong together the first that does not fit is named.
             let is_named = missing.iter().any(|name| said.contains(*name));
@@ -88,20 +86,12 @@ fn whole_or_not_there(name: &str, arguments: &str, inputs: &[&str]) -> Done {
 
 #[test]
 fn files_of_a_path_are_whole_or_not_there() -> Done {
-    whole_or_not_there(
-        "full-path",
-        "path --nodes 32 --record out/path.npz --fields npy",
-        &[],
-    )
+    whole_or_not_there("full-path", "path --nodes 32 --record out/path.npz --fields npy", &[])
 }
 
 #[test]
 fn pictures_of_a_surface_are_whole_or_not_there() -> Done {
-    whole_or_not_there(
-        "full-info",
-        "info input",
-        &["surface_files/missing_f64.x3p"],
-    )
+    whole_or_not_there("full-info", "info input", &["surface_files/missing_f64.x3p"])
 }
 
 #[test]
@@ -137,9 +127,7 @@ fn lines_for_programs_on_a_full_device() -> Done {
         "path --nodes 16",
     ] {
         let mut command: Command = asperity(&folder.0, &words(line));
-        let command = command
-            .stdout(File::create("/dev/full")?)
-            .stderr(Stdio::piped());
+        let command = command.stdout(File::create("/dev/full")?).stderr(Stdio::piped());
         is_refused(&command.output()?, &["cannot write to stdout"]);
     }
     Ok(())
@@ -150,10 +138,7 @@ fn a_file_in_place_of_a_folder() -> Done {
     let folder = Scratch::new("no-folder")?;
     fs::copy(data("selfaffine_48.npy"), folder.join("input.npy"))?;
     fs::write(folder.join("blocked"), "a file")?;
-    for line in [
-        "path --nodes 16 --record path.npz",
-        "path --nodes 16 --seeds 1..2 --out runs",
-    ] {
+    for line in ["path --nodes 16 --record path.npz", "path --nodes 16 --seeds 1..2 --out runs"] {
         let done = asperity(&folder.0, &words(line)).output()?;
         assert!(done.status.success(), "{}", said(&done));
     }
@@ -179,10 +164,7 @@ fn a_folder_that_is_removed_while_a_path_is_followed() -> Done {
     let out = folder.join("out");
     let line = "path --nodes 128 --max-area-fraction 0.3 --record out/path.npz --fields vti";
     let mut command = asperity(&folder.0, &words(line));
-    let mut process = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()?;
+    let mut process = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
     while !out.join("path.csv.part").exists() {
         assert!(process.try_wait()?.is_none(), "it has ended too early");
         std::thread::sleep(Duration::from_millis(1));
@@ -190,13 +172,7 @@ fn a_folder_that_is_removed_while_a_path_is_followed() -> Done {
     fs::remove_dir_all(&out)?;
     assert!(process.try_wait()?.is_none(), "it has ended too early");
     let done = process.wait_with_output()?;
-    let names = [
-        "path.csv",
-        "path.npz",
-        "fields.vti",
-        "loading_curve.svg",
-        "contact_map.png",
-    ];
+    let names = ["path.csv", "path.npz", "fields.vti", "loading_curve.svg", "contact_map.png"];
     is_refused(&done, &names);
     assert!(!out.exists());
     Ok(())

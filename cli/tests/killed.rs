@@ -16,26 +16,12 @@ impl Drop for Scratch {
     }
 }
 
-const PATH: [&str; 9] = [
-    "path",
-    "--nodes",
-    "64",
-    "--seed",
-    "3",
-    "--max-area-fraction",
-    "0.6",
-    "--updater",
-    "cholesky",
-];
+const PATH: [&str; 9] =
+    ["path", "--nodes", "64", "--seed", "3", "--max-area-fraction", "0.6", "--updater", "cholesky"];
 
 fn asperity(arguments: &[&str], out: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
-    command
-        .args(arguments)
-        .arg("--out")
-        .arg(out)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
+    command.args(arguments).arg("--out").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
 
@@ -43,9 +29,7 @@ fn asperity(arguments: &[&str], out: &Path) -> Command {
 fn states(file: &Path) -> Vec<Vec<f64>> {
     let text = fs::read_to_string(file).unwrap();
     let lines = text.lines().skip(1);
-    lines
-        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
-        .collect()
+    lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
 }
 
 /// The environment variable `ASPERITY_KILLS` gives the number of processes; the seed is fixed.
@@ -67,9 +51,7 @@ fn killed_paths_go_on() {
         fs::create_dir_all(&out).unwrap();
         let record_name = record.to_str().unwrap();
         let saving = ["--record", record_name, "--save-every", "100"];
-        let mut process = asperity(&[&PATH[..], &saving].concat(), &out)
-            .spawn()
-            .unwrap();
+        let mut process = asperity(&[&PATH[..], &saving].concat(), &out).spawn().unwrap();
         // Moments spread over the whole run.
         let share = f64::from(kill + 1) * 0.618_033_988_749_895 % 1.0;
         std::thread::sleep(Duration::from_secs_f64(share * time.as_secs_f64()));
@@ -102,8 +84,5 @@ fn killed_paths_go_on() {
             }
         }
     }
-    assert!(
-        resumed > 0,
-        "no process lived long enough to write its record"
-    );
+    assert!(resumed > 0, "no process lived long enough to write its record");
 }

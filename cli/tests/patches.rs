@@ -40,47 +40,24 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
         ],
     )?;
     assert!(made.status.success());
-    let done = asperity(
-        &folder,
-        &[
-            "patches",
-            "path.npz",
-            "--out",
-            "seen",
-            "--at-area-fraction",
-            "0.3",
-        ],
-    )?;
+    let done =
+        asperity(&folder, &["patches", "path.npz", "--out", "seen", "--at-area-fraction", "0.3"])?;
     assert!(done.status.success());
     let said = String::from_utf8(done.stdout)?;
-    for passage in [
-        "percolates along x",
-        "percolates along y",
-        "seals along x",
-        "seals along y",
-    ] {
+    for passage in ["percolates along x", "percolates along y", "seals along x", "seals along y"] {
         let line = said.lines().find(|line| line.starts_with(passage));
-        assert!(
-            line.is_some_and(|line| line.contains("from state")),
-            "{said}"
-        );
+        assert!(line.is_some_and(|line| line.contains("from state")), "{said}");
     }
 
     let seen = folder.join("seen");
     let table = fs::read_to_string(seen.join("patches.csv"))?;
-    let lines: Vec<Vec<&str>> = table
-        .lines()
-        .map(|line| line.split(',').collect())
-        .collect();
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), 1 + 16 * 16);
     let [names, first, .., last] = &lines[..] else {
         return Err("no states".into());
     };
     let column = |line: &[&str], name: &str| -> Result<String, Box<dyn Error>> {
-        let place = names
-            .iter()
-            .position(|other| *other == name)
-            .ok_or("no column")?;
+        let place = names.iter().position(|other| *other == name).ok_or("no column")?;
         Ok(line.get(place).ok_or("no cell")?.to_string())
     };
     assert_eq!(column(first, "patches")?, "1");
@@ -88,20 +65,14 @@ fn a_path_to_full_contact_ends_in_one_patch() -> Result<(), Box<dyn Error>> {
     assert_eq!(column(last, "patches")?, "1");
     assert_eq!(column(last, "largest_patch")?, "256");
     assert_eq!(column(last, "perimeter")?.parse::<f64>()?, 0.0);
-    assert_eq!(
-        column(last, "corrected_area_fraction")?.parse::<f64>()?,
-        1.0
-    );
+    assert_eq!(column(last, "corrected_area_fraction")?.parse::<f64>()?, 1.0);
 
     for picture in ["patches", "activation", "merge_tree", "distributions"] {
         let bytes = fs::read(seen.join(picture).with_extension("png"))?;
         assert!(bytes.starts_with(b"\x89PNG"), "{picture}");
     }
 
-    let beyond = asperity(
-        &folder,
-        &["patches", "path.npz", "--at-area-fraction", "0.001"],
-    )?;
+    let beyond = asperity(&folder, &["patches", "path.npz", "--at-area-fraction", "0.001"])?;
     assert!(!beyond.status.success());
     Ok(())
 }

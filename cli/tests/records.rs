@@ -106,10 +106,7 @@ fn targets_that_lie_behind_are_read_from_the_record() -> Done {
     let done = run(&folder.0, "path --resume r.npz --max-load 1 --record r.npz")?;
     is_refused(&done, &["r.npz", "another file"]);
     assert_eq!(fs::read(folder.join("r.npz"))?, record);
-    printed(
-        &folder.0,
-        "path --resume r.npz --max-load 1 --record short.npz",
-    )?;
+    printed(&folder.0, "path --resume r.npz --max-load 1 --record short.npz")?;
     assert!(fs::read(folder.join("short.npz"))?.len() < record.len());
     Ok(())
 }
@@ -118,16 +115,11 @@ fn targets_that_lie_behind_are_read_from_the_record() -> Done {
 #[test]
 fn a_record_grows_with_its_path() -> Done {
     let folder = Scratch::new("records-grow")?;
-    let first = run(
-        &folder.0,
-        &format!("{PATH} --max-area-fraction 0.1 --record r.npz --out first"),
-    )?;
+    let first =
+        run(&folder.0, &format!("{PATH} --max-area-fraction 0.1 --record r.npz --out first"))?;
     assert!(first.status.success(), "{}", said(&first));
     let short = fs::read(folder.join("r.npz"))?.len();
-    let again = run(
-        &folder.0,
-        "path --updater cholesky --resume r.npz --out again",
-    )?;
+    let again = run(&folder.0, "path --updater cholesky --resume r.npz --out again")?;
     let lines = |output: &Output| {
         let said = said(output);
         let lines = said.lines();
@@ -146,20 +138,11 @@ fn a_record_grows_with_its_path() -> Done {
         "path --updater cholesky --resume r.npz --max-area-fraction 0.2 --out more",
     )?;
     assert!(fs::read(folder.join("r.npz"))?.len() > short);
-    printed(
-        &folder.0,
-        &format!("{PATH} --max-area-fraction 0.2 --out whole"),
-    )?;
-    are_alike(
-        &folder.join("more/path.csv"),
-        &folder.join("whole/path.csv"),
-    )?;
+    printed(&folder.0, &format!("{PATH} --max-area-fraction 0.2 --out whole"))?;
+    are_alike(&folder.join("more/path.csv"), &folder.join("whole/path.csv"))?;
     // What was read from another record, into another one.
     let long = fs::read(folder.join("r.npz"))?;
-    printed(
-        &folder.0,
-        "path --resume r.npz --max-area-fraction 0.25 --record longer.npz",
-    )?;
+    printed(&folder.0, "path --resume r.npz --max-area-fraction 0.25 --record longer.npz")?;
     assert_eq!(fs::read(folder.join("r.npz"))?, long);
     assert!(fs::read(folder.join("longer.npz"))?.len() > long.len());
     Ok(())
@@ -169,20 +152,14 @@ fn a_record_grows_with_its_path() -> Done {
 #[test]
 fn a_small_budget_loses_nothing() -> Done {
     let folder = Scratch::new("records-budget")?;
-    for (line, budget) in [
-        ("path --nodes 128 --periodic love", "5e6"),
-        ("path --nodes 96", "5e6"),
-    ] {
+    for (line, budget) in [("path --nodes 128 --periodic love", "5e6"), ("path --nodes 96", "5e6")]
+    {
         let line = format!(
             "{line} --max-area-fraction 0.4 --memory-budget {budget} --record out/r.npz --fields npy"
         );
         let done = run(&folder.0, &line)?;
         is_refused(&done, &["the budget is 5 MB"]);
-        assert!(
-            !said(&done).contains("values, but found"),
-            "{}",
-            said(&done)
-        );
+        assert!(!said(&done).contains("values, but found"), "{}", said(&done));
         let out = folder.join("out");
         for name in [
             "r.npz",
@@ -196,15 +173,9 @@ fn a_small_budget_loses_nothing() -> Done {
             assert!(out.join(name).is_file(), "{name}");
         }
         let told = String::from_utf8(done.stdout)?;
-        assert!(
-            told.contains("ended by: the memory budget") && !told.contains("NaN"),
-            "{told}"
-        );
+        assert!(told.contains("ended by: the memory budget") && !told.contains("NaN"), "{told}");
         let states = fs::read_to_string(out.join("path.csv"))?.lines().count() - 1;
-        assert!(
-            states > 100 && told.contains(&format!("{states} states in")),
-            "{told}"
-        );
+        assert!(states > 100 && told.contains(&format!("{states} states in")), "{told}");
         fs::remove_dir_all(out)?;
     }
     Ok(())
@@ -214,10 +185,8 @@ fn a_small_budget_loses_nothing() -> Done {
 #[cfg(unix)]
 fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<dyn Error>> {
     let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    let mut process = asperity(folder, &words)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()?;
+    let mut process =
+        asperity(folder, &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let begun = || {
         let part = folder.join("out/path.csv.part");
         fs::metadata(part).is_ok_and(|file| file.len() > 10_000)
@@ -227,10 +196,7 @@ fn signalled(folder: &Path, line: &str, signals: &[&str]) -> Result<Output, Box<
         std::thread::sleep(Duration::from_millis(5));
     }
     for signal in signals {
-        let sent = Command::new("kill")
-            .arg(signal)
-            .arg(process.id().to_string())
-            .status()?;
+        let sent = Command::new("kill").arg(signal).arg(process.id().to_string()).status()?;
         assert!(sent.success());
     }
     Ok(process.wait_with_output()?)
@@ -243,17 +209,11 @@ fn interrupted_paths_go_on() -> Done {
     let folder = Scratch::new("records-interrupted")?;
     const LONG: &str = "path --nodes 128 --max-area-fraction 0.3 --updater cholesky";
     printed(&folder.0, &format!("{LONG} --out whole"))?;
-    for (options, record) in [
-        ("--record kept.npz", "kept.npz"),
-        ("", "out/interrupted.npz"),
-    ] {
+    for (options, record) in [("--record kept.npz", "kept.npz"), ("", "out/interrupted.npz")] {
         let done = signalled(&folder.0, &format!("{LONG} {options}"), &["-INT"])?;
         let said = said(&done);
         assert_eq!(done.status.code(), Some(130), "{said}");
-        let states = fs::read_to_string(folder.join("out/path.csv"))?
-            .lines()
-            .count()
-            - 1;
+        let states = fs::read_to_string(folder.join("out/path.csv"))?.lines().count() - 1;
         assert!(states < 4915, "it was at its end");
         let told = format!(
             "{states} states in {record}; continue with `asperity path --resume {record} --updater cholesky --out out`"
@@ -292,33 +252,17 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ("path --nodes 32 --record folder", &["folder"]),
         ("path --nodes 32 --fill", &["--fill", "generated"]),
         ("path --nodes 32 --level plane", &["--level"]),
-        (
-            "path --resume r.npz --height-unit nm",
-            &["--height-unit", "record"],
-        ),
+        ("path --resume r.npz --height-unit nm", &["--height-unit", "record"]),
         ("path --resume r.npz --channel Height", &["--channel"]),
-        (
-            "path --resume cut.npz",
-            &["cut.npz", "no complete zip archive", "cut off"],
-        ),
-        (
-            "path --resume text.npz",
-            &["text.npz", "no complete zip archive"],
-        ),
+        ("path --resume cut.npz", &["cut.npz", "no complete zip archive", "cut off"]),
+        ("path --resume text.npz", &["text.npz", "no complete zip archive"]),
         ("patches cut.npz", &["cut.npz", "cut off"]),
         ("info cut.x3p", &["cut.x3p", "cut off"]),
         (
             "path --nodes 32768 --memory-budget 1e9",
-            &[
-                "216.5 GB",
-                "the budget is 1 GB",
-                "the largest square grid that fits",
-            ],
+            &["216.5 GB", "the budget is 1 GB", "the largest square grid that fits"],
         ),
-        (
-            "path --nodes 100000",
-            &["the largest square grid that fits"],
-        ),
+        ("path --nodes 100000", &["the largest square grid that fits"]),
     ] {
         let done = run(&folder.0, line)?;
         is_refused(&done, words);

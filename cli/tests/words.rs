@@ -65,32 +65,19 @@ fn the_area_of_every_state_is_corrected() -> Done {
     let folder = Scratch::new("corrected")?;
     let line = "path --nodes 32 --max-area-fraction 0.3 --record path.npz";
     let words = printed(&run(&folder.0, line)?);
-    assert!(
-        words.contains("corrected") && words.contains("mesh: at the last state"),
-        "{words}"
-    );
+    assert!(words.contains("corrected") && words.contains("mesh: at the last state"), "{words}");
     run(&folder.0, "patches path.npz --out patches")?;
     let file = folder.join("out/path.csv");
     let found = column(&file, "corrected_contact_area")?;
-    let shares = column(
-        &folder.join("patches/patches.csv"),
-        "corrected_area_fraction",
-    )?;
+    let shares = column(&folder.join("patches/patches.csv"), "corrected_area_fraction")?;
     assert_eq!(found.len(), shares.len());
     for (area, share) in found.iter().zip(shares) {
-        assert!(
-            (area / (1e-4 * share) - 1.0).abs() < 1e-12,
-            "{area} {share}"
-        );
+        assert!((area / (1e-4 * share) - 1.0).abs() < 1e-12, "{area} {share}");
     }
     let cell = 1e-4 / (32.0 * 32.0);
     let factor = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
     assert!((found[0] / (cell * (1.0 - 4.0 * factor)) - 1.0).abs() < 1e-12);
-    assert!(
-        column(&file, "approach_error")?
-            .iter()
-            .all(|error| *error >= 0.0)
-    );
+    assert!(column(&file, "approach_error")?.iter().all(|error| *error >= 0.0));
     Ok(())
 }
 
@@ -101,19 +88,11 @@ fn what_the_grid_does_not_resolve_is_said() -> Done {
     let waves = "waves shorter than four cells";
     let resolved = run(&folder.0, "path --nodes 64 --max-area-fraction 0.2")?;
     assert!(!said(&resolved).contains(waves), "{}", said(&resolved));
-    assert!(
-        !printed(&resolved).contains("not resolved"),
-        "{}",
-        printed(&resolved)
-    );
+    assert!(!printed(&resolved).contains("not resolved"), "{}", printed(&resolved));
     let coarse = "path --nodes 64 --max-area-fraction 0.02 --short-cutoff 312.5e-6";
     let coarse = run(&folder.0, coarse)?;
     assert!(said(&coarse).contains(waves), "{}", said(&coarse));
-    assert!(
-        printed(&coarse).contains("not resolved"),
-        "{}",
-        printed(&coarse)
-    );
+    assert!(printed(&coarse).contains("not resolved"), "{}", printed(&coarse));
     Ok(())
 }
 
@@ -123,18 +102,12 @@ fn units_that_were_mistaken_are_said_in_every_command() -> Done {
     let all = |options: &str| -> Result<Vec<String>, Box<dyn Error>> {
         let path = format!("path --surface rough.npy {options} --max-area-fraction 0.01");
         let load = format!("load --surface rough.npy {options} --load 1e-9");
-        [path, load]
-            .iter()
-            .map(|line| Ok(said(&run(&folder.0, line)?)))
-            .collect()
+        [path, load].iter().map(|line| Ok(said(&run(&folder.0, line)?))).collect()
     };
     for words in all("--side 1e-2 --material 210,0.3")? {
         assert!(words.contains("is softer than rubber"), "{words}");
         assert!(words.contains("it is 230.8 GPa"), "{words}");
-        assert!(
-            words.contains("E = 210 Pa, ν = 0.30 against rigid"),
-            "{words}"
-        );
+        assert!(words.contains("E = 210 Pa, ν = 0.30 against rigid"), "{words}");
     }
     let tiny = "--side 1e-2 --height-unit nm";
     for words in all(&format!("{tiny} --material steel"))? {
@@ -154,17 +127,11 @@ fn pressures_that_nothing_bears_are_said() -> Done {
     let folder = with_surface("pressures")?;
     let line = "load --surface rough.npy --side 1e-2 --material steel --load 1e99";
     let words = said(&run(&folder.0, line)?);
-    assert!(
-        words.contains("warning: the greatest pressure is"),
-        "{words}"
-    );
+    assert!(words.contains("warning: the greatest pressure is"), "{words}");
     assert!(words.contains("the contact is full"), "{words}");
     run(&folder.0, "path --nodes 64 --record path.npz")?;
     let words = printed(&run(&folder.0, "patches path.npz --out seen")?);
-    assert!(
-        words.contains("warning: the greatest pressure is"),
-        "{words}"
-    );
+    assert!(words.contains("warning: the greatest pressure is"), "{words}");
     Ok(())
 }
 
@@ -193,11 +160,7 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
     let lines = printed(&done);
     assert_eq!(lines.lines().count(), 2);
     let file = folder.join("out/load.csv");
-    for (name, place) in [
-        ("load", 0),
-        ("contact_area", 0),
-        ("corrected_contact_area", 1),
-    ] {
+    for (name, place) in [("load", 0), ("contact_area", 0), ("corrected_contact_area", 1)] {
         let value = column(&file, name)?[place];
         let line = lines.lines().nth(place).ok_or("no line")?;
         assert!(line.contains(&format!("{name}={value:e} ")), "{line}");
@@ -220,10 +183,7 @@ fn loads_are_given_as_mean_pressures_too() -> Done {
 #[test]
 fn advice_names_an_option() -> Done {
     let folder = with_surface("advice")?;
-    fs::copy(
-        data("surface_files/missing_f64.x3p"),
-        folder.join("holes.x3p"),
-    )?;
+    fs::copy(data("surface_files/missing_f64.x3p"), folder.join("holes.x3p"))?;
     fs::write(
         folder.join("tilted.txt"),
         "0 1001 2000 3001\n1 1000 2001 3000\n0 1001 2000 3001\n1 1000 2001 3000\n",
@@ -236,17 +196,11 @@ fn advice_names_an_option() -> Done {
     let load = "--e-star 1 --load 1e-7";
     refused(
         &format!("load --surface holes.x3p {load}"),
-        &[
-            "2 of the heights are not finite",
-            "`surface::fill_missing` (`--fill`)",
-        ],
+        &["2 of the heights are not finite", "`surface::fill_missing` (`--fill`)"],
     )?;
     refused(
         &format!("load --surface tilted.txt {load}"),
-        &[
-            "the heights have no unit",
-            "`ReadOptions::height_unit` (`--height-unit`)",
-        ],
+        &["the heights have no unit", "`ReadOptions::height_unit` (`--height-unit`)"],
     )?;
     refused(
         &format!("load --surface tilted.txt --height-unit nm {load}"),
@@ -262,41 +216,26 @@ fn advice_names_an_option() -> Done {
 #[test]
 fn info_prepares_the_surface_as_it_is_told() -> Done {
     let folder = with_surface("prepared")?;
-    fs::copy(
-        data("surface_files/missing_f64.x3p"),
-        folder.join("holes.x3p"),
-    )?;
+    fs::copy(data("surface_files/missing_f64.x3p"), folder.join("holes.x3p"))?;
     let number = |line: &str, name: &str| -> Result<f64, Box<dyn Error>> {
         let text = printed(&run(&folder.0, line)?);
-        let after = text
-            .split(&format!("\"{name}\":"))
-            .nth(1)
-            .ok_or("no such figure")?;
+        let after = text.split(&format!("\"{name}\":")).nth(1).ok_or("no such figure")?;
         Ok(after.split([',', '}']).next().ok_or("no number")?.parse()?)
     };
     let rough = "info rough.npy --side 1e-2 --json";
     let (min, max) = (number(rough, "min")?, number(rough, "max")?);
     let inverted = format!("{rough} --invert");
-    assert_eq!(
-        (number(&inverted, "min")?, number(&inverted, "max")?),
-        (-max, -min)
-    );
+    assert_eq!((number(&inverted, "min")?, number(&inverted, "max")?), (-max, -min));
     let (sq, level) = (number(rough, "sq")?, format!("{rough} --level quadratic"));
     assert!(number(&level, "sq")? < sq);
     let (sa, sz) = (number(rough, "sa")?, number(rough, "sz")?);
     assert!(sa < sq && sq < sz && (sz / (max - min) - 1.0).abs() < 1e-12);
     // Holes: one population, of which nothing contradicts anything.
     let words = printed(&run(&folder.0, "info holes.x3p")?);
-    assert!(
-        words.contains("of all nodes, the 2 missing ones filled"),
-        "{words}"
-    );
+    assert!(words.contains("of all nodes, the 2 missing ones filled"), "{words}");
     let holes = "info holes.x3p --json";
     for name in ["min", "max", "sq", "sa", "sz", "rms_gradient"] {
-        assert_eq!(
-            number(holes, name)?,
-            number(&format!("{holes} --fill"), name)?
-        );
+        assert_eq!(number(holes, name)?, number(&format!("{holes} --fill"), name)?);
     }
     Ok(())
 }
@@ -304,27 +243,15 @@ fn info_prepares_the_surface_as_it_is_told() -> Done {
 #[test]
 fn patches_say_what_to_run_and_where_a_leak_passes() -> Done {
     let folder = Scratch::new("channels")?;
-    run(
-        &folder.0,
-        "path --nodes 32 --periodic love --max-area-fraction 0.1 --record p.npz",
-    )?;
+    run(&folder.0, "path --nodes 32 --periodic love --max-area-fraction 0.1 --record p.npz")?;
     let words = printed(&run(&folder.0, "patches p.npz")?);
-    assert!(
-        words.contains("seals along x      not on this path"),
-        "{words}"
-    );
-    assert!(
-        words.contains("the widest channel along x is narrowest at node"),
-        "{words}"
-    );
+    assert!(words.contains("seals along x      not on this path"), "{words}");
+    assert!(words.contains("the widest channel along x is narrowest at node"), "{words}");
     let command = words.split("asperity path ").nth(1).ok_or("no command")?;
     let command = command.split(", and then").next().ok_or("no end")?;
     run(&folder.0, &format!("path {command}"))?;
     let words = printed(&run(&folder.0, "patches p.npz")?);
     assert!(words.contains("seals along x      from state"), "{words}");
-    assert!(
-        words.contains("no channel along x: the contact seals"),
-        "{words}"
-    );
+    assert!(words.contains("no channel along x: the contact seals"), "{words}");
     Ok(())
 }

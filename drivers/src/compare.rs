@@ -71,21 +71,14 @@ pub(crate) fn same_path(
     // States at one approach joined together, as a window began: they are ties as far as they say themselves.
     let is_together = |k: usize| {
         let neighbours = [k.checked_sub(1), Some(k + 1)];
-        let mut neighbours = neighbours
-            .into_iter()
-            .flatten()
-            .filter_map(|k| found.get(k));
+        let mut neighbours = neighbours.into_iter().flatten().filter_map(|k| found.get(k));
         let own = found[k].contact.approach;
         neighbours
             .any(|other| (other.contact.approach - own).abs() <= ROUNDING * computed(&found[k]))
     };
     let tie = |k: usize| {
         let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
-        let together = if is_together(k) {
-            found[k].approach_error
-        } else {
-            0.0
-        };
+        let together = if is_together(k) { found[k].approach_error } else { 0.0 };
         tie.max(together)
     };
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
@@ -106,19 +99,14 @@ pub(crate) fn same_path(
         if state.node != expected.node && apart > tie(k).max(bounds.order * uncertain) {
             return Err(Violation::new(format!("{}: {apart:e} apart", context())));
         }
-        let next = exact
-            .get(k + 1)
-            .map_or(f64::INFINITY, |next| next.contact.approach);
+        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.contact.approach);
         if next - expected.contact.approach <= tie(k) || expected.contact.approach <= tie(k) {
             continue;
         }
         // What the state itself says of its approach, and what follows from it.
         let error = bounds.excess * state.approach_error;
         let rate = |state: &LoadingState| {
-            let rate = state
-                .contact
-                .contact_stiffness
-                .or(state.contact.interfacial_stiffness);
+            let rate = state.contact.contact_stiffness.or(state.contact.interfacial_stiffness);
             rate.filter(|rate| rate.is_finite())
         };
         // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
@@ -153,11 +141,7 @@ pub(crate) fn same_path(
         ]
         .to_vec();
         let pairs = [
-            (
-                state.contact.contact_stiffness,
-                expected.contact.contact_stiffness,
-                bounds.stiffness,
-            ),
+            (state.contact.contact_stiffness, expected.contact.contact_stiffness, bounds.stiffness),
             (
                 state.contact.interfacial_stiffness,
                 expected.contact.interfacial_stiffness,
@@ -173,9 +157,7 @@ pub(crate) fn same_path(
             }
         }
         for (what, a, b, allowed) in scalars {
-            tally
-                .close(what, a, b, allowed)
-                .map_err(|violation| violation.during(context()))?;
+            tally.close(what, a, b, allowed).map_err(|violation| violation.during(context()))?;
         }
         tally.checked += 1;
     }

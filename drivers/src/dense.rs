@@ -295,10 +295,7 @@ impl<'a> ContactSet<'a> {
     /// The solution at an approach in the gauge of the kernel.
     pub(crate) fn at(&self, own_approach: f64) -> Instant {
         let dense = self.dense;
-        let rhs = self
-            .nodes
-            .iter()
-            .map(|&node| own_approach - dense.gap[node]);
+        let rhs = self.nodes.iter().map(|&node| own_approach - dense.gap[node]);
         let pressure = self.solve(&DVector::from_iterator(self.nodes.len(), rhs));
         let (displacement, lengths) = dense.displace(&pressure);
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
@@ -341,17 +338,12 @@ impl<'a> ContactSet<'a> {
         let stiffness = self.rate.sum();
         let relative = self.sum_error(self.closing_error) / stiffness.abs();
         let all = self.dense.nodes();
-        let closing: f64 = (0..all)
-            .filter(|&node| !self.is_in[node])
-            .map(|node| self.closing[node])
-            .sum();
+        let closing: f64 =
+            (0..all).filter(|&node| !self.is_in[node]).map(|node| self.closing[node]).sum();
         let closing = closing / all as f64;
         [
             (stiffness, relative),
-            (
-                stiffness / closing,
-                relative + self.closing_error / closing.abs(),
-            ),
+            (stiffness / closing, relative + self.closing_error / closing.abs()),
         ]
     }
 

@@ -51,12 +51,7 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
     let dense = Dense::new(&sample.kernel, sample.surface.matrix()).in_computing_gauge();
     let circumstances = Circumstances::of(&dense, sample.kernel.contact_growth());
     let path = Variant::REFERENCE.run(sample, &[], |_, _| Ok(()))?;
-    let Run::Followed {
-        states,
-        failure: None,
-        ..
-    } = path
-    else {
+    let Run::Followed { states, failure: None, .. } = path else {
         // It is the driver of paths that asks why.
         return Ok(Tally::default());
     };

@@ -126,9 +126,7 @@ impl Judge {
             return true;
         };
         let states = self.history.states();
-        let mut has = states
-            .iter()
-            .zip(states.iter().skip(1).map(Some).chain([None]));
+        let mut has = states.iter().zip(states.iter().skip(1).map(Some).chain([None]));
         let Some((state, next)) = has.find(|(state, _)| state.contact.contact_nodes == nodes)
         else {
             return true;
@@ -144,10 +142,8 @@ impl Judge {
         let (state, dense) = (&solution.state, &self.dense);
         let nodes = self.grid.nodes();
         let found = dense.scalars(state);
-        let pressure = DVector::from_iterator(
-            nodes,
-            solution.pressure.iter().map(|p| dense.own_pressure(*p)),
-        );
+        let pressure =
+            DVector::from_iterator(nodes, solution.pressure.iter().map(|p| dense.own_pressure(*p)));
         let sum = pressure.sum();
         ensure!(pressure.min() >= 0.0, "a pressure is negative");
         let rounding = Dense::rounding(nodes);
@@ -213,12 +209,7 @@ impl Judge {
         };
         let [(stiffness, error), (expected, interfacial_error)] = set.stiffnesses();
         if let Some(found) = found.stiffness {
-            tally.close(
-                "contact stiffness",
-                found,
-                stiffness,
-                error * stiffness.abs(),
-            )?;
+            tally.close("contact stiffness", found, stiffness, error * stiffness.abs())?;
         }
         if contact.len() == self.grid.nodes() {
             ensure!(
@@ -305,12 +296,7 @@ impl Judge {
             // Then `C_II d = Δδ e + r`, of which the sum of d leaves nothing but r.
             let own = self.dense.own_approach(state.approach, state.load);
             let error = set.sum_error(allowed) / set.rate.sum().abs();
-            tally.close(
-                "approach of the path",
-                own,
-                found.own_approach,
-                error + allowed,
-            )?;
+            tally.close("approach of the path", own, found.own_approach, error + allowed)?;
         }
         Ok(())
     }

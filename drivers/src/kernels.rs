@@ -59,10 +59,7 @@ pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, definite: boo
         Class::Random,
     ];
     let class = draw.one_of(Class::Free, if definite { &DEFINITE } else { all });
-    Made {
-        class,
-        kernel: make(draw, grid, e_star, class),
-    }
+    Made { class, kernel: make(draw, grid, e_star, class) }
 }
 
 /// A kernel of this class.
@@ -80,12 +77,7 @@ pub(crate) fn make(
         Class::FreeTable => {
             let love = Boussinesq::new(grid, e_star)?;
             let coefficient = |di, dj| love.coefficient(di, dj);
-            Box::new(KernelTable::from_fn(
-                grid,
-                Boundary::Free,
-                unknown,
-                coefficient,
-            )?)
+            Box::new(KernelTable::from_fn(grid, Boundary::Free, unknown, coefficient)?)
         }
         Class::Periodic => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
         Class::PeriodicInGauge => {
@@ -103,12 +95,7 @@ pub(crate) fn make(
             let reach = draw.decades(-1.0, 1.0);
             let coefficient =
                 |di: isize, dj: isize| scale * (-(di as f64).hypot(dj as f64) / reach).exp();
-            Box::new(KernelTable::from_fn(
-                grid,
-                Boundary::Free,
-                unknown,
-                coefficient,
-            )?)
+            Box::new(KernelTable::from_fn(grid, Boundary::Free, unknown, coefficient)?)
         }
         Class::Physical | Class::Arbitrary => {
             let mean = match class {
@@ -122,10 +109,7 @@ pub(crate) fn make(
             let (lx, ly) = grid.sides();
             let symbol = |qx: f64, qy: f64| {
                 let turn = std::f64::consts::TAU;
-                let (kx, ky) = (
-                    (qx * lx / turn).abs().round(),
-                    (qy * ly / turn).abs().round(),
-                );
+                let (kx, ky) = ((qx * lx / turn).abs().round(), (qy * ly / turn).abs().round());
                 scale * amplitudes[(7 * kx as usize + 3 * ky as usize) % 64]
             };
             Box::new(KernelTable::from_symbol(grid, mean, unknown, symbol)?)
@@ -138,19 +122,9 @@ pub(crate) fn make(
             let coefficient = |di: isize, dj: isize| {
                 let (di, dj) = (di.unsigned_abs(), dj.unsigned_abs());
                 let own = (di, dj) == (0, 0);
-                scale
-                    * if own {
-                        1.0
-                    } else {
-                        strength * values[di + nx * dj]
-                    }
+                scale * if own { 1.0 } else { strength * values[di + nx * dj] }
             };
-            Box::new(KernelTable::from_fn(
-                grid,
-                Boundary::Free,
-                unknown,
-                coefficient,
-            )?)
+            Box::new(KernelTable::from_fn(grid, Boundary::Free, unknown, coefficient)?)
         }
     })
 }

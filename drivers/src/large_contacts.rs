@@ -86,21 +86,11 @@ fn run(sample: &Sample, draw: &mut Draw<'_>) -> Verdict {
 fn follow(sample: &Sample, variant: &Variant) -> Result<History, Violation> {
     match variant.run(sample, &[], |_, _| Ok(()))? {
         Run::Refused(error) => Err(Violation::new(format!("it was refused: {error}"))),
-        Run::Followed {
-            states,
-            failure: None,
-            end: Some(LoadingEnd::FullContact),
-            ..
-        } => {
+        Run::Followed { states, failure: None, end: Some(LoadingEnd::FullContact), .. } => {
             variant.check_threads(sample, &[], &states)?;
             Ok(History::from_iter(states))
         }
-        Run::Followed {
-            states,
-            failure,
-            end,
-            ..
-        } => Err(Violation::new(format!(
+        Run::Followed { states, failure, end, .. } => Err(Violation::new(format!(
             "it ended after {} states, {end:?}: {failure:?}",
             states.len()
         ))),

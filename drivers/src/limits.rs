@@ -33,10 +33,9 @@ impl Limit {
             0 => Self::None,
             1 => Self::Load(choose(part * last.contact.load, some.contact.load)),
             2 => Self::Approach(choose(part * last.contact.approach, some.contact.approach)),
-            3 => Self::MeanGap(choose(
-                (1.0 - part) * first.contact.mean_gap,
-                some.contact.mean_gap,
-            )),
+            3 => {
+                Self::MeanGap(choose((1.0 - part) * first.contact.mean_gap, some.contact.mean_gap))
+            }
             4 => Self::Area(choose(part, some.contact.contact_area_fraction)),
             _ => Self::Nodes(draw.whole(0, grid.nodes() + 1)),
         }
@@ -102,10 +101,7 @@ impl Limit {
             (Some(LoadingEnd::NoMoreEvents), _) => !full,
             _ => false,
         };
-        ensure!(
-            is_there,
-            "the end {end:?} of a path to {self:?} at {last:?}"
-        );
+        ensure!(is_there, "the end {end:?} of a path to {self:?} at {last:?}");
         let is_within = |state: &LoadingState| match self {
             Self::None => true,
             Self::Load(load) => state.contact.load <= load,

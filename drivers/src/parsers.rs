@@ -62,9 +62,7 @@ fn options(draw: &mut Draw<'_>) -> Result<ReadOptions, Violation> {
     let options = ReadOptions::new();
     Ok(match draw.whole(0, 7) {
         0..=2 => options,
-        3 => options
-            .height_unit(LengthUnit::METRE)
-            .lateral_unit(LengthUnit::METRE),
+        3 => options.height_unit(LengthUnit::METRE).lateral_unit(LengthUnit::METRE),
         4 => {
             let unit = draw.one_of("nm", &["µm", "Å", "in", "cm", "mm", "pm", "fm"]);
             let unit: LengthUnit = unit
@@ -117,10 +115,7 @@ fn read(file: &[u8], options: &ReadOptions, scratch: &Scratch) -> Verdict {
             ensure!(known, "a map was read, but not the names of all maps");
             look_at(&surface)?;
             write_again(&surface, scratch)?;
-            Ok(Tally {
-                checked: 1,
-                ..Tally::default()
-            })
+            Ok(Tally { checked: 1, ..Tally::default() })
         }
         // Any bytes but those of a surface deserve a refusal, in words.
         Some(Err(error)) => {
@@ -141,21 +136,14 @@ fn look_at(surface: &MeasuredSurface) -> Result<(), Violation> {
     let infinite = surface.heights.iter().find(|height| height.is_infinite());
     ensure!(infinite.is_none(), "a height is {infinite:?}");
     let missing = surface.heights.iter().filter(|h| h.is_nan()).count();
-    ensure!(
-        missing == surface.missing,
-        "{missing} heights are missing, not {}",
-        surface.missing
-    );
+    ensure!(missing == surface.missing, "{missing} heights are missing, not {}", surface.missing);
     if let Some((dx, dy)) = surface.cell {
         ensure!(
             dx > 0.0 && dx.is_finite() && dy > 0.0 && dy.is_finite(),
             "cells of {dx:e} x {dy:e}"
         );
     }
-    ensure!(
-        !surface.to_string().is_empty(),
-        "a map that has nothing to say"
-    );
+    ensure!(!surface.to_string().is_empty(), "a map that has nothing to say");
     let is_grid = surface.grid().is_ok();
     if missing < nx * ny && nx * ny <= FILLED {
         let filled = surface.clone().fill_missing();
@@ -165,10 +153,7 @@ fn look_at(surface: &MeasuredSurface) -> Result<(), Violation> {
             filled.missing == 0 && filled.heights.iter().all(|h| h.is_finite()),
             "heights are missing after they were filled"
         );
-        ensure!(
-            filled.topography().is_ok() == is_grid,
-            "a whole map has no topography"
-        );
+        ensure!(filled.topography().is_ok() == is_grid, "a whole map has no topography");
     }
     let whole = is_grid && missing == 0;
     ensure!(
@@ -190,10 +175,7 @@ fn write_again(surface: &MeasuredSurface, scratch: &Scratch) -> Result<(), Viola
     let heights = &surface.heights;
     let path = scratch.path("again");
     write_npy(&path, heights).map_err(failed)?;
-    ensure!(
-        same(&read_npy(&path).map_err(failed)?, heights),
-        "another map in a .npy file"
-    );
+    ensure!(same(&read_npy(&path).map_err(failed)?, heights), "another map in a .npy file");
     let Ok(grid) = surface.grid() else {
         return Ok(());
     };
@@ -215,10 +197,7 @@ fn write_again(surface: &MeasuredSurface, scratch: &Scratch) -> Result<(), Viola
         };
         written.map_err(failed)?;
         let again = ReadOptions::new().read(&path).map_err(failed)?;
-        ensure!(
-            same(&again.heights, &rounded),
-            "another map in a .{format} file"
-        );
+        ensure!(same(&again.heights, &rounded), "another map in a .{format} file");
         let Some((dx, dy)) = again.cell else {
             return Err(Violation::new(format!("no cell in a .{format} file")));
         };

@@ -32,9 +32,7 @@ pub fn paths(bytes: &[u8]) -> Verdict {
         Drawn::Sample(sample) => sample,
         Drawn::Refused(verdict) => return verdict,
     };
-    Trial::new(&sample)
-        .run(&mut draw)
-        .map_err(|violation| violation.during(sample.context()))
+    Trial::new(&sample).run(&mut draw).map_err(|violation| violation.during(sample.context()))
 }
 
 /// A problem, and what is known of it.
@@ -75,9 +73,7 @@ impl<'a> Trial<'a> {
         let context = || format!("{variant:?} behind {from} states");
         let windows = self.circumstances.growth != ContactGrowth::Unknown;
         tally += if variant.is_exact() || !windows || variant.rule == ContactRule::SmallestGap {
-            self.follow(&variant, earlier, draw)
-                .map_err(|violation| violation.during(context()))?
-                .0
+            self.follow(&variant, earlier, draw).map_err(|violation| violation.during(context()))?.0
         } else {
             self.follow_by_iterations(&variant, earlier, &expected)
                 .map_err(|violation| violation.during(context()))?
@@ -119,12 +115,7 @@ impl<'a> Trial<'a> {
             Run::Refused(error) => {
                 return Ok((self.judge_refusal(variant, &error)?, Vec::new()));
             }
-            Run::Followed {
-                states,
-                failure,
-                end,
-                more,
-            } => (states, failure, end, more),
+            Run::Followed { states, failure, end, more } => (states, failure, end, more),
         };
         let mut walk = Walk::new(&self.dense, self.grid, demands);
         walk.skip(earlier)?;
@@ -135,10 +126,8 @@ impl<'a> Trial<'a> {
         let mut tally = walk.tally();
         tally += more;
         if let Some(error) = failure {
-            let circumstances = Circumstances {
-                on_the_edge: walk.on_the_edge(),
-                ..self.circumstances(variant)
-            };
+            let circumstances =
+                Circumstances { on_the_edge: walk.on_the_edge(), ..self.circumstances(variant) };
             let verdict = circumstances.judge(&error);
             tally += verdict
                 .map_err(|violation| violation.during(format!("after {} states", states.len())))?;
@@ -159,12 +148,7 @@ impl<'a> Trial<'a> {
         let run = variant.run(self.sample, earlier, |_, _| Ok(()))?;
         let (states, failure, end) = match run {
             Run::Refused(error) => return self.judge_refusal(variant, &error),
-            Run::Followed {
-                states,
-                failure,
-                end,
-                ..
-            } => (states, failure, end),
+            Run::Followed { states, failure, end, .. } => (states, failure, end),
         };
         let mut tally = Tally::default();
         let events = History::from_iter(states.iter().copied());

@@ -37,11 +37,7 @@ impl Sample {
             .map_err(|error| Violation::new(format!("finite heights were refused: {error}")))?;
         let Made { class, kernel } = kernels::kernel(draw, grid, modulus, definite);
         match kernel {
-            Ok(kernel) => Ok(Drawn::Sample(Self {
-                surface,
-                kernel,
-                class,
-            })),
+            Ok(kernel) => Ok(Drawn::Sample(Self { surface, kernel, class })),
             Err(error) => Ok(Drawn::Refused(judge(&error, &grid, class))),
         }
     }
@@ -94,11 +90,7 @@ fn half_space(
         _ => aspect.clamp(1.0 / longest, longest),
     };
     let grid = Grid::new(nx, ny, dx, dx * aspect)?;
-    Ok(Sample {
-        surface,
-        kernel: kernels::make(draw, grid, modulus, class)?,
-        class,
-    })
+    Ok(Sample { surface, kernel: kernels::make(draw, grid, modulus, class)?, class })
 }
 
 /// A grid: small squares, strips and whatever lies between, with cells from square to 10⁴ times as long as wide.

@@ -61,10 +61,7 @@ fn whole(sample: &Sample, draw: &mut Draw<'_>, scratch: &Scratch) -> Verdict {
     let path = scratch.path("record.npz");
     record.write_npz(&path, &[]).map_err(failed)?;
     let again = LoadingRecord::read_npz(&path).map_err(failed)?;
-    ensure!(
-        same(&record, &again),
-        "a record is not what it was after it was written"
-    );
+    ensure!(same(&record, &again), "a record is not what it was after it was written");
     let mut tally = bring_back(sample, &again, &states, draw)?;
     if draw.once_in(2) {
         let archive = bytes_of(&path)?;
@@ -124,15 +121,9 @@ fn bring_back(
         tolerance: Some(ITERATED),
         ..Circumstances::of(&dense, sample.kernel.contact_growth())
     };
-    let ours = matches!(
-        sample.class,
-        Class::Free | Class::Periodic | Class::Spectral
-    );
+    let ours = matches!(sample.class, Class::Free | Class::Periodic | Class::Spectral);
     // Gauges that are both exchanged for another one are one kernel to compute with.
-    let may_be = matches!(
-        sample.class,
-        Class::PeriodicInGauge | Class::SpectralInGauge
-    );
+    let may_be = matches!(sample.class, Class::PeriodicInGauge | Class::SpectralInGauge);
     ensure!(
         may_be || record.make_kernel().is_ok() == ours,
         "the kernel of the record: {:?}",
@@ -149,10 +140,7 @@ fn bring_back(
         .and_then(|pressure| Ok((pressure, replay.gap_at(&states[k])?)));
     match fields {
         Ok((pressure, gap)) => {
-            let demands = Demands {
-                residual: ITERATED,
-                ..Demands::EXACT
-            };
+            let demands = Demands { residual: ITERATED, ..Demands::EXACT };
             let mut walk = Walk::new(&dense, record.grid(), demands);
             walk.skip(&states[..=k])?;
             walk.compare_fields(&states[k], &pressure, &gap)
@@ -214,10 +202,7 @@ fn read(bytes: &[u8], scratch: &Scratch) -> Verdict {
     let again = scratch.path("again.npz");
     record.write_npz(&again, &[]).map_err(failed)?;
     let again = LoadingRecord::read_npz(&again).map_err(failed)?;
-    ensure!(
-        same(&record, &again),
-        "a record is not what it was after it was written"
-    );
+    ensure!(same(&record, &again), "a record is not what it was after it was written");
     record.contact().map_err(failed)?;
     if record.grid().nodes() <= SMALL && record.states().len() <= SMALL {
         // Answers or errors: numbers that somebody has changed are no path.
@@ -232,8 +217,5 @@ fn read(bytes: &[u8], scratch: &Scratch) -> Verdict {
             }
         }
     }
-    Ok(Tally {
-        checked: 1,
-        ..Tally::default()
-    })
+    Ok(Tally { checked: 1, ..Tally::default() })
 }

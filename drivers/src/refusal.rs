@@ -46,9 +46,9 @@ impl Circumstances {
             Error::NotMonotone { .. } => self.growth != ContactGrowth::Unknown && self.error > 1e-6,
             // States are recognised to 1e-6.
             Error::NotOnPath { .. } => self.error > 1e-6,
-            Error::NoConvergence { .. } => self
-                .tolerance
-                .is_some_and(|tolerance| self.error > tolerance),
+            Error::NoConvergence { .. } => {
+                self.tolerance.is_some_and(|tolerance| self.error > tolerance)
+            }
             // Cells so long that paths need a factor.
             Error::OutOfRange { value, .. } => {
                 self.tolerance.is_some() && *value > ConjugateGradient::MAX_ASPECT

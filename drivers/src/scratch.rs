@@ -20,9 +20,7 @@ impl Scratch {
             true => tempfile::tempdir_in(in_memory).or_else(|_| tempfile::tempdir()),
             false => tempfile::tempdir(),
         };
-        folder
-            .map(Self)
-            .map_err(|error| Violation::new(format!("no folder for files: {error}")))
+        folder.map(Self).map_err(|error| Violation::new(format!("no folder for files: {error}")))
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

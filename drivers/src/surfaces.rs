@@ -73,9 +73,7 @@ pub(crate) fn heights(draw: &mut Draw<'_>, (nx, ny): (usize, usize)) -> DMatrix<
         }
         Class::Paraboloid => {
             let (a, b) = (draw.unit(), draw.unit());
-            DMatrix::from_fn(nx, ny, |ix, iy| {
-                1.0 - 0.5 * (a * x(ix).powi(2) + b * y(iy).powi(2))
-            })
+            DMatrix::from_fn(nx, ny, |ix, iy| 1.0 - 0.5 * (a * x(ix).powi(2) + b * y(iy).powi(2)))
         }
         Class::Wave => {
             let (a, b) = (draw.whole(0, 3) as f64, draw.whole(0, 3) as f64);
@@ -90,20 +88,12 @@ pub(crate) fn heights(draw: &mut Draw<'_>, (nx, ny): (usize, usize)) -> DMatrix<
                 0.1 * high * (ix / wide) as f64 + 0.5 * chessboard(ix, iy)
             })
         }
-        Class::Spikes => DMatrix::from_fn(
-            nx,
-            ny,
-            |ix, iy| {
-                if white[(ix, iy)] > 0.9 { 1.0 } else { 0.0 }
-            },
-        ),
-        Class::Pits => DMatrix::from_fn(
-            nx,
-            ny,
-            |ix, iy| {
-                if white[(ix, iy)] > 0.9 { 0.0 } else { 1.0 }
-            },
-        ),
+        Class::Spikes => {
+            DMatrix::from_fn(nx, ny, |ix, iy| if white[(ix, iy)] > 0.9 { 1.0 } else { 0.0 })
+        }
+        Class::Pits => {
+            DMatrix::from_fn(nx, ny, |ix, iy| if white[(ix, iy)] > 0.9 { 0.0 } else { 1.0 })
+        }
         Class::Constant => DMatrix::from_element(nx, ny, 0.3),
     }
 }

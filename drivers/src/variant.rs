@@ -75,10 +75,7 @@ impl Variant {
 
     /// Whether states are exact to rounding.
     pub(crate) fn is_exact(&self) -> bool {
-        matches!(
-            self.solver,
-            Solver::Cholesky | Solver::Dense | Solver::Handover(None)
-        )
+        matches!(self.solver, Solver::Cholesky | Solver::Dense | Solver::Handover(None))
     }
 
     fn updater(&self) -> Box<dyn LinearUpdater + Send> {
@@ -132,10 +129,7 @@ impl Variant {
         if self.threads.0 == self.threads.1 {
             return Ok(());
         }
-        let other = Self {
-            threads: (self.threads.1, self.threads.0),
-            ..*self
-        };
+        let other = Self { threads: (self.threads.1, self.threads.0), ..*self };
         let run = other.run(sample, earlier, |_, _| Ok(()))?;
         let same = match &run {
             Run::Refused(_) => states.is_empty(),
@@ -180,12 +174,7 @@ impl Variant {
             return Err(Violation::new("a path goes on behind its end"));
         }
         let more = look(&mut path, &states)?;
-        Ok(Run::Followed {
-            end: path.end(),
-            states,
-            failure,
-            more,
-        })
+        Ok(Run::Followed { end: path.end(), states, failure, more })
     }
 }
 
@@ -209,6 +198,5 @@ fn pool(threads: usize) -> Result<&'static ThreadPool, Violation> {
     static POOLS: [OnceLock<Option<ThreadPool>>; 3] = [const { OnceLock::new() }; 3];
     let pool = POOLS[(threads - 1).min(2)]
         .get_or_init(|| ThreadPoolBuilder::new().num_threads(threads).build().ok());
-    pool.as_ref()
-        .ok_or_else(|| Violation::new(format!("{threads} threads could not be started")))
+    pool.as_ref().ok_or_else(|| Violation::new(format!("{threads} threads could not be started")))
 }

@@ -58,10 +58,7 @@ pub struct Tally {
 impl Tally {
     /// Nothing but a refusal.
     pub(crate) fn refusal() -> Self {
-        Self {
-            refused: 1,
-            ..Self::default()
-        }
+        Self { refused: 1, ..Self::default() }
     }
 
     /// `Ok` if two numbers differ by no more than is allowed.
@@ -88,10 +85,7 @@ impl Tally {
         found: f64,
         allowed: f64,
     ) -> Result<(), Violation> {
-        ensure!(
-            found >= -allowed,
-            "{what} is {found:e}, below zero by more than {allowed:e}"
-        );
+        ensure!(found >= -allowed, "{what} is {found:e}, below zero by more than {allowed:e}");
         self.measure((-found).max(0.0), allowed);
         Ok(())
     }

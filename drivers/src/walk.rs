@@ -29,11 +29,7 @@ pub(crate) struct Demands {
 
 impl Demands {
     /// Exact to rounding.
-    pub(crate) const EXACT: Self = Self {
-        residual: 0.0,
-        signs: true,
-        hopeless: 1e-3,
-    };
+    pub(crate) const EXACT: Self = Self { residual: 0.0, signs: true, hopeless: 1e-3 };
 }
 
 /// Where a walk stands.
@@ -71,8 +67,7 @@ impl<'a> Walk<'a> {
     /// Looks at every state, the next of the path each.
     pub(crate) fn follow(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
         for state in states {
-            self.step(state)
-                .map_err(|violation| violation.during(format!("{state:?}")))?;
+            self.step(state).map_err(|violation| violation.during(format!("{state:?}")))?;
         }
         Ok(())
     }
@@ -111,8 +106,7 @@ impl<'a> Walk<'a> {
         for node in 0..self.dense.nodes() {
             let own = self.dense.own_pressure(pressure[node]);
             let expected = instant.pressure[node];
-            self.tally
-                .close("pressure", own, expected, instant.pressure_error)?;
+            self.tally.close("pressure", own, expected, instant.pressure_error)?;
             let own = self.dense.own_length(gap[node]);
             let expected = instant.gap[node];
             self.tally.close("gap", own, expected, instant.gap_error)?;
@@ -144,12 +138,10 @@ impl<'a> Walk<'a> {
         for node in 0..self.dense.nodes() {
             if set.contains(node) {
                 let allowed = set.rate_error();
-                self.tally
-                    .not_negative("least rate of pressure", set.rate[node], allowed)?;
+                self.tally.not_negative("least rate of pressure", set.rate[node], allowed)?;
             } else {
                 let opening = -set.closing[node];
-                self.tally
-                    .not_negative("least rate of a gap", opening, set.closing_error)?;
+                self.tally.not_negative("least rate of a gap", opening, set.closing_error)?;
             }
         }
         Ok(())
@@ -191,11 +183,7 @@ impl<'a> Walk<'a> {
                 let size = instant.gap[node].abs();
                 let (what, value, allowed) = if set.contains(node) {
                     let value = instant.pressure[node];
-                    (
-                        "pressure of the node that leaves",
-                        value,
-                        instant.pressure_error,
-                    )
+                    ("pressure of the node that leaves", value, instant.pressure_error)
                 } else {
                     let allowed = instant.gap_error + TIE * instant.lengths;
                     ("gap of the node that touches", size, allowed)
@@ -205,25 +193,16 @@ impl<'a> Walk<'a> {
             let allowed = set.sum_error(instant.gap_error);
             let change = found.sum - self.dense.own_sum(last.contact.load);
             if self.demands.signs {
-                self.tally
-                    .not_negative("growth of the load", change, allowed)?;
+                self.tally.not_negative("growth of the load", change, allowed)?;
                 let change = found.own_approach - self.dense.of(&last).own_approach;
-                self.tally
-                    .not_negative("growth of the approach", change, instant.gap_error)?;
+                self.tally.not_negative("growth of the approach", change, instant.gap_error)?;
             }
         } else if last.is_none() {
-            let first = (
-                state.step,
-                state.contact.approach,
-                state.contact.load,
-                state.contact.energy,
-            );
+            let first =
+                (state.step, state.contact.approach, state.contact.load, state.contact.energy);
             ensure!(first == (1, 0.0, 0.0, 0.0), "it is no first touch");
             let highest = (0..self.dense.nodes()).find(|&node| self.dense.gap()[node] == 0.0);
-            ensure!(
-                node == highest,
-                "the first of the highest nodes is {highest:?}"
-            );
+            ensure!(node == highest, "the first of the highest nodes is {highest:?}");
         }
         if let Some((set, instant)) = self.solved(&found) {
             self.check_scalars(&found, &set, &instant)?;
@@ -302,8 +281,7 @@ impl<'a> Walk<'a> {
         match found.stiffness {
             Some(stiffness) => {
                 let allowed = error * contact.abs();
-                self.tally
-                    .close("contact stiffness", stiffness, contact, allowed)?;
+                self.tally.close("contact stiffness", stiffness, contact, allowed)?;
             }
             None => ensure!(set.is_gauged(), "there is no contact stiffness"),
         }
@@ -321,8 +299,7 @@ impl<'a> Walk<'a> {
             );
         } else if interfacial_error < 0.1 {
             let allowed = interfacial_error * interfacial.abs();
-            self.tally
-                .close("interfacial stiffness", stiffness, interfacial, allowed)?;
+            self.tally.close("interfacial stiffness", stiffness, interfacial, allowed)?;
         }
         Ok(())
     }
@@ -338,8 +315,7 @@ impl<'a> Walk<'a> {
             values.fold(f64::INFINITY, f64::min)
         };
         let pressure = least(&inside, &instant.pressure);
-        self.tally
-            .not_negative("least pressure", pressure, instant.pressure_error)?;
+        self.tally.not_negative("least pressure", pressure, instant.pressure_error)?;
         let gap = least(&outside, &instant.gap);
         let error = instant.gap_error + TIE * instant.lengths;
         self.tally.not_negative("least gap", gap, error)?;

@@ -19,9 +19,7 @@ fn number(name: &str) -> Result<Option<u64>, Violation> {
     match env::var(name) {
         Ok(text) => match text.parse() {
             Ok(number) => Ok(Some(number)),
-            Err(_) => Err(Violation::new(format!(
-                "{name} is '{text}', which is no number"
-            ))),
+            Err(_) => Err(Violation::new(format!("{name} is '{text}', which is no number"))),
         },
         Err(_) => Ok(None),
     }
@@ -86,9 +84,7 @@ fn compared(tally: Tally) -> Result<(), Violation> {
     if env::var("ASPERITY_DRIVER_BYTES").is_ok() || tally.checked > tally.refused / 20 {
         return Ok(());
     }
-    Err(Violation::new(format!(
-        "hardly anything was compared: {tally:?}"
-    )))
+    Err(Violation::new(format!("hardly anything was compared: {tally:?}")))
 }
 
 #[test]
@@ -98,60 +94,33 @@ fn paths_are_right() -> Result<(), Violation> {
 
 #[test]
 fn large_contacts_are_right() -> Result<(), Violation> {
-    compared(drive(
-        "large_contacts_are_right",
-        asperity_drivers::large_contacts,
-        40,
-        400,
-    )?)
+    compared(drive("large_contacts_are_right", asperity_drivers::large_contacts, 40, 400)?)
 }
 
 #[test]
 fn fixed_loads_are_right() -> Result<(), Violation> {
-    compared(drive(
-        "fixed_loads_are_right",
-        asperity_drivers::fixed_loads,
-        100,
-        400,
-    )?)
+    compared(drive("fixed_loads_are_right", asperity_drivers::fixed_loads, 100, 400)?)
 }
 
 #[test]
 fn large_loads_are_right() -> Result<(), Violation> {
-    compared(drive(
-        "large_loads_are_right",
-        asperity_drivers::large_loads,
-        30,
-        400,
-    )?)
+    compared(drive("large_loads_are_right", asperity_drivers::large_loads, 30, 400)?)
 }
 
 #[test]
 fn parsers_are_right() -> Result<(), Violation> {
-    compared(drive(
-        "parsers_are_right",
-        asperity_drivers::parsers,
-        4000,
-        400,
-    )?)
+    compared(drive("parsers_are_right", asperity_drivers::parsers, 4000, 400)?)
 }
 
 #[test]
 fn records_are_right() -> Result<(), Violation> {
-    compared(drive(
-        "records_are_right",
-        asperity_drivers::records,
-        100,
-        400,
-    )?)
+    compared(drive("records_are_right", asperity_drivers::records, 100, 400)?)
 }
 
 /// Cases that an earlier version failed. As the drivers change what they make of their bytes, so do these.
 #[test]
 fn earlier_failures_are_mended() -> Result<(), Violation> {
-    let cases = include_str!("cases.txt")
-        .lines()
-        .filter(|line| !line.starts_with('#'));
+    let cases = include_str!("cases.txt").lines().filter(|line| !line.starts_with('#'));
     for line in cases {
         let (name, text) = line.split_once(' ').unwrap_or_default();
         let driver = match name {

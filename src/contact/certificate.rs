@@ -37,9 +37,7 @@ mod unbounded {
     // By reference, as serde calls it.
     #[allow(clippy::trivially_copy_pass_by_ref)]
     pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-        (*value != f64::INFINITY)
-            .then_some(*value)
-            .serialize(serializer)
+        (*value != f64::INFINITY).then_some(*value).serialize(serializer)
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
@@ -63,10 +61,7 @@ impl LengthScale {
             (Some(present), Some(gauge)) => table.self_influence() - present + gauge,
             _ => 0.0,
         };
-        Self {
-            rms_height,
-            own_displacement: own / table.grid().nodes() as f64,
-        }
+        Self { rms_height, own_displacement: own / table.grid().nodes() as f64 }
     }
 
     /// Root mean square height Sq.
@@ -93,10 +88,7 @@ impl Conditions {
     /// For a state under pressures of the sum `sum` at an approach, on a problem with these lengths.
     pub(crate) fn new(sum: f64, approach: f64, scale: LengthScale) -> Self {
         let lengths = [approach, scale.own_displacement(sum)];
-        Self {
-            sum,
-            length: lengths.into_iter().fold(scale.rms_height(), f64::max),
-        }
+        Self { sum, length: lengths.into_iter().fold(scale.rms_height(), f64::max) }
     }
 
     /// From (pressure, gap, in contact) of every node.
@@ -142,10 +134,7 @@ mod tests {
     /// Four nodes whose errors are known, all numbers short in binary: everything is exact.
     #[test]
     fn errors_are_those_of_the_fields() {
-        let conditions = Conditions {
-            sum: 4.0,
-            length: 2.0,
-        };
+        let conditions = Conditions { sum: 4.0, length: 2.0 };
         let nodes = [
             (2.0, 0.125, true),
             (0.0, -0.5, false),
@@ -167,22 +156,10 @@ mod tests {
     /// Nothing in contact is no error, and without any length there is none to divide by.
     #[test]
     fn nothing_in_contact() {
-        let conditions = Conditions {
-            sum: 0.0,
-            length: 0.0,
-        };
+        let conditions = Conditions { sum: 0.0, length: 0.0 };
         let certificate = conditions.check([(0.0, 0.5, false)].into_iter());
-        assert_eq!(
-            (certificate.least_pressure, certificate.load_error),
-            (0.0, 0.0)
-        );
-        assert_eq!(
-            (certificate.least_gap, certificate.complementarity),
-            (0.5, 0.0)
-        );
-        assert_eq!(
-            (certificate.greatest_contact_gap, certificate.length),
-            (0.0, 1.0)
-        );
+        assert_eq!((certificate.least_pressure, certificate.load_error), (0.0, 0.0));
+        assert_eq!((certificate.least_gap, certificate.complementarity), (0.5, 0.0));
+        assert_eq!((certificate.greatest_contact_gap, certificate.length), (0.0, 1.0));
     }
 }

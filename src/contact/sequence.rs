@@ -184,14 +184,8 @@ mod tests {
             contact.push(node)?;
             assert!(!contact.is_empty());
         }
-        assert!(matches!(
-            contact.push(0),
-            Err(Error::AlreadyInContact { ix: 0, iy: 0 })
-        ));
-        assert!(matches!(
-            contact.push(6),
-            Err(Error::NodeOutOfGrid { node: 6, nodes: 6 })
-        ));
+        assert!(matches!(contact.push(0), Err(Error::AlreadyInContact { ix: 0, iy: 0 })));
+        assert!(matches!(contact.push(6), Err(Error::NodeOutOfGrid { node: 6, nodes: 6 })));
         assert_eq!(contact.remove(0)?, 1);
         assert_eq!(contact.order(), [4, 5]);
         assert!(matches!(contact.remove(0), Err(Error::NotInContact { .. })));
@@ -225,10 +219,7 @@ mod tests {
             assert_eq!(members, expected[nodes]);
         }
         let twice = ContactSequence::with_order(grid, [1, 3, 1]);
-        assert!(matches!(
-            twice,
-            Err(Error::AlreadyInContact { ix: 1, iy: 0 })
-        ));
+        assert!(matches!(twice, Err(Error::AlreadyInContact { ix: 1, iy: 0 })));
         Ok(())
     }
 

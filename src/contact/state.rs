@@ -172,21 +172,13 @@ mod tests {
     #[test]
     fn the_same_contact_at_another_load() -> Result<(), crate::Error> {
         let before = state()?;
-        let after = ContactState {
-            approach: 4.0,
-            load: 14.0,
-            mean_gap: 5.0,
-            energy: 18.0,
-            ..before
-        };
+        let after =
+            ContactState { approach: 4.0, load: 14.0, mean_gap: 5.0, energy: 18.0, ..before };
         assert_eq!(before.at_load(14.0), Some(after));
         assert_eq!(before.at_approach(4.0), Some(after));
         assert_eq!(before.at_mean_gap(5.0), Some(after));
         // Of the mean planes if there is no other approach: 4 N at 2 N/m.
-        let planes = ContactState {
-            contact_stiffness: None,
-            ..before
-        };
+        let planes = ContactState { contact_stiffness: None, ..before };
         assert_eq!(planes.at_load(14.0).map(|state| state.approach), Some(5.0));
         Ok(())
     }
@@ -195,11 +187,8 @@ mod tests {
     #[test]
     fn what_no_stiffness_tells_is_not_told() -> Result<(), crate::Error> {
         let state = state()?;
-        let unknown = ContactState {
-            contact_stiffness: None,
-            interfacial_stiffness: None,
-            ..state
-        };
+        let unknown =
+            ContactState { contact_stiffness: None, interfacial_stiffness: None, ..state };
         let full = ContactState {
             contact_stiffness: None,
             interfacial_stiffness: Some(f64::INFINITY),

@@ -46,11 +46,7 @@ pub fn direct_sum<K: InfluenceKernel + ?Sized>(
 fn compensated_sum(terms: impl Iterator<Item = f64>) -> f64 {
     let (sum, lost) = terms.fold((0.0_f64, 0.0_f64), |(sum, lost), term| {
         let next = sum + term;
-        let error = if sum.abs() >= term.abs() {
-            (sum - next) + term
-        } else {
-            (term - next) + sum
-        };
+        let error = if sum.abs() >= term.abs() { (sum - next) + term } else { (term - next) + sum };
         (next, lost + error)
     });
     sum + lost
@@ -109,21 +105,13 @@ mod tests {
         let kernel = Neighbours(Grid::new(3, 2, 1.0, 1.0)?);
         assert!(matches!(
             direct_sum(&kernel, &DMatrix::zeros(2, 3)),
-            Err(Error::GridMismatch {
-                expected: (3, 2),
-                found: (2, 3)
-            })
+            Err(Error::GridMismatch { expected: (3, 2), found: (2, 3) })
         ));
         let mut pressure = DMatrix::zeros(3, 2);
         pressure[(2, 1)] = f64::NAN;
         assert!(matches!(
             direct_sum(&kernel, &pressure),
-            Err(Error::FieldNotFinite {
-                field: "pressure",
-                ix: 2,
-                iy: 1,
-                ..
-            })
+            Err(Error::FieldNotFinite { field: "pressure", ix: 2, iy: 1, .. })
         ));
         Ok(())
     }

@@ -60,11 +60,7 @@ pub(super) struct Scratch<T> {
 
 /// Parts into which the work on a grid is divided.
 fn parts(grid: &Grid) -> usize {
-    if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES {
-        PARTS
-    } else {
-        1
-    }
+    if cfg!(feature = "rayon") && grid.nodes() >= PARALLEL_NODES { PARTS } else { 1 }
 }
 
 impl Engine<f64> {
@@ -90,37 +86,16 @@ impl Engine<f64> {
                 expected: "finite",
             });
         }
-        Ok(Self::of(
-            Filter {
-                grid,
-                boundary,
-                transforms,
-                symbol,
-            },
-            spectra,
-        ))
+        Ok(Self::of(Filter { grid, boundary, transforms, symbol }, spectra))
     }
 
     /// The same convolution in single precision, its symbol divided by `unit` and rounded once.
     pub(super) fn to_single(&self, unit: f64) -> Engine<f32> {
-        let Filter {
-            grid,
-            boundary,
-            ref symbol,
-            ..
-        } = *self.filter;
+        let Filter { grid, boundary, ref symbol, .. } = *self.filter;
         let transforms = Transforms::new(&grid, boundary);
         let spectra = Spectra::new(&grid, &transforms);
         let symbol = symbol.iter().map(|value| (value / unit) as f32).collect();
-        Engine::of(
-            Filter {
-                grid,
-                boundary,
-                transforms,
-                symbol,
-            },
-            spectra,
-        )
+        Engine::of(Filter { grid, boundary, transforms, symbol }, spectra)
     }
 
     /// The same convolution with another answer to uniform pressure: none.
@@ -128,11 +103,7 @@ impl Engine<f64> {
         let filter = &*self.filter;
         let mut symbol = filter.symbol.clone();
         symbol[0] = 0.0;
-        let filter = Filter {
-            transforms: filter.transforms.clone(),
-            symbol,
-            ..*filter
-        };
+        let filter = Filter { transforms: filter.transforms.clone(), symbol, ..*filter };
         Self::of(filter, self.spectra)
     }
 
@@ -175,11 +146,7 @@ impl Engine<f64> {
         let columns = self.filter.symbol.chunks_exact(py).enumerate();
         let squares = columns.map(|(wave, values)| {
             // A wave that is not its own conjugate stands for two.
-            let waves = if (2 * wave).is_multiple_of(px) {
-                1.0
-            } else {
-                2.0
-            };
+            let waves = if (2 * wave).is_multiple_of(px) { 1.0 } else { 2.0 };
             waves * values.iter().map(|value| value * value).sum::<f64>()
         });
         squares.sum::<f64>().sqrt()
@@ -188,10 +155,7 @@ impl Engine<f64> {
 
 impl<T: Real> Engine<T> {
     fn of(filter: Filter<T>, spectra: Spectra<T>) -> Self {
-        Self {
-            filter: Arc::new(filter),
-            spectra,
-        }
+        Self { filter: Arc::new(filter), spectra }
     }
 
     /// The grid of the fields.
@@ -250,10 +214,7 @@ impl<T: Real> Engine<T> {
         if field.len() == expected {
             Ok(())
         } else {
-            Err(Error::LengthMismatch {
-                expected,
-                found: field.len(),
-            })
+            Err(Error::LengthMismatch { expected, found: field.len() })
         }
     }
 }
@@ -318,19 +279,14 @@ impl<T: Real> Spectra<T> {
         let pitch = pitch(ny);
         let rows = &self.rows;
         let mut symbol = vec![T::zero(); columns * py];
-        for_each_block(
-            &mut symbol,
-            BLOCK * py,
-            &mut self.scratch,
-            |block, symbol, scratch| {
-                let lines = &mut scratch.lines[..BLOCK * pitch];
-                gather(rows, columns, block, lines, pitch);
-                let entries = lines.chunks(pitch);
-                for (symbol, entries) in symbol.chunks_mut(py).zip(entries) {
-                    transforms.symbol_column(&entries[..ny], symbol, &mut scratch.work);
-                }
-            },
-        );
+        for_each_block(&mut symbol, BLOCK * py, &mut self.scratch, |block, symbol, scratch| {
+            let lines = &mut scratch.lines[..BLOCK * pitch];
+            gather(rows, columns, block, lines, pitch);
+            let entries = lines.chunks(pitch);
+            for (symbol, entries) in symbol.chunks_mut(py).zip(entries) {
+                transforms.symbol_column(&entries[..ny], symbol, &mut scratch.work);
+            }
+        });
         symbol
     }
 

@@ -111,9 +111,7 @@ impl Convolution {
     ///
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
     pub fn from_table(table: &KernelTable) -> Result<Self, Error> {
-        Ok(Self {
-            engine: Engine::from_table(table)?,
-        })
+        Ok(Self { engine: Engine::from_table(table)? })
     }
 
     /// The grid of the fields.
@@ -170,9 +168,7 @@ impl Convolution {
 
     /// The same about the mean displacement, for a periodic kernel: in the zero gauge.
     pub(crate) fn without_mean(self) -> Self {
-        Self {
-            engine: self.engine.without_mean(),
-        }
+        Self { engine: self.engine.without_mean() }
     }
 
     /// Displacement \[m\] of every node under `pressure` \[Pa\].

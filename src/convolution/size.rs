@@ -61,10 +61,7 @@ mod tests {
         for minimum in 1..5000 {
             let size = fast_size(minimum);
             assert!(size >= minimum && size <= minimum.next_power_of_two());
-            assert!(
-                minimum < 100 || 10 * size <= 13 * minimum,
-                "{minimum} -> {size}"
-            );
+            assert!(minimum < 100 || 10 * size <= 13 * minimum, "{minimum} -> {size}");
             assert!(cost(size).is_some());
         }
     }

@@ -94,12 +94,8 @@ fn compare_with_direct_sum(kernel: &dyn InfluenceKernel) -> Result<(), Error> {
     let what = format!("{convolution:?}");
     let dense = random_field(&grid, 1);
     // Only every third row, and there only half of the nodes, carries pressure.
-    let sparse =
-        random_field(&grid, 2).map_with_location(
-            |_, iy, value| {
-                if iy % 3 == 1 { value.max(0.0) } else { 0.0 }
-            },
-        );
+    let sparse = random_field(&grid, 2)
+        .map_with_location(|_, iy, value| if iy % 3 == 1 { value.max(0.0) } else { 0.0 });
     let expected = [direct_sum(kernel, &dense)?, direct_sum(kernel, &sparse)?];
     for (pressure, expected) in [&dense, &sparse].into_iter().zip(&expected) {
         let found = convolution.convolve(pressure)?;
@@ -257,15 +253,7 @@ fn refuses_wrong_lengths_and_shapes() -> Result<(), Error> {
     let (right, mut wrong) = (vec![0.0; 12], vec![0.0; 11]);
     let mut displacement = vec![0.0; 12];
     let mut second = vec![0.0; 12];
-    let refused = |result| {
-        matches!(
-            result,
-            Err(Error::LengthMismatch {
-                expected: 12,
-                found: 11
-            })
-        )
-    };
+    let refused = |result| matches!(result, Err(Error::LengthMismatch { expected: 12, found: 11 }));
     assert!(refused(convolution.apply(&wrong, &mut displacement)));
     assert!(refused(convolution.apply(&right, &mut wrong)));
     let result = convolution.apply_two([&right, &wrong], [&mut displacement, &mut second]);
@@ -274,10 +262,7 @@ fn refuses_wrong_lengths_and_shapes() -> Result<(), Error> {
     assert!(refused(result));
     assert!(matches!(
         convolution.convolve(&DMatrix::zeros(3, 4)),
-        Err(Error::GridMismatch {
-            expected: (4, 3),
-            found: (3, 4)
-        })
+        Err(Error::GridMismatch { expected: (4, 3), found: (3, 4) })
     ));
     Ok(())
 }
@@ -289,12 +274,7 @@ fn refuses_values_that_are_not_finite() -> Result<(), Error> {
     pressure[(3, 1)] = f64::INFINITY;
     assert!(matches!(
         convolution.convolve(&pressure),
-        Err(Error::FieldNotFinite {
-            field: "pressure",
-            ix: 3,
-            iy: 1,
-            ..
-        })
+        Err(Error::FieldNotFinite { field: "pressure", ix: 3, iy: 1, .. })
     ));
     Ok(())
 }
@@ -314,10 +294,7 @@ fn refuses_a_kernel_whose_sum_overflows() -> Result<(), Error> {
         }
     }
     let kernel = Huge(Grid::new(2, 2, 1.0, 1.0)?);
-    assert!(matches!(
-        Convolution::new(&kernel),
-        Err(Error::OutOfRange { .. })
-    ));
+    assert!(matches!(Convolution::new(&kernel), Err(Error::OutOfRange { .. })));
     Ok(())
 }
 
@@ -350,10 +327,7 @@ fn waves_that_hardly_answer_are_accepted() -> Result<(), Error> {
     check(1e-9)?;
     let rounded = check(1e-18);
     assert!(
-        matches!(
-            rounded,
-            Err(Error::Kernel(KernelError::SymbolNotPositive { .. }))
-        ),
+        matches!(rounded, Err(Error::Kernel(KernelError::SymbolNotPositive { .. }))),
         "{rounded:?}"
     );
     Ok(())

@@ -125,9 +125,7 @@ impl<T: Real> Transforms<T> {
     }
 
     fn forward_padded_row(&self, spectrum: &mut [Complex<T>], work: &mut Workspace<T>) {
-        let done = self
-            .row_forward
-            .process_with_scratch(&mut work.row, spectrum, &mut work.fft);
+        let done = self.row_forward.process_with_scratch(&mut work.row, spectrum, &mut work.fft);
         // Lengths are all it could complain of, and they come from the plan.
         debug_assert!(done.is_ok(), "{done:?}");
     }
@@ -145,9 +143,7 @@ impl<T: Real> Transforms<T> {
         if work.row.len().is_multiple_of(2) {
             spectrum[self.columns() - 1].im = T::zero();
         }
-        let done = self
-            .row_inverse
-            .process_with_scratch(spectrum, &mut work.row, &mut work.fft);
+        let done = self.row_inverse.process_with_scratch(spectrum, &mut work.row, &mut work.fft);
         // Those imaginary parts and lengths are all it could complain of.
         debug_assert!(done.is_ok(), "{done:?}");
         vectorized(

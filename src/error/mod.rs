@@ -286,26 +286,12 @@ impl From<SurfaceError> for Error {
     fn from(error: SurfaceError) -> Self {
         match error {
             SurfaceError::NotPositive { quantity, value } => Self::NotPositive { quantity, value },
-            SurfaceError::OutOfRange {
-                quantity,
-                value,
-                expected,
-            } => Self::OutOfRange {
-                quantity,
-                value,
-                expected,
-            },
-            SurfaceError::FieldNotFinite {
-                field,
-                ix,
-                iy,
-                value,
-            } => Self::FieldNotFinite {
-                field,
-                ix,
-                iy,
-                value,
-            },
+            SurfaceError::OutOfRange { quantity, value, expected } => {
+                Self::OutOfRange { quantity, value, expected }
+            }
+            SurfaceError::FieldNotFinite { field, ix, iy, value } => {
+                Self::FieldNotFinite { field, ix, iy, value }
+            }
             SurfaceError::GridMismatch { expected, found } => {
                 Self::GridMismatch { expected, found }
             }
@@ -358,11 +344,7 @@ mod tests {
     fn memory_is_told_in_numbers_that_can_be_read() {
         let told = |needed, budget| {
             let nodes_that_fit = 3;
-            let error = Error::MemoryBudget {
-                needed,
-                budget,
-                nodes_that_fit,
-            };
+            let error = Error::MemoryBudget { needed, budget, nodes_that_fit };
             let told = error.to_string();
             let told = told.replace(" of memory are needed, but the budget is ", " > ");
             told.replace(", which is enough for 3 nodes in contact", "")

@@ -148,12 +148,9 @@ impl<'a> ActiveSet<'a> {
     fn prefer_single_node(&mut self, sum: f64) -> Result<(), Error> {
         let own = self.level.self_influence - self.level.uniform();
         let gap = &self.level.gap;
-        let Iterate {
-            pressure, closure, ..
-        } = &mut self.level.iterate;
-        let energy = sum_over(pressure.len(), |i| {
-            pressure[i] / sum * (0.5 * (closure[i] + gap[i]))
-        });
+        let Iterate { pressure, closure, .. } = &mut self.level.iterate;
+        let energy =
+            sum_over(pressure.len(), |i| pressure[i] / sum * (0.5 * (closure[i] + gap[i])));
         let lower = |best: usize, node: usize| if gap[node] < gap[best] { node } else { best };
         let highest = (1..gap.len()).fold(0, lower);
         let alone = 0.5 * sum * own + gap[highest];
@@ -191,9 +188,8 @@ impl<'a> ActiveSet<'a> {
             _ => Some(node),
         };
         let overlapping = (0..closure.len()).filter(|&node| closure[node] < deepest);
-        let joining = overlapping
-            .filter(|&node| self.is_solved && pressure[node] == 0.0)
-            .fold(None, lower);
+        let joining =
+            overlapping.filter(|&node| self.is_solved && pressure[node] == 0.0).fold(None, lower);
         self.level
             .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
         let errors = self.descend(criteria, |descent, progress| {
@@ -226,21 +222,12 @@ impl<'a> ActiveSet<'a> {
         if !(matches!(self.prescribed, Prescribed::Approach(_)) && self.level.gauge.is_some()) {
             return Ok(());
         }
-        let Iterate {
-            pressure,
-            closure,
-            contact,
-            ..
-        } = &mut self.level.iterate;
+        let Iterate { pressure, closure, contact, .. } = &mut self.level.iterate;
         if contact.len() < closure.len() {
             return Ok(());
         }
         let wider = |widest: usize, node: usize| {
-            if closure[node] > closure[widest] {
-                node
-            } else {
-                widest
-            }
+            if closure[node] > closure[widest] { node } else { widest }
         };
         let widest = (1..closure.len()).fold(0, wider);
         pressure[widest] = 0.0;
@@ -261,23 +248,14 @@ impl<'a> ActiveSet<'a> {
             }
         }
         self.level.refresh()?;
-        let Iterate {
-            pressure,
-            closure,
-            approach,
-            ..
-        } = &mut self.level.iterate;
+        let Iterate { pressure, closure, approach, .. } = &mut self.level.iterate;
         let (pressure, closure) = (&*pressure, &*closure);
         let carries = |node: usize| pressure[node] > 0.0;
         if let Prescribed::Sum(_) = self.prescribed {
             // The approach that makes the worst gap in contact smallest.
             let in_contact = |sign: f64| {
                 greatest(pressure.len(), f64::NEG_INFINITY, |node| {
-                    if carries(node) {
-                        sign * closure[node]
-                    } else {
-                        f64::NEG_INFINITY
-                    }
+                    if carries(node) { sign * closure[node] } else { f64::NEG_INFINITY }
                 })
             };
             let (highest, lowest) = (in_contact(1.0), -in_contact(-1.0));
@@ -289,9 +267,13 @@ impl<'a> ActiveSet<'a> {
             residual: greatest(pressure.len(), 0.0, |node| {
                 if carries(node) { gap(node).abs() } else { 0.0 }
             }),
-            overlap: greatest(pressure.len(), 0.0, |node| {
-                if carries(node) { 0.0 } else { -gap(node) }
-            }),
+            overlap: greatest(
+                pressure.len(),
+                0.0,
+                |node| {
+                    if carries(node) { 0.0 } else { -gap(node) }
+                },
+            ),
             tension: 0.0,
         })
     }
@@ -321,11 +303,7 @@ mod tests {
             let approach = 0.9 * level.mean_initial_gap();
             level.iterate.approach = approach;
             let wider = |best: usize, node: usize| {
-                if level.gap[node] > level.gap[best] {
-                    node
-                } else {
-                    best
-                }
+                if level.gap[node] > level.gap[best] { node } else { best }
             };
             let widest = (1..30).fold(0, wider);
             let criteria = Criteria {

@@ -71,9 +71,7 @@ impl FixedLoadBuilder<'_> {
     pub fn build(self) -> Result<FixedLoadSolver, Error> {
         let settings = self.settings;
         settings.check()?;
-        let budget = settings
-            .memory_budget
-            .unwrap_or_else(memory::default_budget);
+        let budget = settings.memory_budget.unwrap_or_else(memory::default_budget);
         let grid = self.kernel.grid();
         let boundary = self.kernel.boundary();
         check_cells(&grid, boundary, LONGEST_CELLS)?;
@@ -123,11 +121,7 @@ impl FixedLoadSolver {
         surface: &'a dyn Surface,
         kernel: &'a dyn InfluenceKernel,
     ) -> FixedLoadBuilder<'a> {
-        FixedLoadBuilder {
-            surface,
-            kernel,
-            settings: Settings::default(),
-        }
+        FixedLoadBuilder { surface, kernel, settings: Settings::default() }
     }
 }
 
@@ -141,9 +135,8 @@ mod tests {
     fn a_builder_shows_its_grid_and_settings() -> Result<(), Error> {
         let kernel = Boussinesq::new(Grid::new(7, 5, 0.5, 0.25)?, 1.0)?;
         let surface = Paraboloid::new(1.0)?;
-        let builder = FixedLoadSolver::builder(&surface, &kernel)
-            .tolerance(3e-7)
-            .max_iterations(123);
+        let builder =
+            FixedLoadSolver::builder(&surface, &kernel).tolerance(3e-7).max_iterations(123);
         let shown = format!("{builder:?}");
         assert!(shown.contains(&format!("{:?}", kernel.grid())), "{shown}");
         assert!(shown.contains("tolerance: 3e-7"), "{shown}");

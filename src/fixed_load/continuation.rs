@@ -31,10 +31,7 @@ struct Earlier {
 impl Continuation {
     /// With a known tangent, or an empty one.
     pub(super) fn new(tangent: Tangent) -> Self {
-        Self {
-            tangent,
-            earlier: None,
-        }
+        Self { tangent, earlier: None }
     }
 
     /// The sum of pressures at an approach, by the tangent or in proportion.
@@ -68,12 +65,9 @@ impl Continuation {
         let change = target - now;
         if !self.tangent.is_known() {
             let (before, pressure, closure, approach) = match self.earlier.take() {
-                Some(earlier) if is_close(change, now - earlier.sum) => (
-                    earlier.sum,
-                    earlier.pressure,
-                    earlier.displacement,
-                    earlier.approach,
-                ),
+                Some(earlier) if is_close(change, now - earlier.sum) => {
+                    (earlier.sum, earlier.pressure, earlier.displacement, earlier.approach)
+                }
                 _ => (0.0, vec![0.0; level.gap.len()], level.gap.clone(), 0.0),
             };
             let factor = change / (now - before);
@@ -83,10 +77,9 @@ impl Continuation {
                 displacement: iterate.closure.clone(),
                 approach: iterate.approach,
             });
-            for (now, before) in [
-                (&mut iterate.pressure, &pressure),
-                (&mut iterate.closure, &closure),
-            ] {
+            for (now, before) in
+                [(&mut iterate.pressure, &pressure), (&mut iterate.closure, &closure)]
+            {
                 extrapolate(now, before, factor);
             }
             iterate.approach += factor * (iterate.approach - approach);
@@ -194,9 +187,7 @@ mod tests {
             let total = 1.0 / (self.approach_rate(sum) + level.uniform());
             let nodes = 0..NODES;
             Tangent {
-                rate: (nodes.clone())
-                    .map(|node| total * self.pressure_rate(node, sum))
-                    .collect(),
+                rate: (nodes.clone()).map(|node| total * self.pressure_rate(node, sum)).collect(),
                 displacement: nodes
                     .map(|node| total * (self.closure_rate(node, sum) + level.uniform()))
                     .collect(),

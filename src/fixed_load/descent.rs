@@ -38,9 +38,7 @@ impl<'a> Descent<'a> {
         contact.gather(&level.iterate.closure, &mut closure);
         let mut weights = Vec::new();
         if let Prescribed::Sum(_) = prescribed {
-            level
-                .preconditioner
-                .apply(&vec![1.0; contact.len()], &mut weights);
+            level.preconditioner.apply(&vec![1.0; contact.len()], &mut weights);
         }
         let descent = Self {
             level,
@@ -94,17 +92,11 @@ impl<'a> Descent<'a> {
 
     fn stop_at_the_edge(&mut self, start: &Start) -> Result<(), Error> {
         let pairs = start.pressure.iter().zip(&self.pressure);
-        let reach = pairs
-            .filter(|(_, x)| **x < 0.0)
-            .map(|(from, x)| from / (from - x));
+        let reach = pairs.filter(|(_, x)| **x < 0.0).map(|(from, x)| from / (from - x));
         let part = reach.fold(1.0, f64::min);
         for (x, from) in self.pressure.iter_mut().zip(&start.pressure) {
             let is_free = *x < 0.0 && from / (from - *x) <= part;
-            *x = if is_free {
-                0.0
-            } else {
-                (from + part * (*x - from)).max(0.0)
-            };
+            *x = if is_free { 0.0 } else { (from + part * (*x - from)).max(0.0) };
         }
         self.move_there()
     }
@@ -115,9 +107,7 @@ impl<'a> Descent<'a> {
             *value = value.max(0.0);
         }
         let iterate = &mut self.level.iterate;
-        iterate
-            .contact
-            .scatter(&self.pressure, &mut iterate.pressure);
+        iterate.contact.scatter(&self.pressure, &mut iterate.pressure);
     }
 
     /// Conjugate gradients; pressures may become negative.
@@ -130,16 +120,9 @@ impl<'a> Descent<'a> {
             let others = errors.in_set();
             let tolerance = self.tolerance();
             // What is within the tolerance need not be cured.
-            let enough = if others > tolerance {
-                tolerance.max(inner * others)
-            } else {
-                tolerance
-            };
+            let enough = if others > tolerance { tolerance.max(inner * others) } else { tolerance };
             if !errors.residual.is_finite() {
-                return Ok(Errors {
-                    residual: f64::NAN,
-                    ..errors
-                });
+                return Ok(Errors { residual: f64::NAN, ..errors });
             }
             // A set that has just been chosen deserves a step, unless nothing but rounding is wrong.
             let rounding = ROUNDINGS * f64::EPSILON * self.level.iterate.approach.abs();
@@ -153,12 +136,7 @@ impl<'a> Descent<'a> {
             for (r, g) in residual.iter_mut().zip(&self.closure) {
                 *r = approach - g;
             }
-            let Level {
-                preconditioner,
-                operator,
-                iterate,
-                ..
-            } = &mut *self.level;
+            let Level { preconditioner, operator, iterate, .. } = &mut *self.level;
             preconditioner.apply(&residual, &mut z);
             let step = directions.advance(operator, &iterate.contact, &residual, &z)?;
             add_scaled(&mut self.pressure, step.length, step.values);
@@ -213,9 +191,7 @@ impl<'a> Descent<'a> {
     /// Makes the pressures those of the level, and computes displacements afresh.
     fn move_there(&mut self) -> Result<(), Error> {
         let iterate = &mut self.level.iterate;
-        iterate
-            .contact
-            .scatter(&self.pressure, &mut iterate.pressure);
+        iterate.contact.scatter(&self.pressure, &mut iterate.pressure);
         self.level.refresh()?;
         let iterate = &self.level.iterate;
         iterate.contact.gather(&iterate.closure, &mut self.closure);
@@ -244,11 +220,7 @@ impl<'a> Descent<'a> {
         Errors {
             residual: greatest(x.len(), 0.0, |i| (approach - closure[i]).abs()),
             overlap: greatest(all.len(), 0.0, |node| {
-                if places[node] == NodeSet::NONE {
-                    approach - all[node]
-                } else {
-                    0.0
-                }
+                if places[node] == NodeSet::NONE { approach - all[node] } else { 0.0 }
             }),
             tension: greatest(x.len(), 0.0, |i| -x[i]) * self.level.self_influence,
         }

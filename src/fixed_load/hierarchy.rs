@@ -88,17 +88,10 @@ impl Hierarchy {
             let (finer, coarse) = self.coarser.split_at_mut(index);
             let Coarser { level, blocks } = &mut coarse[0];
             let fine = finer.last_mut().map_or(&mut self.finest, |f| &mut f.level);
-            solve_roughly(
-                level,
-                prescribed.on_cells(cell, level.grid.cell_area()),
-                settings,
-            )?;
+            solve_roughly(level, prescribed.on_cells(cell, level.grid.cell_area()), settings)?;
             blocks.prolong(&level.iterate.pressure, &mut fine.iterate.pressure);
             let fine_cell = fine.grid.cell_area();
-            scale(
-                &mut fine.iterate.pressure,
-                prescribed.on_cells(cell, fine_cell),
-            );
+            scale(&mut fine.iterate.pressure, prescribed.on_cells(cell, fine_cell));
         }
         Ok(())
     }
@@ -158,11 +151,7 @@ fn solve_roughly(
     let criteria = Criteria {
         tolerance: COARSE_TOLERANCE.max(settings.tolerance),
         floor: level.least_length(prescribed),
-        length: if rms_height > 0.0 {
-            COARSE_RMS_HEIGHTS * rms_height
-        } else {
-            f64::INFINITY
-        },
+        length: if rms_height > 0.0 { COARSE_RMS_HEIGHTS * rms_height } else { f64::INFINITY },
         max_iterations: settings.max_iterations,
         verify: false,
     };

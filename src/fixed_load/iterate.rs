@@ -31,16 +31,8 @@ impl Criteria {
     /// The unit of length of the tolerance.
     pub(super) fn scale(&self, approach: f64) -> f64 {
         // NaN stays NaN.
-        let approach = if approach < self.floor {
-            self.floor
-        } else {
-            approach
-        };
-        if self.length < approach {
-            self.length.max(FINEST * approach)
-        } else {
-            approach
-        }
+        let approach = if approach < self.floor { self.floor } else { approach };
+        if self.length < approach { self.length.max(FINEST * approach) } else { approach }
     }
 }
 
@@ -86,10 +78,7 @@ impl Errors {
 
     /// The same of a set on which the solution is not known.
     pub(super) fn unsolved(self) -> Self {
-        Self {
-            residual: f64::INFINITY,
-            ..self
-        }
+        Self { residual: f64::INFINITY, ..self }
     }
 
     /// All of it; NaN if any is.

@@ -64,10 +64,7 @@ impl Level {
     ) -> Self {
         let gauge = table.computing_gauge();
         let (own, convolution) = match gauge {
-            Some(gauge) => (
-                Cow::Owned(table.in_gauge(gauge)),
-                convolution.without_mean(),
-            ),
+            Some(gauge) => (Cow::Owned(table.in_gauge(gauge)), convolution.without_mean()),
             None => (Cow::Borrowed(table), convolution),
         };
         Self {
@@ -107,9 +104,7 @@ impl Level {
 
     /// Computes the displacements of the present pressures afresh.
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
-        let Iterate {
-            pressure, closure, ..
-        } = &mut self.iterate;
+        let Iterate { pressure, closure, .. } = &mut self.iterate;
         let displacement = self.operator.apply_field(pressure)?;
         for ((closure, u), g) in closure.iter_mut().zip(displacement).zip(&self.gap) {
             *closure = g + u;
@@ -137,12 +132,7 @@ impl Level {
         &mut self,
         is_in: impl Fn(usize, &[f64], &[f64]) -> bool,
     ) -> Result<(), Error> {
-        let Iterate {
-            pressure,
-            closure,
-            contact,
-            ..
-        } = &mut self.iterate;
+        let Iterate { pressure, closure, contact, .. } = &mut self.iterate;
         if !contact.assign(|node| is_in(node, pressure, closure)) {
             return Ok(());
         }

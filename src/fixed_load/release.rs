@@ -58,11 +58,7 @@ pub(super) fn release(
     let total = sum(x);
     for x in x.iter_mut() {
         // Nothing left: a load too small for the numbers it came from.
-        *x = if total > 0.0 {
-            *x / total * target
-        } else {
-            target / free.len() as f64
-        };
+        *x = if total > 0.0 { *x / total * target } else { target / free.len() as f64 };
     }
 }
 
@@ -177,9 +173,7 @@ mod tests {
     fn the_sum_is_restored() -> Result<(), Error> {
         let (mut inverse, dense) = inverse()?;
         let (start, expected, tolerance) = problem(&dense)?;
-        let weights: Vec<f64> = (0..NODES)
-            .map(|i| 1.0 + 0.5 * (3.0 * i as f64).cos())
-            .collect();
+        let weights: Vec<f64> = (0..NODES).map(|i| 1.0 + 0.5 * (3.0 * i as f64).cos()).collect();
         let mut x = start.clone();
         let target = 3.0 * sum(&start);
         release(&mut inverse, &mut x, &weights, Prescribed::Sum(target));
@@ -206,10 +200,9 @@ mod tests {
     #[test]
     fn nothing_is_left() -> Result<(), Error> {
         let (mut inverse, _) = inverse()?;
-        for (prescribed, expected) in [
-            (Prescribed::Approach(1.0), 0.0),
-            (Prescribed::Sum(128.0), 2.0),
-        ] {
+        for (prescribed, expected) in
+            [(Prescribed::Approach(1.0), 0.0), (Prescribed::Sum(128.0), 2.0)]
+        {
             let mut x = vec![-1.0; NODES];
             release(&mut inverse, &mut x, &[1.0; NODES], prescribed);
             assert_eq!(x, [expected; NODES]);

@@ -68,11 +68,7 @@ impl Sought {
     fn beyond(self, state: &ContactState, carrying: usize) -> f64 {
         match self {
             Self::Nodes(nodes) => {
-                let touching = if carrying < state.contact_nodes {
-                    0.5
-                } else {
-                    0.0
-                };
+                let touching = if carrying < state.contact_nodes { 0.5 } else { 0.0 };
                 ((carrying as f64 + touching) / nodes as f64).ln()
             }
             Self::MeanGap { target, unloaded } => (target - state.mean_gap) / unloaded,
@@ -121,9 +117,7 @@ impl Sought {
 /// The next step where nothing has happened on the way between two places, as close to full contact: twice as far as that
 /// way, and no less than `change`, whose absolute value is at most the longest step.
 fn further(change: f64, [from, to]: [f64; 2]) -> f64 {
-    (2.0 * (to - from).abs())
-        .clamp(change.abs(), LONGEST)
-        .copysign(change)
+    (2.0 * (to - from).abs()).clamp(change.abs(), LONGEST).copysign(change)
 }
 
 /// The state that is sought: the root of [`Sought::beyond`] by the exact tangent or by secants, inside
@@ -241,10 +235,7 @@ mod tests {
                 assert!(off.abs() < LONGEST, "{nodes} nodes: a factor of e^{off}");
                 let sought = Sought::mean_gap(solution.state.mean_gap, &level)?;
                 assert!(
-                    (sought.typical_load(&level) / solution.state.load)
-                        .ln()
-                        .abs()
-                        < 2.0 * LONGEST
+                    (sought.typical_load(&level) / solution.state.load).ln().abs() < 2.0 * LONGEST
                 );
             }
         }
@@ -273,10 +264,7 @@ mod tests {
             / (near.load / state.load).ln();
         // Half of 1e-6 by the logarithm, and errors of 1e-11 over 1e-6 of the load.
         assert!(is_exact && (slope / between - 1.0).abs() < 1e-4);
-        let unknown = ContactState {
-            interfacial_stiffness: None,
-            ..state
-        };
+        let unknown = ContactState { interfacial_stiffness: None, ..state };
         assert!(matches!(sought.slope(&unknown), (typical, false) if typical > 0.0));
         assert_eq!(Sought::Nodes(7).slope(&state), (1.0, false));
         Ok(())

@@ -213,10 +213,7 @@ mod parts {
     fn matrix<T: Scalar>((nx, ny): (usize, usize), values: Vec<T>) -> Result<DMatrix<T>, Error> {
         let expected = nx.saturating_mul(ny);
         if values.len() != expected {
-            return Err(Error::LengthMismatch {
-                expected,
-                found: values.len(),
-            });
+            return Err(Error::LengthMismatch { expected, found: values.len() });
         }
         Ok(DMatrix::from_vec(nx, ny, values))
     }

@@ -37,10 +37,7 @@ pub struct FixedLoadSolver {
 
 impl FixedLoadSolver {
     pub(super) fn with(settings: Settings, hierarchy: Hierarchy) -> Self {
-        Self {
-            settings,
-            hierarchy,
-        }
+        Self { settings, hierarchy }
     }
 
     /// The grid of surface and kernel.

@@ -27,12 +27,7 @@ impl<'a> Stepper<'a> {
     pub(super) fn new(settings: &'a Settings, hierarchy: &'a mut Hierarchy) -> Self {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
-        Self {
-            settings,
-            hierarchy,
-            continuation: Continuation::default(),
-            last: None,
-        }
+        Self { settings, hierarchy, continuation: Continuation::default(), last: None }
     }
 
     /// Begins at a solution.
@@ -49,9 +44,7 @@ impl<'a> Stepper<'a> {
         let finest = &mut hierarchy.finest;
         check(solution, &finest.grid)?;
         let iterate = &mut finest.iterate;
-        iterate
-            .pressure
-            .copy_from_slice(solution.pressure.as_slice());
+        iterate.pressure.copy_from_slice(solution.pressure.as_slice());
         iterate.approach = solution.state.approach;
         let gaps = finest.gap.iter().zip(&solution.displacement);
         for (closure, (gap, displacement)) in iterate.closure.iter_mut().zip(gaps) {
@@ -157,12 +150,8 @@ impl<'a> Stepper<'a> {
             self.solve_afresh(prescribed)?
         };
         let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
-        let effort = SolverEffort {
-            iterations,
-            stiffness_iterations: 0,
-            convolutions,
-            coarse_convolutions,
-        };
+        let effort =
+            SolverEffort { iterations, stiffness_iterations: 0, convolutions, coarse_convolutions };
         let finest = &mut self.hierarchy.finest;
         let mut solution = FixedLoadSolution::of(finest, load, effort);
         if self.settings.stiffness {

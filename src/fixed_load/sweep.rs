@@ -40,11 +40,7 @@ pub struct LoadSweep<'a, I> {
 
 impl<'a, I> LoadSweep<'a, I> {
     pub(super) fn new(stepper: Stepper<'a>, targets: I) -> Self {
-        Self {
-            stepper,
-            targets,
-            finished: false,
-        }
+        Self { stepper, targets, finished: false }
     }
 }
 

@@ -62,21 +62,13 @@ impl Tangent {
     ) -> Result<(), Error> {
         let in_contact = solution.contact_map.as_slice();
         level.choose_contact(|node, _, _| in_contact[node])?;
-        Error::require_positive(
-            "number of nodes in contact",
-            level.iterate.contact.len() as f64,
-        )?;
+        Error::require_positive("number of nodes in contact", level.iterate.contact.len() as f64)?;
         let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
         let nodes = level.grid.nodes();
         let displacement = &self.displacement;
         // Nodes in contact are left out: then full contact is exact.
-        let closing = sum_over(nodes, |node| {
-            if in_contact[node] {
-                0.0
-            } else {
-                1.0 - displacement[node]
-            }
-        });
+        let closing =
+            sum_over(nodes, |node| if in_contact[node] { 0.0 } else { 1.0 - displacement[node] });
         let stiffness = level.grid.cell_area() * solved.unit_unit;
         let (nx, ny) = level.grid.shape();
         let rates = self.rate.iter().map(|rate| rate / stiffness);
@@ -103,11 +95,7 @@ impl Tangent {
         if known.is_known() {
             contact.gather(&known.rate, &mut y);
             if !lost {
-                base = Field {
-                    pressure: known.rate,
-                    displacement: known.displacement,
-                    drift: 0.0,
-                };
+                base = Field { pressure: known.rate, displacement: known.displacement, drift: 0.0 };
             }
         } else {
             let ones = vec![1.0; contact.len()];
@@ -137,9 +125,6 @@ impl Tangent {
         let unit_unit = sum_over(nodes.len(), left);
         self.rate = solved.pressure;
         self.displacement = solved.displacement;
-        Ok(Solved {
-            iterations,
-            unit_unit,
-        })
+        Ok(Solved { iterations, unit_unit })
     }
 }

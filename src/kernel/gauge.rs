@@ -30,9 +30,7 @@ impl Gauge {
     /// The gauge s = `coefficient` \[m/Pa\], a uniform part of all influence coefficients, on cells
     /// of `cell_area` = ΔA \[m²\]; zero for `None`.
     pub(crate) fn new(coefficient: Option<f64>, cell_area: f64) -> Self {
-        Self {
-            per_load: coefficient.unwrap_or_default() / cell_area,
-        }
+        Self { per_load: coefficient.unwrap_or_default() / cell_area }
     }
 
     /// Uniform displacement under a load W \[m\]: (s/ΔA) W.

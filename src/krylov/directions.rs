@@ -54,10 +54,7 @@ pub(crate) struct Directions {
 impl Directions {
     /// Directions that are to serve other right-hand sides of the same matrix as well.
     pub(crate) fn keeping() -> Self {
-        Self {
-            kept: KEPT,
-            ..Self::default()
-        }
+        Self { kept: KEPT, ..Self::default() }
     }
 
     /// The last ones, to which a new one is made conjugate.
@@ -115,9 +112,7 @@ impl Directions {
             direction => direction,
         };
         let Some(direction) = direction else {
-            return Err(Error::FactorizationFailed {
-                nodes: contact.len(),
-            });
+            return Err(Error::FactorizationFailed { nodes: contact.len() });
         };
         if self.list.len() == self.kept + MEMORY {
             self.list.remove(self.kept);

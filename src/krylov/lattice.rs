@@ -53,9 +53,7 @@ impl Lattices {
         }
         Self {
             shape: [nx, ny],
-            levels: (0..=last)
-                .map(|level| Lattice::new(table, level, level == last))
-                .collect(),
+            levels: (0..=last).map(|level| Lattice::new(table, level, level == last)).collect(),
         }
     }
 
@@ -90,10 +88,8 @@ impl Lattices {
             }
             let other = ((x as usize) << level) + nx * ((y as usize) << level);
             if is_in(other) {
-                neighbours[count] = Neighbour {
-                    node: other as u32,
-                    offset: (da + db * WIDTH) as i32,
-                };
+                neighbours[count] =
+                    Neighbour { node: other as u32, offset: (da + db * WIDTH) as i32 };
                 count += 1;
                 if count == neighbours.len() {
                     break;
@@ -130,10 +126,8 @@ impl Lattices {
             let other = x + nx * y;
             let coarser = (x | y).trailing_zeros().min(last) > level;
             if (coarser || other < node) && is_in(other) {
-                neighbours[count] = Neighbour {
-                    node: other as u32,
-                    offset: (da + db * WIDTH) as i32,
-                };
+                neighbours[count] =
+                    Neighbour { node: other as u32, offset: (da + db * WIDTH) as i32 };
                 count += 1;
                 if count == neighbours.len() {
                     break;
@@ -154,11 +148,7 @@ impl Lattices {
             let wraps = !lattice.around.is_empty();
             let along = |at: usize, steps: isize, nodes: usize| {
                 let to = at as isize + (steps << level);
-                let to = if wraps {
-                    to.rem_euclid(nodes as isize)
-                } else {
-                    to
-                };
+                let to = if wraps { to.rem_euclid(nodes as isize) } else { to };
                 (0..nodes as isize).contains(&to).then_some(to as usize)
             };
             for db in -REACH..=REACH {
@@ -228,11 +218,7 @@ impl Lattice {
             .filter(|&&(_, da, db)| wraps && (da, db) != (0, 0) && half(da, nx) && half(db, ny))
             .map(|&(_, da, db)| [da as i16, db as i16])
             .collect();
-        Self {
-            candidates,
-            around,
-            coefficients,
-        }
+        Self { candidates, around, coefficients }
     }
 
     /// Influence coefficient between two offsets from the same node, relative to C(0, 0).
@@ -291,16 +277,7 @@ mod tests {
         let (count, _) = lattices.earlier(63 + 64 * 63, |_| true, &mut found);
         let nodes: Vec<usize> = found[..count].iter().map(|n| n.node as usize).collect();
         // All eight around it are earlier: it is the last of the finest level.
-        for (x, y) in [
-            (62, 62),
-            (63, 62),
-            (0, 62),
-            (62, 63),
-            (0, 63),
-            (62, 0),
-            (63, 0),
-            (0, 0),
-        ] {
+        for (x, y) in [(62, 62), (63, 62), (0, 62), (62, 63), (0, 63), (62, 0), (63, 0), (0, 0)] {
             assert!(nodes.contains(&(x + 64 * y)), "({x}, {y}) in {nodes:?}");
         }
         Ok(())

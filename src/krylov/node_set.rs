@@ -29,10 +29,7 @@ impl NodeSet {
 
     /// An empty set on a grid of so many nodes, at most 2³⁰.
     pub(crate) fn new(grid_nodes: usize) -> Self {
-        Self {
-            nodes: Vec::new(),
-            places: vec![Self::NONE; grid_nodes],
-        }
+        Self { nodes: Vec::new(), places: vec![Self::NONE; grid_nodes] }
     }
 
     /// Makes it the nodes for which `is_in` holds. Returns whether that changed anything.
@@ -73,10 +70,7 @@ impl NodeSet {
         for (node, (old, new)) in self.places.iter().zip(&other.places).enumerate() {
             let enters = *new != Self::NONE;
             if enters != (*old != Self::NONE) {
-                changes.push(Change {
-                    node: node as u32,
-                    enters,
-                });
+                changes.push(Change { node: node as u32, enters });
             }
         }
         changes

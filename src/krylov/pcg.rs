@@ -23,19 +23,12 @@ pub(crate) struct Field {
 
 impl Field {
     pub(crate) fn zero(nodes: usize) -> Self {
-        Self {
-            pressure: vec![0.0; nodes],
-            displacement: vec![0.0; nodes],
-            drift: 0.0,
-        }
+        Self { pressure: vec![0.0; nodes], displacement: vec![0.0; nodes], drift: 0.0 }
     }
 
     /// Pressures whose displacements are not known.
     pub(crate) fn of(pressure: Vec<f64>) -> Self {
-        Self {
-            pressure,
-            ..Self::default()
-        }
+        Self { pressure, ..Self::default() }
     }
 
     pub(crate) fn is_known(&self) -> bool {
@@ -92,9 +85,7 @@ impl LinearSystem<'_> {
             contact.fill(&mut change, |place, node| x[place] - base.pressure[node]);
             u = base.displacement.clone();
             let added = self.operator.add(contact, &change, &mut u)?;
-            drift = base
-                .drift
-                .hypot(spoilt(added, dot(&change, &change).sqrt()));
+            drift = base.drift.hypot(spoilt(added, dot(&change, &change).sqrt()));
         } else {
             u = self.operator.apply(contact, &x)?.to_vec();
             drift = 0.0;
@@ -149,11 +140,7 @@ impl LinearSystem<'_> {
             last = fresh;
         }
         contact.spread(&x, &mut start);
-        let field = Field {
-            pressure: start,
-            displacement: u,
-            drift,
-        };
+        let field = Field { pressure: start, displacement: u, drift };
         Ok((field, iterations))
     }
 }
@@ -183,12 +170,8 @@ mod tests {
             preconditioner: &mut preconditioner,
             contact: &contact,
         };
-        let equation = Equation {
-            rhs: |_| rhs,
-            tolerance: 1e-10,
-            most_drift: f64::INFINITY,
-            max_iterations,
-        };
+        let equation =
+            Equation { rhs: |_| rhs, tolerance: 1e-10, most_drift: f64::INFINITY, max_iterations };
         let nothing = Field::zero(grid.nodes());
         let start = nothing.pressure.clone();
         let solved = system.solve(&equation, start, &nothing, &mut Directions::default());

@@ -146,13 +146,12 @@ impl<const K: usize> SparseInverse<K> {
             if change.enters {
                 affected.push(change.node);
             }
-            self.lattices
-                .later(change.node as usize, |node, influence| {
-                    let stays = old[node] != NodeSet::NONE && new[node] != NodeSet::NONE;
-                    if stays && influence >= self.patterns[self.chosen[node] as usize].least {
-                        affected.push(node as u32);
-                    }
-                });
+            self.lattices.later(change.node as usize, |node, influence| {
+                let stays = old[node] != NodeSet::NONE && new[node] != NodeSet::NONE;
+                if stays && influence >= self.patterns[self.chosen[node] as usize].least {
+                    affected.push(node as u32);
+                }
+            });
         }
         affected.sort_unstable();
         affected.dedup();
@@ -228,11 +227,7 @@ impl<const K: usize> SparseInverse<K> {
                 outside.clear();
                 let first = part * part_length;
                 let own = &nodes[self.contact.within(first, values.len())];
-                let part = Part {
-                    first,
-                    values,
-                    outside,
-                };
+                let part = Part { first, values, outside };
                 part.add(own, chosen, patterns, source);
             },
         );
@@ -265,11 +260,7 @@ impl Part<'_> {
         patterns: &[Pattern<K>],
         source: &[f32],
     ) {
-        let Self {
-            first,
-            values,
-            outside,
-        } = self;
+        let Self { first, values, outside } = self;
         for &node in nodes {
             let pattern = &patterns[chosen[node as usize] as usize];
             let at = |step: i32| node.wrapping_add_signed(step) as usize;
@@ -294,11 +285,8 @@ impl Part<'_> {
 }
 
 impl<const K: usize> Found<K> {
-    const NONE: Self = Self {
-        level: 0,
-        count: 0,
-        neighbours: [Neighbour { node: 0, offset: 0 }; K],
-    };
+    const NONE: Self =
+        Self { level: 0, count: 0, neighbours: [Neighbour { node: 0, offset: 0 }; K] };
 
     /// The neighbours of a node among those for which `is_in` holds, counted from its own index.
     fn of(lattices: &Lattices, node: u32, is_in: impl Fn(usize) -> bool) -> Self {
@@ -314,12 +302,8 @@ impl<const K: usize> Found<K> {
 
 impl<const K: usize> Pattern<K> {
     /// That of a node without neighbours.
-    const ALONE: Self = Self {
-        steps: [0; K],
-        weights: [0.0; K],
-        precision: 1.0,
-        least: f32::NEG_INFINITY,
-    };
+    const ALONE: Self =
+        Self { steps: [0; K], weights: [0.0; K], precision: 1.0, least: f32::NEG_INFINITY };
 
     /// The column given the neighbours: Gaussian elimination of their k × k influence matrix, with
     /// unit rows for missing ones.

@@ -111,18 +111,7 @@ mod tests {
 
     #[test]
     fn sums_of_integers_are_exact() {
-        for length in [
-            0_usize,
-            1,
-            7,
-            8,
-            4096,
-            4097,
-            20_000,
-            ALONE,
-            ALONE + 1,
-            50_001,
-        ] {
+        for length in [0_usize, 1, 7, 8, 4096, 4097, 20_000, ALONE, ALONE + 1, 50_001] {
             let exact = (length * length.saturating_sub(1) / 2) as f64;
             assert_eq!(sum_over(length, |i| i as f64), exact);
             let last = length.saturating_sub(1) as f64;
@@ -137,10 +126,7 @@ mod tests {
             let x: Vec<f32> = (0..length).map(|i| i as f32).collect();
             let mut y: Vec<f64> = (0..length).map(|i| (3 * i) as f64).collect();
             add_scaled(&mut y, -2.0, &x);
-            assert!(
-                y.iter().enumerate().all(|(i, y)| *y == i as f64),
-                "{length}"
-            );
+            assert!(y.iter().enumerate().all(|(i, y)| *y == i as f64), "{length}");
         }
     }
 

@@ -246,10 +246,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             scalars: PathScalars::new(&problem),
             problem,
             queue: VecDeque::new(),
-            memory: Memory {
-                budget,
-                fixed: fixed_bytes,
-            },
+            memory: Memory { budget, fixed: fixed_bytes },
             last,
             timings: LoadingTimings::default(),
         };
@@ -320,11 +317,7 @@ fn fixed_bytes(grid: &Grid, boundary: Boundary, budget: usize) -> Result<usize, 
     if needed <= budget {
         return Ok(needed);
     }
-    Err(Error::MemoryBudget {
-        needed,
-        budget,
-        nodes_that_fit: 0,
-    })
+    Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 })
 }
 
 #[cfg(test)]
@@ -363,15 +356,10 @@ mod tests {
             .max_mean_pressure(3.0)
             .build()?;
         assert_eq!(path.targets(), [Load(54.0), Approach(2.0)]);
-        let printed = format!(
-            "{:?}",
-            LoadingSolver::builder(&surface, &kernel).max_load(9.0)
-        );
+        let printed = format!("{:?}", LoadingSolver::builder(&surface, &kernel).max_load(9.0));
         assert!(printed.contains("targets: [Load(9.0)]"), "{printed}");
         for (window, is_one) in [(0, false), (1, true)] {
-            let built = LoadingSolver::builder(&surface, &kernel)
-                .window_size(window)
-                .build();
+            let built = LoadingSolver::builder(&surface, &kernel).window_size(window).build();
             assert_eq!(built.is_ok(), is_one);
         }
         Ok(())

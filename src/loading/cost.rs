@@ -40,11 +40,7 @@ mod tests {
     fn absurd_costs_give_a_window_all_the_same() {
         for most_watched in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 0.05] {
             for schur in [0.0, f64::NAN, f64::INFINITY, 0.01] {
-                let cost = WindowCost {
-                    most_watched,
-                    schur,
-                    ..WindowCost::default()
-                };
+                let cost = WindowCost { most_watched, schur, ..WindowCost::default() };
                 let size = automatic_window(5000, 65_536, cost);
                 assert!((16..=65_536).contains(&size), "{cost:?} {size}");
             }
@@ -53,13 +49,7 @@ mod tests {
 
     /// Costs of a window of which only some count.
     fn cost(convolution: f64, solve: f64, schur: f64, most_watched: f64) -> WindowCost {
-        WindowCost {
-            solve,
-            schur,
-            convolution,
-            most_watched,
-            multiple: 1,
-        }
+        WindowCost { solve, schur, convolution, most_watched, multiple: 1 }
     }
 
     /// With k nodes watched an event costs `(R + s n k² + 0.08 · 0.85² k³ / 2) / (0.85 k)` for a refresh of R, which is least

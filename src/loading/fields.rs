@@ -127,10 +127,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure`].
     pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
         let displacement = self.displacement()?;
-        Ok(self.gap_over(
-            displacement,
-            self.state.map_or(0.0, |state| state.contact.approach),
-        ))
+        Ok(self.gap_over(displacement, self.state.map_or(0.0, |state| state.contact.approach)))
     }
 
     /// The same at any state up to the present one: see [`Self::pressure_at`].
@@ -208,17 +205,12 @@ mod tests {
 
     /// Nodes 0 and 2 touch at 0 and at the approach 1, and the path ends at 3, where they carry 3/4 and 1/2.
     fn path() -> Result<(LoadingSolver, Vec<LoadingState>), Error> {
-        let (surface, kernel) = (
-            test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?,
-            test_chain::kernel(4)?,
-        );
+        let (surface, kernel) =
+            (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
         let builder = LoadingSolver::builder(&surface, &kernel).until(ContactTarget::Approach(3.0));
         let mut path = builder.build()?;
         assert!(path.contact_order().is_empty() && !path.contact_map().iter().any(|is_in| *is_in));
-        assert_eq!(
-            (path.pressure()?, path.max_pressure()?),
-            (DMatrix::zeros(4, 1), 0.0)
-        );
+        assert_eq!((path.pressure()?, path.max_pressure()?), (DMatrix::zeros(4, 1), 0.0));
         let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
         assert_eq!(states.len(), 3);
         Ok((path, states))
@@ -293,31 +285,16 @@ mod tests {
         let [first, second, _] = states[..] else {
             unreachable!("three states");
         };
-        assert_eq!(
-            path.contact_map_at(&first)?.as_slice(),
-            [true, false, false, false]
-        );
-        assert_eq!(
-            path.contact_map_at(&second)?.as_slice(),
-            [true, false, true, false]
-        );
+        assert_eq!(path.contact_map_at(&first)?.as_slice(), [true, false, false, false]);
+        assert_eq!(path.contact_map_at(&second)?.as_slice(), [true, false, true, false]);
         near(&path.pressure_at(&first)?, [0.0; 4]);
         near(&path.pressure_at(&second)?, [0.25, 0.0, 0.0, 0.0]);
         near(&path.displacement_at(&second)?, [1.0, 0.25, 0.0, 0.0]);
         near(&path.gap_at(&second)?, [0.0, 8.25, 0.0, 8.0]);
         let mut beyond = second;
         beyond.step = 3;
-        for refused in [
-            path.contact_map_at(&beyond).err(),
-            path.pressure_at(&beyond).err(),
-        ] {
-            assert!(matches!(
-                refused,
-                Some(Error::StateNotReached {
-                    step: 3,
-                    present: 2
-                })
-            ));
+        for refused in [path.contact_map_at(&beyond).err(), path.pressure_at(&beyond).err()] {
+            assert!(matches!(refused, Some(Error::StateNotReached { step: 3, present: 2 })));
         }
         Ok(())
     }
@@ -329,9 +306,7 @@ mod tests {
         let surface = crate::HeightMap::new(DMatrix::from_fn(6, 6, |ix, iy| {
             -(ix as f64 - 2.3).powi(2) - (iy as f64 - 3.1).powi(2)
         }))?;
-        let mut path = LoadingSolver::builder(&surface, &kernel)
-            .max_nodes(5)
-            .build()?;
+        let mut path = LoadingSolver::builder(&surface, &kernel).max_nodes(5).build()?;
         let states = path.by_ref().collect::<Result<Vec<_>, _>>()?;
         let mut greatest = 0.0_f64;
         for state in &states {

@@ -33,11 +33,7 @@ pub(super) struct GapLine {
 impl GapLine {
     /// When the node would touch.
     pub(super) fn touches(&self) -> f64 {
-        if self.closing > 0.0 {
-            self.gap / self.closing
-        } else {
-            f64::INFINITY
-        }
+        if self.closing > 0.0 { self.gap / self.closing } else { f64::INFINITY }
     }
 }
 
@@ -47,10 +43,7 @@ impl GapField {
         Self {
             convolution: problem.convolution(),
             pressure: [field(), field()],
-            solved: Solved {
-                displacement: [field(), field()],
-                ..Solved::default()
-            },
+            solved: Solved { displacement: [field(), field()], ..Solved::default() },
             revision: None,
             approach: 0.0,
             time: Duration::ZERO,
@@ -81,17 +74,8 @@ impl GapField {
         approach: f64,
     ) -> Result<(), Error> {
         self.revision = None;
-        let Solved {
-            solution,
-            displacement: [u, u_rate],
-        } = &mut self.solved;
-        solve(
-            problem,
-            contact,
-            updater,
-            (contact.len(), approach),
-            solution,
-        )?;
+        let Solved { solution, displacement: [u, u_rate] } = &mut self.solved;
+        solve(problem, contact, updater, (contact.len(), approach), solution)?;
         let values = [&solution.pressure, &solution.rate];
         for (field, values) in self.pressure.iter_mut().zip(values) {
             field.fill(0.0);
@@ -168,10 +152,7 @@ impl GapField {
         let [u, rate] = &self.solved.displacement;
         let closing = 1.0 - rate[node];
         let gap = problem.initial_gap()[node] + u[node] - self.approach;
-        GapLine {
-            gap: gap - (approach - self.approach) * closing,
-            closing,
-        }
+        GapLine { gap: gap - (approach - self.approach) * closing, closing }
     }
 
     /// Follows a contact whose last nodes, from the one at `first` on, have changed places; `order[k]` is where
@@ -195,8 +176,7 @@ impl GapField {
     /// The displacement that a pressure field causes.
     pub(super) fn displace(&mut self, pressure: &[f64]) -> Result<&[f64], Error> {
         self.revision = None;
-        self.convolution
-            .apply(pressure, &mut self.solved.displacement[0])?;
+        self.convolution.apply(pressure, &mut self.solved.displacement[0])?;
         Ok(&self.solved.displacement[0])
     }
 }
@@ -210,10 +190,9 @@ pub(super) fn solve<U: LinearUpdater + ?Sized>(
     solution: &mut Solution,
 ) -> Result<(), Error> {
     updater.solve(problem, contact, count, approach, solution)?;
-    for (quantity, values) in [
-        ("pressures", &solution.pressure),
-        ("pressures per unit of approach", &solution.rate),
-    ] {
+    for (quantity, values) in
+        [("pressures", &solution.pressure), ("pressures per unit of approach", &solution.rate)]
+    {
         if values.len() != count {
             return Err(Error::Updater(UpdaterError::UpdaterMismatch {
                 quantity,
@@ -251,17 +230,11 @@ mod tests {
             near(&[lines[0].gap, lines[1].gap], &gaps);
             near(&[lines[0].closing, lines[1].closing], &[0.5, 0.75]);
             let [one, three] = gaps;
-            near(
-                &[lines[0].touches(), lines[1].touches()],
-                &[one / 0.5, three / 0.75],
-            );
+            near(&[lines[0].touches(), lines[1].touches()], &[one / 0.5, three / 0.75]);
             let pressures: Vec<(usize, f64)> = field.pressures(contact, 3.0 + ahead).collect();
             assert_eq!([pressures[0].0, pressures[1].0], [0, 2]);
             let more = 0.25 * ahead;
-            near(
-                &[pressures[0].1, pressures[1].1],
-                &[0.75 + more, 0.5 + more],
-            );
+            near(&[pressures[0].1, pressures[1].1], &[0.75 + more, 0.5 + more]);
         }
         near(&field.left_at(problem, 2), &[0.0, 0.0]);
         near(&field.left_at(problem, 3), &[5.5, -0.75]);

@@ -38,9 +38,7 @@ pub struct History {
 
 impl FromIterator<LoadingState> for History {
     fn from_iter<I: IntoIterator<Item = LoadingState>>(states: I) -> Self {
-        Self {
-            states: states.into_iter().collect(),
-        }
+        Self { states: states.into_iter().collect() }
     }
 }
 
@@ -78,10 +76,7 @@ impl History {
         grid: &Grid,
         targets: &[ContactTarget],
     ) -> Result<(Self, Option<LoadingEnd>), Error> {
-        let unloaded = self
-            .states
-            .first()
-            .map_or(f64::INFINITY, |s| s.contact.mean_gap);
+        let unloaded = self.states.first().map_or(f64::INFINITY, |s| s.contact.mean_gap);
         let mut limits = Limits::default();
         for &target in targets {
             limits.set(target, grid, unloaded)?;
@@ -107,11 +102,9 @@ impl History {
             ContactTarget::Approach(approach) => {
                 ("approach of a state", approach, self.at_approach(approach))
             }
-            ContactTarget::AreaFraction(fraction) => (
-                "area fraction of a state",
-                fraction,
-                self.at_area_fraction(fraction),
-            ),
+            ContactTarget::AreaFraction(fraction) => {
+                ("area fraction of a state", fraction, self.at_area_fraction(fraction))
+            }
             ContactTarget::MeanGap(mean_gap) => {
                 ("mean gap of a state", mean_gap, self.at_mean_gap(mean_gap))
             }
@@ -121,40 +114,22 @@ impl History {
         } else {
             "one that the path has had"
         };
-        state.ok_or(Error::OutOfRange {
-            quantity,
-            value,
-            expected,
-        })
+        state.ok_or(Error::OutOfRange { quantity, value, expected })
     }
 
     /// The state at a load \[N\], `None` outside the path. Beyond the last state only a path that ended
     /// in full contact can be read, as far as all of a state is finite.
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
-        let after = self
-            .states
-            .partition_point(|state| state.contact.load <= load);
-        self.read(
-            load,
-            after,
-            |state| state.contact.load,
-            ContactState::at_load,
-        )
+        let after = self.states.partition_point(|state| state.contact.load <= load);
+        self.read(load, after, |state| state.contact.load, ContactState::at_load)
     }
 
     /// The state at an approach \[m\]; see [`Self::at_load`].
     #[must_use]
     pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {
-        let after = self
-            .states
-            .partition_point(|state| state.contact.approach <= approach);
-        self.read(
-            approach,
-            after,
-            |state| state.contact.approach,
-            ContactState::at_approach,
-        )
+        let after = self.states.partition_point(|state| state.contact.approach <= approach);
+        self.read(approach, after, |state| state.contact.approach, ContactState::at_approach)
     }
 
     /// The state at a mean gap \[m\]; see [`Self::at_load`]. On a body of which nothing is known the mean gap may
@@ -271,11 +246,7 @@ mod tests {
             ];
             for reading in readings {
                 let found = reading.map(|state| {
-                    (
-                        state.contact.contact_nodes,
-                        state.contact.load,
-                        state.contact.energy,
-                    )
+                    (state.contact.contact_nodes, state.contact.load, state.contact.energy)
                 });
                 assert_eq!(found, Some((nodes, load, 0.25 * load * load)));
             }
@@ -323,9 +294,8 @@ mod tests {
         let mut later = History::default();
         later.extend(history.states().iter().copied());
         assert_eq!(later, history);
-        let found = later
-            .at_load(6.0)
-            .map(|state| (state.contact.contact_nodes, state.contact.approach));
+        let found =
+            later.at_load(6.0).map(|state| (state.contact.contact_nodes, state.contact.approach));
         assert_eq!(found, Some((4, 3.0)));
     }
 
@@ -333,11 +303,8 @@ mod tests {
     #[test]
     fn the_state_of_an_area_is_the_last_that_fits() {
         let history = history();
-        let nodes = |fraction| {
-            history
-                .at_area_fraction(fraction)
-                .map(|state| state.contact.contact_nodes)
-        };
+        let nodes =
+            |fraction| history.at_area_fraction(fraction).map(|state| state.contact.contact_nodes);
         for (fraction, expected) in [
             (0.05, None),
             (0.1, Some(1)),

@@ -111,11 +111,7 @@ impl Limits {
         let most = self.most_nodes();
         // What is asked for, and the way there.
         let targets = [
-            (
-                "load at which the path ends",
-                self.load,
-                self.load - state.contact.load,
-            ),
+            ("load at which the path ends", self.load, self.load - state.contact.load),
             (
                 "approach at which the path ends",
                 self.approach,
@@ -135,11 +131,9 @@ impl Limits {
         let is_passed = |way: f64| way < 0.0 || (goes_on && way == 0.0);
         match targets.into_iter().find(|(.., way)| is_passed(*way)) {
             None => Ok(()),
-            Some((quantity, value, _)) => Err(Error::OutOfRange {
-                quantity,
-                value,
-                expected: "beyond the present state",
-            }),
+            Some((quantity, value, _)) => {
+                Err(Error::OutOfRange { quantity, value, expected: "beyond the present state" })
+            }
         }
     }
 
@@ -190,11 +184,7 @@ impl Limits {
     ) -> Option<(LoadingEnd, Option<LoadingState>)> {
         let last = last?;
         let exceeded = [
-            (
-                LoadingEnd::Load,
-                next.contact.load > self.load,
-                last.contact.at_load(self.load),
-            ),
+            (LoadingEnd::Load, next.contact.load > self.load, last.contact.at_load(self.load)),
             (
                 LoadingEnd::Approach,
                 next.contact.approach > self.approach,
@@ -214,9 +204,7 @@ impl Limits {
             return Some((end, last.at_limit(state)));
         }
         let beyond = next.contact.contact_nodes > last.contact.contact_nodes;
-        let end = beyond
-            .then(|| self.enough(last.contact.contact_nodes))
-            .flatten();
+        let end = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten();
         end.map(|end| (end, None))
     }
 }
@@ -247,12 +235,7 @@ mod tests {
             interfacial_stiffness: Some(2.0),
             ..ContactState::new(&grid()?, contact_nodes, load / 4.0, load, 3.0 - load / 2.0)
         };
-        Ok(LoadingState::new(
-            contact_nodes,
-            ContactEvent::Touch,
-            (0, 0),
-            contact,
-        ))
+        Ok(LoadingState::new(contact_nodes, ContactEvent::Touch, (0, 0), contact))
     }
 
     #[test]
@@ -282,11 +265,7 @@ mod tests {
             (AreaFraction(0.5), false),
         ] {
             let limits = limits(&[target])?;
-            assert_eq!(
-                limits.ends_before_full_contact(),
-                is_before_full,
-                "{target:?}"
-            );
+            assert_eq!(limits.ends_before_full_contact(), is_before_full, "{target:?}");
             assert_eq!(limits.targets(&grid()?), [target]);
         }
         assert!(limits(&[])?.targets(&grid()?).is_empty());
@@ -306,15 +285,9 @@ mod tests {
             limits.set_nodes(nodes)?;
             limits.set_nodes(9)?;
             assert_eq!(limits.most_nodes(), most);
-            assert_eq!(
-                [most - 1, most].map(|nodes| limits.enough(nodes)),
-                [None, Some(end)]
-            );
+            assert_eq!([most - 1, most].map(|nodes| limits.enough(nodes)), [None, Some(end)]);
             let fraction = most as f64 / 20.0;
-            assert_eq!(
-                limits.targets(&grid()?),
-                [ContactTarget::AreaFraction(fraction)]
-            );
+            assert_eq!(limits.targets(&grid()?), [ContactTarget::AreaFraction(fraction)]);
             // Between two states only where one more node joins.
             let between = |next| -> Result<_, Error> {
                 let (last, next) = (state(most, 4.0)?, state(next, 8.0)?);
@@ -341,18 +314,12 @@ mod tests {
             (&[Load(5.0)][..], LoadingEnd::Load, 5.0),
             (&[Approach(1.5)], LoadingEnd::Approach, 6.0),
             (&[MeanGap(0.5)], LoadingEnd::MeanGap, 5.0),
-            (
-                &[Load(7.0), Approach(1.5), MeanGap(0.25)],
-                LoadingEnd::MeanGap,
-                5.5,
-            ),
+            (&[Load(7.0), Approach(1.5), MeanGap(0.25)], LoadingEnd::MeanGap, 5.5),
             (&[Load(7.0), Approach(1.5)], LoadingEnd::Approach, 6.0),
         ] {
             let (found, at_limit) = limits(targets)?.between(Some(last), &next).unzip();
             assert_eq!(found, Some(end));
-            let at_limit = at_limit
-                .flatten()
-                .map(|state| (state.event, state.contact.load));
+            let at_limit = at_limit.flatten().map(|state| (state.event, state.contact.load));
             assert_eq!(at_limit, Some((ContactEvent::Limit, load)));
         }
         // At the limit already, and the next state at it: that one comes.
@@ -361,10 +328,7 @@ mod tests {
         for target in [Load(8.0), Approach(2.0)] {
             assert_eq!(limits(&[target])?.between(Some(last), &next), None);
         }
-        assert_eq!(
-            limits(&[MeanGap(0.0)])?.between(Some(last), &state(2, 6.0)?),
-            None
-        );
+        assert_eq!(limits(&[MeanGap(0.0)])?.between(Some(last), &state(2, 6.0)?), None);
         assert_eq!(limits(&[Load(5.0)])?.between(None, &next), None);
         Ok(())
     }

@@ -24,14 +24,8 @@ impl<U: LinearUpdater> Phase<U> {
     /// Begins with an updater that has no node in contact.
     pub(super) fn new(updater: U) -> Self {
         match updater.method() {
-            Method::Factor => Self::Factor {
-                updater,
-                may_end: false,
-            },
-            Method::FactorWhileItPays => Self::Factor {
-                updater,
-                may_end: true,
-            },
+            Method::Factor => Self::Factor { updater, may_end: false },
+            Method::FactorWhileItPays => Self::Factor { updater, may_end: true },
             Method::Iterations(iterations) => Self::Iterations(iterations),
         }
     }
@@ -40,30 +34,32 @@ impl<U: LinearUpdater> Phase<U> {
     pub(super) fn hand_over(&mut self, run: &mut LoadingRun) -> Result<bool, Error> {
         let (problem, contact) = (&run.problem, &run.contact);
         let count = contact.len();
-        let Some(mut iterations) = self.successor(run, count) else {
+        let Some(iterations) = self.successor(run, count) else {
             return Ok(false);
         };
+        let mut solution = Solution::default();
+        // At any approach: with the rate it is known at all others.
+        let approach = 0.0;
         if let Self::Factor { updater, .. } = self
             && count > 0
         {
-            // At any approach: with the rate it is known at all others.
-            let (approach, mut solution) = (0.0, Solution::default());
             gap_field::solve(problem, contact, updater, (count, approach), &mut solution)?;
             log::info!("{count} nodes in contact: without a factor from here");
+        }
+        // The factor goes before iterations fill its place: both at once may not fit.
+        *self = Self::Iterations(iterations);
+        if let Self::Iterations(iterations) = self
+            && count > 0
+        {
             iterations.take_over(problem, contact, approach, &solution)?;
         }
-        *self = Self::Iterations(iterations);
         Ok(true)
     }
 
     /// The iterations that take the place of a factor with `count` nodes in contact, if that is one which may end: where they are
     /// cheaper and can do, or where it leaves no room for one more window. Without room for iterations it stays as long as it can.
     fn successor(&self, run: &LoadingRun, count: usize) -> Option<Box<dyn Iterations>> {
-        let Self::Factor {
-            updater,
-            may_end: true,
-        } = self
-        else {
+        let Self::Factor { updater, may_end: true } = self else {
             return None;
         };
         let nodes = run.problem.grid().nodes();
@@ -75,10 +71,7 @@ impl<U: LinearUpdater> Phase<U> {
         if fits && (pays || iterations.check_cells(&run.problem).is_err()) {
             return None;
         }
-        let has_room = run
-            .memory
-            .check(iterations.bytes(nodes, count), count)
-            .is_ok();
+        let has_room = run.memory.check(iterations.bytes(nodes, count), count).is_ok();
         (has_room || count == 0).then_some(iterations)
     }
 
@@ -130,8 +123,7 @@ impl<U: LinearUpdater> Phase<U> {
     /// `Ok` if there is room for so many nodes in contact.
     pub(super) fn check_room(&self, run: &LoadingRun, contact: usize) -> Result<(), Error> {
         let grid = run.problem.grid();
-        run.memory
-            .check(self.bytes(grid.nodes(), contact, 0), run.contact.len())
+        run.memory.check(self.bytes(grid.nodes(), contact, 0), run.contact.len())
     }
 
     /// Goes on without a node that was at `position` of the contact.
@@ -156,14 +148,10 @@ impl<U: LinearUpdater> Phase<U> {
             *self = Self::Iterations(iterations);
         }
         let restored = match self {
-            Self::Factor { updater, .. } => join_all(
-                updater,
-                &run.problem,
-                &mut run.contact,
-                order,
-                run.memory.left(),
-            )
-            .map_err(|error| run.memory.in_all(error)),
+            Self::Factor { updater, .. } => {
+                join_all(updater, &run.problem, &mut run.contact, order, run.memory.left())
+                    .map_err(|error| run.memory.in_all(error))
+            }
             Self::Iterations(_) => order.iter().try_for_each(|&node| run.contact.push(node)),
         };
         restored.map(|()| hands_over)
@@ -183,8 +171,7 @@ impl<U: LinearUpdater> Phase<U> {
             // Nodes of that contact have left the updater since.
             let own = self.bytes(problem.grid().nodes(), contact.len(), 0);
             let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
-            run.memory
-                .check(own.saturating_add(rebuilt), contact.len())?;
+            run.memory.check(own.saturating_add(rebuilt), contact.len())?;
             let (mut updater, contact) = RecursiveCholesky::of(problem, &nodes)?;
             gap_field::solve(problem, &contact, &mut updater, at, solution)?;
             return Ok(nodes);
@@ -271,10 +258,7 @@ mod tests {
             (1_000_000, 100_000, 3e-4 + 4e-3 + 6e-4),
         ] {
             let found = event_seconds(nodes, contact);
-            assert!(
-                (found / cost - 1.0).abs() < 1e-14,
-                "{nodes} {contact}: {found:e}"
-            );
+            assert!((found / cost - 1.0).abs() < 1e-14, "{nodes} {contact}: {found:e}");
         }
     }
 
@@ -323,10 +307,9 @@ mod tests {
             }
         }
         let last = last_factor(128 * 128);
-        for (kernel, given_up) in [
-            (&square as &dyn InfluenceKernel, [false, true]),
-            (&long, [false; 2]),
-        ] {
+        for (kernel, given_up) in
+            [(&square as &dyn InfluenceKernel, [false, true]), (&long, [false; 2])]
+        {
             let run = flat(kernel, usize::MAX)?;
             let found = [last - 1, last].map(|count| has_successor(&run, count));
             assert_eq!(found, given_up);
@@ -423,18 +406,13 @@ mod tests {
         ] {
             run.memory.budget = fixed + budget;
             let [found, other] = [needing.make_room(&run), iterations.check_room(&run, 4)];
-            for (found, fits, needed, contact) in [
-                (found, of_updater, 1000, 0),
-                (other, of_iterations, bytes, 3),
-            ] {
+            for (found, fits, needed, contact) in
+                [(found, of_updater, 1000, 0), (other, of_iterations, bytes, 3)]
+            {
                 assert!(
                     match found {
                         Ok(()) => fits,
-                        Err(Error::MemoryBudget {
-                            needed: found,
-                            budget: of,
-                            nodes_that_fit,
-                        }) =>
+                        Err(Error::MemoryBudget { needed: found, budget: of, nodes_that_fit }) =>
                             !fits
                                 && found == fixed + needed
                                 && of == fixed + budget
@@ -456,10 +434,7 @@ mod tests {
         factor.renew_field(&mut run, 1.5)?;
         let mut window = Window::default();
         factor.admit(&mut run, &mut window, (4, 0.5))?;
-        assert_eq!(
-            (run.contact.order(), window.nodes()),
-            (&[2, 0, 4][..], &[4][..])
-        );
+        assert_eq!((run.contact.order(), window.nodes()), (&[2, 0, 4][..], &[4][..]));
         assert!((window.increments()[0][0] - 0.25).abs() < 1e-15);
         let mut iterations = Phase::new(ConjugateGradient::new());
         iterations.admit(&mut run, &mut window, (1, 0.5))?;

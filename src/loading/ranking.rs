@@ -70,10 +70,7 @@ mod tests {
         let expected = [(16.0, 0.25, 1), (8.0 / 0.75, 0.75, 3), (1.0, 1.0, 4)];
         for ((found, node), (touches, closing, expected)) in ranking.into_iter().zip(expected) {
             let time = touches - 1e-13 * (2.0 + touches) / closing;
-            assert!(
-                (found - time).abs() < 1e-13 && node == expected,
-                "{found} {node}"
-            );
+            assert!((found - time).abs() < 1e-13 && node == expected, "{found} {node}");
         }
         Ok(())
     }
@@ -85,10 +82,7 @@ mod tests {
             let found = ranked(rate);
             assert_eq!(found.is_err(), is_refused, "{rate:e}");
             if is_refused {
-                assert!(matches!(
-                    found,
-                    Err(Error::NotMonotone { ix: 2, iy: 0, .. })
-                ));
+                assert!(matches!(found, Err(Error::NotMonotone { ix: 2, iy: 0, .. })));
             }
         }
     }

@@ -28,11 +28,7 @@ impl Releases {
     /// Notes that a node left at the event number `step`.
     pub(super) fn push(&mut self, step: usize, node: usize, position: usize) {
         self.prefix_since = step;
-        self.log.push(Release {
-            step,
-            node,
-            position,
-        });
+        self.log.push(Release { step, node, position });
     }
 
     /// Takes back the last one; returns its place and node. The updater stays without it.
@@ -75,23 +71,12 @@ mod tests {
         let present = [6, 7, 5];
         assert_eq!(releases.steps(present.len()), 7);
         let contacts: Vec<_> = (0..=7).map(|k| releases.contact_at(&present, k)).collect();
-        let expected: [&[usize]; 8] = [
-            &[],
-            &[4],
-            &[4, 5],
-            &[4, 5, 6],
-            &[4, 6],
-            &[4, 6, 7],
-            &[6, 7],
-            &[6, 7, 5],
-        ];
+        let expected: [&[usize]; 8] =
+            [&[], &[4], &[4, 5], &[4, 5, 6], &[4, 6], &[4, 6, 7], &[6, 7], &[6, 7, 5]];
         assert_eq!(contacts, expected);
         assert!(releases.is_prefix(6) && !releases.is_prefix(5));
         // The last ones first: node 4 from the first place, node 5 from the second.
-        assert_eq!(
-            [0, 1, 2].map(|_| releases.pop()),
-            [Some((0, 4)), Some((1, 5)), None]
-        );
+        assert_eq!([0, 1, 2].map(|_| releases.pop()), [Some((0, 4)), Some((1, 5)), None]);
         assert_eq!(releases.steps(3), 3);
     }
 }

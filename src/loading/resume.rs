@@ -21,8 +21,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let events = history.events().iter();
         self.state = events.last().copied();
         if let Some(state) = &self.state {
-            run.scalars
-                .place_at(run.scalars.own_approach(&state.contact));
+            run.scalars.place_at(run.scalars.own_approach(&state.contact));
             run.last = run.last.map(|_| state.contact);
         }
         run.contact = contact;
@@ -42,8 +41,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             self.handed_over_at = Some(order.len());
         }
         phase.renew_field(run, run.scalars.approach())?;
-        run.scalars
-            .renew_load(&run.problem, &run.contact, &run.field);
+        run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;
         snapshot.recognise(run, phase, &last, keeps_conditions)
     }

@@ -54,21 +54,13 @@ impl Memory {
         if needed <= self.budget {
             return Ok(());
         }
-        Err(Error::MemoryBudget {
-            needed,
-            budget: self.budget,
-            nodes_that_fit: fit,
-        })
+        Err(Error::MemoryBudget { needed, budget: self.budget, nodes_that_fit: fit })
     }
 
     /// An error of the updater, which knows only of what is left to it, in terms of the whole.
     pub(super) fn in_all(&self, error: Error) -> Error {
         match error {
-            Error::MemoryBudget {
-                needed,
-                nodes_that_fit,
-                ..
-            } => Error::MemoryBudget {
+            Error::MemoryBudget { needed, nodes_that_fit, .. } => Error::MemoryBudget {
                 needed: needed.saturating_add(self.fixed),
                 budget: self.budget,
                 nodes_that_fit,
@@ -119,10 +111,7 @@ impl LoadingRun {
 
     /// Begins a step.
     pub(super) fn mark(&self) -> Mark {
-        Mark {
-            count: self.contact.len(),
-            scalars: self.scalars,
-        }
+        Mark { count: self.contact.len(), scalars: self.scalars }
     }
 
     /// Takes a step back, or the nodes of its last events if the mark says so. Whoever solves on the contact goes back by `cut`.
@@ -145,8 +134,7 @@ impl LoadingRun {
         if self.field.belongs_to(&self.contact, approach) {
             return Ok(());
         }
-        self.field
-            .solve(&self.problem, &self.contact, updater, approach)?;
+        self.field.solve(&self.problem, &self.contact, updater, approach)?;
         self.timings.convolution = self.field.time();
         self.check_closed(approach)
     }
@@ -158,8 +146,7 @@ impl LoadingRun {
         approach: f64,
         span: f64,
     ) -> Result<(), Error> {
-        self.field
-            .advance(&self.problem, &self.contact, iterations, [approach, span])
+        self.field.advance(&self.problem, &self.contact, iterations, [approach, span])
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n roundings of
@@ -168,10 +155,8 @@ impl LoadingRun {
         let own = self.problem.table().self_influence();
         let sum = |values: &[f64]| own * values.iter().map(|value| value.abs()).sum::<f64>();
         let Solution { pressure, rate } = self.field.solution();
-        let lengths = [
-            self.problem.greatest_gap() + approach.abs() + sum(pressure),
-            1.0 + sum(rate),
-        ];
+        let lengths =
+            [self.problem.greatest_gap() + approach.abs() + sum(pressure), 1.0 + sum(rate)];
         for &node in self.contact.order() {
             let left = self.field.left_at(&self.problem, node);
             for (k, quantity) in ["gap", "rate of the gap"].into_iter().enumerate() {
@@ -220,8 +205,7 @@ impl LoadingRun {
 
     /// The gap of a node from the present approach on.
     pub(super) fn line(&self, node: usize) -> GapLine {
-        self.field
-            .line(&self.problem, node, self.scalars.approach())
+        self.field.line(&self.problem, node, self.scalars.approach())
     }
 
     /// Opens a window on nodes at the present approach.
@@ -253,10 +237,7 @@ impl LoadingRun {
         let matrix = schur.matrix();
         let lower = (0..nodes.len()).flat_map(|j| (j..nodes.len()).map(move |i| (i, j)));
         let numbers = lower.map(|place| matrix[place]);
-        if !numbers
-            .chain(schur.row_sums().iter().copied())
-            .all(f64::is_finite)
-        {
+        if !numbers.chain(schur.row_sums().iter().copied()).all(f64::is_finite) {
             return Err(self.not_finite());
         }
         Ok(())
@@ -361,9 +342,8 @@ impl LoadingRun {
     ) -> Result<usize, Error> {
         let count = self.contact.len();
         loop {
-            let needed = updater
-                .bytes(count + size, size)
-                .saturating_add(WindowFactor::bytes(size));
+            let needed =
+                updater.bytes(count + size, size).saturating_add(WindowFactor::bytes(size));
             match self.memory.check(needed, count) {
                 Err(_) if size > 1 => size /= 2,
                 checked => return checked.map(|()| size),
@@ -389,13 +369,7 @@ impl LoadingRun {
     /// That a quantity of a node has the wrong sign at the present approach.
     pub(super) fn not_monotone(&self, quantity: &'static str, node: usize, value: f64) -> Error {
         let (ix, iy) = self.problem.grid().coordinates(node);
-        Error::NotMonotone {
-            quantity,
-            ix,
-            iy,
-            approach: self.scalars.approach(),
-            value,
-        }
+        Error::NotMonotone { quantity, ix, iy, approach: self.scalars.approach(), value }
     }
 
     /// That a node cannot touch, in a window that began at the present approach.
@@ -411,9 +385,7 @@ impl LoadingRun {
 
     /// That the next state would not be finite.
     pub(super) fn not_finite(&self) -> Error {
-        Error::NotFinite {
-            step: self.steps() + 1,
-        }
+        Error::NotFinite { step: self.steps() + 1 }
     }
 }
 

@@ -160,13 +160,7 @@ impl PathScalars {
             contact_stiffness: self.has_distant_point.then_some(stiffness),
             interfacial_stiffness: Some(stiffness / self.closing),
             energy: self.gauge.reported_energy(self.energy, self.load),
-            ..ContactState::new(
-                &self.grid,
-                contact_nodes,
-                approach,
-                self.load,
-                self.mean_gap,
-            )
+            ..ContactState::new(&self.grid, contact_nodes, approach, self.load, self.mean_gap)
         }
     }
 
@@ -224,10 +218,7 @@ mod tests {
         scalars.advance(3.0);
         let state = scalars.state(1);
         // 1 + (1 + 1.5)/2.
-        assert_eq!(
-            (state.load, state.energy, state.mean_gap),
-            (1.5, 2.25, -0.25)
-        );
+        assert_eq!((state.load, state.energy, state.mean_gap), (1.5, 2.25, -0.25));
         scalars.clamp_mean_gap();
         assert_eq!(scalars.state(1).mean_gap, 0.0);
         // Back again, as under the paper's rule.
@@ -256,10 +247,7 @@ mod tests {
         let mut scalars = start;
         scalars.pin(&walked, &end, 0.5);
         // Half of 0.5 and of −0.25, a quarter of 2.
-        assert_eq!(
-            (scalars.load, scalars.mean_gap, scalars.energy),
-            (0.25, 1.875, 0.5)
-        );
+        assert_eq!((scalars.load, scalars.mean_gap, scalars.energy), (0.25, 1.875, 0.5));
         Ok(())
     }
 
@@ -285,14 +273,11 @@ mod tests {
         let mut run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
         for (approach, load, energy) in [(3.0, 2.5, 3.25), (3.5, 3.0, 0.875 * 3.5 + 0.625 * 2.5)] {
             run.scalars.place_at(approach);
-            run.scalars
-                .renew_load(&run.problem, &run.contact, &run.field);
+            run.scalars.renew_load(&run.problem, &run.contact, &run.field);
             let scalars = &run.scalars;
-            for (found, expected) in [
-                (scalars.load, load),
-                (scalars.energy, energy),
-                (scalars.unit_stiffness, 0.5),
-            ] {
+            for (found, expected) in
+                [(scalars.load, load), (scalars.energy, energy), (scalars.unit_stiffness, 0.5)]
+            {
                 // Roundings of numbers up to 5.
                 assert!((found - expected).abs() < 1e-14, "{found} {expected}");
             }
@@ -321,10 +306,7 @@ mod tests {
             (scalars.uniform_displacement(3.0), 3.0 * per_load),
         ];
         for (found, expected) in expected {
-            assert!(
-                (found - expected).abs() < 1e-13 * (8.0 + per_load),
-                "{found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-13 * (8.0 + per_load), "{found} {expected}");
         }
         assert_eq!(state.contact_stiffness, None);
         // K = 1/4 N/m: of an approach 1 − s K / ΔA is that of the mean planes, and all of what a load is off by.

@@ -12,11 +12,7 @@ use crate::updater::{LinearUpdater, Solution};
 
 /// How far a state may be off to be recognised.
 fn allowed(state: &LoadingState) -> f64 {
-    if state.approach_error > 0.0 {
-        ESTIMATED
-    } else {
-        RECOGNISED
-    }
+    if state.approach_error > 0.0 { ESTIMATED } else { RECOGNISED }
 }
 
 /// What a state would be on this path, and is not.
@@ -267,22 +263,13 @@ mod tests {
             (1e-12, 0.5, 2.1e-4, true),
             (0.0, 0.5, f64::NAN, true),
         ] {
-            let case = Case {
-                load: 2.0 + off,
-                stiffness,
-                error,
-                ..ALONE
-            };
+            let case = Case { load: 2.0 + off, stiffness, error, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{off}");
         }
         // At first touch half of the rounding of 8 m.
         for (load, refused) in [(4.0, false), (-4.0, false), (4.5, true)] {
-            let case = Case {
-                pressures: &[(0, 0.0)],
-                approach: 0.0,
-                load: load * f64::EPSILON,
-                ..ALONE
-            };
+            let case =
+                Case { pressures: &[(0, 0.0)], approach: 0.0, load: load * f64::EPSILON, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{load}");
         }
         Ok(())
@@ -344,16 +331,10 @@ mod tests {
         for (overlap, refused) in [(11e-6, None), (13e-6, Some("least gap out of contact"))] {
             let neighbour = 3.0 - overlap;
             // At the front of all nodes, behind it of the one that touches next alone.
-            for (contact, far, refused) in [
-                (&[0][..], 8.0, refused),
-                (&[0, 1], 8.0, refused),
-                (&[0, 2], 8.0, None),
-            ] {
-                let case = Case {
-                    gaps: &[0.0, neighbour, far],
-                    contact,
-                    ..ALONE
-                };
+            for (contact, far, refused) in
+                [(&[0][..], 8.0, refused), (&[0, 1], 8.0, refused), (&[0, 2], 8.0, None)]
+            {
+                let case = Case { gaps: &[0.0, neighbour, far], contact, ..ALONE };
                 assert_eq!(case.refused()?, refused, "{overlap:e} {contact:?}");
             }
             // With no node out of contact there is no overlap: a fifth of 5 each.

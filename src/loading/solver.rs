@@ -77,9 +77,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// [`Error::CannotContinue`] after an error.
     pub fn continue_to(&mut self, target: ContactTarget) -> Result<(), Error> {
         if let Some(LoadingEnd::Failed | LoadingEnd::Memory) = self.end {
-            return Err(Error::CannotContinue {
-                steps: self.state.map_or(0, |state| state.step),
-            });
+            return Err(Error::CannotContinue { steps: self.state.map_or(0, |state| state.step) });
         }
         let mut limits = Limits::default();
         let problem = &self.run.problem;
@@ -119,9 +117,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 }
                 LoadingEnd::FullContact
             } else {
-                self.limits
-                    .enough(nodes)
-                    .unwrap_or(LoadingEnd::NoMoreEvents)
+                self.limits.enough(nodes).unwrap_or(LoadingEnd::NoMoreEvents)
             });
             return Ok(None);
         };
@@ -287,13 +283,9 @@ mod tests {
 
     /// Two of four nodes are in contact at the approach 2, under 2 (1/2 + 1/4) N.
     fn path() -> Result<LoadingSolver, Error> {
-        let (surface, kernel) = (
-            test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?,
-            test_chain::kernel(4)?,
-        );
-        let mut path = LoadingSolver::builder(&surface, &kernel)
-            .max_approach(2.0)
-            .build()?;
+        let (surface, kernel) =
+            (test_chain::surface(&[0.0, 9.0, 1.0, 9.0])?, test_chain::kernel(4)?);
+        let mut path = LoadingSolver::builder(&surface, &kernel).max_approach(2.0).build()?;
         assert_eq!(path.size_hint(), (0, Some(5)));
         assert_eq!((path.state(), path.end()), (None, None));
         let none = path.present().err().map(|error| error.to_string());
@@ -302,10 +294,7 @@ mod tests {
         assert_eq!(none.as_deref(), Some(told));
         path.by_ref().try_for_each(|state| state.map(drop))?;
         assert_eq!(Some(path.present()?), path.state());
-        assert_eq!(
-            (path.size_hint(), path.end()),
-            ((0, Some(0)), Some(LoadingEnd::Approach))
-        );
+        assert_eq!((path.size_hint(), path.end()), ((0, Some(0)), Some(LoadingEnd::Approach)));
         Ok(path)
     }
 
@@ -369,10 +358,7 @@ mod tests {
         let updater = path.updater().map_or(0, |updater| updater.bytes(4, 0));
         assert!(updater > 0);
         assert_eq!(path.bytes(), path.run.memory.fixed + updater);
-        assert_eq!(
-            (path.grid(), path.rule()),
-            (test_chain::grid(4)?, ContactRule::FirstContact)
-        );
+        assert_eq!((path.grid(), path.rule()), (test_chain::grid(4)?, ContactRule::FirstContact));
         Ok(())
     }
 }

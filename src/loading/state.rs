@@ -47,13 +47,7 @@ impl LoadingState {
         node: (usize, usize),
         contact: ContactState,
     ) -> Self {
-        Self {
-            step,
-            event,
-            node,
-            approach_error: 0.0,
-            contact,
-        }
+        Self { step, event, node, approach_error: 0.0, contact }
     }
 
     /// The same nodes in contact with other scalars.
@@ -63,10 +57,6 @@ impl LoadingState {
 
     /// The state at a limit, if that is not the state itself.
     pub(super) fn at_limit(self, contact: ContactState) -> Option<Self> {
-        (contact != self.contact).then_some(Self {
-            event: ContactEvent::Limit,
-            contact,
-            ..self
-        })
+        (contact != self.contact).then_some(Self { event: ContactEvent::Limit, contact, ..self })
     }
 }

@@ -85,10 +85,7 @@ impl Stepwise {
         }
         self.tied += 1;
         if self.tied > TIED_EVENTS * (run.problem.grid().nodes() + 1) {
-            return Err(Error::Cycling {
-                approach,
-                events: self.tied,
-            });
+            return Err(Error::Cycling { approach, events: self.tied });
         }
         Ok(())
     }
@@ -151,23 +148,16 @@ impl Stepwise {
         let slowest = -LEAST_RATE * run.greatest_rate();
         let tension = overlap / run.problem.table().self_influence();
         let releases = run.contact.order().iter().zip(pressure).zip(rate);
-        let releases = releases
-            .filter(|(_, rate)| **rate < slowest)
-            .map(|((&node, p), rate)| Upcoming {
+        let releases =
+            releases.filter(|(_, rate)| **rate < slowest).map(|((&node, p), rate)| Upcoming {
                 approach: front - p / rate,
                 error: -tension / rate,
                 node,
                 event: ContactEvent::Release,
             });
         let events = self.touches.iter().copied().chain(releases);
-        let events = events.map(|event| Upcoming {
-            approach: event.approach.max(front),
-            ..event
-        });
-        let first = events
-            .clone()
-            .map(|event| event.approach)
-            .fold(f64::INFINITY, f64::min);
+        let events = events.map(|event| Upcoming { approach: event.approach.max(front), ..event });
+        let first = events.clone().map(|event| event.approach).fold(f64::INFINITY, f64::min);
         let tied = ties_until(first);
         events
             .filter(|event| event.approach <= tied && event.approach < f64::INFINITY)
@@ -196,25 +186,14 @@ mod tests {
         }
         let refused = stepwise.count_tie(&run, 1.0);
         assert!(
-            matches!(
-                refused,
-                Err(Error::Cycling {
-                    approach: 1.0,
-                    events: 121
-                })
-            ),
+            matches!(refused, Err(Error::Cycling { approach: 1.0, events: 121 })),
             "{refused:?}"
         );
         Ok(())
     }
 
     fn touch(node: usize, approach: f64) -> Upcoming {
-        Upcoming {
-            approach,
-            error: 0.0,
-            node,
-            event: ContactEvent::Touch,
-        }
+        Upcoming { approach, error: 0.0, node, event: ContactEvent::Touch }
     }
 
     /// What comes first at the approach 2 of these touches and of two nodes in contact, 3 and 5, with pressures and rates.
@@ -229,10 +208,7 @@ mod tests {
         run.contact.push(5)?;
         run.advance_field(&mut given, 2.0, 1.0)?;
         run.scalars.place_at(2.0);
-        let stepwise = Stepwise {
-            touches: touches.to_vec(),
-            ..Stepwise::default()
-        };
+        let stepwise = Stepwise { touches: touches.to_vec(), ..Stepwise::default() };
         let first = stepwise.first_event(&run, 0.25);
         Ok(first.map(|next| (next.event, next.node, next.approach, next.error)))
     }
@@ -245,29 +221,14 @@ mod tests {
         let found = |touches: &[Upcoming]| first(touches, releasing.0, releasing.1);
         assert_eq!(found(&[])?, Some((Release, 3, 4.0, 0.25)));
         assert_eq!(found(&[touch(1, 5.0)])?, Some((Release, 3, 4.0, 0.25)));
-        assert_eq!(
-            found(&[touch(4, 3.5), touch(1, 5.0)])?,
-            Some((Touch, 4, 3.5, 0.0))
-        );
+        assert_eq!(found(&[touch(4, 3.5), touch(1, 5.0)])?, Some((Touch, 4, 3.5, 0.0)));
         // What should have happened already happens now.
         assert_eq!(found(&[touch(1, 1.0)])?, Some((Touch, 1, 2.0, 0.0)));
         // Of events within rounding, 10⁻¹³ of 4 m, that of the lowest node.
-        assert_eq!(
-            found(&[touch(4, 4.0 - 3e-13)])?,
-            Some((Release, 3, 4.0, 0.25))
-        );
-        assert_eq!(
-            found(&[touch(1, 4.0 + 3e-13)])?,
-            Some((Touch, 1, 4.0 + 3e-13, 0.0))
-        );
-        assert_eq!(
-            found(&[touch(1, 4.0 + 5e-13)])?,
-            Some((Release, 3, 4.0, 0.25))
-        );
-        assert_eq!(
-            found(&[touch(4, 4.0 - 5e-13)])?,
-            Some((Touch, 4, 4.0 - 5e-13, 0.0))
-        );
+        assert_eq!(found(&[touch(4, 4.0 - 3e-13)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[touch(1, 4.0 + 3e-13)])?, Some((Touch, 1, 4.0 + 3e-13, 0.0)));
+        assert_eq!(found(&[touch(1, 4.0 + 5e-13)])?, Some((Release, 3, 4.0, 0.25)));
+        assert_eq!(found(&[touch(4, 4.0 - 5e-13)])?, Some((Touch, 4, 4.0 - 5e-13, 0.0)));
         // A rate within rounding of none, 10⁻¹² of the greatest, releases nothing; nor does one that grows.
         for (rate, release) in [(-0.9e-12, false), (-1.1e-12, true), (0.25, false)] {
             let found = first(&[], [0.5, 1.0], [rate, 1.0])?;
@@ -302,11 +263,7 @@ mod tests {
                 state.contact.approach
             );
             // At first touch a part of 10⁻⁶ of the mean gap.
-            assert!(
-                (state.approach_error - error).abs() < 1e-9,
-                "{}",
-                state.approach_error
-            );
+            assert!((state.approach_error - error).abs() < 1e-9, "{}", state.approach_error);
         }
         // 1/2 N for each metre, and after the second node twice as much.
         let loads: Vec<f64> = run.queue.iter().map(|state| state.contact.load).collect();

@@ -36,13 +36,7 @@ pub(super) fn surveyed(
     approach: f64,
 ) -> Result<LoadingRun, Error> {
     let mut run = solved(gaps, contact, approach)?;
-    let LoadingRun {
-        problem,
-        contact,
-        field,
-        scalars,
-        ..
-    } = &mut run;
+    let LoadingRun { problem, contact, field, scalars, .. } = &mut run;
     scalars.renew_load(problem, contact, field);
     run.survey(false, |_, _| ())?;
     Ok(run)
@@ -70,10 +64,7 @@ pub(super) fn apart(gaps: &[(usize, f64)], horizon: f64) -> Window {
     let size = gaps.len();
     let lines: Vec<_> = gaps.iter().map(|&(node, gap)| (node, [gap, 1.0])).collect();
     // Each acts on itself and two neighbours.
-    let (matrix, row_sums) = (
-        DMatrix::from_diagonal_element(size, size, 4.0),
-        vec![6.0; size],
-    );
+    let (matrix, row_sums) = (DMatrix::from_diagonal_element(size, size, 4.0), vec![6.0; size]);
     window(&lines, &matrix, &row_sums, horizon)
 }
 
@@ -89,10 +80,7 @@ pub(super) fn gap_line([gap, closing]: [f64; 2]) -> GapLine {
 
 /// `c₀ − c₁ t + c₂ t² + c₃ t³`.
 pub(super) fn course([c0, c1, c2, c3]: [f64; 4]) -> Course {
-    Course {
-        line: gap_line([c0, c1]),
-        curve: [c2, c3],
-    }
+    Course { line: gap_line([c0, c1]), curve: [c2, c3] }
 }
 
 /// Events from (position, time).
@@ -108,9 +96,5 @@ pub(super) fn pairs(events: &[WindowEvent]) -> Vec<(usize, f64)> {
 }
 
 pub(super) fn tolerances(length: f64, tolerance: f64, tie: f64) -> WindowTolerances {
-    WindowTolerances {
-        length,
-        tolerance,
-        tie,
-    }
+    WindowTolerances { length, tolerance, tie }
 }

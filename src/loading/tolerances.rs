@@ -35,11 +35,7 @@ impl WindowTolerances {
     /// At the present approach, of solutions that leave gaps of `tolerance` in contact, relative to the approach.
     pub(super) fn of(run: &LoadingRun, tolerance: f64) -> Self {
         let length = run.scalars.approach().max(run.problem.least_length());
-        Self {
-            length,
-            tolerance,
-            tie: (TIE * length).max(ROUNDING * run.problem.greatest_gap()),
-        }
+        Self { length, tolerance, tie: (TIE * length).max(ROUNDING * run.problem.greatest_gap()) }
     }
 
     /// Difference of times below which a node that closes at a rate may be before or after another one, at the
@@ -71,11 +67,8 @@ mod tests {
     #[test]
     fn errors_of_gaps_become_errors_of_times() {
         for unit in [1.0, 1e-9] {
-            let tolerances = WindowTolerances {
-                length: 2.0 * unit,
-                tolerance: 1e-10,
-                tie: 1e-9 * unit,
-            };
+            let tolerances =
+                WindowTolerances { length: 2.0 * unit, tolerance: 1e-10, tie: 1e-9 * unit };
             // 100 · 1e-10 · 2 over the rate.
             for (closing, time) in [(1.0, 2e-8), (0.25, 8e-8), (100.0, 1e-9), (0.0, 2e4)] {
                 let found = tolerances.tie_of(closing) / unit;
@@ -88,10 +81,7 @@ mod tests {
             }
             for (approach, overlap) in [(1.0, 2e-8), (3.0, 3e-8)] {
                 let found = tolerances.overlap(approach * unit) / unit;
-                assert!(
-                    (found / overlap - 1.0).abs() < 1e-12,
-                    "{approach}: {found:e}"
-                );
+                assert!((found / overlap - 1.0).abs() < 1e-12, "{approach}: {found:e}");
             }
         }
     }

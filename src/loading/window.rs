@@ -38,11 +38,7 @@ impl Course {
             }
             t += self.gap(t) / closing;
         }
-        if t.is_nan() {
-            f64::INFINITY
-        } else {
-            t.max(now)
-        }
+        if t.is_nan() { f64::INFINITY } else { t.max(now) }
     }
 
     /// Subtracts a multiple of another course.
@@ -239,9 +235,7 @@ impl Window {
         let open = self.courses.iter().zip(&self.open).enumerate();
         let open = open.filter(|(_, (_, open))| **open);
         let courses = open.map(|(position, ((course, _), _))| (position, course));
-        let times = courses
-            .clone()
-            .map(|(position, course)| (position, course.closes(now)));
+        let times = courses.clone().map(|(position, course)| (position, course.closes(now)));
         let (first, earliest) = times.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let tie = EXACT_TIE * (self.approach + earliest);
         let tied = courses
@@ -274,8 +268,7 @@ impl Window {
         self.open[position] = false;
         let unit = own.line.closing * inverse;
         self.events.push(WindowEvent { position, time });
-        self.increments
-            .push([unit * unit, own_sum * inverse * unit]);
+        self.increments.push([unit * unit, own_sum * inverse * unit]);
         Ok(())
     }
 
@@ -384,10 +377,7 @@ mod tests {
         let found = found(&window);
         assert_eq!(found[0], (7, 0.0));
         // A few roundings of numbers near 1.
-        assert!(
-            found[1].0 == 8 && (found[1].1 - 2.0).abs() < 1e-14,
-            "{found:?}"
-        );
+        assert!(found[1].0 == 8 && (found[1].1 - 2.0).abs() < 1e-14, "{found:?}");
         let [[first, _], [second, _]] = *window.increments() else {
             unreachable!("two were asked for");
         };
@@ -482,12 +472,9 @@ mod tests {
         let fast = [[5.0, 1.0], [1.0, 1.0], [1.0 - 1e-12, 1.0]];
         let slow = [[5.0, 1.0], [1e-3, 1e-3], [1e-3 - 1e-12, 1e-3]];
         // 10⁻¹³ of the approach, 1 and 21.
-        for (approach, lines, order) in [
-            (0.0, fast, [9, 8]),
-            (20.0, fast, [8, 9]),
-            (0.0, slow, [9, 8]),
-            (20.0, slow, [8, 9]),
-        ] {
+        for (approach, lines, order) in
+            [(0.0, fast, [9, 8]), (20.0, fast, [8, 9]), (0.0, slow, [9, 8]), (20.0, slow, [8, 9])]
+        {
             let mut window = window(ALONE, lines, 4.0);
             window.approach = approach;
             assert_eq!(window.play(3), None);
@@ -520,10 +507,7 @@ mod tests {
         let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut window = window(singular, [[0.0, 1.0], [0.0, 2.0], [9.0, 1.0]], 100.0);
         let bad = window.play(3);
-        assert!(
-            bad.is_some_and(|bad| (bad.node, bad.pivot) == (8, 0.0)),
-            "{bad:?}"
-        );
+        assert!(bad.is_some_and(|bad| (bad.node, bad.pivot) == (8, 0.0)), "{bad:?}");
         assert_eq!(window.events().len(), 1);
     }
 
@@ -542,25 +526,15 @@ mod tests {
     fn what_remains_is_a_window() -> Result<(), crate::Error> {
         let mut window = window(C, [[1.0, 1.0], [2.0, 1.0], [5.0, 1.0]], 100.0);
         window.set_courses(
-            [
-                [1.0, 1.0, 0.0, 0.0],
-                [2.0, 1.0, 0.0, 0.0],
-                [5.0, 1.0, 0.125, 0.0],
-            ]
-            .map(course)
-            .into_iter(),
+            [[1.0, 1.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [5.0, 1.0, 0.125, 0.0]]
+                .map(course)
+                .into_iter(),
         );
         assert_eq!(window.touch(0, 1.0), Ok(()));
         let remaining = window.remaining(&[2, 1], 1.0, &[0.25, 0.5])?;
         assert_eq!(remaining.nodes(), [9, 8]);
-        assert_eq!(
-            (remaining.approach, remaining.horizon),
-            (1.0, f64::INFINITY)
-        );
-        assert_eq!(
-            (remaining.position(8), remaining.position(7)),
-            (Some(1), None)
-        );
+        assert_eq!((remaining.approach, remaining.horizon), (1.0, f64::INFINITY));
+        assert_eq!((remaining.position(8), remaining.position(7)), (Some(1), None));
         let schur = remaining.schur();
         let found = [
             schur.entry(0, 0),
@@ -569,9 +543,7 @@ mod tests {
             schur.row_sums()[0],
             schur.row_sums()[1],
         ];
-        let lines = remaining
-            .courses()
-            .map(|course| [course.line.gap, course.line.closing]);
+        let lines = remaining.courses().map(|course| [course.line.gap, course.line.closing]);
         let lines: Vec<f64> = lines.flatten().collect();
         let expected = [2.0, 1.0, 1.5, 3.0, 2.5, 0.25, 0.75, 0.5, 0.5];
         for (found, expected) in found.iter().chain(&lines).zip(expected) {

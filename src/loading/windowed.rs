@@ -27,12 +27,7 @@ pub(super) struct Windowed {
 
 impl Windowed {
     pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
-        Self {
-            growth,
-            size,
-            window: Window::default(),
-            ranking: Ranking::new(),
-        }
+        Self { growth, size, window: Window::default(), ranking: Ranking::new() }
     }
 
     /// Computes a window of states, with no more than `most_nodes` in contact. Returns what went wrong
@@ -212,11 +207,7 @@ fn contradiction(run: &LoadingRun, approach: f64) -> Option<f64> {
     lines
         .filter(|(_, line)| line.gap < overlap)
         .map(|(_, line)| {
-            if line.closing > 0.0 {
-                approach + line.gap / line.closing
-            } else {
-                f64::NEG_INFINITY
-            }
+            if line.closing > 0.0 { approach + line.gap / line.closing } else { f64::NEG_INFINITY }
         })
         .reduce(f64::min)
 }

@@ -37,18 +37,14 @@ pub fn constriction(
 ) -> Result<Option<Constriction>, Error> {
     grid.check_shape(contact_map.shape())?;
     grid.check_finite("gap", gap)?;
-    let mut open: Vec<usize> = (0..grid.nodes())
-        .filter(|&node| !contact_map.as_slice()[node])
-        .collect();
+    let mut open: Vec<usize> =
+        (0..grid.nodes()).filter(|&node| !contact_map.as_slice()[node]).collect();
     let gap_of = |node: usize| gap.as_slice()[node];
     open.sort_by(|a, b| gap_of(*b).total_cmp(&gap_of(*a)));
     let lattice = Lattice::new(*grid, boundary, connectivity.dual());
     let count = percolates(lattice, axis, open.iter().copied());
     Ok(count.and_then(|count| {
         let node = *open.get(count.checked_sub(1)?)?;
-        Some(Constriction {
-            node: grid.coordinates(node),
-            gap: gap_of(node),
-        })
+        Some(Constriction { node: grid.coordinates(node), gap: gap_of(node) })
     }))
 }

@@ -62,9 +62,7 @@ impl ContactEdge {
         grid.check_shape(contact_map.shape())?;
         let mut edge = Self::new(grid, boundary);
         let nodes = contact_map.iter().enumerate();
-        nodes
-            .filter(|(_, is_in)| **is_in)
-            .for_each(|(node, _)| edge.change(node, true));
+        nodes.filter(|(_, is_in)| **is_in).for_each(|(node, _)| edge.change(node, true));
         Ok(edge)
     }
 
@@ -88,8 +86,7 @@ impl ContactEdge {
     fn change(&mut self, node: usize, joins: bool) {
         let sign = if joins { 1 } else { -1 };
         let in_contact = &self.in_contact;
-        self.perimeter
-            .change(&self.lattice, node, sign, |other| in_contact[other]);
+        self.perimeter.change(&self.lattice, node, sign, |other| in_contact[other]);
         self.in_contact[node] = joins;
         self.contact_nodes = self.contact_nodes.saturating_add_signed(sign);
     }
@@ -109,7 +106,6 @@ impl ContactEdge {
     /// Contact area \[m²\] without what cells count too much: see [`Perimeter::corrected_area`].
     #[must_use]
     pub fn corrected_area(&self) -> f64 {
-        self.perimeter
-            .corrected_area(self.contact_nodes, &self.grid)
+        self.perimeter.corrected_area(self.contact_nodes, &self.grid)
     }
 }

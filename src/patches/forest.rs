@@ -120,22 +120,14 @@ impl Forest {
     pub(super) fn percolates(&mut self, node: usize, axis: Axis) -> bool {
         let (root, _) = self.find(node);
         let (reach, k) = (self.reach[root], place(axis));
-        if self.lattice.wraps(axis) {
-            reach.winds[k]
-        } else {
-            reach.low[k] && reach.high[k]
-        }
+        if self.lattice.wraps(axis) { reach.winds[k] } else { reach.low[k] && reach.high[k] }
     }
 
     /// Adds a node, which joins the patches of its neighbours; returns them as they were before.
     pub(super) fn add(&mut self, node: usize) -> Parts {
         let (low, high) = self.lattice.at_ends(node);
         self.nodes[node] = 1;
-        self.reach[node] = Reach {
-            low,
-            high,
-            winds: [false; 2],
-        };
+        self.reach[node] = Reach { low, high, winds: [false; 2] };
         let mut parts = Parts::default();
         for neighbour in self.lattice.neighbours(node) {
             if self.contains(neighbour.node)
@@ -158,10 +150,7 @@ impl Forest {
             }
             return None;
         }
-        let part = Part {
-            root: second,
-            nodes: self.nodes[second],
-        };
+        let part = Part { root: second, nodes: self.nodes[second] };
         let (above, below, winding) = if self.nodes[first] >= self.nodes[second] {
             (first, second, between)
         } else {

@@ -80,21 +80,13 @@ impl Histogram {
         let mut outside = 0;
         for value in values {
             let above = edges.partition_point(|edge| *edge <= value);
-            let bin = if value == last {
-                above.checked_sub(2)
-            } else {
-                above.checked_sub(1)
-            };
+            let bin = if value == last { above.checked_sub(2) } else { above.checked_sub(1) };
             match bin.and_then(|bin| counts.get_mut(bin)) {
                 Some(count) => *count += 1,
                 None => outside += 1,
             }
         }
-        Ok(Self {
-            edges,
-            counts,
-            outside,
-        })
+        Ok(Self { edges, counts, outside })
     }
 
     /// Edges of the bins, one more than there are bins; empty without bins.

@@ -110,8 +110,7 @@ impl Iterator for PatchHistory<'_> {
         self.patches = self.patches + 1 - merged;
         self.largest = self.largest.max(self.forest.size(node));
         let forest = &self.forest;
-        self.perimeter
-            .change(forest.lattice(), node, 1, |other| forest.contains(other));
+        self.perimeter.change(forest.lattice(), node, 1, |other| forest.contains(other));
         Some(PatchState {
             step: self.step,
             node: self.grid.coordinates(node),

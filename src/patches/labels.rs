@@ -120,11 +120,7 @@ impl Patches {
             let mut wraps = |axis| lattice.wraps(axis) && forest.percolates(root, axis);
             patch.finish(grid, (wraps(Axis::X), wraps(Axis::Y)))
         });
-        Ok(Self {
-            grid: *grid,
-            patches: patches.collect(),
-            labels,
-        })
+        Ok(Self { grid: *grid, patches: patches.collect(), labels })
     }
 
     /// The patches, in the order of their first nodes in storage: x runs fastest.
@@ -147,11 +143,7 @@ impl Patches {
     /// [`Error::GridMismatch`] if the pressure has another shape, and [`Error::FieldNotFinite`].
     pub fn loads(&self, pressure: &DMatrix<f64>) -> Result<Vec<PatchLoad>, Error> {
         self.grid.check_finite("pressure", pressure)?;
-        let none = PatchLoad {
-            load: 0.0,
-            mean_pressure: 0.0,
-            max_pressure: f64::NEG_INFINITY,
-        };
+        let none = PatchLoad { load: 0.0, mean_pressure: 0.0, max_pressure: f64::NEG_INFINITY };
         let mut loads = vec![none; self.patches.len()];
         let nodes = pressure.iter().zip(self.labels.iter());
         for (&pressure, &label) in nodes {

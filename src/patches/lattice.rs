@@ -25,16 +25,8 @@ pub(super) struct Lattice {
 }
 
 /// Steps to the neighbours: those across a side along y, across one along x, and across corners.
-const STEPS: [[isize; 2]; 8] = [
-    [-1, 0],
-    [1, 0],
-    [0, -1],
-    [0, 1],
-    [-1, -1],
-    [1, -1],
-    [-1, 1],
-    [1, 1],
-];
+const STEPS: [[isize; 2]; 8] =
+    [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, -1], [-1, 1], [1, 1]];
 
 /// The place of an axis in a pair.
 pub(super) fn place(axis: Axis) -> usize {
@@ -47,11 +39,7 @@ pub(super) fn place(axis: Axis) -> usize {
 impl Lattice {
     pub(super) fn new(grid: Grid, boundary: Boundary, connectivity: Connectivity) -> Self {
         let (nx, ny) = grid.shape();
-        Self {
-            shape: [nx, ny],
-            wraps: [boundary == Boundary::Periodic; 2],
-            connectivity,
-        }
+        Self { shape: [nx, ny], wraps: [boundary == Boundary::Periodic; 2], connectivity }
     }
 
     /// The same with two ends along this axis.
@@ -103,10 +91,7 @@ impl Lattice {
             }
         };
         let ((ix, across_x), (iy, across_y)) = (along(0)?, along(1)?);
-        Some(Neighbour {
-            node: ix + self.shape[0] * iy,
-            winding: [across_x, across_y],
-        })
+        Some(Neighbour { node: ix + self.shape[0] * iy, winding: [across_x, across_y] })
     }
 
     /// Whether a node lies at the lower and at the upper end, along x and along y.

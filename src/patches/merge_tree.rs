@@ -90,10 +90,7 @@ impl MergeTree {
                 let branch = branch_of[part.root];
                 if branch != goes_on {
                     branches[branch].nodes = part.nodes;
-                    branches[branch].merger = Some(Merger {
-                        step,
-                        into: goes_on,
-                    });
+                    branches[branch].merger = Some(Merger { step, into: goes_on });
                 }
             }
             branch_of[forest.find(node).0] = goes_on;

@@ -24,11 +24,7 @@ pub fn contact_sequence(
         match event {
             ContactEvent::Touch => contact.push(node_of(&grid, ix, iy)?)?,
             ContactEvent::Release => {
-                return Err(Error::NodeLeaves {
-                    ix,
-                    iy,
-                    event: number,
-                });
+                return Err(Error::NodeLeaves { ix, iy, event: number });
             }
             ContactEvent::Limit => (),
         }

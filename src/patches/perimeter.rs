@@ -30,12 +30,7 @@ impl Perimeter {
     /// Number of sides, those on the border included.
     #[must_use]
     pub fn sides(&self) -> usize {
-        let sides = [
-            self.along_x,
-            self.along_y,
-            self.border_along_x,
-            self.border_along_y,
-        ];
+        let sides = [self.along_x, self.along_y, self.border_along_x, self.border_along_y];
         sides.into_iter().fold(0, usize::saturating_add)
     }
 

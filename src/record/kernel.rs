@@ -53,10 +53,9 @@ impl KernelRecord {
         let is_same = |a: f64, b: f64| (a - b).abs() <= SAME_KERNEL * greatest;
         match pairs.find(|(a, b)| !is_same(**a, **b)) {
             None => Ok(()),
-            Some((expected, found)) => Err(Error::WrongKernel {
-                expected: *expected,
-                found: *found,
-            }),
+            Some((expected, found)) => {
+                Err(Error::WrongKernel { expected: *expected, found: *found })
+            }
         }
     }
 

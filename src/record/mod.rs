@@ -95,10 +95,7 @@ impl LoadingRecord {
         let (nx, ny) = grid.shape();
         let heights = HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?;
         let kernel = KernelRecord::of(problem.table());
-        let settings = Settings {
-            rule: path.rule(),
-            targets: path.targets(),
-        };
+        let settings = Settings { rule: path.rule(), targets: path.targets() };
         Self::from_parts(grid, heights, kernel, settings, history, path.end())
     }
 
@@ -124,14 +121,7 @@ impl LoadingRecord {
                 return Err(Error::NotFinite { step: state.step });
             }
         }
-        Ok(Self {
-            grid,
-            heights,
-            kernel,
-            settings,
-            history,
-            end,
-        })
+        Ok(Self { grid, heights, kernel, settings, history, end })
     }
 
     /// The grid.

@@ -49,16 +49,8 @@ struct Column {
 
 /// The columns of numbers that are not whole; NaN stands for a stiffness that there is not.
 const COLUMNS: [Column; 9] = [
-    Column {
-        name: "approach",
-        get: |s| s.contact.approach,
-        set: |s, x| s.contact.approach = x,
-    },
-    Column {
-        name: "load",
-        get: |s| s.contact.load,
-        set: |s, x| s.contact.load = x,
-    },
+    Column { name: "approach", get: |s| s.contact.approach, set: |s, x| s.contact.approach = x },
+    Column { name: "load", get: |s| s.contact.load, set: |s, x| s.contact.load = x },
     Column {
         name: "contact_area",
         get: |s| s.contact.contact_area,
@@ -69,11 +61,7 @@ const COLUMNS: [Column; 9] = [
         get: |s| s.contact.contact_area_fraction,
         set: |s, x| s.contact.contact_area_fraction = x,
     },
-    Column {
-        name: "mean_gap",
-        get: |s| s.contact.mean_gap,
-        set: |s, x| s.contact.mean_gap = x,
-    },
+    Column { name: "mean_gap", get: |s| s.contact.mean_gap, set: |s, x| s.contact.mean_gap = x },
     Column {
         name: "contact_stiffness",
         get: |s| s.contact.contact_stiffness.unwrap_or(f64::NAN),
@@ -84,16 +72,8 @@ const COLUMNS: [Column; 9] = [
         get: |s| s.contact.interfacial_stiffness.unwrap_or(f64::NAN),
         set: |s, x| s.contact.interfacial_stiffness = (!x.is_nan()).then_some(x),
     },
-    Column {
-        name: "energy",
-        get: |s| s.contact.energy,
-        set: |s, x| s.contact.energy = x,
-    },
-    Column {
-        name: "approach_error",
-        get: |s| s.approach_error,
-        set: |s, x| s.approach_error = x,
-    },
+    Column { name: "energy", get: |s| s.contact.energy, set: |s, x| s.contact.energy = x },
+    Column { name: "approach_error", get: |s| s.approach_error, set: |s, x| s.approach_error = x },
 ];
 
 impl LoadingRecord {
@@ -167,11 +147,7 @@ impl LoadingRecord {
         }
         let count = patches.len();
         archive.integers("patches", count, patches.iter().map(|s| s.patches as i64))?;
-        archive.integers(
-            "largest_patch",
-            count,
-            patches.iter().map(|s| s.largest as i64),
-        )?;
+        archive.integers("largest_patch", count, patches.iter().map(|s| s.largest as i64))?;
         let lengths = patches.iter().map(|s| s.perimeter.length(&self.grid));
         archive.numbers("perimeter", count, lengths)
     }
@@ -267,13 +243,8 @@ fn code(event: ContactEvent) -> i64 {
 
 /// The event of a number.
 fn event(code: f64) -> Option<ContactEvent> {
-    let all = [
-        ContactEvent::Touch,
-        ContactEvent::Release,
-        ContactEvent::Limit,
-    ];
-    all.into_iter()
-        .find(|event| self::code(*event) as f64 == code)
+    let all = [ContactEvent::Touch, ContactEvent::Release, ContactEvent::Limit];
+    all.into_iter().find(|event| self::code(*event) as f64 == code)
 }
 
 #[cfg(test)]

@@ -50,13 +50,6 @@ impl TryFrom<Parts> for LoadingRecord {
             state.contact.restore_infinity();
         }
         let history = states.into_iter().collect();
-        Self::from_parts(
-            grid,
-            heights,
-            parts.kernel,
-            parts.settings,
-            history,
-            parts.end,
-        )
+        Self::from_parts(grid, heights, parts.kernel, parts.settings, history, parts.end)
     }
 }

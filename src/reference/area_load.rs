@@ -106,10 +106,7 @@ impl AreaLoadLaw {
         if pressure < 0.0 {
             return 0.0;
         }
-        let (p, mean) = (
-            pressure / deviation,
-            positive_part(mean_pressure) / deviation,
-        );
+        let (p, mean) = (pressure / deviation, positive_part(mean_pressure) / deviation);
         // The ratio of the two exponentials is exp(−2 p p̄ / V): no digit is lost where they almost cancel.
         let gauss = libm::exp(-0.5 * (p - mean) * (p - mean));
         gauss * -libm::expm1(-2.0 * p * mean) / ((2.0 * PI).sqrt() * deviation)
@@ -193,11 +190,7 @@ mod tests {
             (2.0 * PI).sqrt(),
             max_relative = 4e-16
         );
-        assert_relative_eq!(
-            AreaLoadLaw::PERSSON,
-            (8.0 / PI).sqrt(),
-            max_relative = 4e-16
-        );
+        assert_relative_eq!(AreaLoadLaw::PERSSON, (8.0 / PI).sqrt(), max_relative = 4e-16);
         // The asperity theory gives π/2 times the area of Persson's.
         assert_relative_eq!(
             AreaLoadLaw::BUSH_GIBSON_THOMAS / AreaLoadLaw::PERSSON,
@@ -228,10 +221,7 @@ mod tests {
     #[test]
     fn impossible_surfaces_are_refused() {
         for (gradient, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {
-            assert!(matches!(
-                AreaLoadLaw::new(gradient, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+            assert!(matches!(AreaLoadLaw::new(gradient, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

@@ -62,12 +62,7 @@ pub fn contact_conductance(
     resistivity: f64,
 ) -> Result<f64, Error> {
     let is_one = contact_stiffness >= 0.0;
-    Error::require(
-        "contact stiffness",
-        contact_stiffness,
-        is_one,
-        "not negative",
-    )?;
+    Error::require("contact stiffness", contact_stiffness, is_one, "not negative")?;
     let e_star = Error::require_positive("plane-strain modulus", e_star)?;
     let resistivity = Error::require_positive("resistivity", resistivity)?;
     Ok(2.0 * contact_stiffness / e_star / resistivity)
@@ -90,10 +85,7 @@ mod tests {
         let a = sphere.contact_radius(approach);
         let punch = CircularPunch::new(a, e_star)?;
         let holm = 1.0 / (rho_1 / (4.0 * a) + rho_2 / (4.0 * a));
-        for stiffness in [
-            sphere.contact_stiffness(approach),
-            punch.contact_stiffness(),
-        ] {
+        for stiffness in [sphere.contact_stiffness(approach), punch.contact_stiffness()] {
             let found = contact_conductance(stiffness, e_star, rho_1 + rho_2)?;
             assert_relative_eq!(found, holm, max_relative = 1e-15);
         }
@@ -118,10 +110,7 @@ mod tests {
             assert_relative_eq!(found, expected, max_relative = 5e-12);
         }
         let full = wave.interfacial_stiffness(wave.full_contact_pressure());
-        assert_eq!(
-            contact_conductance(full, wave.e_star(), rho_1)?,
-            f64::INFINITY
-        );
+        assert_eq!(contact_conductance(full, wave.e_star(), rho_1)?, f64::INFINITY);
         Ok(())
     }
 

@@ -213,10 +213,7 @@ mod tests {
     #[test]
     fn impossible_cones_are_refused() {
         for (slope, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {
-            assert!(matches!(
-                Cone::new(slope, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+            assert!(matches!(Cone::new(slope, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

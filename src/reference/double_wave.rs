@@ -162,10 +162,7 @@ mod tests {
     #[test]
     fn impossible_waves_are_refused() {
         for (d, period, e_star) in [(0.0, 1.0, 1.0), (1.0, f64::NAN, 1.0), (1.0, 1.0, -1.0)] {
-            assert!(matches!(
-                DoubleWave::new(d, period, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+            assert!(matches!(DoubleWave::new(d, period, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

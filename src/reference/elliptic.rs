@@ -106,10 +106,7 @@ mod tests {
     #[test]
     fn both_ends_of_the_range_are_right() {
         let circle = CompleteElliptic::from_log_complement(0.0);
-        assert_eq!(
-            (circle.first, circle.second, circle.log_ratio),
-            (FRAC_PI_2, FRAC_PI_2, 0.0)
-        );
+        assert_eq!((circle.first, circle.second, circle.log_ratio), (FRAC_PI_2, FRAC_PI_2, 0.0));
         // ln(D/B) = m/4 + O(m²), with every digit although m is only 2e-12: the rest is 1e-24.
         let nearly = CompleteElliptic::from_log_complement(-1e-12);
         assert_relative_eq!(nearly.log_ratio, 0.5e-12, max_relative = 1e-11);
@@ -121,10 +118,6 @@ mod tests {
 
     #[test]
     fn nan_comes_back() {
-        assert!(
-            CompleteElliptic::from_log_complement(f64::NAN)
-                .first
-                .is_nan()
-        );
+        assert!(CompleteElliptic::from_log_complement(f64::NAN).first.is_nan());
     }
 }

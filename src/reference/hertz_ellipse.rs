@@ -47,12 +47,7 @@ impl HertzEllipse {
         let e_star = Error::require_positive("plane-strain modulus", e_star)?;
         let ratio = radius_x.min(radius_y) / radius_x.max(radius_y);
         let quantity = "ratio of the smaller to the larger radius";
-        Error::require(
-            quantity,
-            ratio,
-            ratio >= Self::MIN_RADIUS_RATIO,
-            "at least 1e-12",
-        )?;
+        Error::require(quantity, ratio, ratio >= Self::MIN_RADIUS_RATIO, "at least 1e-12")?;
         let log_axis_ratio = log_axis_ratio(ratio.ln());
         let integrals = CompleteElliptic::from_log_complement(log_axis_ratio);
         Ok(Self {
@@ -114,11 +109,7 @@ impl HertzEllipse {
     pub fn semi_axes(&self, approach: f64) -> (f64, f64) {
         let minor = self.minor_semi_axis(approach);
         let major = minor / self.axis_ratio;
-        if self.radius_x >= self.radius_y {
-            (major, minor)
-        } else {
-            (minor, major)
-        }
+        if self.radius_x >= self.radius_y { (major, minor) } else { (minor, major) }
     }
 
     /// Contact area `πab` \[m²\].

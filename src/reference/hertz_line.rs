@@ -156,10 +156,7 @@ mod tests {
     #[test]
     fn impossible_cylinders_are_refused() {
         for (radius, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {
-            assert!(matches!(
-                HertzLine::new(radius, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+            assert!(matches!(HertzLine::new(radius, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

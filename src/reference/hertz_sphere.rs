@@ -209,10 +209,7 @@ mod tests {
             assert_relative_eq!(sphere.displacement(r, d), beyond, max_relative = 1e-14);
         }
         assert_eq!(sphere.pressure(a, d), 0.0);
-        assert_eq!(
-            sphere.displacement(-0.3 * a, d),
-            sphere.displacement(0.3 * a, d)
-        );
+        assert_eq!(sphere.displacement(-0.3 * a, d), sphere.displacement(0.3 * a, d));
         Ok(())
     }
 
@@ -242,16 +239,8 @@ mod tests {
 
     #[test]
     fn impossible_spheres_are_refused() {
-        for (radius, e_star) in [
-            (0.0, 1.0),
-            (1.0, -1.0),
-            (f64::NAN, 1.0),
-            (1.0, f64::INFINITY),
-        ] {
-            assert!(matches!(
-                HertzSphere::new(radius, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+        for (radius, e_star) in [(0.0, 1.0), (1.0, -1.0), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
+            assert!(matches!(HertzSphere::new(radius, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

@@ -171,10 +171,7 @@ mod tests {
         for (punches, whole) in [
             (sum(&|p| p.load(1.0)), sphere.load(d)),
             (sum(&|p| p.pressure(0.0, 1.0)), sphere.max_pressure(d)),
-            (
-                sum(&|p| p.displacement(far, 1.0)),
-                sphere.displacement(far, d),
-            ),
+            (sum(&|p| p.displacement(far, 1.0)), sphere.displacement(far, d)),
         ] {
             // Accuracy of the quadrature.
             assert_relative_eq!(punches, whole, max_relative = 1e-12);
@@ -230,10 +227,7 @@ mod tests {
     #[test]
     fn impossible_punches_are_refused() {
         for (radius, e_star) in [(0.0, 1.0), (1.0, f64::NAN)] {
-            assert!(matches!(
-                CircularPunch::new(radius, e_star),
-                Err(Error::NotPositive { .. })
-            ));
+            assert!(matches!(CircularPunch::new(radius, e_star), Err(Error::NotPositive { .. })));
         }
     }
 }

@@ -17,11 +17,7 @@ pub(super) fn integrate(f: impl Fn(f64) -> f64, lo: f64, hi: f64) -> f64 {
         let t = f64::from(i) * step;
         let grow = (PI * t.sinh()).exp();
         let (to_lo, to_hi) = (grow / (1.0 + grow), 1.0 / (1.0 + grow));
-        let x = if t < 0.0 {
-            lo + length * to_lo
-        } else {
-            hi - length * to_hi
-        };
+        let x = if t < 0.0 { lo + length * to_lo } else { hi - length * to_hi };
         if x > lo && x < hi {
             sum += PI * t.cosh() * step * length * to_lo * to_hi * f(x);
         }

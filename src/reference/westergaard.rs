@@ -85,11 +85,7 @@ impl Westergaard {
     #[must_use]
     pub fn mean_pressure_at_half_width(&self, half_width: f64) -> f64 {
         let fraction = positive_part(half_width) / self.wavelength;
-        let sin = if fraction > 0.5 {
-            1.0
-        } else {
-            (PI * fraction).sin()
-        };
+        let sin = if fraction > 0.5 { 1.0 } else { (PI * fraction).sin() };
         self.full_contact_pressure() * sin * sin
     }
 
@@ -136,11 +132,7 @@ impl Westergaard {
         }
         let chi = ((sin - edge) * (sin + edge)).sqrt();
         // P ln(…) = P arsinh(χ/√P), which vanishes with P.
-        let log = if ratio == 0.0 {
-            0.0
-        } else {
-            ratio * (chi / edge).asinh()
-        };
+        let log = if ratio == 0.0 { 0.0 } else { ratio * (chi / edge).asinh() };
         // The two terms agree to third order at the edge, where rounding may leave either sign.
         positive_part(2.0 * self.amplitude * (chi * sin - log))
     }

@@ -54,35 +54,22 @@ impl Altered {
         tolerance: f64,
         proposal: impl Fn(&mut Proposal) + Send + Sync + 'static,
     ) -> Self {
-        Self {
-            proposal: Arc::new(proposal),
-            ..Self::inexact(tolerance)
-        }
+        Self { proposal: Arc::new(proposal), ..Self::inexact(tolerance) }
     }
 
     /// An updater with other solutions.
     pub(crate) fn solutions(solution: impl Fn(&mut Solution) + Send + Sync + 'static) -> Self {
-        Self {
-            solution: Arc::new(solution),
-            iterates: false,
-            ..Self::inexact(0.0)
-        }
+        Self { solution: Arc::new(solution), iterates: false, ..Self::inexact(0.0) }
     }
 
     /// An updater with other Schur complements.
     pub(crate) fn complements(proposal: impl Fn(&mut Proposal) + Send + Sync + 'static) -> Self {
-        Self {
-            iterates: false,
-            ..Self::estimates(0.0, proposal)
-        }
+        Self { iterates: false, ..Self::estimates(0.0, proposal) }
     }
 
     /// An updater that asks for room.
     pub(crate) fn needing(room: usize) -> Self {
-        Self {
-            room,
-            ..Self::complements(|_| {})
-        }
+        Self { room, ..Self::complements(|_| {}) }
     }
 
     /// The displacements of all nodes under pressures on the first nodes of a contact.
@@ -233,18 +220,10 @@ impl LinearUpdater for Altered {
         if needed <= budget {
             return Ok(());
         }
-        Err(Error::MemoryBudget {
-            needed,
-            budget,
-            nodes_that_fit: 0,
-        })
+        Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 })
     }
 
     fn method(&self) -> Method {
-        if self.iterates {
-            Method::Iterations(Box::new(self.clone()))
-        } else {
-            Method::Factor
-        }
+        if self.iterates { Method::Iterations(Box::new(self.clone())) } else { Method::Factor }
     }
 }

@@ -97,12 +97,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
     /// Watches nodes, and lets all but the last join; returns that one.
     fn window(&mut self, watched: &[usize]) -> Result<Option<usize>, Error> {
         let (mut schur, mut expected) = (Schur::default(), Schur::default());
-        let Self {
-            updater,
-            problem,
-            contact,
-            ..
-        } = self;
+        let Self { updater, problem, contact, .. } = self;
         updater.watch(problem, contact, watched, &mut schur)?;
         Dense.watch(problem, contact, watched, &mut expected)?;
         check_length("the Schur complement", watched.len(), schur.size())?;
@@ -138,17 +133,12 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let (problem, contact) = (self.problem, &self.contact);
         // All nodes so far would be under pressure.
         let approach = problem.greatest_gap();
-        self.updater
-            .solve(problem, contact, count, approach, &mut found)?;
+        self.updater.solve(problem, contact, count, approach, &mut found)?;
         Dense.solve(problem, contact, count, approach, &mut expected)?;
         let tolerance = tolerance(self.updater);
         for (quantity, found, expected) in [
             ("pressures", &found.pressure, &expected.pressure),
-            (
-                "pressures per unit of approach",
-                &found.rate,
-                &expected.rate,
-            ),
+            ("pressures per unit of approach", &found.rate, &expected.rate),
         ] {
             check_length(quantity, expected.len(), found.len())?;
             let scale = greatest(expected);
@@ -205,11 +195,7 @@ fn check_length(quantity: &'static str, expected: usize, found: usize) -> Result
     if expected == found {
         return Ok(());
     }
-    Err(Error::Updater(UpdaterError::UpdaterMismatch {
-        quantity,
-        expected,
-        found,
-    }))
+    Err(Error::Updater(UpdaterError::UpdaterMismatch { quantity, expected, found }))
 }
 
 /// NaN is wrong as well.
@@ -222,12 +208,7 @@ fn check_error(
     if error <= tolerance {
         return Ok(());
     }
-    Err(Error::Updater(UpdaterError::UpdaterWrong {
-        quantity,
-        contact_nodes,
-        error,
-        tolerance,
-    }))
+    Err(Error::Updater(UpdaterError::UpdaterWrong { quantity, contact_nodes, error, tolerance }))
 }
 
 #[cfg(test)]
@@ -315,8 +296,7 @@ mod tests {
         ) -> Result<(), Error> {
             self.refuse("solve", count)?;
             self.refuse("part", count + usize::from(contact.is_empty()))?;
-            self.inner
-                .solve(problem, contact, count, approach, solution)?;
+            self.inner.solve(problem, contact, count, approach, solution)?;
             match self.lie {
                 "pressure" if count > 0 => solution.pressure[0] = f64::NAN,
                 "rate" => solution.rate.reverse(),
@@ -330,11 +310,7 @@ mod tests {
     #[test]
     fn what_is_nothing_is_compared_with_1() {
         assert_eq!(
-            [
-                greatest(&[]),
-                greatest(&[0.0, -0.0]),
-                greatest(&[2.0, -3.0])
-            ],
+            [greatest(&[]), greatest(&[0.0, -0.0]), greatest(&[2.0, -3.0])],
             [1.0, 1.0, 3.0]
         );
     }
@@ -357,20 +333,14 @@ mod tests {
         for lie in ["matrix", "row sums", "pressure", "rate"] {
             let found = checked(lie);
             assert!(
-                matches!(
-                    found,
-                    Err(Error::Updater(UpdaterError::UpdaterWrong { .. }))
-                ),
+                matches!(found, Err(Error::Updater(UpdaterError::UpdaterWrong { .. }))),
                 "{lie}: {found:?}"
             );
         }
         for lie in ["size", "length"] {
             let found = checked(lie);
             assert!(
-                matches!(
-                    found,
-                    Err(Error::Updater(UpdaterError::UpdaterMismatch { .. }))
-                ),
+                matches!(found, Err(Error::Updater(UpdaterError::UpdaterMismatch { .. }))),
                 "{lie}: {found:?}"
             );
         }

@@ -40,9 +40,7 @@ impl Dense {
 
     fn factor(problem: &Problem, contact: &[usize]) -> Result<Cholesky<f64, Dyn>, Error> {
         let matrix = Self::influence(problem, contact, contact)?;
-        Cholesky::new(matrix).ok_or(Error::FactorizationFailed {
-            nodes: contact.len(),
-        })
+        Cholesky::new(matrix).ok_or(Error::FactorizationFailed { nodes: contact.len() })
     }
 }
 
@@ -80,10 +78,7 @@ impl LinearUpdater for Dense {
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let Some(contact) = contact.order().get(..count) else {
-            return Err(Error::LengthMismatch {
-                expected: contact.len(),
-                found: count,
-            });
+            return Err(Error::LengthMismatch { expected: contact.len(), found: count });
         };
         problem.check_nodes(contact)?;
         let rhs = DMatrix::from_fn(contact.len(), 2, |i, c| match c {
@@ -113,8 +108,7 @@ impl LinearUpdater for Dense {
     /// The matrix and its factor.
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         let side = contact.saturating_add(watched);
-        side.saturating_mul(side)
-            .saturating_mul(2 * size_of::<f64>())
+        side.saturating_mul(side).saturating_mul(2 * size_of::<f64>())
     }
 }
 
@@ -139,16 +133,10 @@ mod tests {
         }
         let mut solution = Solution::default();
         Dense.solve(&problem, &contact, 1, 3.0, &mut solution)?;
-        assert_eq!(
-            (&solution.pressure[..], &solution.rate[..]),
-            (&[0.75][..], &[0.25][..])
-        );
+        assert_eq!((&solution.pressure[..], &solution.rate[..]), (&[0.75][..], &[0.25][..]));
         assert!(matches!(
             Dense.solve(&problem, &contact, 2, 3.0, &mut solution),
-            Err(Error::LengthMismatch {
-                expected: 1,
-                found: 2
-            })
+            Err(Error::LengthMismatch { expected: 1, found: 2 })
         ));
         assert!(Dense.watch(&problem, &contact, &[4], &mut schur).is_err());
         Ok(())
@@ -157,9 +145,6 @@ mod tests {
     /// A matrix of 5 × 5 and its factor.
     #[test]
     fn bytes_are_those_of_two_matrices() {
-        assert_eq!(
-            (Dense.bytes(3, 2), Dense.bytes(usize::MAX, 1)),
-            (400, usize::MAX)
-        );
+        assert_eq!((Dense.bytes(3, 2), Dense.bytes(usize::MAX, 1)), (400, usize::MAX));
     }
 }

@@ -24,11 +24,7 @@ pub(crate) fn join_all(
             .bytes(contact.len() + block.len(), block.len())
             .saturating_add(WindowFactor::bytes(block.len()));
         if needed > budget {
-            return Err(Error::MemoryBudget {
-                needed,
-                budget,
-                nodes_that_fit: contact.len(),
-            });
+            return Err(Error::MemoryBudget { needed, budget, nodes_that_fit: contact.len() });
         }
         let mut schur = Schur::default();
         updater.watch(problem, contact, block, &mut schur)?;

@@ -70,13 +70,7 @@ impl Default for WindowCost {
     /// A factor in double precision: a solution reads its 4n² bytes, a Schur complement runs at the speed
     /// of a matrix product, and the gaps at a window's end need the displacements of two fields.
     fn default() -> Self {
-        Self {
-            solve: 0.3,
-            schur: 0.01,
-            convolution: 50.0,
-            most_watched: 0.05,
-            multiple: 96,
-        }
+        Self { solve: 0.3, schur: 0.01, convolution: 50.0, most_watched: 0.05, multiple: 96 }
     }
 }
 
@@ -319,8 +313,7 @@ macro_rules! forward_verbs {
             approach: f64,
             solution: &mut Solution,
         ) -> Result<(), Error> {
-            self.$inner()
-                .solve(problem, contact, count, approach, solution)
+            self.$inner().solve(problem, contact, count, approach, solution)
         }
 
         fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
@@ -365,19 +358,12 @@ fn check_count(held: usize, found: usize) -> Result<(), Error> {
     if held == found {
         return Ok(());
     }
-    Err(Error::LengthMismatch {
-        expected: held,
-        found,
-    })
+    Err(Error::LengthMismatch { expected: held, found })
 }
 
 /// A symmetric matrix whose rows are dominated by their diagonals.
 #[cfg(test)]
 fn dominant(i: usize, j: usize) -> f64 {
     let (i, j) = (i.min(j) as f64, i.max(j) as f64);
-    if i == j {
-        400.0
-    } else {
-        libm::sin(3.0 * i + 7.0 * j * j)
-    }
+    if i == j { 400.0 } else { libm::sin(3.0 * i + 7.0 * j * j) }
 }

@@ -150,9 +150,8 @@ mod tests {
                 }
             }
             let entry = |i: usize, t: usize| ((i * (t + 2) + t) % 7) as f64 - 3.0;
-            let columns: Vec<f64> = (0..3)
-                .flat_map(|t| (0..size).map(move |i| entry(i, t)))
-                .collect();
+            let columns: Vec<f64> =
+                (0..3).flat_map(|t| (0..size).map(move |i| entry(i, t))).collect();
             schur.add_gram(-2.0, &columns);
             for j in 0..size {
                 for i in j..size {
@@ -174,12 +173,9 @@ mod tests {
         let mut schur = Schur::default();
         schur.resize(3)?;
         let above = f64::NAN;
-        schur
-            .as_mut_slice()
-            .copy_from_slice(&[1.0, 2.0, 3.0, above, 4.0, 5.0, above, above, 6.0]);
-        for (j, expected) in [[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]
-            .into_iter()
-            .enumerate()
+        schur.as_mut_slice().copy_from_slice(&[1.0, 2.0, 3.0, above, 4.0, 5.0, above, above, 6.0]);
+        for (j, expected) in
+            [[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]].into_iter().enumerate()
         {
             let mut column = [0.0; 3];
             schur.copy_column(j, &mut column);

@@ -39,15 +39,10 @@ impl WindowFactor {
         touched.reset(schur.size(), positions.len().min(schur.size()));
         for &position in positions {
             if position >= schur.size() || touched.has_touched(position) {
-                return Err(Error::LengthMismatch {
-                    expected: schur.size(),
-                    found: position,
-                });
+                return Err(Error::LengthMismatch { expected: schur.size(), found: position });
             }
             let pushed = touched.push(&mut schur, position);
-            pushed.map_err(|_| Error::FactorizationFailed {
-                nodes: positions.len(),
-            })?;
+            pushed.map_err(|_| Error::FactorizationFailed { nodes: positions.len() })?;
         }
         Ok(touched)
     }
@@ -94,13 +89,8 @@ impl WindowFactor {
         if position >= self.watched {
             return 0.0;
         }
-        let index = event
-            .checked_mul(self.watched)
-            .and_then(|k| k.checked_add(position));
-        index
-            .and_then(|k| self.factor.get(k))
-            .copied()
-            .unwrap_or(0.0)
+        let index = event.checked_mul(self.watched).and_then(|k| k.checked_add(position));
+        index.and_then(|k| self.factor.get(k)).copied().unwrap_or(0.0)
     }
 
     /// Forgets all events and prepares for up to `events` in a window of `watched` nodes.
@@ -270,9 +260,7 @@ mod tests {
     fn two_by_two() -> Schur {
         let mut schur = Schur::default();
         schur.resize(2).unwrap();
-        schur
-            .as_mut_slice()
-            .copy_from_slice(&[4.0, 2.0, f64::NAN, 5.0]);
+        schur.as_mut_slice().copy_from_slice(&[4.0, 2.0, f64::NAN, 5.0]);
         schur
     }
 
@@ -280,11 +268,7 @@ mod tests {
     fn factors_solve() {
         let touched = WindowFactor::of(two_by_two(), &[0, 1]).unwrap();
         assert_eq!(
-            [
-                touched.factor(0, 0),
-                touched.factor(1, 0),
-                touched.factor(1, 1)
-            ],
+            [touched.factor(0, 0), touched.factor(1, 0), touched.factor(1, 1)],
             [2.0, 1.0, 2.0]
         );
         let mut x = [[2.0, 4.0], [5.0, 6.0]];
@@ -296,17 +280,10 @@ mod tests {
         assert_eq!(first, [[4.0]]);
         // No such node, no such event.
         assert_eq!(
-            [
-                touched.factor(2, 0),
-                touched.factor(0, 2),
-                touched.factor(1, usize::MAX)
-            ],
+            [touched.factor(2, 0), touched.factor(0, 2), touched.factor(1, usize::MAX)],
             [0.0; 3]
         );
-        assert_eq!(
-            (touched.len(), touched.watched(), touched.is_empty()),
-            (2, 2, false)
-        );
+        assert_eq!((touched.len(), touched.watched(), touched.is_empty()), (2, 2, false));
     }
 
     /// `(4, 2; 2, 5)` times (1, 2) and (3, −1), in either order of the nodes.
@@ -317,11 +294,7 @@ mod tests {
             let factor = WindowFactor::of(two_by_two(), &order).unwrap();
             let mut found = order.map(|node| b[node]);
             factor.solve_both(&mut found);
-            for (found, expected) in found
-                .concat()
-                .iter()
-                .zip(order.map(|node| x[node]).concat())
-            {
+            for (found, expected) in found.concat().iter().zip(order.map(|node| x[node]).concat()) {
                 // Roundings of numbers up to 12.
                 assert!((found - expected).abs() < 1e-14, "{found} {expected}");
             }
@@ -337,9 +310,7 @@ mod tests {
     fn all_events_are_subtracted_in_the_end() {
         let order: Vec<usize> = (0..WATCHED).map(|t| (t * 29 + 5) % WATCHED).collect();
         let part = |rows: &[usize], columns: &[usize]| {
-            DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
-                dominant(rows[i], columns[j])
-            })
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| dominant(rows[i], columns[j]))
         };
         for events in [0, 1, BLOCK - 1, BLOCK, BLOCK + 3, 2 * BLOCK] {
             let (done, open) = order.split_at(events);
@@ -374,10 +345,7 @@ mod tests {
         touched.truncate(1);
         assert_eq!(touched.positions(), [1]);
         assert!(!touched.has_touched(0));
-        assert_eq!(
-            [touched.factor(1, 0), touched.factor(0, 1)],
-            [5.0_f64.sqrt(), 0.0]
-        );
+        assert_eq!([touched.factor(1, 0), touched.factor(0, 1)], [5.0_f64.sqrt(), 0.0]);
         touched.push(&mut schur, 0).unwrap();
         // 4 − 2²/5.
         assert!((touched.factor(0, 1) - 3.2_f64.sqrt()).abs() < 1e-15);
@@ -395,10 +363,7 @@ mod tests {
             touched.reset(2, 2);
             touched.push(&mut schur, 0).unwrap();
             let refused = touched.push(&mut schur, 1).unwrap_err();
-            assert!(
-                refused == pivot || refused.is_nan() && pivot.is_nan(),
-                "{refused}"
-            );
+            assert!(refused == pivot || refused.is_nan() && pivot.is_nan(), "{refused}");
             assert_eq!((touched.len(), touched.factor(1, 1)), (1, 0.0));
         }
     }
@@ -407,11 +372,7 @@ mod tests {
     #[test]
     fn bytes_are_those_of_matrix_and_factor() {
         assert_eq!(
-            [
-                WindowFactor::bytes(0),
-                WindowFactor::bytes(7),
-                WindowFactor::bytes(usize::MAX)
-            ],
+            [WindowFactor::bytes(0), WindowFactor::bytes(7), WindowFactor::bytes(usize::MAX)],
             [0, 784, usize::MAX]
         );
     }

@@ -13,8 +13,6 @@ pub fn corrected_area_fraction(
 ) -> Result<f64, Error> {
     let patches = Patches::new(contact_map, grid, boundary, Connectivity::Four)?;
     let each = patches.patches().iter();
-    let area: f64 = each
-        .map(|patch| patch.perimeter.corrected_area(patch.nodes, grid))
-        .sum();
+    let area: f64 = each.map(|patch| patch.perimeter.corrected_area(patch.nodes, grid)).sum();
     Ok(area / grid.nominal_area())
 }

@@ -61,11 +61,7 @@ impl Findings {
             files.push(file);
         }
         if let Some(page) = &places.report {
-            let section = Section {
-                study: self.study,
-                text: &self.text,
-                pictures: &files,
-            };
+            let section = Section { study: self.study, text: &self.text, pictures: &files };
             outcome.written(section.publish(page));
         }
         outcome.finish()

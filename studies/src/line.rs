@@ -23,11 +23,7 @@ impl Line {
         };
         let (xx, xy, yy) = (sum(|x, _| x * x), sum(|x, y| x * y), sum(|_, y| y * y));
         let slope = xy / xx;
-        Self {
-            slope,
-            intercept: y - slope * x,
-            pearson: xy / (xx * yy).sqrt(),
-        }
+        Self { slope, intercept: y - slope * x, pearson: xy / (xx * yy).sqrt() }
     }
 
     /// y at x.

@@ -54,11 +54,7 @@ mod tests {
     use super::*;
 
     fn section<'a>(study: &'a str, text: &'a str) -> Section<'a> {
-        Section {
-            study,
-            text,
-            pictures: &[],
-        }
+        Section { study, text, pictures: &[] }
     }
 
     #[test]

@@ -18,10 +18,7 @@ impl Spread {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-        Self {
-            mean,
-            deviation: (squares / (n - 1.0).max(1.0)).sqrt(),
-        }
+        Self { mean, deviation: (squares / (n - 1.0).max(1.0)).sqrt() }
     }
 
     /// As "mean ± deviation" with so many decimals.
@@ -32,14 +29,7 @@ impl Spread {
     /// As "mean ± deviation" in units of a power of ten.
     pub fn scientific(&self, exponent: i32, decimals: usize) -> String {
         let unit = 10_f64.powi(exponent);
-        let scaled = Self {
-            mean: self.mean / unit,
-            deviation: self.deviation / unit,
-        };
-        format!(
-            "({}) × {}",
-            scaled.decimals(decimals),
-            power_of_ten(exponent)
-        )
+        let scaled = Self { mean: self.mean / unit, deviation: self.deviation / unit };
+        format!("({}) × {}", scaled.decimals(decimals), power_of_ten(exponent))
     }
 }

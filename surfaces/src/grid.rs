@@ -93,11 +93,7 @@ impl Grid {
             return Err(Error::EmptyGrid { nx, ny });
         }
         if nx > Self::MAX_SIDE || ny > Self::MAX_SIDE {
-            return Err(Error::GridTooLarge {
-                nx,
-                ny,
-                max_side: Self::MAX_SIDE,
-            });
+            return Err(Error::GridTooLarge { nx, ny, max_side: Self::MAX_SIDE });
         }
         Ok(())
     }
@@ -105,12 +101,7 @@ impl Grid {
     /// The grid with x and y exchanged.
     #[must_use]
     pub fn transposed(&self) -> Self {
-        Self {
-            nx: self.ny,
-            ny: self.nx,
-            dx: self.dy,
-            dy: self.dx,
-        }
+        Self { nx: self.ny, ny: self.nx, dx: self.dy, dy: self.dx }
     }
 
     /// Nodes along x.
@@ -210,11 +201,7 @@ impl Grid {
     #[must_use]
     pub fn wave_vector(&self, kx: usize, ky: usize) -> (f64, f64) {
         let along = |k: usize, n: usize, side: f64| {
-            let signed = if 2 * k > n {
-                k as f64 - n as f64
-            } else {
-                k as f64
-            };
+            let signed = if 2 * k > n { k as f64 - n as f64 } else { k as f64 };
             std::f64::consts::TAU * signed / side
         };
         let (lx, ly) = self.sides();
@@ -235,10 +222,7 @@ impl Grid {
         // A fraction computed as k/M falls short of k nodes by at most three roundings.
         let nodes = (fraction * all * (1.0 + 4.0 * f64::EPSILON)).floor();
         if nodes < 1.0 {
-            return Err(Error::LessThanOneNode {
-                fraction,
-                least: 1.0 / all,
-            });
+            return Err(Error::LessThanOneNode { fraction, least: 1.0 / all });
         }
         Ok((nodes as usize).min(self.nodes()))
     }
@@ -252,10 +236,7 @@ impl Grid {
         if found == self.shape() {
             Ok(())
         } else {
-            Err(Error::GridMismatch {
-                expected: self.shape(),
-                found,
-            })
+            Err(Error::GridMismatch { expected: self.shape(), found })
         }
     }
 
@@ -269,12 +250,7 @@ impl Grid {
         match values.iter().position(|value| !value.is_finite()) {
             Some(node) => {
                 let (ix, iy) = self.coordinates(node);
-                Err(Error::FieldNotFinite {
-                    field,
-                    ix,
-                    iy,
-                    value: values[node],
-                })
+                Err(Error::FieldNotFinite { field, ix, iy, value: values[node] })
             }
             None => Ok(()),
         }
@@ -318,17 +294,11 @@ mod tests {
         let grid = Grid::new(10, 10, 1.0, 1.0)?;
         for fraction in [0.0, -0.1, 1.0 + 1e-12, f64::NAN, f64::INFINITY] {
             let refused = grid.nodes_in(fraction);
-            assert!(
-                matches!(refused, Err(Error::OutOfRange { .. })),
-                "{fraction}"
-            );
+            assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{fraction}");
         }
         for fraction in [0.0099, 1e-300] {
             let refused = grid.nodes_in(fraction);
-            assert!(matches!(
-                refused,
-                Err(Error::LessThanOneNode { least: 0.01, .. })
-            ));
+            assert!(matches!(refused, Err(Error::LessThanOneNode { least: 0.01, .. })));
         }
         Ok(())
     }

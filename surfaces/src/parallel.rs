@@ -56,10 +56,7 @@ pub fn for_each_chunk<T: Send>(
     work: impl Fn(usize, &mut [T]) + Sync + Send,
 ) {
     #[cfg(feature = "rayon")]
-    values
-        .par_chunks_mut(size)
-        .enumerate()
-        .for_each(|(i, chunk)| work(i, chunk));
+    values.par_chunks_mut(size).enumerate().for_each(|(i, chunk)| work(i, chunk));
     #[cfg(not(feature = "rayon"))]
     for (i, chunk) in values.chunks_mut(size).enumerate() {
         work(i, chunk);
@@ -85,16 +82,10 @@ where
     let part_length = blocks_a_part * length;
     #[cfg(feature = "rayon")]
     if scratch.len() > 1 {
-        data.par_chunks_mut(part_length)
-            .zip(scratch)
-            .enumerate()
-            .for_each(work_on_part);
+        data.par_chunks_mut(part_length).zip(scratch).enumerate().for_each(work_on_part);
         return;
     }
-    data.chunks_mut(part_length)
-        .zip(scratch)
-        .enumerate()
-        .for_each(work_on_part);
+    data.chunks_mut(part_length).zip(scratch).enumerate().for_each(work_on_part);
 }
 
 /// Runs `work` on one of the threads that its loops are divided among: a thread outside of them

@@ -14,9 +14,7 @@ use asperity_surfaces::{Error, FileError};
 type Done = Result<(), Box<dyn std::error::Error>>;
 
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests/data")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name)
 }
 
 /// Bit for bit, NaN too.
@@ -34,10 +32,7 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
         "Digital Surf: 7 x 5 nodes, 1.4e-5 x 1.5e-5 m, 2 nodes (5.71 %) missing"
     );
     let refused = measured.clone().topography();
-    assert!(
-        matches!(refused, Err(Error::HeightNotFinite { count: 2, .. })),
-        "{refused:?}"
-    );
+    assert!(matches!(refused, Err(Error::HeightNotFinite { count: 2, .. })), "{refused:?}");
     let surface = measured.fill_missing()?.topography()?;
     let (tilt, _) = surface.trend(Trend::Plane).slopes();
     // 100 nm − 3 nm y on average in 2 µm, of which filled nodes take a little.
@@ -53,33 +48,19 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
     );
     println!("{statistics}");
     assert!(map.mean_height().abs() < 1e-20, "{statistics}");
-    assert!(
-        map.rms_height() < 0.2 * surface.map().rms_height(),
-        "{statistics}"
-    );
-    assert!(
-        map.mean_absolute_height() <= map.rms_height(),
-        "{statistics}"
-    );
-    assert!(
-        levelled.rms_gradient() < surface.rms_gradient(),
-        "{statistics}"
-    );
+    assert!(map.rms_height() < 0.2 * surface.map().rms_height(), "{statistics}");
+    assert!(map.mean_absolute_height() <= map.rms_height(), "{statistics}");
+    assert!(levelled.rms_gradient() < surface.rms_gradient(), "{statistics}");
     Ok(())
 }
 
 /// From the disk, from bytes and from a source: the same surface and the same errors, whatever the format.
 #[test]
 fn bytes_are_read_as_files_are() -> Done {
-    let options = ReadOptions::new()
-        .height_unit("nm".parse()?)
-        .lateral_unit("um".parse()?);
+    let options = ReadOptions::new().height_unit("nm".parse()?).lateral_unit("um".parse()?);
     let told = |read: Result<MeasuredSurface, Error>| match read {
         Ok(mut surface) => {
-            let heights = bits(&std::mem::replace(
-                &mut surface.heights,
-                DMatrix::zeros(0, 0),
-            ));
+            let heights = bits(&std::mem::replace(&mut surface.heights, DMatrix::zeros(0, 0)));
             format!("{surface:?} {heights:?}")
         }
         Err(error) => format!("{error}: {error:?}"),
@@ -97,10 +78,7 @@ fn bytes_are_read_as_files_are() -> Done {
     }
     assert!(surfaces >= 20, "{surfaces}");
     let array = data("selfaffine_48.npy");
-    assert_eq!(
-        bits(&read_npy_from(File::open(&array)?, "array")?),
-        bits(&read_npy(&array)?)
-    );
+    assert_eq!(bits(&read_npy_from(File::open(&array)?, "array")?), bits(&read_npy(&array)?));
     Ok(())
 }
 
@@ -111,15 +89,9 @@ fn errors_of_bytes_carry_the_name() {
     let Err(Error::File(FileError::BadFile { path, format, .. })) = cut else {
         panic!("{cut:?}");
     };
-    assert_eq!(
-        (path.as_path(), format),
-        (Path::new("upload 7.sur"), "Digital Surf")
-    );
+    assert_eq!((path.as_path(), format), (Path::new("upload 7.sur"), "Digital Surf"));
     let unknown = ReadOptions::new().read_bytes([0, 1, 2], "");
-    assert!(
-        matches!(unknown, Err(Error::File(FileError::UnknownFormat { .. }))),
-        "{unknown:?}"
-    );
+    assert!(matches!(unknown, Err(Error::File(FileError::UnknownFormat { .. }))), "{unknown:?}");
     let array = read_npy_from(&b"\x93NUMPY"[..], "cut.npy").map_err(|error| error.to_string());
     assert!(array.is_err_and(|text| text.starts_with("cut.npy is no readable NumPy file")));
 }

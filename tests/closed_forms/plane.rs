@@ -74,10 +74,7 @@ fn long_cylinders_are_hertzian_in_the_middle() {
             // 0.11 (a/L)² at L = 5 a, less beyond.
             let (cell, length) = (1.0 / cells as f64, 1.0 / slenderness as f64);
             let bound = 0.12 * cell * cell + 0.12 * length * length;
-            assert!(
-                pressure < bound,
-                "{cells} {slenderness}: {pressure} > {bound}"
-            );
+            assert!(pressure < bound, "{cells} {slenderness}: {pressure} > {bound}");
         }
     }
     // The two errors told apart.
@@ -129,25 +126,14 @@ fn wave_errors(cells: usize, periods: usize) -> [f64; 3] {
 
 #[test]
 fn waves_are_westergaards_in_the_middle() {
-    for (cells, periods) in [
-        (64, 1),
-        (16, 3),
-        (32, 3),
-        (64, 3),
-        (16, 5),
-        (32, 5),
-        (16, 7),
-        (32, 7),
-    ] {
+    for (cells, periods) in [(64, 1), (16, 3), (32, 3), (64, 3), (16, 5), (32, 5), (16, 7), (32, 7)]
+    {
         let [width, inner, rms] = wave_errors(cells, periods);
         let cell = 1.0 / cells as f64;
         // Neighbours that are missing: the square of their distance, measured 0.034 / periods².
         let ends = 0.045 / (periods * periods) as f64;
         // Cells: second order inside, measured 1.3 to 2.1 / cells².
-        assert!(
-            inner < 2.6 * cell * cell + ends,
-            "{cells} {periods}: {inner}"
-        );
+        assert!(inner < 2.6 * cell * cell + ends, "{cells} {periods}: {inner}");
         // First order with the cells of the edge: measured 0.24 to 0.3 / cells.
         assert!(rms < 0.4 * cell + ends, "{cells} {periods}: {rms}");
         if periods > 1 {

@@ -23,10 +23,7 @@ const APEXES: [(f64, f64); 4] = [(0.5, 0.5), (0.0, 0.0), (0.21, 0.37), (0.1, 0.4
 /// `value` lies in [`low`, `high`].
 #[track_caller]
 fn within(what: &str, value: f64, low: f64, high: f64) {
-    assert!(
-        value >= low && value <= high,
-        "{what}: {value:.4} not in [{low}, {high}]"
-    );
+    assert!(value >= low && value <= high, "{what}: {value:.4} not in [{low}, {high}]");
 }
 
 /// A path beyond 5/4 of a target load, with its apex.
@@ -48,10 +45,7 @@ impl Run {
         shape: impl Fn(f64, f64) -> S,
     ) -> Self {
         let center = grid.center();
-        let apex = (
-            center.0 + offset.0 * grid.dx(),
-            center.1 + offset.1 * grid.dy(),
-        );
+        let apex = (center.0 + offset.0 * grid.dx(), center.1 + offset.1 * grid.dy());
         let surface = shape(apex.0, apex.1);
         let depth = -surface.heights(&grid).unwrap().max();
         let kernel = Boussinesq::new(grid, E_STAR).unwrap();
@@ -62,13 +56,7 @@ impl Run {
         let history: History = path.by_ref().map(Result::unwrap).collect();
         let (ix, iy) = history.states()[0].node;
         let (x, y) = grid.position(ix, iy);
-        Self {
-            path,
-            history,
-            apex,
-            depth,
-            first: (x - apex.0, y - apex.1),
-        }
+        Self { path, history, apex, depth, first: (x - apex.0, y - apex.1) }
     }
 
     /// Averages `errors` over loads around the target.
@@ -96,23 +84,12 @@ fn punch_stiffness(n: usize) -> f64 {
     let grid = Grid::square(n, 2.0).unwrap();
     let kernel = Boussinesq::new(grid, E_STAR).unwrap();
     let path = LoadingSolver::new(&FlatPunch::default(), &kernel).unwrap();
-    path.last()
-        .unwrap()
-        .unwrap()
-        .contact
-        .contact_stiffness
-        .unwrap()
-        / (E_STAR * 2.0)
+    path.last().unwrap().unwrap().contact.contact_stiffness.unwrap() / (E_STAR * 2.0)
 }
 
 #[test]
 fn square_punch_converges_to_its_stiffness() {
-    let sequence = [
-        (8, 1.106_498_3),
-        (16, 1.128_630_7),
-        (32, 1.140_213_5),
-        (64, 1.146_173_1),
-    ];
+    let sequence = [(8, 1.106_498_3), (16, 1.128_630_7), (32, 1.140_213_5), (64, 1.146_173_1)];
     let mut found = Vec::new();
     for (n, expected) in sequence {
         let stiffness = punch_stiffness(n);
@@ -192,14 +169,9 @@ fn elliptic_paraboloid_is_hertzian() {
     let radii = (0.1, 0.4);
     let hertz = HertzEllipse::new(radii.0, radii.1, E_STAR).unwrap();
     // Cells along the shorter semi-axis; cells may be long in the direction of the contact.
-    for (cells, aspect) in [
-        (4.0, 1.0),
-        (8.0, 1.0),
-        (16.0, 1.0),
-        (4.0, 2.0),
-        (8.0, 2.0),
-        (16.0, 2.0),
-    ] {
+    for (cells, aspect) in
+        [(4.0, 1.0), (8.0, 1.0), (16.0, 1.0), (4.0, 2.0), (8.0, 2.0), (16.0, 2.0)]
+    {
         let unit = hertz.semi_axes(1.0).0;
         let target = (cells * CELL / unit).powi(2);
         let load = hertz.load(target);
@@ -213,35 +185,28 @@ fn elliptic_paraboloid_is_hertzian() {
             };
             let mut run = Run::new(grid, offset, load, shape);
             let (depth, first) = (run.depth, run.first);
-            let [
-                area,
-                approach,
-                loads,
-                stiffness,
-                energy,
-                greatest,
-                width,
-                length,
-            ] = run.average(load, |state, pressure| {
-                let exact = hertz.approach_at_load(state.contact.load);
-                let approach = state.contact.approach + depth;
-                let (along_x, along_y) = hertz.semi_axes(exact);
-                let touched = |lines: usize, touches: &dyn Fn(usize) -> bool| {
-                    (0..lines).filter(|&line| touches(line)).count() as f64
-                };
-                let width = touched(grid.nx(), &|ix| pressure.row(ix).max() > 0.0);
-                let length = touched(grid.ny(), &|iy| pressure.column(iy).max() > 0.0);
-                [
-                    state.contact.contact_area / hertz.contact_area(exact) - 1.0,
-                    approach / exact - 1.0,
-                    state.contact.load / hertz.load(approach) - 1.0,
-                    state.contact.contact_stiffness.unwrap() / hertz.contact_stiffness(exact) - 1.0,
-                    state.contact.energy / hertz.energy(exact) - 1.0,
-                    pressure.max() / hertz.pressure(first.0, first.1, exact) - 1.0,
-                    width - 2.0 * along_x / dx,
-                    length - 2.0 * along_y / dy,
-                ]
-            });
+            let [area, approach, loads, stiffness, energy, greatest, width, length] =
+                run.average(load, |state, pressure| {
+                    let exact = hertz.approach_at_load(state.contact.load);
+                    let approach = state.contact.approach + depth;
+                    let (along_x, along_y) = hertz.semi_axes(exact);
+                    let touched = |lines: usize, touches: &dyn Fn(usize) -> bool| {
+                        (0..lines).filter(|&line| touches(line)).count() as f64
+                    };
+                    let width = touched(grid.nx(), &|ix| pressure.row(ix).max() > 0.0);
+                    let length = touched(grid.ny(), &|iy| pressure.column(iy).max() > 0.0);
+                    [
+                        state.contact.contact_area / hertz.contact_area(exact) - 1.0,
+                        approach / exact - 1.0,
+                        state.contact.load / hertz.load(approach) - 1.0,
+                        state.contact.contact_stiffness.unwrap() / hertz.contact_stiffness(exact)
+                            - 1.0,
+                        state.contact.energy / hertz.energy(exact) - 1.0,
+                        pressure.max() / hertz.pressure(first.0, first.1, exact) - 1.0,
+                        width - 2.0 * along_x / dx,
+                        length - 2.0 * along_y / dy,
+                    ]
+                });
             let (one, two): (f64, f64) = (cells, cells * cells);
             // Orders as for the sphere.
             within("area", area * one, 0.14, 0.26);

@@ -28,10 +28,7 @@ fn errors<K: InfluenceKernel>(nodes: usize, kernel: impl Fn(Grid) -> K) -> Error
     let grid = Grid::new(nodes, 4, cell, cell).unwrap();
     // A row of nodes on the crest, and one in the trough.
     let (x, y) = grid.position(0, 0);
-    let wave = Wave::new(AMPLITUDE, 1.0, Axis::X)
-        .unwrap()
-        .centered_at(x, y)
-        .unwrap();
+    let wave = Wave::new(AMPLITUDE, 1.0, Axis::X).unwrap().centered_at(x, y).unwrap();
     let exact = Westergaard::new(AMPLITUDE, 1.0, E_STAR).unwrap();
     let path = LoadingSolver::new(&wave, &kernel(grid)).unwrap();
     let states: Vec<_> = path.map(Result::unwrap).collect();
@@ -95,10 +92,7 @@ fn orders_of_convergence() {
             }
             // A staircase whose steps are the widest at the ends of the range of loads, where a step may
             // or may not count: from 8.1 to 9.7 on these grids.
-            assert!(
-                errors.stiffness > 7.5 && errors.stiffness < 10.0,
-                "{context}"
-            );
+            assert!(errors.stiffness > 7.5 && errors.stiffness < 10.0, "{context}");
         }
     }
 }

@@ -61,11 +61,7 @@ impl Sphere {
 
     /// Every state to full contact.
     pub fn states(&self) -> Vec<LoadingState> {
-        self.builder()
-            .build()
-            .unwrap()
-            .map(Result::unwrap)
-            .collect()
+        self.builder().build().unwrap().map(Result::unwrap).collect()
     }
 }
 
@@ -74,18 +70,13 @@ impl Sphere {
 pub fn half_way(state: LoadingState, next: Option<LoadingState>) -> LoadingState {
     let end = next.map_or(3.0 * state.contact.approach, |next| next.contact.approach);
     let interval: History = [state].into_iter().chain(next).collect();
-    interval
-        .at_approach(0.5 * (state.contact.approach + end))
-        .unwrap()
+    interval.at_approach(0.5 * (state.contact.approach + end)).unwrap()
 }
 
 /// The same nodes in contact under another load, whether or not that is a state.
 pub fn loaded(mut state: LoadingState, load: f64) -> LoadingState {
     let change = load - state.contact.load;
-    let rate = state
-        .contact
-        .contact_stiffness
-        .or(state.contact.interfacial_stiffness);
+    let rate = state.contact.contact_stiffness.or(state.contact.interfacial_stiffness);
     state.contact.approach += change / rate.unwrap();
     state.contact.mean_gap -= change / state.contact.interfacial_stiffness.unwrap();
     state.contact.energy += 0.5 * (state.contact.load + load) * change / rate.unwrap();
@@ -94,9 +85,7 @@ pub fn loaded(mut state: LoadingState, load: f64) -> LoadingState {
 }
 
 fn data(name: String) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
 
 /// Heights of a reference surface.

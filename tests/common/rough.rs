@@ -97,10 +97,7 @@ pub fn roughness() -> impl Strategy<Value = Roughness> {
 
 /// Noise, whose events are never simultaneous: their order means something.
 pub fn noise() -> impl Strategy<Value = Roughness> {
-    prop_oneof![
-        Just(Roughness::White),
-        (1_usize..4).prop_map(Roughness::Smoothed),
-    ]
+    prop_oneof![Just(Roughness::White), (1_usize..4).prop_map(Roughness::Smoothed),]
 }
 
 /// Grids up to `side` nodes a side, strips among them, with cells up to ten times as long as wide,
@@ -157,14 +154,9 @@ pub fn dense_pressure<K: InfluenceKernel>(
     gap: &[f64],
     approach: f64,
 ) -> DVector<f64> {
-    let rhs = DVector::from_iterator(
-        contact.len(),
-        contact.iter().map(|&node| approach - gap[node]),
-    );
-    influence(kernel, contact, contact)
-        .lu()
-        .solve(&rhs)
-        .unwrap()
+    let rhs =
+        DVector::from_iterator(contact.len(), contact.iter().map(|&node| approach - gap[node]));
+    influence(kernel, contact, contact).lu().solve(&rhs).unwrap()
 }
 
 /// Initial gaps by node index.

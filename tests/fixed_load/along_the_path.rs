@@ -21,9 +21,7 @@ fn path(map: &HeightMap, kernel: &Kernel) -> (LoadingSolver, History) {
 fn random_loads() {
     let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
     let mut uniform = || {
-        seed = seed
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (seed >> 11) as f64 / (1_u64 << 53) as f64
     };
     let shapes = [(32, 32), (40, 25), (33, 47), (64, 64), (1, 90), (24, 36)];
@@ -57,10 +55,7 @@ fn random_loads() {
                 check(&solver, &solution, 1e-12);
                 let state = solution.state;
                 let context = format!("case {case}, load {load:e}: {state:?}, {expected:?}");
-                assert_eq!(
-                    state.contact_nodes, expected.contact.contact_nodes,
-                    "{context}"
-                );
+                assert_eq!(state.contact_nodes, expected.contact.contact_nodes, "{context}");
                 // Near full contact the mean gap is a small difference; it is measured by the rms
                 // height. Everything else is within some hundred times the tolerance, and 1e-8 is
                 // what was asked for.
@@ -123,10 +118,7 @@ fn mean_gaps_and_approaches() {
             assert!((state.mean_gap - gap).abs() <= 1e-12 * state.approach);
             let expected = history.at_mean_gap(gap).unwrap();
             // The tolerance of the gap times the stiffness.
-            assert!(
-                relative(state.load, expected.contact.load) < 1e-8,
-                "{state:?}"
-            );
+            assert!(relative(state.load, expected.contact.load) < 1e-8, "{state:?}");
         }
         let steps = [100, 110, 900, 850];
         let approaches = steps.map(|step: usize| history.states()[step].contact.approach);
@@ -154,12 +146,9 @@ fn the_path_ends_at_the_pseudo_inverse() {
         assert!(relative(state.contact.approach, gap.mean()) < 1e-12);
         let pressure = path.pressure_at(&state).unwrap();
         let (node, least) =
-            pressure
-                .iter()
-                .enumerate()
-                .fold((0, f64::INFINITY), |least, (node, p)| {
-                    if *p < least.1 { (node, *p) } else { least }
-                });
+            pressure.iter().enumerate().fold((0, f64::INFINITY), |least, (node, p)| {
+                if *p < least.1 { (node, *p) } else { least }
+            });
         assert!(least.abs() < 1e-12 * pressure.max());
         assert_eq!(relief[node], relief.max());
     }

@@ -37,21 +37,12 @@ fn fields_of_another_shape_are_refused() {
     let grid = Grid::square(16, 1.0).unwrap();
     let mut solver = solver(&rough(&grid, 4), &Kernel::free(grid, 1.0), 1e-8);
     let text = written(&solver.solve(1e-2).unwrap());
-    let fields = [
-        "pressure",
-        "gap",
-        "displacement",
-        "contact_map",
-        "pressure_rate",
-    ];
+    let fields = ["pressure", "gap", "displacement", "contact_map", "pressure_rate"];
     for field in fields {
         let mut fewer: Value = serde_json::from_str(&text).unwrap();
         fewer[field].as_array_mut().unwrap().pop();
         let refused = serde_json::from_value::<FixedLoadSolution>(fewer).unwrap_err();
-        let expected = Error::LengthMismatch {
-            expected: 256,
-            found: 255,
-        };
+        let expected = Error::LengthMismatch { expected: 256, found: 255 };
         assert_eq!(refused.to_string(), expected.to_string(), "{field}");
     }
     let mut none: Value = serde_json::from_str(&text).unwrap();

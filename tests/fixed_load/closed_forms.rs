@@ -85,9 +85,7 @@ fn approaches_up_to_the_mean_gap() {
         }
         for part in [1.0, 1.5] {
             match solver.solve_approach(part * mean_gap * (1.0 + 1e-12)) {
-                Err(Error::ApproachNotReached {
-                    mean_gap: limit, ..
-                }) => {
+                Err(Error::ApproachNotReached { mean_gap: limit, .. }) => {
                     assert!(relative(limit, mean_gap) < 1e-12);
                 }
                 other => panic!("{other:?}"),
@@ -113,10 +111,7 @@ fn flat_surfaces() {
                 assert_eq!(solution.state.mean_gap, 0.0);
                 assert_eq!(solution.state.interfacial_stiffness, Some(f64::INFINITY));
             }
-            assert!(matches!(
-                solver.solve_approach(1e-9),
-                Err(Error::ApproachNotReached { .. })
-            ));
+            assert!(matches!(solver.solve_approach(1e-9), Err(Error::ApproachNotReached { .. })));
         }
     }
     let grid = Grid::square(64, 1.0).unwrap();

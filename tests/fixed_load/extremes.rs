@@ -30,11 +30,7 @@ fn single_node_to_far_beyond_full_contact() {
                     assert_eq!(state.contact_nodes, 1);
                     // δ = C₀ p and K = ΔA / C₀, in the zero gauge of a periodic half-space.
                     let approach = own * load / grid.cell_area();
-                    let enough = if is_free {
-                        tolerance
-                    } else {
-                        tolerance.max(1e-11)
-                    };
+                    let enough = if is_free { tolerance } else { tolerance.max(1e-11) };
                     assert!(relative(state.approach, approach) < enough);
                     let stiffness = state.contact_stiffness.or(state.interfacial_stiffness);
                     let expected = grid.cell_area() / own;
@@ -58,14 +54,9 @@ fn below_rounding() {
     match solver.solve(0.1) {
         // Rounding of a convolution is about 1e-15 of the greatest displacement. An answer takes some 20
         // iterations, and is asked for ten times.
-        Err(Error::NoConvergence {
-            residual,
-            iterations,
-            ..
-        }) => assert!(
-            residual < 1e-13 && iterations < 1000,
-            "{residual:e} {iterations}"
-        ),
+        Err(Error::NoConvergence { residual, iterations, .. }) => {
+            assert!(residual < 1e-13 && iterations < 1000, "{residual:e} {iterations}")
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -84,10 +75,8 @@ fn tension_that_was_cut_off_does_not_keep_a_load_from_its_tolerance() {
         let map = HeightMap::sample(&rough, &grid).unwrap();
         let mut solver = solver(&map, &kernel, tolerance);
         let loads = (0..25).map(|k| 1e-3 * 1.2_f64.powi(k));
-        let solutions: Vec<_> = solver
-            .sweep(loads.map(ContactTarget::Load))
-            .map(Result::unwrap)
-            .collect();
+        let solutions: Vec<_> =
+            solver.sweep(loads.map(ContactTarget::Load)).map(Result::unwrap).collect();
         for solution in &solutions {
             check(&solver, solution, tolerance);
         }
@@ -118,10 +107,7 @@ fn long_cells() {
                 let built = FixedLoadSolver::new(&map, kernel);
                 if is_periodic && aspect > 1e3 && ny > 1 {
                     let refused = built.map(drop);
-                    assert!(
-                        matches!(refused, Err(Error::OutOfRange { .. })),
-                        "{refused:?}"
-                    );
+                    assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{refused:?}");
                     continue;
                 }
                 let mut solver = built.unwrap();
@@ -135,10 +121,7 @@ fn long_cells() {
                     assert_eq!(solution.state.contact_nodes, nx * ny / part);
                     // Up to 70 were measured, most of them for the stiffness.
                     let effort = solution.effort;
-                    assert!(
-                        effort.iterations + effort.stiffness_iterations < 200,
-                        "{effort:?}"
-                    );
+                    assert!(effort.iterations + effort.stiffness_iterations < 200, "{effort:?}");
                 }
             }
         }
@@ -152,16 +135,9 @@ fn threads_do_not_change_a_bit() {
     let grid = Grid::new(150, 130, 1.0 / 150.0, 1.0 / 150.0).unwrap();
     let map = rough(&grid, 3);
     for kernel in Kernel::all(grid, 1.0) {
-        let load = if kernel.boundary() == Boundary::Free {
-            0.1
-        } else {
-            0.05
-        };
+        let load = if kernel.boundary() == Boundary::Free { 0.1 } else { 0.05 };
         let in_threads = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| solver(&map, &kernel, 1e-8).solve(load).unwrap())
         };
         let one = in_threads(1);
@@ -177,13 +153,8 @@ fn flat_but_for_rounding() {
     for (nx, ny) in [(57, 1), (48, 40)] {
         let grid = Grid::new(nx, ny, 1.0, 1.0).unwrap();
         for least in [1e-17, 1e-30, 1e-43] {
-            let heights = DMatrix::from_fn(
-                nx,
-                ny,
-                |ix, iy| {
-                    if (ix + iy) % 3 == 0 { least } else { 0.0 }
-                },
-            );
+            let heights =
+                DMatrix::from_fn(nx, ny, |ix, iy| if (ix + iy) % 3 == 0 { least } else { 0.0 });
             let map = HeightMap::new(heights).unwrap();
             for kernel in Kernel::periodic(grid, 1.0) {
                 let mut solver = solver(&map, &kernel, 1e-8);
@@ -191,10 +162,7 @@ fn flat_but_for_rounding() {
                 check(&solver, &solution, 1e-8);
                 assert_eq!(solution.state.contact_nodes, nx * ny);
                 let effort = solution.effort;
-                assert!(
-                    effort.iterations < 3 && effort.coarse_convolutions < 20.0,
-                    "{effort:?}"
-                );
+                assert!(effort.iterations < 3 && effort.coarse_convolutions < 20.0, "{effort:?}");
             }
         }
     }

@@ -126,8 +126,5 @@ pub(crate) fn solver(
     kernel: &dyn InfluenceKernel,
     tolerance: f64,
 ) -> FixedLoadSolver {
-    FixedLoadSolver::builder(surface, kernel)
-        .tolerance(tolerance)
-        .build()
-        .unwrap()
+    FixedLoadSolver::builder(surface, kernel).tolerance(tolerance).build().unwrap()
 }

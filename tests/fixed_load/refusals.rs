@@ -14,18 +14,13 @@ fn settings_and_loads() {
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let punch = FlatPunch::new(1.0).unwrap();
     for tolerance in [0.0, -1.0, f64::NAN, 1.0] {
-        let built = FixedLoadSolver::builder(&punch, &kernel)
-            .tolerance(tolerance)
-            .build();
+        let built = FixedLoadSolver::builder(&punch, &kernel).tolerance(tolerance).build();
         assert!(matches!(built, Err(Error::OutOfRange { .. })));
     }
     let mut solver = FixedLoadSolver::new(&punch, &kernel).unwrap();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(solver.solve(bad), Err(Error::NotPositive { .. })));
-        assert!(matches!(
-            solver.solve_approach(bad),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(solver.solve_approach(bad), Err(Error::NotPositive { .. })));
     }
 }
 
@@ -41,11 +36,9 @@ fn too_few_iterations() {
             .build()
             .unwrap();
         match hasty.solve(0.01) {
-            Err(Error::NoConvergence {
-                residual,
-                iterations: spent,
-                ..
-            }) => assert!(residual > 1e-12 && spent <= iterations),
+            Err(Error::NoConvergence { residual, iterations: spent, .. }) => {
+                assert!(residual > 1e-12 && spent <= iterations)
+            }
             other => panic!("{other:?}"),
         }
     }
@@ -69,11 +62,9 @@ fn too_few_iterations_for_stiffnesses() {
             .build()
             .unwrap();
         match hasty.add_stiffness(&mut solution) {
-            Err(Error::NoConvergence {
-                residual,
-                tolerance: 1e-12,
-                iterations: 1,
-            }) => assert!(residual > 1e-12, "{residual}"),
+            Err(Error::NoConvergence { residual, tolerance: 1e-12, iterations: 1 }) => {
+                assert!(residual > 1e-12, "{residual}")
+            }
             other => panic!("{other:?}"),
         }
         assert_eq!(solution.state, before.state);
@@ -91,18 +82,10 @@ fn memory() {
     let grid = Grid::square(64, 1.0).unwrap();
     let map = rough(&grid, 3);
     for kernel in Kernel::all(grid, 1.0) {
-        let build = |budget: usize| {
-            FixedLoadSolver::builder(&map, &kernel)
-                .memory_budget(budget)
-                .build()
-        };
+        let build =
+            |budget: usize| FixedLoadSolver::builder(&map, &kernel).memory_budget(budget).build();
         let held = build(usize::MAX).unwrap().bytes();
-        let Err(Error::MemoryBudget {
-            needed,
-            budget,
-            nodes_that_fit: 0,
-        }) = build(1000)
-        else {
+        let Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 }) = build(1000) else {
             panic!("built within 1000 bytes");
         };
         assert_eq!(budget, 1000);
@@ -194,9 +177,9 @@ fn starts_that_overflow_come_to_an_end() {
                         .unwrap();
                     match solver.solve_from(&start, 0.0101) {
                         Ok(solution) => check(&solver, &solution, 1e-8),
-                        Err(Error::NoConvergence {
-                            iterations: spent, ..
-                        }) => assert!(spent <= iterations, "{spent} of {iterations}"),
+                        Err(Error::NoConvergence { iterations: spent, .. }) => {
+                            assert!(spent <= iterations, "{spent} of {iterations}")
+                        }
                         Err(Error::FactorizationFailed { .. }) => {}
                         Err(error) => panic!("{value:e}: {error}"),
                     }
@@ -235,10 +218,7 @@ fn indefinite_kernels() {
         let mut solver = FixedLoadSolver::new(&map, &attraction).unwrap();
         let error = solver.solve(load).unwrap_err();
         assert!(
-            matches!(
-                error,
-                Error::FactorizationFailed { .. } | Error::NoConvergence { .. }
-            ),
+            matches!(error, Error::FactorizationFailed { .. } | Error::NoConvergence { .. }),
             "load {load}: {error}"
         );
     }

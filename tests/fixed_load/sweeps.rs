@@ -13,10 +13,8 @@ fn a_sweep_is_its_loads() {
         let mut solver = solver(&map, &kernel, 1e-11);
         // Up, in small and large steps, beyond full contact, and down again.
         let loads = [1e-6, 1e-4, 1e-2, 1.1e-2, 0.1, 0.12, 3.0, 0.05, 1e-5];
-        let swept: Vec<_> = solver
-            .sweep(loads.map(ContactTarget::Load))
-            .map(Result::unwrap)
-            .collect();
+        let swept: Vec<_> =
+            solver.sweep(loads.map(ContactTarget::Load)).map(Result::unwrap).collect();
         assert_eq!(swept.len(), loads.len());
         for (load, swept) in loads.into_iter().zip(swept) {
             check(&solver, &swept, 1e-11);
@@ -69,17 +67,12 @@ fn a_solution_brings_its_tangent() {
     for kernel in Kernel::all(grid, 1.0) {
         let mut solver = solver(&map, &kernel, 1e-11);
         let loads = [0.02, 0.021];
-        let swept: Vec<_> = solver
-            .sweep(loads.map(ContactTarget::Load))
-            .map(Result::unwrap)
-            .collect();
+        let swept: Vec<_> =
+            solver.sweep(loads.map(ContactTarget::Load)).map(Result::unwrap).collect();
         let next = solver.solve_from(&swept[0], loads[1]).unwrap();
         let [again, once] = [&next, &swept[1]].map(|solution| solution.effort.iterations);
         // Its displacements are computed anew: rounding, which may cost a step.
-        assert!(
-            again <= once + 1,
-            "{again} from a solution, {once} in a sweep"
-        );
+        assert!(again <= once + 1, "{again} from a solution, {once} in a sweep");
         let cold = solver.solve(loads[1]).unwrap();
         assert!(once < cold.effort.iterations, "{once}");
     }
@@ -119,9 +112,7 @@ fn back_from_full_contact_without_stiffnesses() {
     let mean_gap = map.max_height() - map.matrix().mean();
     for kernel in Kernel::periodic(grid, 1.0) {
         let approach = |part: f64| ContactTarget::Approach(part * mean_gap);
-        let full = solver(&map, &kernel, 1e-10)
-            .solve_target(approach(0.99999))
-            .unwrap();
+        let full = solver(&map, &kernel, 1e-10).solve_target(approach(0.99999)).unwrap();
         let mut solver = FixedLoadSolver::builder(&map, &kernel)
             .tolerance(1e-10)
             .stiffness(false)

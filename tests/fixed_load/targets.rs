@@ -34,9 +34,7 @@ fn areas() {
             let area = ContactTarget::AreaFraction(0.2);
             let alone = solver.solve_target(area).unwrap();
             assert_eq!(alone.state.contact_nodes, 460);
-            let same = solver
-                .solve_target(ContactTarget::Load(alone.state.load))
-                .unwrap();
+            let same = solver.solve_target(ContactTarget::Load(alone.state.load)).unwrap();
             assert_eq!(same.contact_map, alone.contact_map);
             assert!(relative(same.state.approach, alone.state.approach) < 1e-11);
         }
@@ -105,17 +103,12 @@ fn mean_gaps_where_little_is_left_to_approach() {
         let mut least = f64::INFINITY;
         for digits in 1..=5 {
             let mean_gap = 0.1_f64.powi(digits) * unloaded;
-            let solution = solver
-                .solve_target(ContactTarget::MeanGap(mean_gap))
-                .unwrap();
+            let solution = solver.solve_target(ContactTarget::MeanGap(mean_gap)).unwrap();
             check(&solver, &solution, tolerance);
             let state = &solution.state;
             // In the gauge that a kernel gets from its symbol, which is the one that is computed with.
             let own = plate.coefficient(0, 0).unwrap() * state.load / nodes as f64;
-            assert!(
-                (state.mean_gap - mean_gap).abs() <= tolerance * own,
-                "{state:?}"
-            );
+            assert!((state.mean_gap - mean_gap).abs() <= tolerance * own, "{state:?}");
             least = least.min(state.approach / own);
         }
         assert!(least < 0.05, "{least}");
@@ -138,10 +131,7 @@ fn targets_that_cannot_be() {
         assert!(matches!(solved, Err(Error::OutOfRange { .. })), "{bad:?}");
     }
     let less = solver.solve_target(ContactTarget::AreaFraction(0.9 / 2304.0));
-    assert!(matches!(
-        less,
-        Err(Error::Surface(SurfaceError::LessThanOneNode { .. }))
-    ));
+    assert!(matches!(less, Err(Error::Surface(SurfaceError::LessThanOneNode { .. }))));
 }
 
 /// Four nodes of a symmetric shape touch together: numbers between are not to be had, unless the

@@ -58,16 +58,10 @@ fn nested_or_not() {
             // One an iteration, and some to begin and to end with.
             for effort in [nested.effort, plain.effort] {
                 let steps = effort.iterations + effort.stiffness_iterations;
-                assert!(
-                    (steps + 1..3 * steps).contains(&effort.convolutions),
-                    "{effort:?}"
-                );
+                assert!((steps + 1..3 * steps).contains(&effort.convolutions), "{effort:?}");
             }
             let [with, without] = [&nested, &plain].map(|solution| solution.effort.iterations);
-            assert!(
-                with < without,
-                "{nx} x {ny}: {with} with, {without} without coarser grids"
-            );
+            assert!(with < without, "{nx} x {ny}: {with} with, {without} without coarser grids");
         }
     }
 }
@@ -79,11 +73,8 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     let map = rough(&grid, 3);
     let plain = Plain(Boussinesq::new(grid, 1.0).unwrap());
     let mut expected = solver(&map, &plain, 1e-11).solve(0.02).unwrap();
-    let mut plainly = FixedLoadSolver::builder(&map, &plain)
-        .tolerance(1e-11)
-        .stiffness(false)
-        .build()
-        .unwrap();
+    let mut plainly =
+        FixedLoadSolver::builder(&map, &plain).tolerance(1e-11).stiffness(false).build().unwrap();
     let mut without = plainly.solve(0.02).unwrap();
     assert!(without.state.contact_stiffness.is_none() && without.pressure_rate.is_empty());
     let next = plainly.solve_from(&without, 0.022).unwrap();
@@ -91,10 +82,7 @@ fn any_kernel_and_a_stiffness_that_comes_later() {
     plainly.add_stiffness(&mut without).unwrap();
     // The preconditioner remembers what was solved in between: stiffnesses agree to the tolerance.
     let stiffnesses = |state: &mut ContactState| {
-        let stiffnesses = [
-            &mut state.contact_stiffness,
-            &mut state.interfacial_stiffness,
-        ];
+        let stiffnesses = [&mut state.contact_stiffness, &mut state.interfacial_stiffness];
         stiffnesses.map(|stiffness| stiffness.take().unwrap())
     };
     let found = stiffnesses(&mut without.state);

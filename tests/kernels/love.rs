@@ -53,11 +53,7 @@ fn to_f64(value: &BigFloat) -> f64 {
     let (words, _, sign, exponent, _) = value.as_raw_parts().expect("not a number");
     let mantissa = words[words.len() - 1] as f64 * 0.5f64.powi(64);
     let magnitude = mantissa * 2f64.powi(exponent);
-    if sign.is_positive() {
-        magnitude
-    } else {
-        -magnitude
-    }
+    if sign.is_positive() { magnitude } else { -magnitude }
 }
 
 impl Oracle {
@@ -201,10 +197,7 @@ fn agrees_with_tabulated_values() {
     for ((di, dj), expected) in table {
         let value = kernel.coefficient(di, dj);
         // The kernel's own 5e-16, and the rounding of the table and of Δ / (π E*) = 1.
-        assert!(
-            (value / expected - 1.0).abs() < 1e-15,
-            "({di}, {dj}): {value}"
-        );
+        assert!((value / expected - 1.0).abs() < 1e-15, "({di}, {dj}): {value}");
     }
 }
 
@@ -271,10 +264,7 @@ fn scales_exactly_with_cell_and_modulus() {
     let grid = Grid::new(4, 4, 3.0 * cell, cell).expect("grid");
     let tiny = Boussinesq::new(grid, modulus).expect("kernel");
     for (di, dj) in [(0, 0), (1, 0), (0, 1), (3, 5), (17, 2), (4096, 4096)] {
-        assert_eq!(
-            tiny.coefficient(di, dj),
-            unit.coefficient(di, dj) * cell / modulus
-        );
+        assert_eq!(tiny.coefficient(di, dj), unit.coefficient(di, dj) * cell / modulus);
     }
 }
 
@@ -297,20 +287,11 @@ fn absurd_offsets_and_cells_are_answered() {
 fn refuses_what_has_no_answer() {
     let grid = Grid::new(4, 4, 1e-6, 1e-6).expect("grid");
     for e_star in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            Boussinesq::new(grid, e_star),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(Boussinesq::new(grid, e_star), Err(Error::NotPositive { .. })));
     }
     // C(0, 0) overflows.
     let huge = Grid::new(4, 4, 1e120, 1e120).expect("grid");
-    assert!(matches!(
-        Boussinesq::new(huge, 1e-300),
-        Err(Error::NotPositive { .. })
-    ));
+    assert!(matches!(Boussinesq::new(huge, 1e-300), Err(Error::NotPositive { .. })));
     let needle = Grid::new(4, 4, 1e60, 1e-60).expect("grid");
-    assert!(matches!(
-        Boussinesq::new(needle, 1.0),
-        Err(Error::OutOfRange { .. })
-    ));
+    assert!(matches!(Boussinesq::new(needle, 1.0), Err(Error::OutOfRange { .. })));
 }

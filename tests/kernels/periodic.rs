@@ -33,13 +33,8 @@ fn signs_of_inverse(kernel: &impl InfluenceKernel) -> Result<(f64, f64), Error> 
     Ok((off_diagonal, row_sum))
 }
 
-const GRIDS: [(usize, usize, f64, f64); 5] = [
-    (8, 8, 1.0, 1.0),
-    (9, 7, 1.0, 1.0),
-    (12, 10, 1.0, 1.4),
-    (16, 4, 1.0, 1.0),
-    (5, 6, 1.0, 4.0),
-];
+const GRIDS: [(usize, usize, f64, f64); 5] =
+    [(8, 8, 1.0, 1.0), (9, 7, 1.0, 1.0), (12, 10, 1.0, 1.4), (16, 4, 1.0, 1.0), (5, 6, 1.0, 4.0)];
 
 #[test]
 fn love_is_an_inverse_m_matrix_from_the_least_gauge_on() -> Result<(), Error> {
@@ -87,9 +82,7 @@ fn pressures_and_gaps_do_not_depend_on_the_gauge() -> Result<(), Error> {
     // Contact of some nodes of a rough surface under a given total pressure, in two gauges.
     let grid = Grid::new(9, 7, 1.0, 1.3)?;
     let kernel = PeriodicBoussinesq::new(grid, 1.0)?;
-    let contact: Vec<usize> = (0..grid.nodes())
-        .filter(|node| node * node % 7 < 3)
-        .collect();
+    let contact: Vec<usize> = (0..grid.nodes()).filter(|node| node * node % 7 < 3).collect();
     let gap = DMatrix::from_fn(grid.nodes(), 1, |i, _| (i as f64 * 1.7).sin() + 1.0);
     let total = 10.0;
     let mut results = Vec::new();
@@ -122,21 +115,14 @@ fn pressures_and_gaps_do_not_depend_on_the_gauge() -> Result<(), Error> {
 
 #[test]
 fn spectral_symbol_is_the_formula() -> Result<(), Error> {
-    for (nx, ny, dx, dy) in [
-        (8, 8, 1.0, 1.0),
-        (9, 6, 2e-6, 3e-6),
-        (1, 5, 1.0, 1.0),
-        (4, 1, 1.0, 7.0),
-    ] {
+    for (nx, ny, dx, dy) in
+        [(8, 8, 1.0, 1.0), (9, 6, 2e-6, 3e-6), (1, 5, 1.0, 1.0), (4, 1, 1.0, 7.0)]
+    {
         let kernel = Spectral::new(Grid::new(nx, ny, dx, dy)?, 2.5)?;
         assert_eq!(kernel.e_star(), 2.5);
         // As numpy.fft.fftfreq: from 0 up, then the negative ones up to -1.
         let signed = |k: usize, n: usize| {
-            if 2 * k < n {
-                k as f64
-            } else {
-                k as f64 - n as f64
-            }
+            if 2 * k < n { k as f64 } else { k as f64 - n as f64 }
         };
         for ky in 0..ny {
             for kx in 0..nx {
@@ -146,10 +132,7 @@ fn spectral_symbol_is_the_formula() -> Result<(), Error> {
                 let expected = if q > 0.0 { 2.0 / (2.5 * q) } else { 0.0 };
                 let found = kernel.symbol(kx as isize, ky as isize);
                 // A handful of roundings on either side.
-                assert!(
-                    (found - expected).abs() <= 2e-15 * expected,
-                    "({kx}, {ky}): {found:e}"
-                );
+                assert!((found - expected).abs() <= 2e-15 * expected, "({kx}, {ky}): {found:e}");
             }
         }
     }
@@ -183,10 +166,7 @@ fn tables_know_boundary_and_gauge() -> Result<(), Error> {
             assert_eq!(table.boundary(), Boundary::Periodic);
             let found = table.gauge().unwrap_or(f64::NAN);
             // A sum of at most 1240 terms of which the greatest is some 40 times the mean.
-            assert!(
-                (found / gauge - 1.0).abs() < 1e-13,
-                "{found:e} instead of {gauge:e}"
-            );
+            assert!((found / gauge - 1.0).abs() < 1e-13, "{found:e} instead of {gauge:e}");
         }
     }
     let free = asperity::Boussinesq::new(Grid::new(3, 3, 1.0, 1.0)?, 1.0)?;

@@ -16,15 +16,9 @@ impl Facets {
     pub(crate) fn new() -> Self {
         let facets = (0..9).map(|k| {
             let k = f64::from(k);
-            [
-                (1.3 * k).sin(),
-                (2.1 * k + 0.4).cos(),
-                0.2 * (3.7 * k).sin(),
-            ]
+            [(1.3 * k).sin(), (2.1 * k + 0.4).cos(), 0.2 * (3.7 * k).sin()]
         });
-        Self {
-            facets: facets.collect(),
-        }
+        Self { facets: facets.collect() }
     }
 }
 
@@ -91,9 +85,7 @@ impl Bordering {
     fn grow(&mut self, problem: &Problem, order: &[usize]) {
         for n in self.inverse.nrows()..order.len() {
             let (contact, node) = (&order[..n], order[n]);
-            let c = Self::influence(problem, contact, &[node])
-                .column(0)
-                .into_owned();
+            let c = Self::influence(problem, contact, &[node]).column(0).into_owned();
             let x = &self.inverse * &c;
             let pivot = problem.coefficient(node, node).unwrap() - c.dot(&x);
             let mut inverse = DMatrix::zeros(n + 1, n + 1);

@@ -16,11 +16,7 @@ use nalgebra::{DMatrix, DVector};
 /// What [`own_kernel_is_an_inverse_m_matrix`] shows of it is not said yet.
 fn grains(grid: Grid) -> Grains {
     let growth = ContactGrowth::Unknown;
-    Grains {
-        grid,
-        e_star: 1e9,
-        growth,
-    }
+    Grains { grid, e_star: 1e9, growth }
 }
 
 type Path = (Vec<LoadingState>, Vec<usize>, Vec<DMatrix<f64>>);
@@ -35,9 +31,7 @@ fn path<U: LinearUpdater>(kernel: &dyn InfluenceKernel, updater: U, window: usiz
     let history: History = states.iter().copied().collect();
     let pressures = [
         states[states.len() / 2],
-        history
-            .at_load(0.5 * (states[1].contact.load + states[2].contact.load))
-            .unwrap(),
+        history.at_load(0.5 * (states[1].contact.load + states[2].contact.load)).unwrap(),
         states[states.len() - 1],
     ]
     .map(|state| path.pressure_at(&state).unwrap());
@@ -54,10 +48,7 @@ fn assert_same_path(a: &Path, b: &Path) {
         for (x, y) in [
             (a.contact.approach, b.contact.approach),
             (a.contact.load, b.contact.load),
-            (
-                a.contact.contact_stiffness.unwrap(),
-                b.contact.contact_stiffness.unwrap(),
-            ),
+            (a.contact.contact_stiffness.unwrap(), b.contact.contact_stiffness.unwrap()),
             (a.contact.energy, b.contact.energy),
         ] {
             assert!((x - y).abs() <= 1e-9 * x.abs(), "{a:?} {b:?}");
@@ -77,9 +68,7 @@ fn own_kernel_is_an_inverse_m_matrix() {
     let nodes = grid.nodes();
     let matrix = DMatrix::from_fn(nodes, nodes, |a, b| {
         let ((ax, ay), (bx, by)) = (grid.coordinates(a), grid.coordinates(b));
-        table
-            .coefficient(ax as isize - bx as isize, ay as isize - by as isize)
-            .unwrap()
+        table.coefficient(ax as isize - bx as isize, ay as isize - by as isize).unwrap()
     });
     let inverse = matrix.cholesky().unwrap().inverse();
     let diagonal = inverse.diagonal().min();
@@ -98,10 +87,7 @@ fn own_kernel_is_an_inverse_m_matrix() {
 fn own_kernel_and_updater_stand_their_checks() {
     let grid = Grid::new(9, 11, 2e-5, 1.5e-5).unwrap();
     let growth = ContactGrowth::Convex;
-    let convex = Grains {
-        growth,
-        ..grains(grid)
-    };
+    let convex = Grains { growth, ..grains(grid) };
     let report = kernel::check(&convex).unwrap();
     assert_eq!(report.promised_growth, ContactGrowth::Convex);
     assert_eq!(report.supported_growth, ContactGrowth::Convex);
@@ -142,10 +128,7 @@ fn the_checks_can_fail() {
     );
     let problem = Problem::new(&Facets::new(), &grains(grid)).unwrap();
     let error = updater::check(&mut Forgetful(Bordering::default()), &problem).unwrap_err();
-    assert!(
-        matches!(error, Error::Updater(UpdaterError::UpdaterWrong { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, Error::Updater(UpdaterError::UpdaterWrong { .. })), "{error}");
 }
 
 /// An updater that forgets about the row sums of the contact.
@@ -193,10 +176,7 @@ fn own_surface_kernel_and_updater() {
     let kernel = grains(grid);
     let reference = path(&kernel, RecursiveCholesky::new(), 16);
     for (k, state) in reference.0.iter().enumerate().skip(1) {
-        assert!(
-            state.contact.approach > reference.0[k - 1].contact.approach,
-            "no ties here"
-        );
+        assert!(state.contact.approach > reference.0[k - 1].contact.approach, "no ties here");
     }
     for window in [1, 7, 16, 200] {
         assert_same_path(&reference, &path(&kernel, Bordering::default(), window));

@@ -25,11 +25,7 @@ fn kernel(name: &str, boundary: Boundary, grid: Grid) -> Result<Box<dyn Influenc
     let e_star = 1e11;
     Ok(match (name, boundary) {
         ("spectral", _) => Box::new(Spectral::new(grid, e_star)?),
-        ("own", _) => Box::new(Grains {
-            grid,
-            e_star,
-            growth: ContactGrowth::Convex,
-        }),
+        ("own", _) => Box::new(Grains { grid, e_star, growth: ContactGrowth::Convex }),
         (_, Boundary::Free) => Box::new(Boussinesq::new(grid, e_star)?),
         (_, Boundary::Periodic) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
     })
@@ -84,10 +80,7 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
                 let (pressure, gap) = (path.pressure()?, path.gap()?);
                 let (displacement, map) = (path.displacement()?, path.contact_map());
                 let load = pressure.sum() * grid.cell_area();
-                assert!(
-                    (load / state.contact.load - 1.0).abs() < 1e-6,
-                    "{context}: {load}"
-                );
+                assert!((load / state.contact.load - 1.0).abs() < 1e-6, "{context}: {load}");
                 for field in [&pressure, &gap, &displacement] {
                     assert_eq!(field.shape(), grid.shape());
                 }

@@ -13,10 +13,8 @@ fn paths_records_and_fixed_loads_round_alike() {
         let kernel = Boussinesq::new(grid, 1e9).unwrap();
         let path = LoadingSolver::new(&surface, &kernel).unwrap();
         let history: History = path.map(Result::unwrap).collect();
-        let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-            .tolerance(1e-11)
-            .build()
-            .unwrap();
+        let mut solver =
+            FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
         let nodes = grid.nodes();
         let mut inexact = 0;
         for k in 1..=nodes {

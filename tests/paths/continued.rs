@@ -39,10 +39,7 @@ fn targets(all: &[LoadingState]) -> Vec<(ContactTarget, LoadingEnd)> {
             ContactTarget::Load(0.2 * all[10].contact.load + 0.8 * all[11].contact.load),
             LoadingEnd::Load,
         ),
-        (
-            ContactTarget::AreaFraction(60.0 / nodes),
-            LoadingEnd::AreaFraction,
-        ),
+        (ContactTarget::AreaFraction(60.0 / nodes), LoadingEnd::AreaFraction),
         (
             ContactTarget::MeanGap(0.5 * (all[100].contact.mean_gap + all[101].contact.mean_gap)),
             LoadingEnd::MeanGap,
@@ -69,11 +66,7 @@ fn continued_paths_are_uninterrupted_ones() {
         events.extend(interrupted(&mut path, &targets(&all)));
         assert_eq!(events.len(), all.len(), "{name}");
         for (found, expected) in events.iter().zip(&all) {
-            assert_eq!(
-                (found.step, found.node),
-                (expected.step, expected.node),
-                "{name}"
-            );
+            assert_eq!((found.step, found.node), (expected.step, expected.node), "{name}");
             // Windows that end elsewhere: rounding only.
             assert_close(found, expected, 1e-12, all[0].contact.mean_gap);
         }
@@ -121,10 +114,7 @@ fn targets_that_are_not_beyond_are_refused() {
         ContactTarget::MeanGap(1.1 * last.contact.mean_gap),
     ] {
         let error = path.continue_to(target).unwrap_err();
-        assert!(
-            matches!(error, Error::OutOfRange { .. }),
-            "{target:?}: {error}"
-        );
+        assert!(matches!(error, Error::OutOfRange { .. }), "{target:?}: {error}");
         // Still at its end, and the same state.
         assert_eq!(path.end(), Some(LoadingEnd::AreaFraction));
         assert!(path.next().is_none());
@@ -132,8 +122,7 @@ fn targets_that_are_not_beyond_are_refused() {
     }
     let error = path.continue_to(ContactTarget::Load(-1.0)).unwrap_err();
     assert!(matches!(error, Error::NotPositive { .. }), "{error}");
-    path.continue_to(ContactTarget::Load(2.0 * last.contact.load))
-        .unwrap();
+    path.continue_to(ContactTarget::Load(2.0 * last.contact.load)).unwrap();
     assert!(path.last().unwrap().unwrap().contact.load == 2.0 * last.contact.load);
 }
 

@@ -106,22 +106,10 @@ fn until_is_any_limit() {
         path.last().unwrap().unwrap()
     };
     for (target, named) in [
-        (
-            ContactTarget::Load(at.contact.load),
-            builder().max_load(at.contact.load),
-        ),
-        (
-            ContactTarget::Approach(at.contact.approach),
-            builder().max_approach(at.contact.approach),
-        ),
-        (
-            ContactTarget::MeanGap(at.contact.mean_gap),
-            builder().min_mean_gap(at.contact.mean_gap),
-        ),
-        (
-            ContactTarget::AreaFraction(0.25),
-            builder().max_area_fraction(0.25),
-        ),
+        (ContactTarget::Load(at.contact.load), builder().max_load(at.contact.load)),
+        (ContactTarget::Approach(at.contact.approach), builder().max_approach(at.contact.approach)),
+        (ContactTarget::MeanGap(at.contact.mean_gap), builder().min_mean_gap(at.contact.mean_gap)),
+        (ContactTarget::AreaFraction(0.25), builder().max_area_fraction(0.25)),
     ] {
         assert_eq!(ends(builder().until(target)), ends(named), "{target:?}");
     }
@@ -137,10 +125,7 @@ fn targets_are_the_limits() {
     let approach = (builder().max_approach(1e-6), ContactTarget::Approach(1e-6));
     let mean_gap = (builder().min_mean_gap(gap), ContactTarget::MeanGap(gap));
     // 18 × 15 nodes.
-    let nodes = (
-        builder().max_nodes(27),
-        ContactTarget::AreaFraction(27.0 / 270.0),
-    );
+    let nodes = (builder().max_nodes(27), ContactTarget::AreaFraction(27.0 / 270.0));
     for (builder, target) in [load, approach, mean_gap, nodes] {
         assert_eq!(builder.build().unwrap().targets(), [target]);
     }
@@ -164,11 +149,7 @@ fn states_are_read_where_they_were_asked_for() {
             let between = |a: f64, b: f64| a + part * (b - a);
             let context = format!("{name}, step {}", before.step);
             let load = between(before.contact.load, after.contact.load);
-            assert_eq!(
-                history.at_load(load).unwrap().contact.load,
-                load,
-                "{context}"
-            );
+            assert_eq!(history.at_load(load).unwrap().contact.load, load, "{context}");
             let approach = between(before.contact.approach, after.contact.approach);
             let read = history.at_approach(approach).unwrap();
             assert_eq!(read.contact.approach, approach, "{context}");

@@ -54,11 +54,7 @@ fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
         let history: History = path.build().unwrap().map(Result::unwrap).collect();
         let (last, before) = history.states().split_last().unwrap();
         for state in before {
-            assert_eq!(
-                (state.contact.load, state.contact.mean_gap),
-                (0.0, 0.0),
-                "{state:?}"
-            );
+            assert_eq!((state.contact.load, state.contact.mean_gap), (0.0, 0.0), "{state:?}");
             let stiffness = state.contact.interfacial_stiffness.unwrap();
             assert!(stiffness > 0.0 && stiffness.is_finite(), "{state:?}");
         }
@@ -67,9 +63,6 @@ fn on_flat(punch: &FlatPunch, kernel: &dyn InfluenceKernel) {
         let loaded = history.at_load(1.0).unwrap();
         is_full(&loaded);
         // On a periodic half-space both are 0 but for rounding.
-        assert!(
-            (loaded.contact.approach - fixed.approach).abs() < 1e-11,
-            "{loaded:?}"
-        );
+        assert!((loaded.contact.approach - fixed.approach).abs() < 1e-11, "{loaded:?}");
     }
 }

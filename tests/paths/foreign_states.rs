@@ -52,11 +52,7 @@ fn states_beyond_their_interval_are_refused() {
             let context = format!("{name}, step {step}");
             let (state, next) = (all[step - 1], all[step]);
             // The contact of this step under the load of many events later, and earlier.
-            assert_refused(
-                &mut path,
-                &loaded(state, all[step + 40].contact.load),
-                &context,
-            );
+            assert_refused(&mut path, &loaded(state, all[step + 40].contact.load), &context);
             let before = loaded(state, 0.3 * state.contact.load);
             assert_refused(&mut path, &before, &context);
             // Inside the interval the same relations give states.

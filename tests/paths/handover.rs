@@ -7,13 +7,8 @@ use asperity::{Boussinesq, Error, Grid, LoadingSolver, LoadingState};
 
 fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> LoadingSolver<U> {
     let grid = Grid::square(48, 1e-2).unwrap();
-    let (heights, kernel) = (
-        surface("selfaffine_48"),
-        Boussinesq::new(grid, 1.0).unwrap(),
-    );
-    let mut builder = LoadingSolver::builder(&heights, &kernel)
-        .updater(updater)
-        .max_nodes(nodes);
+    let (heights, kernel) = (surface("selfaffine_48"), Boussinesq::new(grid, 1.0).unwrap());
+    let mut builder = LoadingSolver::builder(&heights, &kernel).updater(updater).max_nodes(nodes);
     if let Some(bytes) = budget {
         builder = builder.memory_budget(bytes);
     }
@@ -25,19 +20,12 @@ fn path<U: LinearUpdater>(updater: U, budget: Option<usize>, nodes: usize) -> Lo
 fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
     assert_eq!(found.len(), expected.len(), "{context}");
     for (found, expected) in found.iter().zip(expected) {
-        assert_eq!(
-            found.node, expected.node,
-            "{context}, step {}",
-            expected.step
-        );
+        assert_eq!(found.node, expected.node, "{context}, step {}", expected.step);
         for (found, expected) in [
             (found.contact.approach, expected.contact.approach),
             (found.contact.load, expected.contact.load),
             (found.contact.mean_gap, expected.contact.mean_gap),
-            (
-                found.contact.contact_stiffness.unwrap(),
-                expected.contact.contact_stiffness.unwrap(),
-            ),
+            (found.contact.contact_stiffness.unwrap(), expected.contact.contact_stiffness.unwrap()),
             (
                 found.contact.interfacial_stiffness.unwrap(),
                 expected.contact.interfacial_stiffness.unwrap(),
@@ -45,10 +33,7 @@ fn compare(context: &str, found: &[LoadingState], expected: &[LoadingState]) {
             (found.contact.energy, expected.contact.energy),
         ] {
             let error = (found - expected).abs();
-            assert!(
-                error <= 3e-4 * expected.abs(),
-                "{context}: {found} {expected}"
-            );
+            assert!(error <= 3e-4 * expected.abs(), "{context}: {found} {expected}");
         }
     }
 }
@@ -107,18 +92,12 @@ fn the_same_path_on_both_sides_of_the_seam() {
             (path.pressure().unwrap(), &pressure),
             (path.pressure_at(&early).unwrap(), &early_pressure),
         ] {
-            assert!(
-                (found - expected).amax() <= 1e-5 * expected.amax(),
-                "{context}"
-            );
+            assert!((found - expected).amax() <= 1e-5 * expected.amax(), "{context}");
         }
     }
     println!("seams {seams:?}, {cut} cut");
     assert!(cut >= 2, "{cut}");
-    assert!(
-        seams.iter().filter(|&&n| n > 0 && n < NODES).count() >= 2,
-        "{seams:?}"
-    );
+    assert!(seams.iter().filter(|&&n| n > 0 && n < NODES).count() >= 2, "{seams:?}");
 }
 
 #[test]

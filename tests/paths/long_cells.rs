@@ -61,10 +61,7 @@ fn long_periodic_cells_need_a_factor() {
                 Err(error) => break error,
             }
         };
-        assert!(
-            matches!(error, Error::OutOfRange { value: 11.0, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, Error::OutOfRange { value: 11.0, .. }), "{error}");
         assert!(path.next().is_none());
         followed
     };

@@ -53,31 +53,16 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     assert_eq!(grid.coordinates(order[state.step - 1]), state.node);
     assert_eq!(map.iter().filter(|inside| **inside).count(), state.step);
     let area = state.step as f64 * grid.cell_area();
-    close(
-        "area",
-        state.contact.contact_area,
-        area,
-        4.0 * f64::EPSILON,
-        area,
-    );
+    close("area", state.contact.contact_area, area, 4.0 * f64::EPSILON, area);
     let fraction = state.step as f64 / nodes;
-    close(
-        "fraction",
-        state.contact.contact_area_fraction,
-        fraction,
-        f64::EPSILON,
-        fraction,
-    );
+    close("fraction", state.contact.contact_area_fraction, fraction, f64::EPSILON, fraction);
 
     // Complementarity. Lengths that cancel in the gap: the initial gap and the approach.
     let mean = pressure.sum() / state.step as f64;
     let length = sq.max(state.contact.approach);
     for ((&p, &g), &inside) in pressure.iter().zip(&gap).zip(&map) {
         if inside {
-            assert!(
-                p >= -EXACT * mean,
-                "pressure {p:e}, mean {mean:e}, {state:?}"
-            );
+            assert!(p >= -EXACT * mean, "pressure {p:e}, mean {mean:e}, {state:?}");
             close("gap in contact", g, 0.0, EXACT, length);
         } else {
             assert_eq!(p, 0.0);
@@ -94,11 +79,7 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     // and gap are never both there. The state has it as the work of the load.
     let energy = 0.5 * grid.cell_area() * pressure.dot(&displacement);
     close("energy", state.contact.energy, energy, SUMMED, energy);
-    let mean_gap = if map.iter().all(|inside| *inside) {
-        0.0
-    } else {
-        gap.mean()
-    };
+    let mean_gap = if map.iter().all(|inside| *inside) { 0.0 } else { gap.mean() };
     close("mean gap", state.contact.mean_gap, mean_gap, SUMMED, length);
 
     let certificate = path.certificate().unwrap();
@@ -110,31 +91,13 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
     close("length", certificate.length, expected, SUMMED, expected);
     assert!(certificate.load_error.abs() <= SUMMED, "{certificate:?}");
 
-    let seen = Seen {
-        state,
-        load,
-        mean_gap,
-    };
-    if let Some(Seen {
-        state: last,
-        load: last_load,
-        mean_gap: last_gap,
-    }) = before
-    {
+    let seen = Seen { state, load, mean_gap };
+    if let Some(Seen { state: last, load: last_load, mean_gap: last_gap }) = before {
         assert_eq!(state.step, last.step + 1);
         // Monotone to the last bit: all are sums of terms that are not negative.
-        assert!(
-            state.contact.approach >= last.contact.approach,
-            "{last:?} {state:?}"
-        );
-        assert!(
-            state.contact.load >= last.contact.load,
-            "{last:?} {state:?}"
-        );
-        assert!(
-            state.contact.contact_area > last.contact.contact_area,
-            "{last:?} {state:?}"
-        );
+        assert!(state.contact.approach >= last.contact.approach, "{last:?} {state:?}");
+        assert!(state.contact.load >= last.contact.load, "{last:?} {state:?}");
+        assert!(state.contact.contact_area > last.contact.contact_area, "{last:?} {state:?}");
         assert!(
             state.contact.contact_stiffness >= last.contact.contact_stiffness,
             "{last:?} {state:?}"
@@ -152,10 +115,7 @@ fn check_event(path: &mut LoadingSolver, before: Option<Seen>, sq: f64) -> Seen 
         close("dW/Ki", last_gap - mean_gap, closed, SUMMED, length);
         assert!(mean_gap <= last_gap + SUMMED * length);
     } else {
-        assert_eq!(
-            (state.step, state.contact.approach, state.contact.load),
-            (1, 0.0, 0.0)
-        );
+        assert_eq!((state.step, state.contact.approach, state.contact.load), (1, 0.0, 0.0));
         assert_eq!(state.contact.energy, 0.0);
     }
     seen
@@ -345,10 +305,7 @@ fn threads_do_not_change_a_bit() {
     };
     let surface = HeightMap::new(case.heights()).unwrap();
     let run = |threads: usize, window: Option<usize>| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let kernel = Boussinesq::new(case.grid(), case.e_star).unwrap();
             let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.25);
@@ -363,10 +320,7 @@ fn threads_do_not_change_a_bit() {
         let one = run(1, window);
         assert_eq!(one.0.len(), 96 * 96 / 4);
         for threads in [1, 2, 3] {
-            assert!(
-                one == run(threads, window),
-                "{threads} threads, window {window:?}"
-            );
+            assert!(one == run(threads, window), "{threads} threads, window {window:?}");
         }
     }
 }

@@ -15,10 +15,8 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
     let heights = surface("periodic_32x24");
     let builder = LoadingSolver::builder(&heights, kernel);
     let mut solver = with_window(builder, window).build().unwrap();
-    let path = format!(
-        "{}/tests/data/periodic_32x24_{name}_events.csv",
-        env!("CARGO_MANIFEST_DIR")
-    );
+    let path =
+        format!("{}/tests/data/periodic_32x24_{name}_events.csv", env!("CARGO_MANIFEST_DIR"));
     let mut events = 0;
     let (mut first_gap, mut last): (Option<f64>, Option<(f64, f64, f64)>) = (None, None);
     for event in csv::Reader::from_path(path).unwrap().deserialize() {
@@ -37,17 +35,9 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
         for (column, found, expected) in [
             ("load", state.contact.load, load),
             ("contact area", state.contact.contact_area, area),
-            (
-                "area fraction",
-                state.contact.contact_area_fraction,
-                fraction,
-            ),
+            ("area fraction", state.contact.contact_area_fraction, fraction),
             ("mean gap", state.contact.mean_gap, mean_gap),
-            (
-                "interfacial stiffness",
-                state.contact.interfacial_stiffness.unwrap(),
-                stiffness,
-            ),
+            ("interfacial stiffness", state.contact.interfacial_stiffness.unwrap(), stiffness),
         ] {
             let error = ((found - expected) / expected).abs();
             assert!(
@@ -58,25 +48,15 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
         // The mean planes approach by what the mean gap closes, from first touch on.
         let first = *first_gap.get_or_insert(state.contact.mean_gap);
         let closed = first - state.contact.mean_gap;
-        assert!(
-            (state.contact.approach - closed).abs() < 1e-12 * first,
-            "{name}, step {step}"
-        );
+        assert!((state.contact.approach - closed).abs() < 1e-12 * first, "{name}, step {step}");
         assert_eq!(state.contact.contact_stiffness, None);
         // Energy grows by trapezoids of load over that approach: both sides round at 1e-13 of it.
         if let Some((load, approach, energy)) = last {
             let work: f64 = 0.5 * (load + state.contact.load) * (state.contact.approach - approach);
             let error = (state.contact.energy - energy - work).abs();
-            assert!(
-                error <= 1e-11 * state.contact.energy,
-                "{name}, step {step}: {error:e}"
-            );
+            assert!(error <= 1e-11 * state.contact.energy, "{name}, step {step}: {error:e}");
         }
-        last = Some((
-            state.contact.load,
-            state.contact.approach,
-            state.contact.energy,
-        ));
+        last = Some((state.contact.load, state.contact.approach, state.contact.energy));
         events += 1;
     }
     assert!(solver.next().is_none());
@@ -139,10 +119,8 @@ fn conjugate_gradients_follow_a_periodic_path() {
     let spectral = Spectral::new(grid, 1.0).unwrap();
     let kernels: [&dyn InfluenceKernel; 2] = [&love, &spectral];
     for kernel in kernels {
-        let factored: Vec<_> = LoadingSolver::new(&map, kernel)
-            .unwrap()
-            .map(Result::unwrap)
-            .collect();
+        let factored: Vec<_> =
+            LoadingSolver::new(&map, kernel).unwrap().map(Result::unwrap).collect();
         let iterated: Vec<_> = LoadingSolver::builder(&map, kernel)
             .updater(ConjugateGradient::new())
             .window_size(12)

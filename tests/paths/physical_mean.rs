@@ -26,10 +26,7 @@ fn the_approach_contains_the_mean_displacement() {
         // ḡ = ḡ₀ + ū − δ: sums of some hundred lengths of the size of the approach.
         let mean = mean_displacement(state.contact.load, &grid);
         let error = state.contact.mean_gap - (unloaded + mean - state.contact.approach);
-        assert!(
-            error.abs() <= 1e-12 * (unloaded + state.contact.approach),
-            "{state:?}: {error:e}"
-        );
+        assert!(error.abs() <= 1e-12 * (unloaded + state.contact.approach), "{state:?}: {error:e}");
         let displacement = path.displacement().unwrap().mean();
         assert!((displacement - mean).abs() <= 1e-12 * mean, "{state:?}");
         // There is a base to approach: dW/dδ, which is the slope from event to event.
@@ -62,10 +59,7 @@ fn fixed_loads_agree_with_the_path() {
     let kernel = layer(grid, ContactGrowth::Unknown);
     let mut path = LoadingSolver::new(&surface, &kernel).unwrap();
     let all: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-    let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-        .tolerance(1e-11)
-        .build()
-        .unwrap();
+    let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build().unwrap();
     for step in [5, 30, 90, 160, 230] {
         let expected = half_way(all[step - 1], Some(all[step]));
         let pressure = path.pressure_at(&expected).unwrap();
@@ -102,23 +96,16 @@ fn an_arbitrary_mean_is_another_body() {
     let grid = grid();
     let surface = rough(&grid, 15);
     let physical = layer(grid, ContactGrowth::Unknown);
-    let arbitrary: KernelTable = physical
-        .clone()
-        .with_mean_displacement(asperity::MeanDisplacement::Arbitrary);
+    let arbitrary: KernelTable =
+        physical.clone().with_mean_displacement(asperity::MeanDisplacement::Arbitrary);
     let a = LoadingSolver::new(&surface, &physical).unwrap();
     let b = LoadingSolver::new(&surface, &arbitrary).unwrap();
     for (a, b) in a.map(Result::unwrap).zip(b.map(Result::unwrap)) {
         assert_eq!(a.node, b.node);
-        assert!(
-            (a.contact.load - b.contact.load).abs() <= 1e-10 * a.contact.load,
-            "{a:?} {b:?}"
-        );
+        assert!((a.contact.load - b.contact.load).abs() <= 1e-10 * a.contact.load, "{a:?} {b:?}");
         assert_eq!(b.contact.contact_stiffness, None);
         let difference =
             a.contact.approach - b.contact.approach - mean_displacement(a.contact.load, &grid);
-        assert!(
-            difference.abs() <= 1e-11 * a.contact.approach,
-            "{a:?} {b:?}"
-        );
+        assert!(difference.abs() <= 1e-11 * a.contact.approach, "{a:?} {b:?}");
     }
 }

@@ -43,10 +43,7 @@ pub(crate) fn layer(grid: Grid, growth: ContactGrowth) -> KernelTable {
 pub(crate) fn kernels(grid: Grid) -> Vec<(&'static str, Box<dyn InfluenceKernel>)> {
     vec![
         ("free", Box::new(Boussinesq::new(grid, E_STAR).unwrap())),
-        (
-            "Love",
-            Box::new(PeriodicBoussinesq::new(grid, E_STAR).unwrap()),
-        ),
+        ("Love", Box::new(PeriodicBoussinesq::new(grid, E_STAR).unwrap())),
         ("spectral", Box::new(Spectral::new(grid, E_STAR).unwrap())),
         ("layer", Box::new(layer(grid, ContactGrowth::Unknown))),
     ]
@@ -68,48 +65,18 @@ pub(crate) fn assert_close(
     unloaded: f64,
 ) {
     let context = format!("{found:?} {expected:?}");
-    assert_eq!(
-        found.contact.contact_nodes, expected.contact.contact_nodes,
-        "{context}"
-    );
+    assert_eq!(found.contact.contact_nodes, expected.contact.contact_nodes, "{context}");
     let contact_stiffness = |state: &LoadingState| state.contact.contact_stiffness.unwrap_or(0.0);
     let interfacial = |state: &LoadingState| state.contact.interfacial_stiffness.unwrap();
     for (a, b, scale) in [
-        (
-            found.contact.approach,
-            expected.contact.approach,
-            expected.contact.approach,
-        ),
-        (
-            found.contact.load,
-            expected.contact.load,
-            expected.contact.load,
-        ),
-        (
-            found.contact.contact_area,
-            expected.contact.contact_area,
-            expected.contact.contact_area,
-        ),
+        (found.contact.approach, expected.contact.approach, expected.contact.approach),
+        (found.contact.load, expected.contact.load, expected.contact.load),
+        (found.contact.contact_area, expected.contact.contact_area, expected.contact.contact_area),
         (found.contact.mean_gap, expected.contact.mean_gap, unloaded),
-        (
-            found.contact.energy,
-            expected.contact.energy,
-            expected.contact.energy,
-        ),
-        (
-            contact_stiffness(found),
-            contact_stiffness(expected),
-            contact_stiffness(expected),
-        ),
-        (
-            interfacial(found),
-            interfacial(expected),
-            interfacial(expected),
-        ),
+        (found.contact.energy, expected.contact.energy, expected.contact.energy),
+        (contact_stiffness(found), contact_stiffness(expected), contact_stiffness(expected)),
+        (interfacial(found), interfacial(expected), interfacial(expected)),
     ] {
-        assert!(
-            a == b || (a - b).abs() <= tolerance * scale,
-            "{a} {b}, {context}"
-        );
+        assert!(a == b || (a - b).abs() <= tolerance * scale, "{a} {b}, {context}");
     }
 }

@@ -22,10 +22,7 @@ fn whole<U: LinearUpdater>(
     updater: U,
 ) -> (LoadingSolver<U>, Vec<LoadingState>) {
     let surface = rough(&kernel.grid(), 5);
-    let mut path = LoadingSolver::builder(&surface, kernel)
-        .updater(updater)
-        .build()
-        .unwrap();
+    let mut path = LoadingSolver::builder(&surface, kernel).updater(updater).build().unwrap();
     let all = path.by_ref().map(Result::unwrap).collect();
     (path, all)
 }
@@ -85,9 +82,7 @@ fn records_make_their_kernel_again() {
         let record = LoadingRecord::new(&path, history).unwrap();
         let mut resumed = record.resume().unwrap();
         resumed
-            .continue_to(ContactTarget::Load(
-                0.5 * (all[170].contact.load + all[171].contact.load),
-            ))
+            .continue_to(ContactTarget::Load(0.5 * (all[170].contact.load + all[171].contact.load)))
             .unwrap();
         let last = resumed.by_ref().last().unwrap().unwrap();
         assert_eq!(last.step, 171);
@@ -103,9 +98,7 @@ fn records_know_the_fields_of_their_states() {
     let record = cut(&path, &all, 180);
     let mut replay = record.replay().unwrap();
     let history = record.history();
-    let between = history
-        .at_load(0.4 * (all[90].contact.load + all[91].contact.load))
-        .unwrap();
+    let between = history.at_load(0.4 * (all[90].contact.load + all[91].contact.load)).unwrap();
     for state in [all[0], all[40], between, all[179]] {
         let expected = path.pressure_at(&state).unwrap();
         let found = replay.pressure_at(&state).unwrap();
@@ -116,10 +109,7 @@ fn records_know_the_fields_of_their_states() {
         assert!((gap.0 - gap.1).amax() <= 1e-9 * state.contact.approach.max(1e-9));
         let contact = replay.contact_map_at(&state).unwrap();
         assert_eq!(contact, path.contact_map_at(&state).unwrap());
-        assert_eq!(
-            contact.iter().filter(|is_in| **is_in).count(),
-            state.contact.contact_nodes
-        );
+        assert_eq!(contact.iter().filter(|is_in| **is_in).count(), state.contact.contact_nodes);
     }
     let beyond = replay.pressure_at(&all[180]);
     assert!(matches!(beyond, Err(Error::StateNotReached { .. })));
@@ -150,16 +140,7 @@ fn states_that_are_not_reached_are_not_recorded() {
     let record = |count: usize| LoadingRecord::new(&early, all[..count].iter().copied().collect());
     assert_eq!(record(10).unwrap().states(), &all[..10]);
     let beyond = record(11);
-    assert!(
-        matches!(
-            beyond,
-            Err(Error::StateNotReached {
-                step: 11,
-                present: 10
-            })
-        ),
-        "{beyond:?}"
-    );
+    assert!(matches!(beyond, Err(Error::StateNotReached { step: 11, present: 10 })), "{beyond:?}");
 }
 
 /// Targets that a path has passed are refused behind it. Its record knows the states up to there: those of a path that was to
@@ -188,10 +169,7 @@ fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
             assert!(
                 matches!(
                     refused,
-                    Err(Error::OutOfRange {
-                        expected: "beyond the present state",
-                        ..
-                    })
+                    Err(Error::OutOfRange { expected: "beyond the present state", .. })
                 ),
                 "{name} {target:?}: {refused:?}"
             );
@@ -213,12 +191,7 @@ fn targets_that_have_been_passed_are_read_and_not_resumed_to() {
         let far = [ContactTarget::Load(2.0 * all[240].contact.load)];
         let (same, end) = record.history().ending_at(&grid(), &far).unwrap();
         assert_eq!((same.states().len(), end), (240, None));
-        assert!(
-            record
-                .history()
-                .ending_at(&grid(), &[ContactTarget::Load(-1.0)])
-                .is_err()
-        );
+        assert!(record.history().ending_at(&grid(), &[ContactTarget::Load(-1.0)]).is_err());
     }
 }
 
@@ -268,11 +241,11 @@ fn a_contact_that_does_not_fit_is_not_resumed() {
             .resume(record.history())
     };
     let needed = match resume(1000) {
-        Err(Error::MemoryBudget {
-            needed,
-            budget,
-            nodes_that_fit: 0,
-        }) if budget == fixed + 1000 => needed - fixed,
+        Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 })
+            if budget == fixed + 1000 =>
+        {
+            needed - fixed
+        }
         other => panic!("{other:?}"),
     };
     // A triangle of 240 numbers a side at least.
@@ -298,16 +271,7 @@ fn a_kernel_with_too_few_coefficients_is_refused() {
     let record =
         LoadingRecord::from_parts(grid(), heights, remembered, settings, history, None).unwrap();
     let made = record.make_kernel();
-    assert!(
-        matches!(
-            made,
-            Err(Error::LengthMismatch {
-                expected: 16,
-                found: 15
-            })
-        ),
-        "{made:?}"
-    );
+    assert!(matches!(made, Err(Error::LengthMismatch { expected: 16, found: 15 })), "{made:?}");
 }
 
 #[test]
@@ -318,10 +282,7 @@ fn states_in_no_order_of_a_path_are_refused() {
         |states: Vec<LoadingState>| LoadingRecord::new(&path, states.into_iter().collect());
     assert!(record(all[..50].to_vec()).is_ok());
     // Without its beginning, with a node twice, with one outside the grid, and with a number that is none.
-    assert!(matches!(
-        record(all[1..50].to_vec()),
-        Err(Error::NotOnPath { .. })
-    ));
+    assert!(matches!(record(all[1..50].to_vec()), Err(Error::NotOnPath { .. })));
     let changed = |change: &dyn Fn(&mut LoadingState)| {
         let mut states = all[..50].to_vec();
         change(&mut states[20]);
@@ -334,19 +295,9 @@ fn states_in_no_order_of_a_path_are_refused() {
     // Numbers that do not go with the events, and a limit that is not the end.
     let not_on_path = |found: Result<LoadingRecord, Error>, numbers: (&str, f64, &str)| match found
     {
-        Err(Error::NotOnPath {
-            step,
-            quantity,
-            value,
-            expected,
-            load,
-            approach,
-        }) => {
+        Err(Error::NotOnPath { step, quantity, value, expected, load, approach }) => {
             assert_eq!((quantity, value, expected), numbers);
-            assert_eq!(
-                (load, approach),
-                (all[20].contact.load, all[20].contact.approach)
-            );
+            assert_eq!((load, approach), (all[20].contact.load, all[20].contact.approach));
             step
         }
         other => panic!("{other:?}"),
@@ -371,10 +322,7 @@ fn a_limit_is_no_event() {
     let (_, all) = whole(&kernel, RecursiveCholesky::new());
     let load = 0.3 * all[99].contact.load + 0.7 * all[100].contact.load;
     let surface = rough(&grid(), 5);
-    let mut path = LoadingSolver::builder(&surface, &kernel)
-        .max_load(load)
-        .build()
-        .unwrap();
+    let mut path = LoadingSolver::builder(&surface, &kernel).max_load(load).build().unwrap();
     let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
     let record = LoadingRecord::new(&path, history).unwrap();
     assert_eq!(record.states().len(), 101);
@@ -385,9 +333,7 @@ fn a_limit_is_no_event() {
     // It is to end where it ended, and then goes on.
     let last = resumed.by_ref().last().unwrap().unwrap();
     assert_eq!((last.step, last.contact.load), (100, load));
-    resumed
-        .continue_to(ContactTarget::AreaFraction(1.0))
-        .unwrap();
+    resumed.continue_to(ContactTarget::AreaFraction(1.0)).unwrap();
     let next = resumed.next().unwrap().unwrap();
     assert_close(&next, &all[100], 1e-10, all[0].contact.mean_gap);
 }
@@ -414,18 +360,9 @@ fn a_record_reads_as_a_path_that_stops_there() {
             let fraction = a.contact.contact_area_fraction;
             let read = [
                 (ContactTarget::Load(load), history.at_load(load)),
-                (
-                    ContactTarget::Approach(approach),
-                    history.at_approach(approach),
-                ),
-                (
-                    ContactTarget::MeanGap(mean_gap),
-                    history.at_mean_gap(mean_gap),
-                ),
-                (
-                    ContactTarget::AreaFraction(fraction),
-                    history.at_area_fraction(fraction),
-                ),
+                (ContactTarget::Approach(approach), history.at_approach(approach)),
+                (ContactTarget::MeanGap(mean_gap), history.at_mean_gap(mean_gap)),
+                (ContactTarget::AreaFraction(fraction), history.at_area_fraction(fraction)),
             ];
             for (target, read) in read {
                 let stopped = LoadingSolver::builder(record.heights(), &kernel)

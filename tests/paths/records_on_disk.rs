@@ -118,29 +118,17 @@ fn damaged_records_are_refused() {
 fn foreign_and_newer_files_are_refused() {
     let file = Scratch::new("foreign");
     let bad = |file: &Scratch| LoadingRecord::read_npz(&file.0).unwrap_err().to_string();
-    assert!(matches!(
-        LoadingRecord::read_npz(&file.0),
-        Err(Error::File(FileError::Io { .. }))
-    ));
+    assert!(matches!(LoadingRecord::read_npz(&file.0), Err(Error::File(FileError::Io { .. }))));
     fs::write(&file.0, b"step,ix,iy").unwrap();
-    assert!(
-        bad(&file).contains("no readable asperity record"),
-        "{}",
-        bad(&file)
-    );
+    assert!(bad(&file).contains("no readable asperity record"), "{}", bad(&file));
     // The version stands in the text of the parameters, which no compression hides, as UTF-32.
     record(None).write_npz(&file.0, &[]).unwrap();
     let bytes = fs::read(&file.0).unwrap();
     let wide = |text: &str| -> Vec<u8> {
-        text.chars()
-            .flat_map(|letter| u32::from(letter).to_le_bytes())
-            .collect()
+        text.chars().flat_map(|letter| u32::from(letter).to_le_bytes()).collect()
     };
     let (old, new) = (wide("\"version\":1"), wide("\"version\":9"));
-    let at = bytes
-        .windows(old.len())
-        .position(|window| window == old)
-        .unwrap();
+    let at = bytes.windows(old.len()).position(|window| window == old).unwrap();
     let mut newer = bytes;
     newer[at..at + new.len()].copy_from_slice(&new);
     fs::write(&file.0, newer).unwrap();
@@ -182,10 +170,7 @@ fn a_record_is_data() {
     fewer["heights"].as_array_mut().unwrap().pop();
     let refused = serde_json::from_value::<LoadingRecord>(fewer).unwrap_err();
     let refused = refused.to_string();
-    assert!(
-        refused.contains("270") && refused.contains("269"),
-        "{refused}"
-    );
+    assert!(refused.contains("270") && refused.contains("269"), "{refused}");
 }
 
 /// Where nothing can be written nothing is left behind.

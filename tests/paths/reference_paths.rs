@@ -14,24 +14,12 @@ fn compare(name: &str, tolerance: f64, events: &[Event], states: &[LoadingState]
     let mut worst = 0.0_f64;
     for (event, state) in events.iter().zip(states) {
         let context = format!("{name}, step {}", event.step);
-        assert_eq!(
-            (event.step, event.node),
-            (state.step, state.node),
-            "{context}"
-        );
+        assert_eq!((event.step, event.node), (state.step, state.node), "{context}");
         for (column, expected, found) in [
             ("approach", event.approach, state.contact.approach),
             ("load", event.load, state.contact.load),
-            (
-                "contact_area",
-                event.contact_area,
-                state.contact.contact_area,
-            ),
-            (
-                "fraction",
-                event.contact_area_fraction,
-                state.contact.contact_area_fraction,
-            ),
+            ("contact_area", event.contact_area, state.contact.contact_area),
+            ("fraction", event.contact_area_fraction, state.contact.contact_area_fraction),
             ("mean_gap", event.mean_gap, state.contact.mean_gap),
             (
                 "contact_stiffness",
@@ -49,10 +37,7 @@ fn compare(name: &str, tolerance: f64, events: &[Event], states: &[LoadingState]
             }
             let error = ((found - expected) / expected).abs();
             worst = worst.max(error);
-            assert!(
-                error < tolerance,
-                "{context}: {column} {found} for {expected}: {error:e}"
-            );
+            assert!(error < tolerance, "{context}: {column} {found} for {expected}: {error:e}");
         }
     }
     println!("{name}: worst relative error {worst:e}");
@@ -65,60 +50,28 @@ fn run<U: LinearUpdater>(file: &str, updater: U, window: Option<usize>, nodes: u
     let nodes = nodes.min(events.len());
     let grid = Grid::square(heights.matrix().nrows(), SIDE).unwrap();
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    let builder = LoadingSolver::builder(&heights, &kernel)
-        .updater(updater)
-        .max_nodes(nodes);
+    let builder = LoadingSolver::builder(&heights, &kernel).updater(updater).max_nodes(nodes);
     let mut solver = with_window(builder, window).build().unwrap();
     let states: Vec<_> = solver.by_ref().map(Result::unwrap).collect();
-    compare(
-        &format!("{file}, window {window:?}"),
-        1e-9,
-        &events[..nodes],
-        &states,
-    );
+    compare(&format!("{file}, window {window:?}"), 1e-9, &events[..nodes], &states);
 }
 
 #[test]
 fn cholesky_window_1() {
-    run(
-        "selfaffine_48",
-        RecursiveCholesky::new(),
-        Some(1),
-        usize::MAX,
-    );
-    run(
-        "selfaffine_40_full",
-        RecursiveCholesky::new(),
-        Some(1),
-        usize::MAX,
-    );
+    run("selfaffine_48", RecursiveCholesky::new(), Some(1), usize::MAX);
+    run("selfaffine_40_full", RecursiveCholesky::new(), Some(1), usize::MAX);
 }
 
 #[test]
 fn cholesky_window_7() {
-    run(
-        "selfaffine_48",
-        RecursiveCholesky::new(),
-        Some(7),
-        usize::MAX,
-    );
-    run(
-        "selfaffine_40_full",
-        RecursiveCholesky::new(),
-        Some(7),
-        usize::MAX,
-    );
+    run("selfaffine_48", RecursiveCholesky::new(), Some(7), usize::MAX);
+    run("selfaffine_40_full", RecursiveCholesky::new(), Some(7), usize::MAX);
 }
 
 #[test]
 fn cholesky_window_automatic() {
     run("selfaffine_48", RecursiveCholesky::new(), None, usize::MAX);
-    run(
-        "selfaffine_40_full",
-        RecursiveCholesky::new(),
-        None,
-        usize::MAX,
-    );
+    run("selfaffine_40_full", RecursiveCholesky::new(), None, usize::MAX);
 }
 
 #[test]

@@ -68,10 +68,8 @@ fn single_events_say_what_they_are_off_by() {
     let unknown = |di: isize, dj: isize| (-((di * di + dj * dj) as f64).sqrt() / 3.0).exp();
     let table =
         KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, unknown).unwrap();
-    let cases: [(&dyn InfluenceKernel, ContactRule); 2] = [
-        (&free, ContactRule::SmallestGap),
-        (&table, ContactRule::FirstContact),
-    ];
+    let cases: [(&dyn InfluenceKernel, ContactRule); 2] =
+        [(&free, ContactRule::SmallestGap), (&table, ContactRule::FirstContact)];
     for (kernel, rule) in cases {
         let exact = states(RecursiveCholesky::new(), &map, kernel, rule);
         let found = states(ConjugateGradient::new(), &map, kernel, rule);

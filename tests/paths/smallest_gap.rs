@@ -37,11 +37,7 @@ impl Paper {
             kernel.coefficient(ax as isize - bx as isize, ay as isize - by as isize)
         });
         let z = DVector::from_column_slice(heights.matrix().as_slice());
-        Self {
-            influence,
-            contact: vec![z.imax()],
-            z,
-        }
+        Self { influence, contact: vec![z.imax()], z }
     }
 
     /// The newest node of the contact carries no pressure.
@@ -50,9 +46,7 @@ impl Paper {
         let inside = self.influence.select_rows(contact).select_columns(contact);
         let lu = inside.lu();
         let y1 = lu.solve(&self.z.select_rows(contact)).unwrap();
-        let y2 = lu
-            .solve(&DVector::from_element(contact.len(), 1.0))
-            .unwrap();
+        let y2 = lu.solve(&DVector::from_element(contact.len(), 1.0)).unwrap();
         let newest = contact.len() - 1;
         let h0 = -y1[newest] / y2[newest];
         let mut pressure = DVector::zeros(self.z.len());
@@ -106,11 +100,7 @@ fn the_papers_procedure_is_reproduced_step_by_step() {
             assert!(error < 1e-12 * scale, "step {}: {error:e}", state.step);
             let load = expected.pressure.sum() * grid.cell_area();
             let load_scale = scale * grid.cell_area() * state.step as f64;
-            assert!(
-                (state.contact.load - load).abs() < 1e-12 * load_scale,
-                "step {}",
-                state.step
-            );
+            assert!((state.contact.load - load).abs() < 1e-12 * load_scale, "step {}", state.step);
             if state.step == 2 {
                 first_load = load;
             }
@@ -138,11 +128,8 @@ struct Faults {
 
 fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    let mut path = LoadingSolver::builder(heights, &kernel)
-        .rule(rule)
-        .max_area_fraction(0.3)
-        .build()
-        .unwrap();
+    let mut path =
+        LoadingSolver::builder(heights, &kernel).rule(rule).max_area_fraction(0.3).build().unwrap();
     let mut faults = Faults::default();
     let mut approach = 0.0;
     while let Some(state) = path.next() {
@@ -176,15 +163,9 @@ fn the_papers_rule_gives_negative_pressures() {
         assert!(paper.backward > 10, "{paper:?}");
 
         let exact = faults(grid, &heights, ContactRule::FirstContact);
-        assert_eq!(
-            (exact.negative_pressure, exact.overlap, exact.backward),
-            (0, 0, 0)
-        );
+        assert_eq!((exact.negative_pressure, exact.overlap, exact.backward), (0, 0, 0));
         // The promise of the crate.
-        assert!(
-            exact.worst_pressure >= -1e-12 && exact.worst_gap >= -1e-12,
-            "{exact:?}"
-        );
+        assert!(exact.worst_pressure >= -1e-12 && exact.worst_gap >= -1e-12, "{exact:?}");
     }
 }
 
@@ -202,9 +183,6 @@ fn a_gap_that_does_not_close_is_no_number() {
         .unwrap();
     assert_eq!(path.next().unwrap().unwrap().node, (0, 0));
     let failed = path.next().unwrap();
-    assert!(
-        matches!(failed, Err(Error::NotFinite { step: 2 })),
-        "{failed:?}"
-    );
+    assert!(matches!(failed, Err(Error::NotFinite { step: 2 })), "{failed:?}");
     assert!(path.next().is_none());
 }

@@ -22,16 +22,10 @@ fn strip(grid: &Grid, seed: u64) -> HeightMap {
 /// The greatest relative difference of loads and interfacial stiffnesses of states with the same nodes in contact.
 fn greatest_differences(found: &[LoadingState], exact: &[LoadingState]) -> [f64; 2] {
     let mut greatest = [0.0_f64; 2];
-    for (a, b) in found
-        .iter()
-        .zip(exact)
-        .filter(|(_, b)| b.contact.load > 0.0)
-    {
+    for (a, b) in found.iter().zip(exact).filter(|(_, b)| b.contact.load > 0.0) {
         greatest[0] = greatest[0].max((a.contact.load / b.contact.load - 1.0).abs());
-        let (a, b) = (
-            a.contact.interfacial_stiffness.unwrap(),
-            b.contact.interfacial_stiffness.unwrap(),
-        );
+        let (a, b) =
+            (a.contact.interfacial_stiffness.unwrap(), b.contact.interfacial_stiffness.unwrap());
         if b.is_finite() {
             greatest[1] = greatest[1].max((a / b - 1.0).abs());
         }
@@ -67,10 +61,7 @@ fn strips_have_the_events_of_the_factor() {
         println!("{name}: {exceeded} errors exceed their estimate");
         assert!(exceeded <= 8, "{name}: {exceeded}");
         let [load, stiffness] = greatest_differences(&found, &exact);
-        assert!(
-            load < 1e-3 && stiffness < 2e-2,
-            "{name}: {load:e} {stiffness:e}"
-        );
+        assert!(load < 1e-3 && stiffness < 2e-2, "{name}: {load:e} {stiffness:e}");
     }
     // A hand-over in the middle.
     let [_, (_, periodic), _] = half_spaces(grid);
@@ -82,10 +73,7 @@ fn strips_have_the_events_of_the_factor() {
     let mut path = path.build().unwrap();
     let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
     let seam = path.handed_over_at();
-    assert!(
-        seam.is_some_and(|seam| (100..700).contains(&seam)),
-        "{seam:?}"
-    );
+    assert!(seam.is_some_and(|seam| (100..700).contains(&seam)), "{seam:?}");
     assert!(found.iter().zip(&exact).all(|(a, b)| a.node == b.node));
 }
 
@@ -126,10 +114,7 @@ fn slow_gaps_of_tiles_touch_in_the_order_of_their_indices() {
     let [_, (_, periodic), (_, spectral)] = half_spaces(grid);
     for kernel in [&periodic, &spectral] {
         let kernel: &dyn InfluenceKernel = kernel;
-        orbits(
-            &states(&surface, kernel, RecursiveCholesky::new(), None),
-            32,
-        );
+        orbits(&states(&surface, kernel, RecursiveCholesky::new(), None), 32);
     }
 }
 
@@ -184,11 +169,7 @@ fn errors_are_those_of_the_approach_of_the_mean_planes() {
         });
         // Estimates, of which some hundredths may fail, by little.
         let exceeded = exceeded.count();
-        assert!(
-            100 * exceeded <= found.len(),
-            "{exceeded} of {}",
-            found.len()
-        );
+        assert!(100 * exceeded <= found.len(), "{exceeded} of {}", found.len());
         // Half of them are below a fiftieth of the spacing of events there.
         let late = &found[1500..1900];
         let spacing =

@@ -53,10 +53,7 @@ fn check_numbers(states: &[LoadingState], nodes: usize) {
             a.contact.approach <= b.contact.approach && a.contact.load <= b.contact.load,
             "{a:?} {b:?}"
         );
-        assert!(
-            a.contact.contact_stiffness <= b.contact.contact_stiffness,
-            "{a:?} {b:?}"
-        );
+        assert!(a.contact.contact_stiffness <= b.contact.contact_stiffness, "{a:?} {b:?}");
     }
 }
 
@@ -105,14 +102,8 @@ fn check_symmetric(shape: &dyn Surface, grid: Grid, diagonal: bool) -> usize {
             }
             let certificate = path.certificate().unwrap();
             // As everywhere: pressure and gap of an exact state, to rounding.
-            assert!(
-                certificate.least_pressure >= -1e-12,
-                "{context}: {certificate:?}"
-            );
-            assert!(
-                certificate.least_gap >= -1e-12,
-                "{context}: {certificate:?}"
-            );
+            assert!(certificate.least_pressure >= -1e-12, "{context}: {certificate:?}");
+            assert!(certificate.least_gap >= -1e-12, "{context}: {certificate:?}");
         }
         assert!(path.next().is_none());
         counts.push(shells);
@@ -165,9 +156,8 @@ fn flat_punches_fill_in_order_of_the_index() {
 fn a_single_node_is_a_path() {
     let grid = Grid::new(1, 1, 1e-3, 2e-3).unwrap();
     for window in WINDOWS {
-        let states: Vec<_> = solver(&FlatPunch::default(), grid, window)
-            .map(Result::unwrap)
-            .collect();
+        let states: Vec<_> =
+            solver(&FlatPunch::default(), grid, window).map(Result::unwrap).collect();
         check_numbers(&states, 1);
     }
 }
@@ -177,14 +167,8 @@ fn a_worn_plateau_fills_in_order_and_before_the_rest() {
     let grid = Grid::square(20, 1e-2).unwrap();
     let rough = SelfAffine::new(0.8, 5e-3, 1e-3, Amplitude::RmsHeight(1e-5), 5).unwrap();
     let worn = rough.heights(&grid).unwrap().map(|height| height.min(5e-6));
-    let plateau: Vec<_> = (0..grid.nodes())
-        .filter(|&node| worn[node] == 5e-6)
-        .collect();
-    assert!(
-        plateau.len() > 50 && plateau.len() < 200,
-        "{}",
-        plateau.len()
-    );
+    let plateau: Vec<_> = (0..grid.nodes()).filter(|&node| worn[node] == 5e-6).collect();
+    assert!(plateau.len() > 50 && plateau.len() < 200, "{}", plateau.len());
     let map = HeightMap::new(worn).unwrap();
     for window in WINDOWS {
         let mut path = solver(&map, grid, window);

@@ -40,12 +40,7 @@ fn undisturbed<U: LinearUpdater + Clone>(
 fn everywhere<U: LinearUpdater + Clone>(updater: U, context: &str) {
     let surface = rough(&grid(), 11);
     for (name, kernel) in kernels(grid()) {
-        undisturbed(
-            &surface,
-            &kernel,
-            updater.clone(),
-            &format!("{context}, {name}"),
-        );
+        undisturbed(&surface, &kernel, updater.clone(), &format!("{context}, {name}"));
     }
 }
 

@@ -23,12 +23,8 @@ pub(crate) struct Tolerances {
     pub(crate) mean_gap: f64,
 }
 
-const BETWEEN: Tolerances = Tolerances {
-    load: 1e-4,
-    stiffness: 3e-5,
-    interfacial: 3e-4,
-    mean_gap: 5e-6,
-};
+const BETWEEN: Tolerances =
+    Tolerances { load: 1e-4, stiffness: 3e-5, interfacial: 3e-4, mean_gap: 5e-6 };
 
 pub(crate) fn states<U: LinearUpdater>(
     surface: &HeightMap,
@@ -72,37 +68,23 @@ pub(crate) fn compare(
         );
         let error = (state.contact.approach - own.contact.approach).abs();
         exceeded += usize::from(error > state.approach_error + 0.2 * tie(k));
-        let next = exact
-            .get(k + 1)
-            .map_or(f64::INFINITY, |next| next.contact.approach);
+        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.contact.approach);
         if next - expected.contact.approach <= tie(k) || expected.contact.approach <= tie(k) {
             continue;
         }
         let is_near = |a: f64, b: f64, tolerance: f64| {
-            assert!(
-                (a - b).abs() <= tolerance,
-                "{context}: {state:?} {expected:?}"
-            );
+            assert!((a - b).abs() <= tolerance, "{context}: {state:?} {expected:?}");
         };
-        is_near(
-            state.contact.load,
-            expected.contact.load,
-            allowed.load * expected.contact.load,
-        );
+        is_near(state.contact.load, expected.contact.load, allowed.load * expected.contact.load);
         is_near(
             state.contact.energy,
             expected.contact.energy,
             3.0 * allowed.load * expected.contact.energy,
         );
-        is_near(
-            state.contact.mean_gap,
-            expected.contact.mean_gap,
-            allowed.mean_gap * initial,
-        );
-        if let (Some(a), Some(b)) = (
-            state.contact.contact_stiffness,
-            expected.contact.contact_stiffness,
-        ) {
+        is_near(state.contact.mean_gap, expected.contact.mean_gap, allowed.mean_gap * initial);
+        if let (Some(a), Some(b)) =
+            (state.contact.contact_stiffness, expected.contact.contact_stiffness)
+        {
             is_near(a, b, allowed.stiffness * b);
         }
         let (a, b) = (
@@ -121,10 +103,7 @@ pub(crate) fn compare(
 pub(crate) fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
     [
         ("free", Box::new(Boussinesq::new(grid, 1.0).unwrap())),
-        (
-            "periodic",
-            Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
-        ),
+        ("periodic", Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap())),
         ("spectral", Box::new(Spectral::new(grid, 1.0).unwrap())),
     ]
 }
@@ -166,12 +145,8 @@ fn any_window_has_the_same_events() {
         for window in [1, 2, 7, 40, 1000] {
             let found = states(&surface, &kernel, ConjugateGradient::new(), Some(window));
             // Windows as long as the path rest on its end alone, and on their ties.
-            let loose = Tolerances {
-                load: 3e-4,
-                stiffness: 1e-4,
-                interfacial: 3e-3,
-                mean_gap: 1e-4,
-            };
+            let loose =
+                Tolerances { load: 3e-4, stiffness: 1e-4, interfacial: 3e-3, mean_gap: 1e-4 };
             let allowed = if window > 100 { &loose } else { &BETWEEN };
             compare(&format!("{name}, window {window}"), &found, &exact, allowed);
         }
@@ -190,16 +165,8 @@ fn hard_shapes_have_the_events_of_the_factor() {
             let wave = |x: f64| (2.0 * std::f64::consts::TAU * x).cos();
             0.01 * (wave(x) + wave(y))
         }),
-        ("punch", |x, y| {
-            if x.abs().max(y.abs()) < 0.25 {
-                0.0
-            } else {
-                -2e-3
-            }
-        }),
-        ("steps", |x, y| {
-            (20.0 * (x * x - 0.3 * y + x * y)).round() * 1e-3
-        }),
+        ("punch", |x, y| if x.abs().max(y.abs()) < 0.25 { 0.0 } else { -2e-3 }),
+        ("steps", |x, y| (20.0 * (x * x - 0.3 * y + x * y)).round() * 1e-3),
         ("pit", |x, y| if x.hypot(y) < 0.1 { -2e-3 } else { 0.0 }),
         ("spike", |x, y| if x.hypot(y) < 0.03 { 2e-3 } else { 0.0 }),
     ];
@@ -247,27 +214,13 @@ fn every_state_can_be_asked_for_its_pressure() {
         // A load between two events, at which the path ends exactly.
         let load = 0.3 * all[400].contact.load + 0.7 * all[401].contact.load;
         let mut path = build(1.0);
-        path.continue_to(asperity::ContactTarget::Load(load))
-            .unwrap();
+        path.continue_to(asperity::ContactTarget::Load(load)).unwrap();
         let last = path.by_ref().map(Result::unwrap).last().unwrap();
-        assert_eq!(
-            (last.contact.load, last.contact.contact_nodes),
-            (load, 401),
-            "{name}"
-        );
+        assert_eq!((last.contact.load, last.contact.contact_nodes), (load, 401), "{name}");
         let certificate = path.certificate().unwrap();
-        assert!(
-            certificate.least_pressure >= -1e-3,
-            "{name}: {certificate:?}"
-        );
-        assert!(
-            certificate.greatest_contact_gap <= 1e-9,
-            "{name}: {certificate:?}"
-        );
-        assert!(
-            certificate.load_error.abs() <= BETWEEN.load,
-            "{name}: {certificate:?}"
-        );
+        assert!(certificate.least_pressure >= -1e-3, "{name}: {certificate:?}");
+        assert!(certificate.greatest_contact_gap <= 1e-9, "{name}: {certificate:?}");
+        assert!(certificate.load_error.abs() <= BETWEEN.load, "{name}: {certificate:?}");
     }
 }
 
@@ -280,20 +233,14 @@ fn the_default_hands_over_at_the_same_events() {
     let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
     let fixed = LoadingSolver::new(&surface, &kernel).unwrap().bytes();
     // A factor of some 500 nodes fits.
-    let mut path = LoadingSolver::builder(&surface, &kernel)
-        .memory_budget(fixed + 3_000_000)
-        .build()
-        .unwrap();
+    let mut path =
+        LoadingSolver::builder(&surface, &kernel).memory_budget(fixed + 3_000_000).build().unwrap();
     let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
     let seam = path.handed_over_at().unwrap();
     assert!(seam > 100 && seam < 1000, "{seam}");
     compare("handover", &found, &exact, &BETWEEN);
     // Before the seam states are exact to rounding.
-    assert!(
-        found[..seam - 100]
-            .iter()
-            .all(|state| state.approach_error == 0.0)
-    );
+    assert!(found[..seam - 100].iter().all(|state| state.approach_error == 0.0));
 }
 
 /// The approximate order: the ends of windows are right, and neighbours change places in between.
@@ -312,11 +259,7 @@ fn the_approximate_order_is_nearly_right() {
     assert_eq!(path.timings().ties, 0);
     let nodes: HashSet<_> = found.iter().map(|state| state.node).collect();
     assert_eq!(nodes.len(), exact.len());
-    let moved = found
-        .iter()
-        .zip(&exact)
-        .filter(|(a, b)| a.node != b.node)
-        .count();
+    let moved = found.iter().zip(&exact).filter(|(a, b)| a.node != b.node).count();
     println!("{moved} of {} places differ", exact.len());
     assert!(100 * moved <= exact.len(), "{moved}");
     for (state, expected) in found.iter().zip(&exact).skip(100) {
@@ -335,10 +278,7 @@ fn threads_do_not_matter() {
     let surface = rough(&grid, 0.8, 9);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let with_threads = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let builder =
                 LoadingSolver::builder(&surface, &kernel).updater(ConjugateGradient::new());
@@ -356,19 +296,12 @@ fn full_contact_is_full() {
     let grid = Grid::square(16, 1.0).unwrap();
     let surface = rough(&grid, 0.8, 10);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    for updater in [
-        Box::new(ConjugateGradient::new()) as Box<dyn LinearUpdater>,
-        Box::new(Handover::new()),
-    ] {
-        let mut path = LoadingSolver::builder(&surface, &kernel)
-            .updater(updater)
-            .build()
-            .unwrap();
+    for updater in
+        [Box::new(ConjugateGradient::new()) as Box<dyn LinearUpdater>, Box::new(Handover::new())]
+    {
+        let mut path = LoadingSolver::builder(&surface, &kernel).updater(updater).build().unwrap();
         let last = path.by_ref().map(Result::unwrap).last().unwrap();
-        assert_eq!(
-            (last.contact.contact_nodes, last.contact.mean_gap),
-            (256, 0.0)
-        );
+        assert_eq!((last.contact.contact_nodes, last.contact.mean_gap), (256, 0.0));
         assert_eq!(last.contact.interfacial_stiffness, Some(f64::INFINITY));
         assert_eq!(path.end(), Some(LoadingEnd::FullContact));
     }

@@ -28,10 +28,7 @@ struct Refuses;
 
 impl Surface for Refuses {
     fn heights(&self, _grid: &Grid) -> Result<DMatrix<f64>, SurfaceError> {
-        Err(SurfaceError::TooFewWaves {
-            found: 1,
-            needed: 2,
-        })
+        Err(SurfaceError::TooFewWaves { found: 1, needed: 2 })
     }
 }
 
@@ -59,25 +56,13 @@ fn half_space(n: usize) -> Boussinesq {
 #[test]
 fn grids() {
     for (nx, ny) in [(0, 0), (0, 5), (5, 0)] {
-        assert!(matches!(
-            Grid::new(nx, ny, 1.0, 1.0),
-            Err(SurfaceError::EmptyGrid { .. })
-        ));
-        assert!(matches!(
-            Grid::with_sides(nx, ny, 1.0, 1.0),
-            Err(SurfaceError::EmptyGrid { .. })
-        ));
+        assert!(matches!(Grid::new(nx, ny, 1.0, 1.0), Err(SurfaceError::EmptyGrid { .. })));
+        assert!(matches!(Grid::with_sides(nx, ny, 1.0, 1.0), Err(SurfaceError::EmptyGrid { .. })));
     }
-    assert!(matches!(
-        Grid::square(0, 1.0),
-        Err(SurfaceError::EmptyGrid { .. })
-    ));
+    assert!(matches!(Grid::square(0, 1.0), Err(SurfaceError::EmptyGrid { .. })));
     for n in [Grid::MAX_SIDE + 1, usize::MAX / 2, usize::MAX] {
         for (nx, ny) in [(n, 1), (1, n), (n, n)] {
-            assert!(matches!(
-                Grid::new(nx, ny, 1.0, 1.0),
-                Err(SurfaceError::GridTooLarge { .. })
-            ));
+            assert!(matches!(Grid::new(nx, ny, 1.0, 1.0), Err(SurfaceError::GridTooLarge { .. })));
             let sides = Grid::with_sides(nx, ny, 1.0, 1.0);
             assert!(matches!(sides, Err(SurfaceError::GridTooLarge { .. })));
         }
@@ -90,18 +75,12 @@ fn grids() {
             Grid::with_sides(4, 4, 1.0, bad),
             Grid::square(4, bad),
         ] {
-            assert!(
-                matches!(grid, Err(SurfaceError::NotPositive { .. })),
-                "{bad}"
-            );
+            assert!(matches!(grid, Err(SurfaceError::NotPositive { .. })), "{bad}");
         }
     }
     // Areas that over- or underflow.
     for cell in [1e200, 1e-200] {
-        assert!(matches!(
-            Grid::new(4, 4, cell, cell),
-            Err(SurfaceError::NotPositive { .. })
-        ));
+        assert!(matches!(Grid::new(4, 4, cell, cell), Err(SurfaceError::NotPositive { .. })));
     }
 }
 
@@ -109,16 +88,10 @@ fn grids() {
 fn moduli() {
     let grid = Grid::square(4, 1.0).unwrap();
     for bad in NOT_POSITIVE {
-        assert!(
-            matches!(Boussinesq::new(grid, bad), Err(Error::NotPositive { .. })),
-            "{bad}"
-        );
+        assert!(matches!(Boussinesq::new(grid, bad), Err(Error::NotPositive { .. })), "{bad}");
     }
     // 1/E* overflows.
-    assert!(matches!(
-        Boussinesq::new(grid, 5e-324),
-        Err(Error::NotPositive { .. })
-    ));
+    assert!(matches!(Boussinesq::new(grid, 5e-324), Err(Error::NotPositive { .. })));
 }
 
 #[test]
@@ -127,24 +100,15 @@ fn heights() {
         let mut heights = DMatrix::zeros(5, 4);
         heights[(3, 2)] = value;
         let error = HeightMap::new(heights.clone()).unwrap_err();
-        assert!(
-            matches!(error, SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. }), "{error}");
         let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
         let error = LoadingSolver::new(&Told(heights), &kernel).unwrap_err();
         assert!(
-            matches!(
-                error,
-                Error::Surface(SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. })
-            ),
+            matches!(error, Error::Surface(SurfaceError::HeightNotFinite { ix: 3, iy: 2, .. })),
             "{error}"
         );
     }
-    assert!(matches!(
-        HeightMap::new(DMatrix::zeros(0, 3)),
-        Err(SurfaceError::EmptyGrid { .. })
-    ));
+    assert!(matches!(HeightMap::new(DMatrix::zeros(0, 3)), Err(SurfaceError::EmptyGrid { .. })));
     for shape in [(4, 5), (5, 5), (20, 1), (0, 0)] {
         let heights = Told(DMatrix::zeros(shape.0, shape.1));
         let kernel = Boussinesq::new(Grid::new(5, 4, 1.0, 1.0).unwrap(), 1.0).unwrap();
@@ -162,22 +126,13 @@ fn heights() {
     // The surface's own error arrives as it is.
     let error = LoadingSolver::new(&Refuses, &half_space(4)).unwrap_err();
     assert!(
-        matches!(
-            error,
-            Error::Surface(SurfaceError::TooFewWaves {
-                found: 1,
-                needed: 2
-            })
-        ),
+        matches!(error, Error::Surface(SurfaceError::TooFewWaves { found: 1, needed: 2 })),
         "{error}"
     );
     // Waves too short for the grid.
     let rough = SelfAffine::new(0.8, 1.0, 0.1, Amplitude::RmsHeight(1.0), 1).unwrap();
     let error = LoadingSolver::new(&rough, &half_space(4)).unwrap_err();
-    assert!(
-        matches!(error, Error::Surface(SurfaceError::CutoffBelowGrid { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, Error::Surface(SurfaceError::CutoffBelowGrid { .. })), "{error}");
 }
 
 /// An updater that returns something malformed.
@@ -220,8 +175,7 @@ impl LinearUpdater for Malformed {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner
-            .solve(problem, contact, count, approach, solution)?;
+        self.inner.solve(problem, contact, count, approach, solution)?;
         match self.what {
             "pressure" => solution.pressure.push(0.0),
             "rate" => solution.rate.clear(),
@@ -235,10 +189,7 @@ impl LinearUpdater for Malformed {
 #[test]
 fn malformed_updaters() {
     for what in ["size", "pressure", "rate", "nan", "nan rate"] {
-        let updater = Malformed {
-            inner: RecursiveCholesky::new(),
-            what,
-        };
+        let updater = Malformed { inner: RecursiveCholesky::new(), what };
         let (punch, kernel) = (FlatPunch::default(), half_space(4));
         let builder = LoadingSolver::builder(&punch, &kernel);
         let mut path = builder.updater(updater).window_size(3).build().unwrap();
@@ -262,44 +213,20 @@ fn kernels_that_are_no_kernels() {
     };
     for error in [
         build(|di, dj| if (di, dj) == (2, -1) { f64::NAN } else { 1.0 }),
-        build(|di, dj| {
-            if (di, dj) == (2, -1) {
-                f64::INFINITY
-            } else {
-                1.0
-            }
-        }),
+        build(|di, dj| if (di, dj) == (2, -1) { f64::INFINITY } else { 1.0 }),
     ] {
         assert!(
-            matches!(
-                error,
-                Error::Kernel(KernelError::NotFinite { di: 2, dj: -1, .. })
-            ),
+            matches!(error, Error::Kernel(KernelError::NotFinite { di: 2, dj: -1, .. })),
             "{error}"
         );
     }
     let error = build(|di, dj| if (di, dj) == (2, -1) { 0.6 } else { 0.5 });
-    let Error::Kernel(KernelError::NotSymmetric {
-        di,
-        dj,
-        value,
-        opposite,
-    }) = error
-    else {
+    let Error::Kernel(KernelError::NotSymmetric { di, dj, value, opposite }) = error else {
         panic!("{error}");
     };
     assert!([(2, -1), (-2, 1)].contains(&(di, dj)));
-    assert_eq!(
-        (value + opposite, (value - opposite).abs() < 0.11),
-        (1.1, true)
-    );
-    for error in [
-        build(|_, _| 0.0),
-        build(|di, dj| if (di, dj) == (0, 0) { -1.0 } else { 0.0 }),
-    ] {
-        assert!(
-            matches!(error, Error::NotPositiveDefinite { .. }),
-            "{error}"
-        );
+    assert_eq!((value + opposite, (value - opposite).abs() < 0.11), (1.1, true));
+    for error in [build(|_, _| 0.0), build(|di, dj| if (di, dj) == (0, 0) { -1.0 } else { 0.0 })] {
+        assert!(matches!(error, Error::NotPositiveDefinite { .. }), "{error}");
     }
 }

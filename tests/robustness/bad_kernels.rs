@@ -28,9 +28,7 @@ impl InfluenceKernel for Strip {
 
 impl Strip {
     fn matrix(&self, nodes: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| {
-            self.0[nodes[i].abs_diff(nodes[j])]
-        })
+        DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| self.0[nodes[i].abs_diff(nodes[j])])
     }
 }
 
@@ -82,20 +80,11 @@ fn a_kernel_that_is_not_positive_definite_names_node_and_approach() {
         // Three nodes, a handful of roundings.
         assert!((second.contact.approach - 0.5).abs() < 1e-14);
         let error = path.next().unwrap().unwrap_err();
-        let Error::NotPositiveDefinite {
-            ix,
-            iy,
-            approach,
-            pivot,
-        } = error
-        else {
+        let Error::NotPositiveDefinite { ix, iy, approach, pivot } = error else {
             panic!("{error}");
         };
         assert_eq!((ix, iy), (2, 0));
-        assert!(
-            (approach - expected).abs() < 1e-13 * expected,
-            "{approach} {expected}"
-        );
+        assert!((approach - expected).abs() < 1e-13 * expected, "{approach} {expected}");
         assert!((pivot - determinant).abs() < 1e-13, "{pivot} {determinant}");
         assert!(path.next().is_none() && path.next().is_none());
         // What came before stays.
@@ -110,27 +99,14 @@ fn a_kernel_that_is_not_positive_definite_names_node_and_approach() {
 fn an_overlap_under_a_broken_promise_names_node_and_approach() {
     // Positive definite, but a cell raises the surface at a distance of two.
     let kernel = Strip(vec![1.0, 0.0, -0.4, 0.0, 0.0]);
-    assert!(
-        kernel
-            .matrix(&[0, 1, 2, 3, 4])
-            .symmetric_eigenvalues()
-            .min()
-            > 0.0
-    );
+    assert!(kernel.matrix(&[0, 1, 2, 3, 4]).symmetric_eigenvalues().min() > 0.0);
     // Node 2 raises node 4 to the indenter before node 3, whose neighbours do nothing to it,
     // touches at 0.95. In a window of three nodes nobody watches node 4, whose bound was 1.
     let gaps = [0.0, 5.0, 0.1, 0.95, 1.0];
     let convex = Promising(kernel.clone(), ContactGrowth::Convex);
     let mut path = solver(&convex, &gaps, Some(3));
     let error = path.find_map(Result::err).unwrap();
-    let Error::NotMonotone {
-        ix,
-        iy,
-        approach,
-        value,
-        ..
-    } = error
-    else {
+    let Error::NotMonotone { ix, iy, approach, value, .. } = error else {
         panic!("{error}");
     };
     assert_eq!((ix, iy), (4, 0));
@@ -183,14 +159,7 @@ fn nodes_that_leave_under_a_broken_promise_are_named() {
                 None => panic!("no error after {states} states, window {window:?}"),
             }
         };
-        let Error::NotMonotone {
-            ix,
-            iy,
-            approach,
-            value,
-            ..
-        } = error
-        else {
+        let Error::NotMonotone { ix, iy, approach, value, .. } = error else {
             panic!("{error}");
         };
         assert_eq!(states, 3, "{growth:?}, window {window:?}");
@@ -202,26 +171,15 @@ fn nodes_that_leave_under_a_broken_promise_are_named() {
     // Without a promise it leaves, when the pressure that the three nodes give it is zero, and touches
     // again once the fourth has, which takes load from the third.
     let inverse = kernel.matrix(&[0, 1, 2]).try_inverse().unwrap();
-    let y1 = -inverse
-        .row(1)
-        .dot(&DVector::from_row_slice(&gaps[..3]).transpose());
+    let y1 = -inverse.row(1).dot(&DVector::from_row_slice(&gaps[..3]).transpose());
     let expected = -y1 / inverse.row(1).sum();
     let mut path = solver(&kernel, &gaps, None);
     let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-    let events: Vec<_> = states
-        .iter()
-        .map(|state| (state.event, state.node.0))
-        .collect();
+    let events: Vec<_> = states.iter().map(|state| (state.event, state.node.0)).collect();
     let touch = |node| (ContactEvent::Touch, node);
     let leave = |node| (ContactEvent::Release, node);
-    assert_eq!(
-        events,
-        [touch(0), touch(1), touch(2), leave(1), touch(3), touch(1)]
-    );
-    let counts: Vec<_> = states
-        .iter()
-        .map(|state| state.contact.contact_nodes)
-        .collect();
+    assert_eq!(events, [touch(0), touch(1), touch(2), leave(1), touch(3), touch(1)]);
+    let counts: Vec<_> = states.iter().map(|state| state.contact.contact_nodes).collect();
     assert_eq!(counts, [1, 2, 3, 2, 3, 4]);
     let error = (states[3].contact.approach - expected).abs();
     assert!(error < 1e-13, "{} {expected}", states[3].contact.approach);
@@ -234,16 +192,8 @@ fn nodes_that_leave_under_a_broken_promise_are_named() {
 #[test]
 fn a_failure_goes_with_the_events_before_it() {
     for (coefficients, gaps, window) in [
-        (
-            [1.0, 0.4, -0.35, 0.4, -0.2, -0.3],
-            [0.4, 2.0, 2.0, 0.0, 0.1, 1.8],
-            4,
-        ),
-        (
-            [1.0, -0.4, -0.55, 0.45, 0.2, -0.15],
-            [0.7, 0.8, 1.9, 0.2, 1.3, 0.9],
-            3,
-        ),
+        ([1.0, 0.4, -0.35, 0.4, -0.2, -0.3], [0.4, 2.0, 2.0, 0.0, 0.1, 1.8], 4),
+        ([1.0, -0.4, -0.55, 0.45, 0.2, -0.15], [0.7, 0.8, 1.9, 0.2, 1.3, 0.9], 3),
     ] {
         let kernel = Promising(Strip(coefficients.to_vec()), ContactGrowth::Monotone);
         let outcome = |window: usize| {
@@ -262,22 +212,13 @@ fn a_failure_goes_with_the_events_before_it() {
         assert_eq!(found, expected);
         assert!(taken_back > 0);
         let (
-            Some(Error::NotPositiveDefinite {
-                ix, approach: at, ..
-            }),
-            Some(Error::NotPositiveDefinite {
-                ix: other,
-                approach,
-                ..
-            }),
+            Some(Error::NotPositiveDefinite { ix, approach: at, .. }),
+            Some(Error::NotPositiveDefinite { ix: other, approach, .. }),
         ) = (single, failure)
         else {
             panic!("{gaps:?}");
         };
-        assert!(
-            ix == other && (at - approach).abs() < 1e-12 * at,
-            "{ix} {other}"
-        );
+        assert!(ix == other && (at - approach).abs() < 1e-12 * at, "{ix} {other}");
     }
 }
 

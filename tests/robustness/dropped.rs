@@ -9,20 +9,15 @@ use nalgebra::DMatrix;
 fn problem() -> (HeightMap, Boussinesq) {
     let heights = DMatrix::from_fn(7, 6, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
     let grid = Grid::new(7, 6, 1.0, 1.0).unwrap();
-    (
-        HeightMap::new(heights).unwrap(),
-        Boussinesq::new(grid, 1.0).unwrap(),
-    )
+    (HeightMap::new(heights).unwrap(), Boussinesq::new(grid, 1.0).unwrap())
 }
 
 /// States of a path that is no more are read, give their fields, and are gone on from, wherever it was dropped.
 #[test]
 fn a_path_dropped_midway() {
     let (surface, kernel) = problem();
-    let whole: Vec<LoadingState> = LoadingSolver::new(&surface, &kernel)
-        .unwrap()
-        .map(Result::unwrap)
-        .collect();
+    let whole: Vec<LoadingState> =
+        LoadingSolver::new(&surface, &kernel).unwrap().map(Result::unwrap).collect();
     for count in 2..whole.len() {
         let mut path = LoadingSolver::new(&surface, &kernel).unwrap();
         let history: History = path.by_ref().take(count).map(Result::unwrap).collect();
@@ -53,10 +48,7 @@ fn a_path_dropped_midway() {
 #[test]
 fn a_sweep_dropped_midway() {
     let (surface, kernel) = problem();
-    let fresh = FixedLoadSolver::new(&surface, &kernel)
-        .unwrap()
-        .solve(2.0)
-        .unwrap();
+    let fresh = FixedLoadSolver::new(&surface, &kernel).unwrap().solve(2.0).unwrap();
     for count in 0..4 {
         let mut solver = FixedLoadSolver::new(&surface, &kernel).unwrap();
         let swept: Vec<_> = solver

@@ -93,11 +93,8 @@ fn run(
     assert!(path.next().is_none());
     let history: History = states.iter().copied().collect();
     for target in [0.0, 1e-308, 1.0, f64::MAX, f64::INFINITY, f64::NAN, -1.0] {
-        let readings = [
-            history.at_load(target),
-            history.at_approach(target),
-            history.at_mean_gap(target),
-        ];
+        let readings =
+            [history.at_load(target), history.at_approach(target), history.at_mean_gap(target)];
         for state in readings.iter().flatten() {
             let pressure = path.pressure_at(state);
             // Full contact is read at any load, also where it or its pressures over- or underflow.
@@ -178,41 +175,25 @@ fn powers_of_two_scale_exactly() {
     let states = |length: i32, height: i32, modulus: i32| {
         let [cell, height, modulus] = [length, height, modulus].map(|e| 2_f64.powi(e));
         let grid = Grid::new(7, 6, cell, 3.0 * cell).unwrap();
-        run(
-            grid,
-            modulus,
-            &(&heights * height),
-            ContactRule::FirstContact,
-            None,
-        )
-        .unwrap()
+        run(grid, modulus, &(&heights * height), ContactRule::FirstContact, None).unwrap()
     };
     let reference = states(0, 0, 0);
     assert_eq!(reference.len(), 42);
-    for (length, height, modulus) in [
-        (-30, -40, 38),
-        (100, -200, 60),
-        (-200, -300, -100),
-        (150, 200, 90),
-    ] {
+    for (length, height, modulus) in
+        [(-30, -40, 38), (100, -200, 60), (-200, -300, -100), (150, 200, 90)]
+    {
         let scaled = states(length, height, modulus);
         for (a, b) in reference.iter().zip(&scaled) {
             let scale = |value: f64, exponent: i32| value * 2_f64.powi(exponent);
             assert_eq!(a.node, b.node);
             assert_eq!(scale(a.contact.approach, height), b.contact.approach);
             assert_eq!(scale(a.contact.mean_gap, height), b.contact.mean_gap);
-            assert_eq!(
-                scale(a.contact.load, length + height + modulus),
-                b.contact.load
-            );
+            assert_eq!(scale(a.contact.load, length + height + modulus), b.contact.load);
             assert_eq!(
                 scale(a.contact.contact_stiffness.unwrap(), length + modulus),
                 b.contact.contact_stiffness.unwrap()
             );
-            assert_eq!(
-                scale(a.contact.energy, length + 2 * height + modulus),
-                b.contact.energy
-            );
+            assert_eq!(scale(a.contact.energy, length + 2 * height + modulus), b.contact.energy);
         }
     }
 }
@@ -229,13 +210,7 @@ fn sensible_paths_far_from_one() {
         (1e80, 1e100, 1e-15),
     ] {
         let grid = Grid::new(4, 5, cell, cell).unwrap();
-        let states = run(
-            grid,
-            e_star,
-            &(&heights * height),
-            ContactRule::FirstContact,
-            None,
-        );
+        let states = run(grid, e_star, &(&heights * height), ContactRule::FirstContact, None);
         match states {
             Ok(states) => assert!(states.len() == 20 && states.iter().all(finite)),
             Err(error) => panic!("height {height:e}, cell {cell:e}, E* {e_star:e}: {error}"),
@@ -301,10 +276,7 @@ fn gaps_that_underflow_are_closed() {
             let first: Vec<_> = states[..3].iter().map(|state| state.node).collect();
             assert_eq!(first, [(1, 1), (3, 1), (2, 2)]);
             // Iterations take what is so close for ties.
-            assert_eq!(
-                states[2].contact.approach == 0.0,
-                iterations || tiny < 1e-140
-            );
+            assert_eq!(states[2].contact.approach == 0.0, iterations || tiny < 1e-140);
         }
     };
     for tiny in [5e-324, 1e-310, 1e-200, 1e-141, 1e-100, 1e-30] {

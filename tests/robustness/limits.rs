@@ -26,33 +26,20 @@ fn limits_that_make_no_sense() {
             assert!(matches!(error, Error::NotPositive { .. }), "{error}");
         }
     }
-    for bad in [
-        0.0,
-        -1e-9,
-        1.0 + 1e-9,
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-    ] {
+    for bad in [0.0, -1e-9, 1.0 + 1e-9, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let error = sphere.builder().max_area_fraction(bad).build().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
     }
     // Less than a node is no contact.
     let error = sphere.builder().max_area_fraction(0.9 / 16.0).build();
     let error = error.unwrap_err();
-    assert!(
-        matches!(error, Error::Surface(SurfaceError::LessThanOneNode { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, Error::Surface(SurfaceError::LessThanOneNode { .. })), "{error}");
     let unloaded = sphere.states()[0].contact.mean_gap;
     for bad in [-1e-9, unloaded, 2.0 * unloaded, f64::NAN, f64::INFINITY] {
         let error = sphere.builder().min_mean_gap(bad).build().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
     }
-    for builder in [
-        sphere.builder().max_nodes(0),
-        sphere.builder().window_size(0),
-    ] {
+    for builder in [sphere.builder().max_nodes(0), sphere.builder().window_size(0)] {
         let error = builder.build().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
     }
@@ -81,10 +68,7 @@ fn assert_same(found: &[LoadingState], expected: &[LoadingState]) {
             (a.step, a.event, a.contact.contact_nodes),
             (b.step, b.event, b.contact.contact_nodes)
         );
-        assert!(
-            (a.contact.load - b.contact.load).abs() <= 1e-12 * b.contact.load,
-            "{a:?} {b:?}"
-        );
+        assert!((a.contact.load - b.contact.load).abs() <= 1e-12 * b.contact.load, "{a:?} {b:?}");
         assert!(
             (a.contact.approach - b.contact.approach).abs() <= 1e-12 * b.contact.approach,
             "{a:?} {b:?}"
@@ -124,10 +108,7 @@ fn limits_are_ends_and_not_errors() {
         (sphere.builder().max_load(load), LoadingEnd::Load),
         // The nominal area is 1.
         (sphere.builder().max_mean_pressure(load), LoadingEnd::Load),
-        (
-            sphere.builder().max_approach(approach),
-            LoadingEnd::Approach,
-        ),
+        (sphere.builder().max_approach(approach), LoadingEnd::Approach),
         (sphere.builder().min_mean_gap(mean_gap), LoadingEnd::MeanGap),
     ] {
         let states = run(builder, end);
@@ -150,15 +131,9 @@ fn the_first_limit_reached_counts() {
     assert_eq!(run(builder, LoadingEnd::Nodes).len(), 9);
     let builder = sphere.builder().max_nodes(9).max_area_fraction(0.1);
     assert_eq!(run(builder, LoadingEnd::AreaFraction).len(), 3);
-    let builder = sphere
-        .builder()
-        .max_load(load)
-        .max_approach(all[12].contact.approach);
+    let builder = sphere.builder().max_load(load).max_approach(all[12].contact.approach);
     let states = run(builder, LoadingEnd::Approach);
-    assert_eq!(
-        states.last().unwrap().contact.approach,
-        all[12].contact.approach
-    );
+    assert_eq!(states.last().unwrap().contact.approach, all[12].contact.approach);
     let builder = sphere.builder().max_load(load).max_load(0.5 * load);
     let states = run(builder, LoadingEnd::Load);
     assert_eq!(states.last().unwrap().contact.load, 0.5 * load);
@@ -181,11 +156,7 @@ fn a_limit_at_an_event_is_that_event() {
                 LoadingEnd::Load
             }
         });
-        assert!(
-            states
-                .iter()
-                .all(|state| state.event == ContactEvent::Touch)
-        );
+        assert!(states.iter().all(|state| state.event == ContactEvent::Touch));
         assert_eq!(states.last().unwrap().contact.load, state.contact.load);
     }
 }
@@ -197,10 +168,8 @@ fn limits_of_approach_and_mean_gap_at_an_event() {
     let grid = Grid::new(5, 4, 1.0, 1.0).unwrap();
     let heights = DMatrix::from_fn(5, 4, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
     let surface = HeightMap::new(heights).unwrap();
-    let kernels: [&dyn InfluenceKernel; 2] = [
-        &Boussinesq::new(grid, 1.0).unwrap(),
-        &PeriodicBoussinesq::new(grid, 1.0).unwrap(),
-    ];
+    let kernels: [&dyn InfluenceKernel; 2] =
+        [&Boussinesq::new(grid, 1.0).unwrap(), &PeriodicBoussinesq::new(grid, 1.0).unwrap()];
     for kernel in kernels {
         let builder = || LoadingSolver::builder(&surface, kernel).window_size(1);
         let all: Vec<_> = builder().build().unwrap().map(Result::unwrap).collect();
@@ -217,10 +186,7 @@ fn limits_of_approach_and_mean_gap_at_an_event() {
             let limited = builder().max_approach(less).build().unwrap();
             let states: Vec<_> = limited.map(Result::unwrap).collect();
             let last = states.last().unwrap();
-            assert_eq!(
-                (last.event, last.contact.approach),
-                (ContactEvent::Limit, less)
-            );
+            assert_eq!((last.event, last.contact.approach), (ContactEvent::Limit, less));
             assert_eq!(states.len(), state.step);
         }
     }

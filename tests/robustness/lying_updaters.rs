@@ -75,8 +75,7 @@ impl LinearUpdater for Lying {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), asperity::Error> {
-        self.inner
-            .solve(problem, contact, count, approach, solution)?;
+        self.inner.solve(problem, contact, count, approach, solution)?;
         for (what, value) in [
             ("NaN pressure", f64::NAN),
             ("infinite pressure", f64::INFINITY),
@@ -170,10 +169,8 @@ fn lying_updaters() {
     let grid = Grid::new(6, 5, 1.0, 1.0).unwrap();
     let heights = DMatrix::from_fn(6, 5, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
     let rough = HeightMap::new(heights).unwrap();
-    let kernels: [&dyn InfluenceKernel; 2] = [
-        &Boussinesq::new(grid, 1.0).unwrap(),
-        &Spectral::new(grid, 1.0).unwrap(),
-    ];
+    let kernels: [&dyn InfluenceKernel; 2] =
+        [&Boussinesq::new(grid, 1.0).unwrap(), &Spectral::new(grid, 1.0).unwrap()];
     for kernel in kernels {
         for what in LIES {
             for turn in 1..4 {
@@ -183,12 +180,7 @@ fn lying_updaters() {
                     } else {
                         Box::new(ConjugateGradient::new())
                     };
-                    let updater = Lying {
-                        inner,
-                        what,
-                        calls: 0,
-                        turn,
-                    };
+                    let updater = Lying { inner, what, calls: 0, turn };
                     let builder = LoadingSolver::builder(&rough, kernel).updater(updater);
                     let Ok(mut path) = builder.window_size(4).build() else {
                         continue;

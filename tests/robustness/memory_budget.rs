@@ -19,23 +19,14 @@ fn memory_budgets() {
             Ok(mut path) => path.next().unwrap().unwrap_err(),
             Err(error) => error,
         };
-        let Error::MemoryBudget {
-            needed,
-            budget: told,
-            nodes_that_fit,
-        } = error
-        else {
+        let Error::MemoryBudget { needed, budget: told, nodes_that_fit } = error else {
             panic!("{error}");
         };
         assert_eq!((told, nodes_that_fit), (budget, 0));
         assert!(needed > budget);
     }
     // Enough for a part of the path.
-    let all: Vec<LoadingState> = factored(&sphere)
-        .build()
-        .unwrap()
-        .map(Result::unwrap)
-        .collect();
+    let all: Vec<LoadingState> = factored(&sphere).build().unwrap().map(Result::unwrap).collect();
     let mut seen = Vec::new();
     for budget in (200_000..8_000_000).step_by(100_000) {
         let mut path = factored(&sphere).memory_budget(budget).build().unwrap();
@@ -51,10 +42,7 @@ fn memory_budgets() {
         // Close to the limit windows are smaller, and rounding differs: 1e-11 as between windows.
         for (state, expected) in states.iter().zip(&all) {
             let change = state.contact.load - expected.contact.load;
-            assert!(
-                change.abs() <= 1e-11 * expected.contact.load,
-                "{state:?} {expected:?}"
-            );
+            assert!(change.abs() <= 1e-11 * expected.contact.load, "{state:?} {expected:?}");
         }
         for _ in 0..3 {
             assert!(path.next().is_none(), "fused");
@@ -65,12 +53,7 @@ fn memory_budgets() {
             seen.push(states.len());
             continue;
         };
-        let Error::MemoryBudget {
-            needed,
-            budget: told,
-            nodes_that_fit,
-        } = error
-        else {
+        let Error::MemoryBudget { needed, budget: told, nodes_that_fit } = error else {
             panic!("{error}");
         };
         assert_eq!(told, budget);
@@ -103,9 +86,7 @@ fn the_nodes_that_fit_do_fit() {
             // No path: that many nodes are refused as a limit.
             continue;
         }
-        let again = factored(&sphere)
-            .memory_budget(budget)
-            .max_nodes(nodes_that_fit);
+        let again = factored(&sphere).memory_budget(budget).max_nodes(nodes_that_fit);
         let count = again.build().unwrap().map_while(Result::ok).count();
         assert_eq!(count, nodes_that_fit, "budget {budget}");
         partial += usize::from(nodes_that_fit > 0);

@@ -17,8 +17,7 @@ const WORKSPACE: usize = 5 << 20;
 /// Bytes at the peak of some work. They are counted by thread: all the work is in one.
 fn peak(work: impl FnOnce() + Send) -> usize {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.unwrap()
-        .install(|| usize::try_from(measure(work).bytes_max).unwrap())
+    pool.unwrap().install(|| usize::try_from(measure(work).bytes_max).unwrap())
 }
 
 /// A budget of 1 MiB on a grid of which a single field takes 8 MiB.
@@ -118,10 +117,7 @@ fn paths_stay_within_their_budget() {
                         "{bytes} bytes within a budget of {budget}"
                     );
                 }
-                partial += counts
-                    .iter()
-                    .filter(|c| c.is_some_and(|c| c > 0 && c < 900))
-                    .count();
+                partial += counts.iter().filter(|c| c.is_some_and(|c| c > 0 && c < 900)).count();
             }
         }
     }

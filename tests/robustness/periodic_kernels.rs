@@ -103,14 +103,10 @@ fn any_gauge_has_the_same_path() {
     let kernel = Spectral::new(grid, 1.0).unwrap();
     let heights = DMatrix::from_fn(6, 5, |ix, iy| ((3 * ix + 5 * iy * iy) as f64).sin());
     let surface = HeightMap::new(heights).unwrap();
-    let expected: Vec<_> = LoadingSolver::new(&surface, &kernel)
-        .unwrap()
-        .map(Result::unwrap)
-        .collect();
+    let expected: Vec<_> =
+        LoadingSolver::new(&surface, &kernel).unwrap().map(Result::unwrap).collect();
     for growth in [ContactGrowth::Unknown, ContactGrowth::Monotone] {
-        for gauge in [
-            -10.0, -1.0, -1e-3, 0.0, 1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e5, 1e7, 1e9,
-        ] {
+        for gauge in [-10.0, -1.0, -1e-3, 0.0, 1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e5, 1e7, 1e9] {
             let coefficient = |di, dj| {
                 // In units of its own gauge.
                 kernel.coefficient(di, dj) + kernel.gauge() * (gauge - 1.0)

@@ -47,8 +47,7 @@ impl LinearUpdater for Seam {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner
-            .solve(problem, contact, count, approach, solution)
+        self.inner.solve(problem, contact, count, approach, solution)
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
@@ -89,10 +88,7 @@ fn shapes(nx: usize, ny: usize) -> Vec<(&'static str, DMatrix<f64>)> {
         ("strip along x", field(&|_, y| -(y * y))),
         ("bowl", field(&|x, y| x * x + y * y)),
         ("wave", field(&|x, y| turn(x, nx) * turn(y, ny))),
-        (
-            "board",
-            DMatrix::from_fn(nx, ny, |ix, iy| ((ix + iy) % 2) as f64),
-        ),
+        ("board", DMatrix::from_fn(nx, ny, |ix, iy| ((ix + iy) % 2) as f64)),
         // Mirrored in both directions, of three heights.
         (
             "steps",
@@ -106,10 +102,7 @@ fn shapes(nx: usize, ny: usize) -> Vec<(&'static str, DMatrix<f64>)> {
 fn kernels(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
     [
         ("free", Box::new(Boussinesq::new(grid, 1.0).unwrap())),
-        (
-            "Love",
-            Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap()),
-        ),
+        ("Love", Box::new(PeriodicBoussinesq::new(grid, 1.0).unwrap())),
         ("spectral", Box::new(Spectral::new(grid, 1.0).unwrap())),
     ]
 }
@@ -139,10 +132,7 @@ fn compare(
         (false, true) => own,
     });
     let load = state.contact.load / problem.grid().cell_area();
-    let rhs = DVector::from_fn(
-        n + 1,
-        |i, _| if i < n { -gap[contact[i]] } else { own * load },
-    );
+    let rhs = DVector::from_fn(n + 1, |i, _| if i < n { -gap[contact[i]] } else { own * load });
     let solved = matrix.lu().solve(&rhs).ok_or("singular")?;
     let (pressure, approach) = (solved.rows(0, n), own * solved[n]);
     let greatest = problem.greatest_gap();
@@ -153,17 +143,12 @@ fn compare(
     }
     let reported = approach - table.gauge().unwrap_or(0.0) * load;
     if (reported - state.contact.approach).abs() > length {
-        return Err(format!(
-            "approach {} and not {reported}",
-            state.contact.approach
-        ));
+        return Err(format!("approach {} and not {reported}", state.contact.approach));
     }
     let mut open = 0.0;
     for node in (0..gap.len()).filter(|node| !contact.contains(node)) {
         let inside = contact.iter().zip(pressure.iter());
-        let u: f64 = inside
-            .map(|(&other, p)| problem.coefficient(node, other).unwrap() * p)
-            .sum();
+        let u: f64 = inside.map(|(&other, p)| problem.coefficient(node, other).unwrap() * p).sum();
         let here = gap[node] + u - approach;
         if here < -length {
             return Err(format!("gap {here:e} of {greatest:e}"));
@@ -172,10 +157,7 @@ fn compare(
     }
     let mean_gap = open / gap.len() as f64;
     if (mean_gap - state.contact.mean_gap).abs() > length {
-        return Err(format!(
-            "mean gap {} and not {mean_gap}",
-            state.contact.mean_gap
-        ));
+        return Err(format!("mean gap {} and not {mean_gap}", state.contact.mean_gap));
     }
     Ok(())
 }
@@ -221,40 +203,25 @@ fn whole_path<U: LinearUpdater>(
 /// Every updater on every shape of some grids.
 fn catalogue(grids: &[(usize, usize, f64, f64)]) {
     // Rounding of 2⁻⁵³ times the condition number, which reaches 4e5 on the strips of the spectral kernel.
-    let exact = Allowed {
-        pressure: 1e-10,
-        length: 1e-11,
-    };
+    let exact = Allowed { pressure: 1e-10, length: 1e-11 };
     // States between the ends of windows: see `paths/without_factor.rs`.
-    let near = Allowed {
-        pressure: 1e-4,
-        length: 1e-4,
-    };
+    let near = Allowed { pressure: 1e-4, length: 1e-4 };
     let (mut wrong, mut paths) = (Vec::new(), 0);
     for &(nx, ny, dx, dy) in grids {
         let grid = Grid::new(nx, ny, dx, dy).unwrap();
         for (shape, heights) in shapes(nx, ny) {
             let map = HeightMap::new(heights).unwrap();
             for (name, kernel) in kernels(grid) {
-                let seam = |at: usize| Seam {
-                    inner: Handover::new(),
-                    at,
-                };
+                let seam = |at: usize| Seam { inner: Handover::new(), at };
                 let kernel = &*kernel;
                 let mut results = vec![
                     ("dense", whole_path(&map, kernel, Dense, None, exact)),
-                    (
-                        "factor",
-                        whole_path(&map, kernel, RecursiveCholesky::new(), None, exact),
-                    ),
+                    ("factor", whole_path(&map, kernel, RecursiveCholesky::new(), None, exact)),
                     (
                         "factor, one by one",
                         whole_path(&map, kernel, RecursiveCholesky::new(), Some(1), exact),
                     ),
-                    (
-                        "default",
-                        whole_path(&map, kernel, Handover::new(), None, exact),
-                    ),
+                    ("default", whole_path(&map, kernel, Handover::new(), None, exact)),
                 ];
                 // Longer periodic cells need a factor.
                 if kernel.boundary() == Boundary::Free
@@ -269,10 +236,7 @@ fn catalogue(grids: &[(usize, usize, f64, f64)]) {
                             "iterations by threes",
                             whole_path(&map, kernel, ConjugateGradient::new(), Some(3), near),
                         ),
-                        (
-                            "seam at 1",
-                            whole_path(&map, kernel, seam(1), Some(2), near),
-                        ),
+                        ("seam at 1", whole_path(&map, kernel, seam(1), Some(2), near)),
                         (
                             "seam in the middle",
                             whole_path(&map, kernel, seam(nx * ny / 2), Some(4), near),
@@ -290,12 +254,7 @@ fn catalogue(grids: &[(usize, usize, f64, f64)]) {
             }
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "{} of {paths} paths are wrong:\n{}",
-        wrong.len(),
-        wrong.join("\n")
-    );
+    assert!(wrong.is_empty(), "{} of {paths} paths are wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 #[test]
@@ -331,17 +290,11 @@ fn other_rectangles() {
 fn five_in_a_row() {
     let grid = Grid::new(1, 5, 1.0, 1.0).unwrap();
     let map = HeightMap::new(DMatrix::from_row_slice(1, 5, &[0.0, 2.0, 1.0, 2.0, 0.0])).unwrap();
-    let allowed = Allowed {
-        pressure: 1e-13,
-        length: 1e-13,
-    };
+    let allowed = Allowed { pressure: 1e-13, length: 1e-13 };
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     for window in [None, Some(1), Some(2), Some(5)] {
         whole_path(&map, &kernel, Handover::new(), window, allowed).unwrap();
     }
-    let near = Allowed {
-        pressure: 1e-4,
-        length: 1e-4,
-    };
+    let near = Allowed { pressure: 1e-4, length: 1e-4 };
     whole_path(&map, &kernel, ConjugateGradient::new(), None, near).unwrap();
 }

@@ -98,15 +98,9 @@ fn check_alike(files: &[PathBuf]) -> Result<(), Failure> {
 
 /// The least and the greatest load that all paths have.
 fn common(tables: &[Table]) -> Option<(f64, f64)> {
-    let ends = tables
-        .iter()
-        .map(Table::loads)
-        .collect::<Option<Vec<_>>>()?;
+    let ends = tables.iter().map(Table::loads).collect::<Option<Vec<_>>>()?;
     let first = ends.iter().map(|(first, _)| *first).fold(0.0, f64::max);
-    let last = ends
-        .iter()
-        .map(|(_, last)| *last)
-        .fold(f64::INFINITY, f64::min);
+    let last = ends.iter().map(|(_, last)| *last).fold(f64::INFINITY, f64::min);
     (first > 0.0 && first < last).then_some((first, last))
 }
 
@@ -127,10 +121,7 @@ impl Row {
             // Of a sample.
             (mean, (spread / (count - 1.0).max(1.0)).sqrt())
         };
-        Self {
-            load,
-            columns: (0..table::COLUMNS.len()).map(column).collect(),
-        }
+        Self { load, columns: (0..table::COLUMNS.len()).map(column).collect() }
     }
 }
 

@@ -19,9 +19,8 @@ const NAMES: [(&str, &str); table::COLUMNS.len()] = [
 ];
 
 pub(super) fn draw(rows: &[Row], paths: usize, name: &Path) -> Result<PathBuf, Failure> {
-    let charts: Vec<Chart> = (0..table::COLUMNS.len())
-        .filter_map(|column| chart(rows, column, paths))
-        .collect();
+    let charts: Vec<Chart> =
+        (0..table::COLUMNS.len()).filter_map(|column| chart(rows, column, paths)).collect();
     chart::draw(&charts, 2, name)
 }
 
@@ -39,11 +38,7 @@ fn chart(rows: &[Row], column: usize, paths: usize) -> Option<Chart> {
         points(&|mean, spread| mean + spread),
         points(&|mean, spread| mean - spread),
     ];
-    let least = below
-        .iter()
-        .chain(&mean)
-        .map(|(_, y)| *y)
-        .reduce(f64::min)?;
+    let least = below.iter().chain(&mean).map(|(_, y)| *y).reduce(f64::min)?;
     let greatest = above.iter().map(|(_, y)| *y).reduce(f64::max)?;
     let (title, unit) = NAMES[column];
     let y = match (title, unit) {

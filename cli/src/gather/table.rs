@@ -33,10 +33,8 @@ impl Table {
             found.ok_or_else(|| bad(format!("there is no column {name}")))
         };
         let load = place("load")?;
-        let columns: Vec<usize> = COLUMNS
-            .iter()
-            .map(|(name, _)| place(name))
-            .collect::<Result<_, _>>()?;
+        let columns: Vec<usize> =
+            COLUMNS.iter().map(|(name, _)| place(name)).collect::<Result<_, _>>()?;
         let mut rows: Vec<(f64, Vec<f64>)> = Vec::new();
         for (number, line) in lines.enumerate() {
             let cells: Vec<&str> = line.split(',').collect();
@@ -57,11 +55,7 @@ impl Table {
 
     /// The first and the last load above zero.
     pub(super) fn loads(&self) -> Option<(f64, f64)> {
-        let mut loads = self
-            .rows
-            .iter()
-            .map(|(load, _)| *load)
-            .filter(|load| *load > 0.0);
+        let mut loads = self.rows.iter().map(|(load, _)| *load).filter(|load| *load > 0.0);
         let first = loads.next()?;
         Some((first, loads.next_back()?))
     }

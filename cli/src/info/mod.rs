@@ -150,16 +150,8 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
     let levelled = whole.surface.level(Trend::Plane).map_err(failed)?;
     let tilt = map.rms_height().powi(2) - levelled.map().rms_height().powi(2);
     // What a difference of squares leaves of rounding is no tilt.
-    let tilt = if tilt > 1e-12 * map.rms_height().powi(2) {
-        tilt.sqrt()
-    } else {
-        0.0
-    };
-    say!(
-        "tilt          {} rms; without it {}",
-        length(tilt),
-        roughness(levelled.map())
-    );
+    let tilt = if tilt > 1e-12 * map.rms_height().powi(2) { tilt.sqrt() } else { 0.0 };
+    say!("tilt          {} rms; without it {}", length(tilt), roughness(levelled.map()));
     say!(
         "shape         skewness Ssk {:.3}, kurtosis Sku {:.3} (normal: 0, 3), without the tilt",
         levelled.map().skewness(),
@@ -185,9 +177,8 @@ fn spectrum(levelled: &Topography) {
     let windowed = levelled.window(Window::Hann);
     if let Ok(fit) = windowed.and_then(|windowed| windowed.fit_self_affine()) {
         let estimate = |name: &str, estimate: Option<Estimate>| {
-            estimate.map_or_else(String::new, |estimate| {
-                format!(", {name} {}", length(estimate.value))
-            })
+            estimate
+                .map_or_else(String::new, |estimate| format!(", {name} {}", length(estimate.value)))
         };
         if (0.0..=HIGHEST_HURST).contains(&fit.hurst.value) {
             say!(

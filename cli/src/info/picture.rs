@@ -33,10 +33,7 @@ pub(super) fn map(whole: &Whole, directory: &Path) -> Result<PathBuf, Failure> {
     }
     .write(
         &directory.join("surface_map.png"),
-        &format!(
-            "{nx} × {ny} nodes, Sq = {}",
-            quantity(heights.rms_height(), "m", 4)
-        ),
+        &format!("{nx} × {ny} nodes, Sq = {}", quantity(heights.rms_height(), "m", 4)),
     )
 }
 

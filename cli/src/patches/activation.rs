@@ -20,9 +20,7 @@ pub(super) fn draw(record: &LoadingRecord, name: &Path) -> Result<PathBuf, Failu
     positive.sort_by(f64::total_cmp);
     let place = ((BELOW * grid.nodes() as f64) as usize).min(positive.len() / 2);
     let (Some(&least), Some(&greatest)) = (positive.get(place), positive.last()) else {
-        return Err(Failure::request(
-            "there is no map of activation: no node touched under load",
-        ));
+        return Err(Failure::request("there is no map of activation: no node touched under load"));
     };
     let touched = loads.iter().filter(|load| !load.is_nan()).count();
     FieldMap {
@@ -50,15 +48,10 @@ fn rounds(least: f64, greatest: f64) -> Vec<f64> {
     let between = |digits: &[f64]| -> Vec<f64> {
         let all =
             (first..=last).flat_map(|decade| digits.iter().map(move |d| d * 10_f64.powi(decade)));
-        all.filter(|load| (least..greatest).contains(load))
-            .collect()
+        all.filter(|load| (least..greatest).contains(load)).collect()
     };
     let decades = between(&[1.0]);
-    if decades.len() > 1 {
-        decades
-    } else {
-        between(&[1.0, 2.0, 5.0])
-    }
+    if decades.len() > 1 { decades } else { between(&[1.0, 2.0, 5.0]) }
 }
 
 #[cfg(test)]

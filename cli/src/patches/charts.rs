@@ -33,8 +33,7 @@ pub(super) fn draw(
     let shown = |quantity: Quantity| -> Vec<(f64, f64)> {
         let all = states().enumerate();
         let some = all.filter(|(k, _)| (count - 1 - k).is_multiple_of(1 + count / POINTS));
-        some.map(|(_, (s, p))| (s.contact.contact_area_fraction, quantity(s, p)))
-            .collect()
+        some.map(|(_, (s, p))| (s.contact.contact_area_fraction, quantity(s, p))).collect()
     };
     // Marks end at `top`, so that they do not run behind a legend above.
     let against_area = |title: &str, y: Axis, top: f64, quantity: Quantity| {
@@ -89,20 +88,14 @@ fn areas(
     marks: &[Mark],
 ) -> Option<Chart> {
     let loaded = states.iter().filter(|(state, _)| state.contact.load > 0.0);
-    let counted = loaded
-        .clone()
-        .map(|(s, _)| (s.contact.load, s.contact.contact_area_fraction));
-    let corrected: Vec<_> = loaded
-        .map(|(s, p)| (s.contact.load, corrected(s, p)))
-        .collect();
+    let counted = loaded.clone().map(|(s, _)| (s.contact.load, s.contact.contact_area_fraction));
+    let corrected: Vec<_> = loaded.map(|(s, p)| (s.contact.load, corrected(s, p))).collect();
     let (first, last) = (*corrected.first()?, *corrected.last()?);
     let least = corrected.iter().map(|(_, area)| *area).fold(1.0, f64::min);
     let y = Axis::plain_logarithmic(AREA, least, last.1);
     let lines = marks.iter().map(|mark| {
-        let mut line = mark.series([
-            (mark.state.contact.load, least),
-            (mark.state.contact.load, last.1),
-        ]);
+        let mut line =
+            mark.series([(mark.state.contact.load, least), (mark.state.contact.load, last.1)]);
         line.name.clear();
         line
     });
@@ -142,11 +135,7 @@ fn marks(passages: &[Passage]) -> Vec<Mark<'_>> {
         };
         match marks.iter_mut().find(|mark| mark.state.step == state.step) {
             Some(mark) => mark.names.push(passage.name),
-            None => marks.push(Mark {
-                state,
-                names: vec![passage.name],
-                place: 0,
-            }),
+            None => marks.push(Mark { state, names: vec![passage.name], place: 0 }),
         }
     }
     marks.sort_by_key(|mark| mark.state.step);

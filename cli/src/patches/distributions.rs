@@ -54,12 +54,8 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
     let density = density.iter().map(|d| d * found.contact_share * mean);
     let own = outline(found.histogram.edges(), density, 0.0);
     let name = |who: &str, area: f64| format!("{who}, A/A₀ = {:.2} %", 100.0 * area);
-    let mut series = vec![Series::new(
-        name("this surface", found.contact_share),
-        BLUE,
-        Style::Line,
-        own,
-    )];
+    let mut series =
+        vec![Series::new(name("this surface", found.contact_share), BLUE, Style::Line, own)];
     if let Some(law) = persson(record)? {
         let nominal = state.contact.mean_pressure();
         let theory = (0..=POINTS).map(|k| {
@@ -72,11 +68,7 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
     Ok(Some(Chart {
         title: format!("pressure, W = {}", quantity(state.contact.load, "N", 4)),
         x: Axis::linear("pressure p", "Pa", 0.0, greatest),
-        y: Axis::plain(
-            "density over A₀ × mean p in contact",
-            0.0,
-            1.2 * top(&series),
-        ),
+        y: Axis::plain("density over A₀ × mean p in contact", 0.0, 1.2 * top(&series)),
         series,
         legend: Corner::TopRight,
     }))
@@ -148,11 +140,7 @@ fn outline(edges: &[f64], heights: impl Iterator<Item = f64>, foot: f64) -> Vec<
     let ends = |place: Option<&f64>| place.map(|&edge| (edge, foot));
     let bins = edges.windows(2).zip(heights);
     let tops = bins.flat_map(|(ends, height)| [(ends[0], height), (ends[1], height)]);
-    ends(edges.first())
-        .into_iter()
-        .chain(tops)
-        .chain(ends(edges.last()))
-        .collect()
+    ends(edges.first()).into_iter().chain(tops).chain(ends(edges.last())).collect()
 }
 
 /// The upper end of an axis for these series.

@@ -30,10 +30,7 @@ impl Followed {
         let boundary = record.kernel().boundary;
         let found = Percolation::of(&contact, boundary, connectivity);
         let at = |step: usize| record.history().events().get(step.checked_sub(1)?).copied();
-        let passage = |name, step: Option<usize>| Passage {
-            name,
-            state: step.and_then(at),
-        };
+        let passage = |name, step: Option<usize>| Passage { name, state: step.and_then(at) };
         Ok(Self {
             patches: PatchHistory::new(&contact, boundary, connectivity).collect(),
             tree: MergeTree::new(&contact, boundary, connectivity),

@@ -58,11 +58,7 @@ pub(crate) struct Options {
 
 impl Options {
     fn connectivity(&self) -> Connectivity {
-        if self.corners {
-            Connectivity::Eight
-        } else {
-            Connectivity::Four
-        }
+        if self.corners { Connectivity::Eight } else { Connectivity::Four }
     }
 }
 

@@ -26,11 +26,9 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
     if let Some(load) = options.at_load {
         let found = match record.settings().rule {
             // Which is not a function of load.
-            ContactRule::SmallestGap => record
-                .states()
-                .iter()
-                .find(|s| s.contact.load >= load)
-                .copied(),
+            ContactRule::SmallestGap => {
+                record.states().iter().find(|s| s.contact.load >= load).copied()
+            }
             _ => history.at_load(load),
         };
         return found.ok_or_else(|| missed(quantity(load, "N", 6)));
@@ -68,12 +66,6 @@ impl Moment {
         let loads = found.loads(&pressure).map_err(failed)?;
         let mut patches: Vec<_> = found.patches().iter().copied().zip(loads).collect();
         patches.sort_by_key(|(patch, _)| std::cmp::Reverse(patch.nodes));
-        Ok(Self {
-            state,
-            contact_map,
-            pressure,
-            gap,
-            patches,
-        })
+        Ok(Self { state, contact_map, pressure, gap, patches })
     }
 }

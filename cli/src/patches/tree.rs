@@ -31,11 +31,7 @@ pub(super) fn draw(
     name: &Path,
 ) -> Result<PathBuf, Failure> {
     let branches = followed.tree.branches();
-    let tree = Tree {
-        record,
-        followed,
-        leaves: rows(branches, MOST),
-    };
+    let tree = Tree { record, followed, leaves: rows(branches, MOST) };
     let height = ROW * tree.leaves.len() as i32;
     let panel = Panel {
         left: FINE * LEFT,
@@ -47,13 +43,9 @@ pub(super) fn draw(
         text_rise: 0.2,
     };
     let Some(ends) = tree.loads() else {
-        return Err(Failure::request(
-            "there is no tree of mergers: no state carries load",
-        ));
+        return Err(Failure::request("there is no tree of mergers: no state carries load"));
     };
-    draw_fine(name, (WIDTH, TOP + height + 70), |area| {
-        tree.draw(area, &panel, ends)
-    })
+    draw_fine(name, (WIDTH, TOP + height + 70), |area| tree.draw(area, &panel, ends))
 }
 
 struct Tree<'a> {
@@ -74,9 +66,7 @@ impl Tree<'_> {
         let branches = self.followed.tree.branches();
         let births = self.leaves.iter().map(|leaf| branches[leaf.branch].birth);
         let last = self.record.states().last()?.contact.load;
-        let positive = births
-            .map(|step| self.load(step))
-            .filter(|load| *load > 0.0);
+        let positive = births.map(|step| self.load(step)).filter(|load| *load > 0.0);
         let first = positive.fold(last, f64::min);
         (first > 0.0).then_some((first, last))
     }
@@ -107,10 +97,8 @@ impl Tree<'_> {
             // First touch is without load, which has no place on the axis.
             let begin = self.load(branch.birth).max(first);
             let colour = if leaf.into.is_none() { ORANGE } else { BLUE };
-            let thick = Panel {
-                stroke: panel.stroke * (2 + branch.nodes.max(1).ilog10()) / 2,
-                ..*panel
-            };
+            let thick =
+                Panel { stroke: panel.stroke * (2 + branch.nodes.max(1).ilog10()) / 2, ..*panel };
             let line = [begin, end(leaf)].map(|load| (load, place as f64));
             thick.curve(area, (load, &row), line.into_iter(), colour)?;
             let middle = panel.top + panel.height * (2 * place as i32 + 1) / (2 * count as i32);
@@ -128,10 +116,7 @@ impl Tree<'_> {
             let pos = anchor(HPos::Right, VPos::Center);
             panel.write(area, text, at, panel.font - FINE, pos)?;
         }
-        let lasting = branches
-            .iter()
-            .filter(|branch| branch.merger.is_none())
-            .count();
+        let lasting = branches.iter().filter(|branch| branch.merger.is_none()).count();
         let title = format!(
             "The {count} largest of {} patches: each from its first node until it merges into an older one, or to the end ({lasting}, orange)",
             branches.len()

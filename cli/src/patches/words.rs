@@ -26,10 +26,7 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
         Connectivity::Four => ("a side", "sides and corners"),
         Connectivity::Eight => ("a side or a corner", "sides"),
     };
-    say!(
-        "{} states on {nx} x {ny} nodes, {boundary} boundary",
-        record.states().len()
-    );
+    say!("{} states on {nx} x {ny} nodes, {boundary} boundary", record.states().len());
     say!("patches: nodes in contact that share {joined}; channels pass across {channels}");
     say!(
         "the contact percolates when one patch extends {all_the_way}, and seals when no channel does any more"
@@ -41,29 +38,20 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
 pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Followed) {
     for passage in &followed.passages {
         match &passage.state {
-            Some(state) => say!(
-                "{:18} from state {} on: {}",
-                passage.name,
-                state.step,
-                described(state)
-            ),
+            Some(state) => {
+                say!("{:18} from state {} on: {}", passage.name, state.step, described(state))
+            }
             None => say!("{:18} not on this path", passage.name),
         }
     }
-    let is_missing = followed
-        .passages
-        .iter()
-        .any(|passage| passage.state.is_none());
+    let is_missing = followed.passages.iter().any(|passage| passage.state.is_none());
     let can_go_on = matches!(
         record.kernel().origin,
         KernelOrigin::Boussinesq { .. }
             | KernelOrigin::PeriodicBoussinesq { .. }
             | KernelOrigin::Spectral { .. }
     );
-    let reached = record
-        .states()
-        .last()
-        .map_or(0.0, |state| state.contact.contact_area_fraction);
+    let reached = record.states().last().map_or(0.0, |state| state.contact.contact_area_fraction);
     if is_missing && can_go_on && reached < 1.0 {
         // Random surfaces percolate and seal at some 40 to 55 % contact.
         let further = if reached < 0.5 { 0.6 } else { 1.0 };

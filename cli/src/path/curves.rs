@@ -60,11 +60,8 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     };
     centred(&title, 34)?;
 
-    let loaded: Vec<LoadingState> = states
-        .iter()
-        .filter(|s| s.contact.load > 0.0)
-        .copied()
-        .collect();
+    let loaded: Vec<LoadingState> =
+        states.iter().filter(|s| s.contact.load > 0.0).copied().collect();
     let Some((from, to)) = extent(&loaded, &[|s| s.contact.load]) else {
         centred("No state of this path carries load.", SIZE.1 / 2)?;
         return area.present();
@@ -90,42 +87,25 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     // interfacial one.
     let both: [Curve; 2] = [
         (contact_stiffness, BLUE, "contact, K = dW/dδ"),
-        (
-            interfacial_stiffness,
-            ORANGE,
-            "interfacial, −dW/d(mean gap)",
-        ),
+        (interfacial_stiffness, ORANGE, "interfacial, −dW/d(mean gap)"),
     ];
     let interfacial: [Curve; 1] = [(both[1].0, BLUE, "")];
     let (approach, stiffness, stiffnesses) = match job.periodic() {
         None => ("approach δ", "stiffness", &both[..]),
-        Some(_) => (
-            "approach of the mean planes",
-            "interfacial stiffness",
-            &interfacial[..],
-        ),
+        Some(_) => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
     };
     let all: [(Axis, &[Curve]); 4] = [
         (
             logarithmic("contact area A", "m²", &[|s| s.contact.contact_area]),
             &[(|s| s.contact.contact_area, BLUE, "")],
         ),
-        (
-            linear(approach, "m", |s| s.contact.approach),
-            &[(|s| s.contact.approach, BLUE, "")],
-        ),
-        (
-            linear("mean gap", "m", |s| s.contact.mean_gap),
-            &[(|s| s.contact.mean_gap, BLUE, "")],
-        ),
+        (linear(approach, "m", |s| s.contact.approach), &[(|s| s.contact.approach, BLUE, "")]),
+        (linear("mean gap", "m", |s| s.contact.mean_gap), &[(|s| s.contact.mean_gap, BLUE, "")]),
         (
             logarithmic(
                 stiffness,
                 "N/m",
-                &stiffnesses
-                    .iter()
-                    .map(|(value, ..)| *value)
-                    .collect::<Vec<_>>(),
+                &stiffnesses.iter().map(|(value, ..)| *value).collect::<Vec<_>>(),
             ),
             stiffnesses,
         ),
@@ -135,9 +115,7 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         let x = load();
         panel.rule(area, &x, &y)?;
         for (value, colour, _) in curves {
-            let points = loaded
-                .iter()
-                .map(|state| (state.contact.load, value(state)));
+            let points = loaded.iter().map(|state| (state.contact.load, value(state)));
             panel.curve(area, (&x, &y), points, *colour)?;
         }
         legend(area, &panel, curves)?;
@@ -190,8 +168,5 @@ fn extent(states: &[LoadingState], quantities: &[Quantity]) -> Option<(f64, f64)
         each.filter(|value| *value > 0.0 && value.is_finite())
     };
     values().next()?;
-    Some((
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(0.0, f64::max),
-    ))
+    Some((values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max)))
 }

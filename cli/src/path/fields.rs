@@ -27,10 +27,7 @@ pub(super) type Fields = [(&'static str, DMatrix<f64>); 2];
 /// Those of the present state.
 pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     let failed = |error| Failure::new("cannot compute the fields of the last state", error);
-    Ok([
-        ("pressure", solver.pressure().map_err(failed)?),
-        ("gap", solver.gap().map_err(failed)?),
-    ])
+    Ok([("pressure", solver.pressure().map_err(failed)?), ("gap", solver.gap().map_err(failed)?)])
 }
 
 /// Writes fields into a directory; returns the names of the files.
@@ -41,9 +38,7 @@ pub(super) fn write(
     directory: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
     let named = |name: PathBuf, written: Result<(), SurfaceError>| {
-        written
-            .map(|()| name.clone())
-            .map_err(|error| Failure::writing(&name, error))
+        written.map(|()| name.clone()).map_err(|error| Failure::writing(&name, error))
     };
     if let Format::Vti = format {
         let name = directory.join("fields.vti");

@@ -68,9 +68,8 @@ impl Followed {
             && !interrupt.is_asked()
             && let Some(state) = solver.next()
         {
-            ended = state
-                .map_err(|error| Failure::new("the path broke off", error))
-                .and_then(|state| {
+            ended = state.map_err(|error| Failure::new("the path broke off", error)).and_then(
+                |state| {
                     if state.step.is_multiple_of(STRIDE) {
                         let progress = progress(&state);
                         bar.set_position((100.0 * progress.done) as u64);
@@ -82,7 +81,8 @@ impl Followed {
                         ));
                     }
                     self.add(state, solver)
-                });
+                },
+            );
         }
         bar.finish_and_clear();
         ended
@@ -169,8 +169,7 @@ impl PathFile {
         );
         self.waiting += 1;
         if self.waiting == STRIDE {
-            self.flush()
-                .map_err(|error| Failure::writing(&self.part, error))?;
+            self.flush().map_err(|error| Failure::writing(&self.part, error))?;
         }
         Ok(())
     }

@@ -55,12 +55,7 @@ impl Job {
         }
         let bodies = options.bodies()?;
         let (surface, name, source) = match &options.surface {
-            Some(file)
-                if options
-                    .record
-                    .as_ref()
-                    .is_some_and(|kept| is_same(kept, file)) =>
-            {
+            Some(file) if options.record.as_ref().is_some_and(|kept| is_same(kept, file)) => {
                 return Err(Failure::request(format!(
                     "--record would replace the surface {}: name another file",
                     file.display()
@@ -108,10 +103,7 @@ impl Job {
             Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
         let grid = *surface.grid();
         let targets = options.targets(&grid, &record.settings().targets);
-        let (history, passed) = record
-            .history()
-            .ending_at(&grid, &targets)
-            .map_err(failed)?;
+        let (history, passed) = record.history().ending_at(&grid, &targets).map_err(failed)?;
         let kept = match (&options.record, passed) {
             (Some(kept), Some(_)) if is_same(kept, file) => {
                 return Err(Failure::request(format!(
@@ -233,9 +225,7 @@ impl Job {
             ContactTarget::AreaFraction(fraction) => state.contact.contact_area_fraction / fraction,
             _ => 0.0,
         });
-        let share = shares
-            .fold(state.contact.contact_area_fraction, f64::max)
-            .min(1.0);
+        let share = shares.fold(state.contact.contact_area_fraction, f64::max).min(1.0);
         let nodes = self.grid().nodes();
         Progress::new(state.contact.contact_nodes, share, |contact| {
             self.updater.event_cost(nodes, contact)
@@ -286,9 +276,7 @@ impl Job {
         let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
         Expected {
             nodes: contact,
-            seconds: total(contact, |event| {
-                asperity::loading::event_seconds(grid.nodes(), event)
-            }),
+            seconds: total(contact, |event| asperity::loading::event_seconds(grid.nodes(), event)),
             bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
         }
     }

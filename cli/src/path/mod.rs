@@ -60,9 +60,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let missing = options.ensemble.count() - there.len() as u128;
     say!("{missing} paths to follow, {} finished", there.len());
     let seeds = options.ensemble.seeds_of_task();
-    let mut members = seeds
-        .filter(|seed| !there.contains(seed))
-        .map(|seed| Member::new(seed, &options.out));
+    let mut members =
+        seeds.filter(|seed| !there.contains(seed)).map(|seed| Member::new(seed, &options.out));
     if options.ensemble.dry_run {
         if let Some(first) = members.next() {
             say!("{}", Job::new(&options.of(&first))?.expected());

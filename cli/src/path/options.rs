@@ -152,11 +152,7 @@ impl Options {
 
     /// What there is no room for.
     pub(super) fn no_room(&self, what: String, error: Error) -> Failure {
-        no_room(
-            what,
-            error,
-            (self.updater, self.boundary(), self.memory_budget),
-        )
+        no_room(what, error, (self.updater, self.boundary(), self.memory_budget))
     }
 
     /// Where the path ends, whichever comes first: at `otherwise` if nothing is said.

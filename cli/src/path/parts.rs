@@ -29,10 +29,7 @@ impl Parts<'_> {
         let (sides, cell) = (grid.sides(), (grid.dx(), grid.dy()));
         let settings = [
             ("surface", surface),
-            (
-                "grid",
-                json!({"nodes": grid.shape(), "sides": sides, "cell": cell}),
-            ),
+            ("grid", json!({"nodes": grid.shape(), "sides": sides, "cell": cell})),
             ("e_star", json!(self.bodies.e_star)),
             ("bodies", json!(self.bodies.elastic)),
             (

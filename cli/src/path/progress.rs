@@ -28,9 +28,7 @@ impl Progress {
     pub(super) fn new(nodes: usize, share: f64, cost: impl Fn(usize) -> f64) -> Self {
         let end = nodes as f64 / share.max(1e-6);
         let done = total(nodes as f64, &cost) / total(end, &cost);
-        Self {
-            done: if done.is_finite() { done } else { 0.0 },
-        }
+        Self { done: if done.is_finite() { done } else { 0.0 } }
     }
 
     /// How long it will still take, in words, after so much time.

@@ -57,9 +57,7 @@ pub(super) struct Generated {
 impl Generated {
     /// Its shortest wave has so many cells that the grid resolves it, unless another one is asked for.
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
-        options
-            .reading
-            .only_sides("a generated surface: use it with --surface FILE")?;
+        options.reading.only_sides("a generated surface: use it with --surface FILE")?;
         let nodes = options.nodes.unwrap_or(NODES);
         let seed = options.seed.unwrap_or(SEED);
         let side = options.reading.side.unwrap_or(SIDE);
@@ -77,9 +75,7 @@ impl Generated {
         }
         let resolved = CELLS_OF_SHORTEST_WAVE * cell;
         let least = paper.short_cutoff_wavelength();
-        let shortest = options
-            .short_cutoff
-            .unwrap_or(resolved.max(least).min(rolloff));
+        let shortest = options.short_cutoff.unwrap_or(resolved.max(least).min(rolloff));
         let spectrum = SelfAffine::new(paper.hurst(), rolloff, shortest, paper.amplitude(), seed);
         let spectrum = spectrum.map_err(failed)?;
         Ok(Self { spectrum, grid })

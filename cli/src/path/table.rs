@@ -39,10 +39,7 @@ pub(super) fn print(
         greatest.push(match solver.pressure_at(state) {
             Ok(pressure) => pressure.iter().copied().fold(0.0, f64::max),
             Err(error) => {
-                failed = Err(Failure::new(
-                    "cannot compute a pressure for the table",
-                    error,
-                ));
+                failed = Err(Failure::new("cannot compute a pressure for the table", error));
                 f64::NAN
             }
         });
@@ -84,35 +81,23 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
         |name: &'static str, unit: &'static str, quantity: &dyn Fn(&LoadingState) -> f64| {
             Column::new(name, unit, rows.iter().map(quantity))
         };
-    let area = |state: &LoadingState| {
-        corrected
-            .get(state.step - 1)
-            .map_or(f64::NAN, |a| a / nominal)
-    };
+    let area =
+        |state: &LoadingState| corrected.get(state.step - 1).map_or(f64::NAN, |a| a / nominal);
     let stiffness = |stiffness: Option<f64>| stiffness.unwrap_or(f64::NAN);
     let mut columns = vec![
         column("load", "N", &|state| state.contact.load),
         column("pressure", "Pa", &|state| state.contact.mean_pressure()),
         Column::new("greatest", "Pa", greatest.iter().copied()),
         Column::area("area", rows.iter().map(|state| state.contact.contact_area)),
-        Column::percent(
-            "area",
-            rows.iter().map(|state| state.contact.contact_area_fraction),
-        ),
+        Column::percent("area", rows.iter().map(|state| state.contact.contact_area_fraction)),
         Column::percent("corrected", rows.iter().map(area)),
         column("approach", "m", &|state| state.contact.approach),
         column("mean gap", "m", &|state| state.contact.mean_gap),
-        column("K", "N/m", &|state| {
-            stiffness(state.contact.contact_stiffness)
-        }),
-        column("K_i", "N/m", &|state| {
-            stiffness(state.contact.interfacial_stiffness)
-        }),
+        column("K", "N/m", &|state| stiffness(state.contact.contact_stiffness)),
+        column("K_i", "N/m", &|state| stiffness(state.contact.interfacial_stiffness)),
     ];
     // A periodic half-space has no contact stiffness.
-    let has_k = rows
-        .iter()
-        .any(|state| state.contact.contact_stiffness.is_some());
+    let has_k = rows.iter().any(|state| state.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
     print_columns(&columns);
     say!();
@@ -137,10 +122,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
         "solution: residuals of the contact conditions of the last state on this grid, recomputed from its pressure (0 is exact):"
     );
     let left = [
-        (
-            "greatest gap in contact",
-            gap(certificate.greatest_contact_gap),
-        ),
+        ("greatest gap in contact", gap(certificate.greatest_contact_gap)),
         // There is none in full contact.
         (
             "least gap out of contact",
@@ -149,18 +131,12 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
                 false => "-".to_string(),
             },
         ),
-        (
-            "least pressure in contact",
-            quantity(certificate.least_pressure * pressure, "Pa", 2),
-        ),
+        ("least pressure in contact", quantity(certificate.least_pressure * pressure, "Pa", 2)),
         (
             "sum of pressures less load",
             quantity(certificate.load_error * last.contact.load, "N", 2),
         ),
-        (
-            "estimated error of the approach",
-            quantity(last.approach_error, "m", 2),
-        ),
+        ("estimated error of the approach", quantity(last.approach_error, "m", 2)),
     ];
     for (what, value) in left {
         say!("  {what:32} {value}");

@@ -31,9 +31,7 @@ impl Drop for Scratch {
 
 /// A file among the data of the library's tests.
 pub fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests/data")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name)
 }
 
 /// The program in a folder.

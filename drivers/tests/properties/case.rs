@@ -62,12 +62,7 @@ pub(crate) fn case() -> impl Strategy<Value = Case> {
 
 impl Case {
     pub(crate) fn grid(&self) -> Result<Grid, Error> {
-        Ok(Grid::new(
-            self.nodes.0,
-            self.nodes.1,
-            self.cell.0,
-            self.cell.1,
-        )?)
+        Ok(Grid::new(self.nodes.0, self.nodes.1, self.cell.0, self.cell.1)?)
     }
 
     pub(crate) fn matrix(&self) -> DMatrix<f64> {
@@ -115,12 +110,7 @@ impl Case {
     ) -> Self {
         let matrix = self.matrix();
         let heights = DMatrix::from_fn(nodes.0, nodes.1, |ix, iy| matrix[place(ix, iy)]);
-        Self {
-            nodes,
-            cell,
-            heights: heights.as_slice().to_vec(),
-            ..self.clone()
-        }
+        Self { nodes, cell, heights: heights.as_slice().to_vec(), ..self.clone() }
     }
 }
 

@@ -17,10 +17,7 @@ pub(crate) struct Scale {
     pub(crate) load: f64,
 }
 
-pub(crate) const SAME: Scale = Scale {
-    length: 1.0,
-    load: 1.0,
-};
+pub(crate) const SAME: Scale = Scale { length: 1.0, load: 1.0 };
 
 pub(crate) fn close(what: &str, a: f64, b: f64, allowed: f64) -> TestCaseResult {
     prop_assert!(
@@ -51,9 +48,7 @@ pub(crate) fn same_path(
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         ours.push(place(a.node));
         theirs.push(b.node);
-        let next = expected
-            .get(k + 1)
-            .map_or(f64::INFINITY, |next| next.contact.approach);
+        let next = expected.get(k + 1).map_or(f64::INFINITY, |next| next.contact.approach);
         // Lengths cancel in an approach: the heights.
         let tie = (TIE * b.contact.approach).max(1e-13 * initial);
         if next - b.contact.approach <= tie {
@@ -70,12 +65,7 @@ pub(crate) fn same_path(
         }
         let Scale { length, load } = scale;
         let approach = allowed * (b.contact.approach + last);
-        close(
-            "approach",
-            a.contact.approach,
-            length * b.contact.approach,
-            length * approach,
-        )?;
+        close("approach", a.contact.approach, length * b.contact.approach, length * approach)?;
         close(
             "mean gap",
             a.contact.mean_gap,
@@ -83,27 +73,14 @@ pub(crate) fn same_path(
             length * allowed * initial,
         )?;
         // A load is a stiffness times an approach, both as exact as that.
-        let stiffness = b
-            .contact
-            .contact_stiffness
-            .or(b.contact.interfacial_stiffness);
+        let stiffness = b.contact.contact_stiffness.or(b.contact.interfacial_stiffness);
         let stiffness = stiffness.filter(|k| k.is_finite()).unwrap_or(0.0);
         let slack = allowed * b.contact.load + approach * stiffness;
         close("load", a.contact.load, load * b.contact.load, load * slack)?;
         let slack = 3.0 * allowed * b.contact.energy + slack * b.contact.approach;
-        close(
-            "energy",
-            a.contact.energy,
-            load * length * b.contact.energy,
-            load * length * slack,
-        )?;
+        close("energy", a.contact.energy, load * length * b.contact.energy, load * length * slack)?;
         if let (Some(a), Some(b)) = (a.contact.contact_stiffness, b.contact.contact_stiffness) {
-            close(
-                "stiffness",
-                a,
-                load / length * b,
-                load / length * allowed * b,
-            )?;
+            close("stiffness", a, load / length * b, load / length * allowed * b)?;
         }
     }
     Ok(())

@@ -2,11 +2,7 @@ use super::*;
 use crate::kernel::{Boussinesq, PeriodicBoussinesq};
 
 fn held<T: Real>(engine: &Engine<T>) -> usize {
-    let Spectra {
-        rows,
-        columns,
-        scratch,
-    } = &engine.spectra;
+    let Spectra { rows, columns, scratch } = &engine.spectra;
     let of_part = |part: &Scratch<T>| size_of_val(&part.lines[..]) + part.work.bytes();
     size_of_val(&engine.filter.symbol[..])
         + size_of_val(&rows[..])

@@ -26,11 +26,7 @@ fn spread_out() -> Result<(Level, Prescribed), Error> {
     let mean = total / solution.state.contact_nodes as f64;
     level.choose_contact(|node, _, _| solution.contact_map[node])?;
     for (node, pressure) in level.iterate.pressure.iter_mut().enumerate() {
-        let even = if solution.contact_map[node] {
-            mean
-        } else {
-            0.0
-        };
+        let even = if solution.contact_map[node] { mean } else { 0.0 };
         *pressure = 0.5 * (solution.pressure[node] + even);
     }
     level.refresh()?;
@@ -68,9 +64,8 @@ fn a_release_goes_as_far_as_the_energy_falls() -> Result<(), Error> {
         release(sparse, &mut end, &descent.weights, prescribed);
         descent.release(&start)?;
         // The approach is the mean of what lies on the nodes that still carry, by their weights.
-        let carrying: Vec<usize> = (0..end.len())
-            .filter(|&place| descent.pressure[place] > 0.0)
-            .collect();
+        let carrying: Vec<usize> =
+            (0..end.len()).filter(|&place| descent.pressure[place] > 0.0).collect();
         let [moment, total] = carrying.iter().fold([0.0; 2], |[moment, total], &place| {
             let weight = descent.weights[place];
             [moment + weight * descent.closure[place], total + weight]
@@ -104,9 +99,7 @@ fn a_release_goes_as_far_as_the_energy_falls() -> Result<(), Error> {
 fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
     let (mut level, prescribed) = spread_out()?;
     let mut descent = Descent::new(&mut level, prescribed, CRITERIA);
-    let begin: Vec<f64> = (0..descent.pressure.len())
-        .map(|place| (1 + place % 7) as f64)
-        .collect();
+    let begin: Vec<f64> = (0..descent.pressure.len()).map(|place| (1 + place % 7) as f64).collect();
     // A quarter and half of the way to the first three, whose pressure would fall; that of the others doubles.
     let change = |place: usize| match place {
         0 | 1 => -4.0,
@@ -134,9 +127,7 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
 fn nodes_with_tension_at_the_start_are_released() -> Result<(), Error> {
     let (mut level, prescribed) = spread_out()?;
     let narrow = level.iterate.contact.len();
-    let Iterate {
-        pressure, closure, ..
-    } = &level.iterate;
+    let Iterate { pressure, closure, .. } = &level.iterate;
     let wide = 1.3 * dot(pressure, closure) / sum(pressure);
     level.choose_contact(|node, _, closure| closure[node] < wide)?;
     assert!(level.iterate.contact.len() > narrow);
@@ -166,10 +157,7 @@ fn a_uniform_rounding_takes_no_step() -> Result<(), Error> {
     let surface = HeightMap::new(dmatrix![0.0, 1.0, 1.0, 0.0])?;
     let mut level = FixedLoadSolver::new(&surface, &Spectral::new(grid, 1.0)?)?.into_finest();
     // Nothing is below tension at the nodes that lie low.
-    level
-        .iterate
-        .pressure
-        .copy_from_slice(&[-1.0, 2.0, 2.0, -1.0]);
+    level.iterate.pressure.copy_from_slice(&[-1.0, 2.0, 2.0, -1.0]);
     level.iterate.closure.fill(0.5);
     level.choose_contact(|_, _, _| true)?;
     let mut descent = Descent::new(&mut level, Prescribed::Sum(2.0), CRITERIA);

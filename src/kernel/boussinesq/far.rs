@@ -54,12 +54,7 @@ impl Far {
             let first_left_out: f64 = multipoles(aspect, order + 1).iter().map(|c| c.abs()).sum();
             radius2 * (first_left_out / NEGLIGIBLE).powf(1.0 / (order as f64 + 1.0))
         });
-        Self {
-            scale,
-            radius2,
-            reach2,
-            rows,
-        }
+        Self { scale, radius2, reach2, rows }
     }
 
     /// Square of the distance from which on [`Far::value`] may be used.
@@ -202,9 +197,8 @@ mod tests {
         let row = powers_of_cosine(&multipoles);
         for step in 0..=16 {
             let angle = f64::from(step) * 0.2;
-            let direct: f64 = (0..=MAX_ORDER)
-                .map(|j| multipoles[j] * (j as f64 * angle).cos())
-                .sum();
+            let direct: f64 =
+                (0..=MAX_ORDER).map(|j| multipoles[j] * (j as f64 * angle).cos()).sum();
             let power = row.iter().rev().fold(0.0, |sum, c| sum * angle.cos() + c);
             // Coefficients of Chebyshev polynomials of degree 8 reach 256.
             assert!((direct - power).abs() < 256.0 * f64::EPSILON);

@@ -96,12 +96,7 @@ impl Boussinesq {
         let (long, short) = (dx.max(dy), dx.min(dy));
         let aspect = grid.cell_aspect();
         let quantity = "ratio of the sides of a cell";
-        Error::require(
-            quantity,
-            aspect,
-            aspect <= Self::MAX_ASPECT,
-            "at most 1e100",
-        )?;
+        Error::require(quantity, aspect, aspect <= Self::MAX_ASPECT, "at most 1e100")?;
         let near_scale = short / (PI * e_star);
         let self_influence = near_scale * near::own_cell(aspect);
         Ok(Self {
@@ -165,8 +160,6 @@ impl InfluenceKernel for Boussinesq {
     }
 
     fn origin(&self) -> KernelOrigin {
-        KernelOrigin::Boussinesq {
-            e_star: self.e_star(),
-        }
+        KernelOrigin::Boussinesq { e_star: self.e_star() }
     }
 }

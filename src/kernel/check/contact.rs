@@ -54,21 +54,14 @@ impl Contact {
             .map(|node| {
                 let place = table.place(node);
                 let pairs = places.iter().zip(growth.iter());
-                let displacement: f64 = pairs
-                    .map(|(&other, rate)| table.between(place, other) * rate)
-                    .sum();
+                let displacement: f64 =
+                    pairs.map(|(&other, rate)| table.between(place, other) * rate).sum();
                 (node, 1.0 - displacement)
             })
             .collect();
         // The inverse of a matrix errs by its condition number times a rounding for each row.
         let condition = row_sum_norm(&matrix) * row_sum_norm(&inverse);
-        Ok(Self {
-            rounding: n as f64 * condition * f64::EPSILON,
-            nodes,
-            inverse,
-            growth,
-            closing,
-        })
+        Ok(Self { rounding: n as f64 * condition * f64::EPSILON, nodes, inverse, growth, closing })
     }
 
     /// The most that this set allows to promise, and what forbids to promise more.
@@ -139,10 +132,7 @@ fn factored(mut matrix: DMatrix<f64>) -> Result<Cholesky<f64, nalgebra::Dyn>, (u
         let diagonal = pivot.sqrt();
         matrix[(j, j)] = diagonal;
         for i in j + 1..matrix.nrows() {
-            let product = matrix
-                .row(i)
-                .columns(0, j)
-                .dot(&matrix.row(j).columns(0, j));
+            let product = matrix.row(i).columns(0, j).dot(&matrix.row(j).columns(0, j));
             matrix[(i, j)] = (matrix[(i, j)] - product) / diagonal;
         }
     }
@@ -151,10 +141,7 @@ fn factored(mut matrix: DMatrix<f64>) -> Result<Cholesky<f64, nalgebra::Dyn>, (u
 
 /// The greatest sum of absolute values along a row.
 fn row_sum_norm(matrix: &DMatrix<f64>) -> f64 {
-    matrix
-        .row_iter()
-        .map(|row| row.lp_norm(1))
-        .fold(0.0, f64::max)
+    matrix.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -103,9 +103,8 @@ fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
         .map(|node| Complex64::from(table.between(table.place(node), table.place(0))))
         .collect();
     planner.plan_fft_forward(nx).process(&mut rows);
-    let mut columns: Vec<_> = (0..grid.nodes())
-        .map(|place| rows[place / ny + nx * (place % ny)])
-        .collect();
+    let mut columns: Vec<_> =
+        (0..grid.nodes()).map(|place| rows[place / ny + nx * (place % ny)]).collect();
     planner.plan_fft_forward(ny).process(&mut columns);
     let greatest = columns.iter().map(|value| value.re).fold(0.0, f64::max);
     // A Fourier transform errs by a few roundings of the greatest value.

@@ -30,10 +30,7 @@ pub(super) fn contact_sets(grid: &Grid) -> ContactSets {
     let nodes = grid.nodes();
     if nodes <= EXHAUSTIVE {
         let set = |bits: u32| (0..nodes).filter(|node| bits >> node & 1 == 1).collect();
-        return ContactSets {
-            list: (1..1_u32 << nodes).map(set).collect(),
-            exhaustive: true,
-        };
+        return ContactSets { list: (1..1_u32 << nodes).map(set).collect(), exhaustive: true };
     }
     let mut draw = Draw(ChaCha8Rng::from_seed([0; 32]));
     let mut list = Vec::new();
@@ -51,10 +48,7 @@ pub(super) fn contact_sets(grid: &Grid) -> ContactSets {
         list.push(distinct(holes.collect()));
     }
     list.retain(|set| !set.is_empty());
-    ContactSets {
-        list,
-        exhaustive: false,
-    }
+    ContactSets { list, exhaustive: false }
 }
 
 fn distinct(mut set: Vec<usize>) -> Vec<usize> {
@@ -78,10 +72,7 @@ impl Draw {
         let side = |n: usize| n.min(LARGEST);
         let width = 1 + self.below(side(grid.nx()).min(16));
         let height = 1 + self.below(side(grid.ny()).min(LARGEST / width));
-        let (left, low) = (
-            self.below(grid.nx() - width + 1),
-            self.below(grid.ny() - height + 1),
-        );
+        let (left, low) = (self.below(grid.nx() - width + 1), self.below(grid.ny() - height + 1));
         let round = self.below(2) == 1;
         let inside = |i: usize, n: usize| {
             let x = (2 * i + 1) as f64 / n as f64 - 1.0;
@@ -117,9 +108,8 @@ mod tests {
                 let places: Vec<_> = patch.iter().map(|&node| grid.coordinates(node)).collect();
                 let side = |along: fn(&(usize, usize)) -> usize| {
                     let places = places.iter().map(along);
-                    let (least, most) = places.fold((usize::MAX, 0), |(least, most), i| {
-                        (least.min(i), most.max(i))
-                    });
+                    let (least, most) = places
+                        .fold((usize::MAX, 0), |(least, most), i| (least.min(i), most.max(i)));
                     1 + most - least
                 };
                 let (width, height) = (side(|place| place.0), side(|place| place.1));
@@ -130,10 +120,7 @@ mod tests {
                 whole += usize::from(patch.len() == area);
                 round += usize::from(patch.len() < area);
             }
-            assert!(
-                whole > 50 && (round > 20 || nx.min(ny) == 1),
-                "{whole} {round}"
-            );
+            assert!(whole > 50 && (round > 20 || nx.min(ny) == 1), "{whole} {round}");
         }
         Ok(())
     }
@@ -151,11 +138,7 @@ mod tests {
         let few = shares.iter().filter(|share| **share < 0.3).count();
         let many = shares.iter().filter(|share| **share > 0.7).count();
         // Two sevenths each are expected of some fifty.
-        assert!(
-            few >= 5 && many >= 5,
-            "{few} and {many} of {}",
-            shares.len()
-        );
+        assert!(few >= 5 && many >= 5, "{few} and {many} of {}", shares.len());
         Ok(())
     }
 }

@@ -4,20 +4,15 @@ use crate::{Boussinesq, Grid, MeanDisplacement, PeriodicBoussinesq, Spectral};
 /// Coefficients along a strip, by distance, with a promise.
 fn strip(coefficients: &[f64], promised: ContactGrowth) -> Result<KernelTable, Error> {
     let grid = Grid::new(coefficients.len(), 1, 1.0, 1.0)?;
-    KernelTable::from_fn(grid, Boundary::Free, promised, |di, _| {
-        coefficients[di.unsigned_abs()]
-    })
+    KernelTable::from_fn(grid, Boundary::Free, promised, |di, _| coefficients[di.unsigned_abs()])
 }
 
 /// The promise, quantity, contact set and node of an error.
 fn broken(result: Result<KernelReport, Error>) -> Option<(&'static str, Vec<usize>, usize)> {
     match result {
-        Err(Error::Kernel(KernelError::BrokenPromise {
-            promise,
-            contact,
-            node,
-            ..
-        })) => Some((promise, contact, node.0)),
+        Err(Error::Kernel(KernelError::BrokenPromise { promise, contact, node, .. })) => {
+            Some((promise, contact, node.0))
+        }
         _ => None,
     }
 }
@@ -95,10 +90,7 @@ fn broken_promises_of_growth_are_found_out() -> Result<(), Error> {
     assert_eq!(report.supported_growth, ContactGrowth::Monotone);
     assert!(check(&strip(&raising, ContactGrowth::Monotone)?).is_ok());
     let convex = broken(check(&strip(&raising, ContactGrowth::Convex)?));
-    assert_eq!(
-        convex,
-        Some(("gaps are convex in the approach", vec![0, 2], 0))
-    );
+    assert_eq!(convex, Some(("gaps are convex in the approach", vec![0, 2], 0)));
 
     // Strong coupling to the next node and none beyond: the pressure of the middle one of three
     // falls, y₂ ∝ 1 − 2 c < 0.
@@ -132,10 +124,7 @@ fn a_periodic_kernel_with_a_wave_of_no_stiffness_is_found_out() -> Result<(), Er
     let mean = check(&ring(-0.5, physical)?);
     assert!(matches!(
         mean,
-        Err(Error::Kernel(KernelError::SymbolNotPositive {
-            q: (0.0, 0.0),
-            ..
-        }))
+        Err(Error::Kernel(KernelError::SymbolNotPositive { q: (0.0, 0.0), .. }))
     ));
     // If it is arbitrary it may be nothing.
     assert!(check(&ring(-0.5, arbitrary)?).is_ok());
@@ -157,10 +146,7 @@ fn coefficients_that_make_no_sense_are_refused_first() -> Result<(), Error> {
         }
     }
     let refused = check(&Skew(Grid::new(4, 1, 1.0, 1.0)?));
-    assert!(matches!(
-        refused,
-        Err(Error::Kernel(KernelError::NotSymmetric { .. }))
-    ));
+    assert!(matches!(refused, Err(Error::Kernel(KernelError::NotSymmetric { .. }))));
     Ok(())
 }
 

@@ -28,10 +28,7 @@ impl Even {
     }
 
     pub(super) fn map(&self, function: impl FnMut(f64) -> f64) -> Self {
-        Self {
-            values: self.values.iter().copied().map(function).collect(),
-            ..*self
-        }
+        Self { values: self.values.iter().copied().map(function).collect(), ..*self }
     }
 
     /// The value at any place, on the grid or in one of its periods.
@@ -66,10 +63,7 @@ impl Even {
             transposed
         };
         let along_x = lines(&self.values, self.nx);
-        Self {
-            values: lines(&along_x, self.ny),
-            ..*self
-        }
+        Self { values: lines(&along_x, self.ny), ..*self }
     }
 }
 
@@ -126,14 +120,8 @@ mod tests {
 
     #[test]
     fn cosines_of_fractions_of_a_turn() {
-        let exact = [
-            (0, 5, 1.0),
-            (1, 4, 0.0),
-            (3, 4, 0.0),
-            (1, 2, -1.0),
-            (1, 3, -0.5),
-            (5, 6, 0.5),
-        ];
+        let exact =
+            [(0, 5, 1.0), (1, 4, 0.0), (3, 4, 0.0), (1, 2, -1.0), (1, 3, -0.5), (5, 6, 0.5)];
         for (j, n, cosine) in exact {
             // One rounding of the argument and one of the result.
             assert!((cosine_of_turn(j, n) - cosine).abs() <= f64::EPSILON);

@@ -74,15 +74,9 @@ impl Spectral {
         let symbol = Even::from_fn(grid.shape(), |kx, ky| {
             let qx = wave_number(kx, cells.nx(), cells.dx());
             let qy = wave_number(ky, cells.ny(), cells.dy());
-            if (kx, ky) == (0, 0) {
-                0.0
-            } else {
-                2.0 / libm::hypot(qx, qy)
-            }
+            if (kx, ky) == (0, 0) { 0.0 } else { 2.0 / libm::hypot(qx, qy) }
         });
-        Ok(Self {
-            half_space: Symmetric::new(grid, e_star, &symbol, of_half_space(&cells, None))?,
-        })
+        Ok(Self { half_space: Symmetric::new(grid, e_star, &symbol, of_half_space(&cells, None))? })
     }
 
     /// The same kernel in the gauge `gauge` \[m/Pa\]; a new kernel has the one described above.
@@ -144,8 +138,6 @@ impl InfluenceKernel for Spectral {
     }
 
     fn origin(&self) -> KernelOrigin {
-        KernelOrigin::Spectral {
-            e_star: self.e_star(),
-        }
+        KernelOrigin::Spectral { e_star: self.e_star() }
     }
 }

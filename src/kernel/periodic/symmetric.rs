@@ -33,17 +33,8 @@ impl Symmetric {
         let scale = grid.dx().max(grid.dy()) / e_star;
         let coefficients = unit.inverse_transform().map(|value| value * scale);
         let gauge = unit_gauge * scale;
-        Error::require_positive(
-            "influence coefficient C(0, 0)",
-            coefficients.at(0, 0) + gauge,
-        )?;
-        Ok(Self {
-            grid,
-            e_star,
-            symbol: unit.map(|value| value * scale),
-            coefficients,
-            gauge,
-        })
+        Error::require_positive("influence coefficient C(0, 0)", coefficients.at(0, 0) + gauge)?;
+        Ok(Self { grid, e_star, symbol: unit.map(|value| value * scale), coefficients, gauge })
     }
 
     pub(super) fn grid(&self) -> Grid {
@@ -87,10 +78,7 @@ impl Symmetric {
 pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
     let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
     let inverse = inverse.inverse_transform();
-    let greatest = inverse.values()[1..]
-        .iter()
-        .copied()
-        .fold(f64::NEG_INFINITY, f64::max);
+    let greatest = inverse.values()[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // With a single node nothing is off the diagonal: minus infinity, and any gauge will do.
     let nodes = grid.nodes() as f64;
     (greatest < 0.0).then(|| 1.0 / (nodes * nodes * -greatest))
@@ -99,12 +87,7 @@ pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
 /// The grid with lengths in units of the long side of its cells.
 pub(super) fn in_long_sides(grid: &Grid) -> Result<Grid, Error> {
     let long = grid.dx().max(grid.dy());
-    Ok(Grid::new(
-        grid.nx(),
-        grid.ny(),
-        grid.dx() / long,
-        grid.dy() / long,
-    )?)
+    Ok(Grid::new(grid.nx(), grid.ny(), grid.dx() / long, grid.dy() / long)?)
 }
 
 /// Wave number of mode k of n on cells of `spacing`, for 0 ≤ k ≤ n / 2.

@@ -10,12 +10,7 @@ impl KernelTable {
         for (place, (&value, &opposite)) in opposites.enumerate().take(self.center()) {
             if !self.agree(value, opposite) {
                 let (di, dj) = self.offset(place);
-                return Err(Error::Kernel(KernelError::NotSymmetric {
-                    di,
-                    dj,
-                    value,
-                    opposite,
-                }));
+                return Err(Error::Kernel(KernelError::NotSymmetric { di, dj, value, opposite }));
             }
         }
         Ok(())

@@ -33,11 +33,7 @@ impl Blocks {
                 Grid::with_sides(cx, cy, lx, ly)?
             }
         };
-        Ok(Self {
-            fine,
-            coarse,
-            boundary,
-        })
+        Ok(Self { fine, coarse, boundary })
     }
 
     /// Cells of a free grid that make the side of a block, along a direction of so many nodes.
@@ -72,9 +68,7 @@ impl Blocks {
             *sum += value;
             *count += 1;
         }
-        sums.into_iter()
-            .map(|(sum, count)| sum / f64::from(count.max(1)))
-            .collect()
+        sums.into_iter().map(|(sum, count)| sum / f64::from(count.max(1))).collect()
     }
 
     /// The same value on all nodes of a block.
@@ -152,11 +146,7 @@ impl KernelTable {
         // Differences between the places of two cells within their blocks, and how often each
         // occurs; sums over the sources, averages over the observers.
         let differences = |factor: usize| -> &'static [(isize, f64)] {
-            if factor == 2 {
-                &[(-1, 0.5), (0, 1.0), (1, 0.5)]
-            } else {
-                &[(0, 1.0)]
-            }
+            if factor == 2 { &[(-1, 0.5), (0, 1.0), (1, 0.5)] } else { &[(0, 1.0)] }
         };
         let (nx, ny) = (nx as isize, ny as isize);
         let (cx, cy) = (grid.nx() as isize, grid.ny() as isize);

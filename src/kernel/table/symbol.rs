@@ -58,10 +58,7 @@ fn on_the_waves(
         if value > 0.0 && value.is_finite() {
             Ok(value)
         } else {
-            Err(Error::Kernel(KernelError::SymbolNotPositive {
-                q: (qx, qy),
-                value,
-            }))
+            Err(Error::Kernel(KernelError::SymbolNotPositive { q: (qx, qy), value }))
         }
     };
     let mut values = Vec::with_capacity(nx * ny);

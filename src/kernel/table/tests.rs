@@ -57,10 +57,7 @@ fn gauges_that_spoil_a_path_are_exchanged() -> Result<(), Error> {
     let grid = Grid::new(7, 6, 1.0, 40.0)?;
     let spectral = KernelTable::new(&Spectral::new(grid, 1.0)?)?;
     let love = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
-    assert_eq!(
-        [spectral.growth, love.growth],
-        [ContactGrowth::Monotone, ContactGrowth::Convex]
-    );
+    assert_eq!([spectral.growth, love.growth], [ContactGrowth::Monotone, ContactGrowth::Convex]);
     for (table, greatest) in [(spectral, 10.0), (love, 1000.0)] {
         let good = table.computing_gauge().unwrap_or(f64::NAN);
         // A good gauge is 1.5 times the one in which the least coefficient is 0.
@@ -143,10 +140,7 @@ fn uniform_pressure_compresses_a_layer_on_a_rigid_base() -> Result<(), Error> {
     let modulus = (1.0 - nu * nu) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
     let compression = grid.nodes() as f64 * table.mean_coefficient();
     // A sum of 70 terms.
-    assert!(
-        (compression / (h / modulus) - 1.0).abs() < 1e-13,
-        "{compression}"
-    );
+    assert!((compression / (h / modulus) - 1.0).abs() < 1e-13, "{compression}");
     assert_eq!((table.gauge(), table.computing_gauge()), (None, None));
     assert_eq!(table.gauge_per_load(), Gauge::default());
     assert_eq!(table.in_gauge(0.0).values, table.values);
@@ -170,24 +164,15 @@ fn waves_answer_with_their_symbol_in_every_direction() -> Result<(), Error> {
                 let (ix, iy) = grid.coordinates(node);
                 let turns =
                     f64::from(kx) * ix as f64 / nx as f64 + f64::from(ky) * iy as f64 / ny as f64;
-                let c = table
-                    .coefficient(ix as isize, iy as isize)
-                    .unwrap_or(f64::NAN);
+                let c = table.coefficient(ix as isize, iy as isize).unwrap_or(f64::NAN);
                 cosines += c * (turn * turns).cos();
                 sines += c * (turn * turns).sin();
             }
             let (lx, ly) = grid.sides();
             let at = |kx: i32| symbol(turn * f64::from(kx) / lx, turn * f64::from(ky) / ly);
-            let expected = if 2 * kx as usize == nx {
-                0.5 * (at(kx) + at(-kx))
-            } else {
-                at(kx)
-            };
+            let expected = if 2 * kx as usize == nx { 0.5 * (at(kx) + at(-kx)) } else { at(kx) };
             // Sums of at most 48 terms below 1.
-            assert!(
-                (cosines - expected).abs() < 1e-14,
-                "{nx} x {ny}, ({kx}, {ky})"
-            );
+            assert!((cosines - expected).abs() < 1e-14, "{nx} x {ny}, ({kx}, {ky})");
             assert!(sines.abs() < 1e-14, "{nx} x {ny}, ({kx}, {ky}): {sines}");
         }
     }
@@ -229,22 +214,13 @@ fn impossible_symbols_are_refused() -> Result<(), Error> {
 fn what_does_not_repeat_is_refused() -> Result<(), Error> {
     let grid = Grid::new(4, 5, 1.0, 1.0)?;
     let make = |odd: (isize, isize)| {
-        KernelTable::from_fn(
-            grid,
-            Boundary::Periodic,
-            ContactGrowth::Unknown,
-            move |di, dj| {
-                // By distance around the period, but for one offset and its opposite.
-                let (x, y) = (di.rem_euclid(4), dj.rem_euclid(5));
-                let (x, y) = (x.min(4 - x) as f64, y.min(5 - y) as f64);
-                let wrong = (di, dj) == odd || (-di, -dj) == odd;
-                if wrong {
-                    0.3
-                } else {
-                    1.0 / (1.0 + x + 2.0 * y)
-                }
-            },
-        )
+        KernelTable::from_fn(grid, Boundary::Periodic, ContactGrowth::Unknown, move |di, dj| {
+            // By distance around the period, but for one offset and its opposite.
+            let (x, y) = (di.rem_euclid(4), dj.rem_euclid(5));
+            let (x, y) = (x.min(4 - x) as f64, y.min(5 - y) as f64);
+            let wrong = (di, dj) == odd || (-di, -dj) == odd;
+            if wrong { 0.3 } else { 1.0 / (1.0 + x + 2.0 * y) }
+        })
     };
     assert!(make((9, 9)).is_ok());
     for (odd, period) in [((0, 3), (0, 5)), ((3, 0), (4, 0)), ((0, -1), (0, 5))] {
@@ -264,10 +240,7 @@ fn what_does_not_repeat_is_refused() -> Result<(), Error> {
         assert_eq!((image_di - di, image_dj - dj), period);
         let named = [(di, dj), (image_di, image_dj)];
         let opposite = (-odd.0, -odd.1);
-        assert!(
-            named.contains(&odd) || named.contains(&opposite),
-            "{named:?}"
-        );
+        assert!(named.contains(&odd) || named.contains(&opposite), "{named:?}");
         assert!(value == 0.3 || repeated == 0.3);
     }
     Ok(())

@@ -27,11 +27,8 @@ struct Axis {
 
 impl Axis {
     fn new(nodes: usize, count: usize, wraps: bool) -> Self {
-        let mut axis = Self {
-            count,
-            pairs: Vec::with_capacity(nodes),
-            parts: Vec::with_capacity(nodes),
-        };
+        let mut axis =
+            Self { count, pairs: Vec::with_capacity(nodes), parts: Vec::with_capacity(nodes) };
         for index in 0..nodes {
             let knots = (index as f64 + 0.5) * count as f64 / nodes as f64 - 0.5;
             let (first, second, part) = if wraps {
@@ -54,10 +51,7 @@ impl Hats {
     /// So many hats along x and y of a grid of the given shape, which wrap around if it is periodic.
     pub(super) fn new(shape: (usize, usize), counts: (usize, usize), wraps: bool) -> Self {
         Self {
-            along: [
-                Axis::new(shape.0, counts.0, wraps),
-                Axis::new(shape.1, counts.1, wraps),
-            ],
+            along: [Axis::new(shape.0, counts.0, wraps), Axis::new(shape.1, counts.1, wraps)],
             rows: vec![0.0; counts.0 * shape.1],
         }
     }

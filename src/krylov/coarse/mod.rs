@@ -99,8 +99,7 @@ impl CoarseSpace {
             self.inverse_masses.clear();
             return;
         }
-        self.hats
-            .restrict(contact, &vec![1.0; contact.len()], &mut self.masses);
+        self.hats.restrict(contact, &vec![1.0; contact.len()], &mut self.masses);
         let inverse = |&mass: &f64| if mass > 0.0 { 1.0 / mass } else { 0.0 };
         self.per_mass.clear();
         self.per_mass.extend(self.masses.iter().map(inverse));
@@ -134,8 +133,7 @@ impl CoarseSpace {
             }
             if let Some(factor) = matrix.cholesky() {
                 let inverse = factor.inverse();
-                self.inverse
-                    .extend(inverse.iter().map(|&value| value as f32));
+                self.inverse.extend(inverse.iter().map(|&value| value as f32));
                 break;
             }
         }

@@ -89,9 +89,8 @@ impl Patches {
     pub(super) fn influence(&self, hats: &Hats, contact: &NodeSet) -> HatInfluence {
         let size = hats.len();
         let seen = self.see(hats, contact);
-        let patches: Vec<usize> = (0..seen.lumps.len())
-            .filter(|&patch| seen.lumps[patch].nodes > 0.0)
-            .collect();
+        let patches: Vec<usize> =
+            (0..seen.lumps.len()).filter(|&patch| seen.lumps[patch].nodes > 0.0).collect();
         let mut parts = vec![0.0; PARTS * size * size];
         for_each_chunk(&mut parts, size * size, |part, half| {
             let mut displacements = vec![[0.0; LANES]; size];
@@ -124,10 +123,7 @@ impl Patches {
                 masses[hat as usize] += f64::from(weight * lump.nodes);
             }
         }
-        HatInfluence {
-            half: parts,
-            masses,
-        }
+        HatInfluence { half: parts, masses }
     }
 
     /// The contact by patches.
@@ -156,10 +152,7 @@ impl Patches {
                 weights: at.map(|(_, value)| value as f32),
             }
         };
-        Contact {
-            inside,
-            lumps: tallies.iter().map(lump).collect(),
-        }
+        Contact { inside, lumps: tallies.iter().map(lump).collect() }
     }
 
     /// Displacements of up to `LANES` patches under unit pressure on each of the hats.
@@ -252,11 +245,7 @@ impl Patches {
         };
         let columns = near(patch % self.counts[0], self.counts[0]);
         let rows = near(patch / self.counts[0], self.counts[1]);
-        let of_row = |row| {
-            columns
-                .iter()
-                .map(move |column| column + self.counts[0] * row)
-        };
+        let of_row = |row| columns.iter().map(move |column| column + self.counts[0] * row);
         rows.into_iter().flat_map(of_row).collect()
     }
 }

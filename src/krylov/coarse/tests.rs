@@ -5,11 +5,7 @@ use crate::{Boussinesq, Error, Grid, PeriodicBoussinesq};
 /// Some grids that hats and patches do not divide, with free and periodic boundaries.
 fn tables() -> Result<Vec<KernelTable>, Error> {
     let mut tables = Vec::new();
-    for (nx, ny, dx, dy) in [
-        (100, 100, 1.0, 1.0),
-        (131, 77, 1.0, 1.3),
-        (420, 24, 1.0, 4.0),
-    ] {
+    for (nx, ny, dx, dy) in [(100, 100, 1.0, 1.0), (131, 77, 1.0, 1.3), (420, 24, 1.0, 4.0)] {
         let grid = Grid::new(nx, ny, dx, dy)?;
         tables.push(KernelTable::new(&Boussinesq::new(grid, 1.0)?)?);
         let periodic = KernelTable::new(&PeriodicBoussinesq::new(grid, 1.0)?)?;
@@ -95,11 +91,7 @@ fn means_over_hats() -> Result<(), Error> {
         let mut rest = Vec::new();
         let mut mean = |values: &[f64]| -> Vec<f64> {
             space.take_out(&contact, values, &mut rest);
-            values
-                .iter()
-                .zip(&rest)
-                .map(|(value, rest)| value - rest)
-                .collect()
+            values.iter().zip(&rest).map(|(value, rest)| value - rest).collect()
         };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (pa, pb) = (mean(&a), mean(&b));
@@ -194,19 +186,10 @@ fn the_inverse_is_kept_until_the_contact_has_changed() -> Result<(), Error> {
     space.update(&contact);
     let counted = |space: &CoarseSpace| space.inverse_masses.iter().sum::<f64>();
     // Of 9200 nodes 800 have left since, of 9000 a thousand, more than a tenth.
-    for (nodes, known) in [
-        (9200, 10_000.0),
-        (9000, 9000.0),
-        (8500, 9000.0),
-        (8000, 8000.0),
-    ] {
+    for (nodes, known) in [(9200, 10_000.0), (9000, 9000.0), (8500, 9000.0), (8000, 8000.0)] {
         contact.assign(|node| node < nodes);
         space.update(&contact);
-        assert!(
-            (counted(&space) - known).abs() < 1e-6,
-            "{nodes}: {}",
-            counted(&space)
-        );
+        assert!((counted(&space) - known).abs() < 1e-6, "{nodes}: {}", counted(&space));
         let now: f64 = space.masses.iter().sum();
         assert!((now - nodes as f64).abs() < 1e-6);
     }

@@ -62,9 +62,7 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
     let grid = Grid::square(96, 1.0)?;
     let kernel = Boussinesq::new(grid, 1.0)?;
     let surface = SelfAffine::new(0.8, 0.5, 4.0 / 96.0, Amplitude::RmsHeight(1e-3), 3)?;
-    let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-        .stiffness(false)
-        .build()?;
+    let mut solver = FixedLoadSolver::builder(&surface, &kernel).stiffness(false).build()?;
     let solution = solver.solve(0.03)?;
     let table = KernelTable::new(&kernel)?;
     let mut contact = NodeSet::new(grid.nodes());
@@ -74,11 +72,8 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
     preconditioner.update(&contact);
     let mut operator = Operator::new(Convolution::from_table(&table)?);
     let mut steps = |preconditioner: &mut Preconditioner| {
-        let mut system = LinearSystem {
-            operator: &mut operator,
-            preconditioner,
-            contact: &contact,
-        };
+        let mut system =
+            LinearSystem { operator: &mut operator, preconditioner, contact: &contact };
         let equation = Equation {
             rhs: |_| 1.0,
             tolerance: 1e-9,
@@ -105,9 +100,8 @@ fn follows_small_changes() -> Result<(), Error> {
         let mut followed = Preconditioner::new(&table);
         followed.update(&contact);
         let all = contact.nodes().to_vec();
-        let mut inside: Vec<bool> = (0..table.grid().nodes())
-            .map(|node| contact.places()[node] != NodeSet::NONE)
-            .collect();
+        let mut inside: Vec<bool> =
+            (0..table.grid().nodes()).map(|node| contact.places()[node] != NodeSet::NONE).collect();
         let mut node = 12_345;
         for round in 0..6 {
             for _ in 0..contact.len() / 200 {

@@ -33,19 +33,12 @@ impl Refined {
         if ranking.len() <= size {
             let mut watched = ranking.clone();
             watched.sort_by(order);
-            return Candidates {
-                nodes: watched,
-                horizon: f64::INFINITY,
-                group: None,
-            };
+            return Candidates { nodes: watched, horizon: f64::INFINITY, group: None };
         }
         let (watched, next, others) = ranking.select_nth_unstable_by(size, order);
         let mut watched = watched.to_vec();
         let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
-        let first = watched
-            .iter()
-            .map(|(time, _)| *time)
-            .fold(f64::INFINITY, f64::min);
+        let first = watched.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
         let limit = next.0 + tie_of(next.1);
         let mut candidates = Candidates {
             nodes: Vec::new(),
@@ -65,9 +58,8 @@ impl Refined {
             let is_new = |node: &usize| !watched.iter().any(|(_, other)| other == node);
             let new: Vec<usize> = extra.iter().copied().filter(is_new).collect();
             watched.extend(ranking.iter().filter(|(_, node)| new.contains(node)));
-            let rest = ranking
-                .iter()
-                .filter(|(_, node)| !watched.iter().any(|(_, other)| other == node));
+            let rest =
+                ranking.iter().filter(|(_, node)| !watched.iter().any(|(_, other)| other == node));
             candidates.horizon = rest.map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
         }
         watched.sort_by(order);
@@ -95,10 +87,7 @@ pub(super) fn cut(
     };
     let spacing = |kept: &usize| next(*kept) - events[*kept - 1].time;
     let widest = |range: std::ops::RangeInclusive<usize>| {
-        range
-            .rev()
-            .max_by(|a, b| spacing(a).total_cmp(&spacing(b)))
-            .unwrap_or(1)
+        range.rev().max_by(|a, b| spacing(a).total_cmp(&spacing(b))).unwrap_or(1)
     };
     let least = ((CUT * count as f64) as usize).clamp(1, count);
     let mut kept = widest(least..=count);
@@ -116,9 +105,7 @@ pub(super) fn with_ties(
 ) -> usize {
     let few = most.clamp(1, events.len());
     let tied = events[few - 1..].windows(2);
-    few + tied
-        .take_while(|pair| pair[1].time - pair[0].time <= tolerances.tie)
-        .count()
+    few + tied.take_while(|pair| pair[1].time - pair[0].time <= tolerances.tie).count()
 }
 
 #[cfg(test)]
@@ -158,19 +145,12 @@ mod tests {
     fn the_next_nodes_are_watched() -> Result<(), Error> {
         // Eight at least and all there are, without a horizon then; with more the next one as well, and no
         // other node touches before the one behind it.
-        for (count, watched, horizon) in [
-            (7, 7, f64::INFINITY),
-            (8, 8, f64::INFINITY),
-            (9, 9, f64::INFINITY),
-            (12, 9, 9.0),
-        ] {
+        for (count, watched, horizon) in
+            [(7, 7, f64::INFINITY), (8, 8, f64::INFINITY), (9, 9, f64::INFINITY), (12, 9, 9.0)]
+        {
             let candidates = choose((60, 0), &times(count), 1e-9, &[])?;
             assert_eq!(nodes(&candidates), (0..watched).collect::<Vec<_>>());
-            assert_eq!(
-                (candidates.horizon, candidates.group),
-                (horizon, None),
-                "{count}"
-            );
+            assert_eq!((candidates.horizon, candidates.group), (horizon, None), "{count}");
         }
         // A quarter of 40 nodes in contact, and of 38, but no more than the size.
         for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
@@ -194,10 +174,7 @@ mod tests {
             tied.extend(vec![8.0; ties]);
             tied.push(20.0);
             let candidates = choose((8, 0), &tied, 1e-9, &[])?;
-            assert_eq!(
-                (nodes(&candidates).len(), candidates.horizon),
-                (watched, horizon)
-            );
+            assert_eq!((nodes(&candidates).len(), candidates.horizon), (watched, horizon));
             assert_eq!(candidates.group, None);
         }
         Ok(())
@@ -258,10 +235,7 @@ mod tests {
         wide[9] = 12.0;
         assert_eq!(cut_of(&wide, 13.0, all), (9, 10.5));
         // A wider spacing in front of them is none of the window's end.
-        wide = even
-            .iter()
-            .map(|time| if *time > 3.0 { time + 5.0 } else { *time })
-            .collect();
+        wide = even.iter().map(|time| if *time > 3.0 { time + 5.0 } else { *time }).collect();
         assert_eq!(cut_of(&wide, 16.0, all), (8, 13.5));
         // No more than are wanted: behind the fourth or fifth.
         assert_eq!(cut_of(&even, 11.0, 5), (4, 4.5));

@@ -23,18 +23,12 @@ pub(super) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
     let joined = &run.contact.order()[first..];
     let at = |&node: &usize| match joined.iter().position(|other| *other == node) {
         Some(place) => AtEnd {
-            pressure: [
-                solution.pressure[first + place],
-                solution.rate[first + place],
-            ],
+            pressure: [solution.pressure[first + place], solution.rate[first + place]],
             gap: [0.0; 2],
         },
         None => {
             let line = run.line(node);
-            AtEnd {
-                pressure: [0.0; 2],
-                gap: [line.gap, -line.closing],
-            }
+            AtEnd { pressure: [0.0; 2], gap: [line.gap, -line.closing] }
         }
     };
     window.nodes().iter().map(at).collect()
@@ -82,19 +76,14 @@ pub(super) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction 
     } else {
         updated.clone_from(&by_courses);
     }
-    Correction {
-        window: updated,
-        by_courses,
-        is_updated,
-    }
+    Correction { window: updated, by_courses, is_updated }
 }
 
 /// Bends the lines of a window so that they end as they should under the Schur complement of another one.
 fn complete(target: &mut Window, window: &Window, ends: &[AtEnd], time: f64) {
     let explained = |schur: &Schur, i: usize, k: usize| -> f64 {
         let row = ends.iter().enumerate();
-        row.map(|(j, other)| schur.entry(i, j) * other.pressure[k])
-            .sum()
+        row.map(|(j, other)| schur.entry(i, j) * other.pressure[k]).sum()
     };
     let courses: Vec<Course> = window
         .courses()
@@ -121,11 +110,9 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     // −V: what the lines and S̃ lack at the end, both columns in the unit of a rate.
     let missing: Vec<Vector2<f64>> = window
         .courses()
-        .map(
-            |Course {
-                 curve: [c2, c3], ..
-             }| { Vector2::new(-t * (c2 + t * c3), -t * (2.0 * c2 + 3.0 * t * c3)) },
-        )
+        .map(|Course { curve: [c2, c3], .. }| {
+            Vector2::new(-t * (c2 + t * c3), -t * (2.0 * c2 + 3.0 * t * c3))
+        })
         .collect();
     let mut products = Matrix2::zeros();
     for (end, v) in ends.iter().zip(&missing) {
@@ -222,10 +209,7 @@ mod tests {
     /// `((−3 E p + 2 E q)/4, (−2 E q + 2 E p)/8)`.
     #[test]
     fn what_the_end_shows_of_an_error_is_taken_off() {
-        let two = corrected(&with_error(&[
-            (1.0, [1.0, 0.0, 0.5]),
-            (1.0, [0.0, 1.0, 1.0]),
-        ]));
+        let two = corrected(&with_error(&[(1.0, [1.0, 0.0, 0.5]), (1.0, [0.0, 1.0, 1.0])]));
         let cubics = [[-1.0, 0.25], [-0.25, 0.0], [-0.75, 0.125]];
         let courses = two.by_courses.courses();
         for ((course, [a, b]), [c2, c3]) in courses.zip(LINES).zip(cubics) {
@@ -237,9 +221,7 @@ mod tests {
         for correction in [two, one, opposite] {
             assert!(correction.is_updated);
             // Roundings of numbers up to 5, times a condition number of 40.
-            let error = (test_chain::matrix(&correction.window) - exact())
-                .abs()
-                .max();
+            let error = (test_chain::matrix(&correction.window) - exact()).abs().max();
             assert!(error < 1e-12, "{error:e}");
             for (course, line) in correction.window.courses().zip(LINES) {
                 assert_eq!([course.line.gap, course.line.closing], line);
@@ -252,25 +234,19 @@ mod tests {
     /// An error that is no error of a Galerkin solution leaves S̃ as it is, and cubics make the end right.
     #[test]
     fn an_error_of_the_wrong_sign_is_no_error() {
-        for parts in [
-            &[(-1.0, [1.0, 0.0, 0.5])][..],
-            &[(1.0, [1.0, 0.0, 0.0]), (-1.5, [0.0, 1.0, 0.0])],
-        ] {
+        for parts in
+            [&[(-1.0, [1.0, 0.0, 0.5])][..], &[(1.0, [1.0, 0.0, 0.0]), (-1.5, [0.0, 1.0, 0.0])]]
+        {
             let schur = with_error(parts);
             let correction = corrected(&schur);
-            let Correction {
-                window, by_courses, ..
-            } = &correction;
+            let Correction { window, by_courses, .. } = &correction;
             assert!(!correction.is_updated && correction.left_out() == 0.0);
             assert_eq!(test_chain::matrix(window), schur);
             assert!(window.courses().eq(by_courses.courses()));
         }
         // One node of which less than nothing, or nothing, would be left: 1 − 2 and 1 − 1.
         for (a, left) in [(1.0, -1.0), (1.0, 0.0), (1.0, 0.5)] {
-            let end = AtEnd {
-                pressure: [1.0, 1.0],
-                gap: [0.0; 2],
-            };
+            let end = AtEnd { pressure: [1.0, 1.0], gap: [0.0; 2] };
             // With t = 1: b = S q = left, and a = b − S p = 0.
             let line = [0.0, left];
             let schur = DMatrix::from_element(1, 1, a);
@@ -285,12 +261,7 @@ mod tests {
     fn inverses_of_two_by_two() {
         let inverse_of = |a: f64, b: f64, c: f64| {
             let inverse = inverse(Matrix2::new(a, b, b, c))?;
-            Some([
-                inverse[(0, 0)],
-                inverse[(0, 1)],
-                inverse[(1, 0)],
-                inverse[(1, 1)],
-            ])
+            Some([inverse[(0, 0)], inverse[(0, 1)], inverse[(1, 0)], inverse[(1, 1)]])
         };
         let close = |found: Option<[f64; 4]>, expected: [f64; 4], error: f64| {
             let found = found.unwrap_or([f64::NAN; 4]);
@@ -299,34 +270,21 @@ mod tests {
             }
         };
         let third = 1.0 / 3.0;
-        close(
-            inverse_of(4.0, 1.0, 1.0),
-            [third, -third, -third, 4.0 * third],
-            1e-15,
-        );
+        close(inverse_of(4.0, 1.0, 1.0), [third, -third, -third, 4.0 * third], 1e-15);
         // Determinants of 2·10⁻⁶, which cancellation leaves ten digits of, and of half a millionth on either side of 0.
         let correlation = |determinant: f64| (1.0 - determinant).sqrt();
         let regular = correlation(2e-6);
         let [own, other] = [5e5, -5e5 * regular];
-        close(
-            inverse_of(1.0, regular, 1.0),
-            [own, other, other, own],
-            1e-9,
-        );
+        close(inverse_of(1.0, regular, 1.0), [own, other, other, own], 1e-9);
         for determinant in [5e-7, -5e-7] {
             let c = correlation(determinant);
             assert_eq!(inverse_of(1.0, c, 1.0), Some([0.25; 4]));
             assert_eq!(inverse_of(1.0, -c, 1.0), Some([0.25, -0.25, -0.25, 0.25]));
         }
         assert_eq!(inverse_of(1.0, correlation(-2e-6), 1.0), None);
-        for (a, c) in [
-            (0.0, 1.0),
-            (1.0, 0.0),
-            (0.0, 0.0),
-            (-1.0, 1.0),
-            (1.0, -1.0),
-            (f64::NAN, 1.0),
-        ] {
+        for (a, c) in
+            [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0), (-1.0, 1.0), (1.0, -1.0), (f64::NAN, 1.0)]
+        {
             assert_eq!(inverse_of(a, 0.5, c), None, "{a} {c}");
             assert_eq!(inverse_of(a, 0.0, c), None, "{a} {c}");
         }
@@ -335,10 +293,7 @@ mod tests {
     /// The pivots of nodes alone are 4, 4 and 17/4, of which the error is 1, 1 and 5/4.
     #[test]
     fn the_greatest_part_of_a_pivot_is_told() {
-        let correction = corrected(&with_error(&[
-            (1.0, [1.0, 0.0, 0.5]),
-            (1.0, [0.0, 1.0, 1.0]),
-        ]));
+        let correction = corrected(&with_error(&[(1.0, [1.0, 0.0, 0.5]), (1.0, [0.0, 1.0, 1.0])]));
         let left_out = correction.left_out();
         assert!((left_out - 1.25 / 4.25).abs() < 1e-12, "{left_out}");
     }
@@ -364,10 +319,7 @@ mod tests {
                 for k in 0..2 {
                     // Roundings of a transform of numbers up to 8.
                     let errors = [end.pressure[k] - pressure[k], end.gap[k] - gap[k]];
-                    assert!(
-                        errors.iter().all(|error| error.abs() < 1e-13),
-                        "{node} {end:?}"
-                    );
+                    assert!(errors.iter().all(|error| error.abs() < 1e-13), "{node} {end:?}");
                 }
             }
         }

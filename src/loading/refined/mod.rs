@@ -239,10 +239,7 @@ impl Refined {
         let first = &events[..cut];
         if time <= tolerances.tie {
             // All of them touch at once. Their gaps are better known than those of the ranking.
-            let known: Vec<usize> = first
-                .iter()
-                .map(|event| window.node(event.position))
-                .collect();
+            let known: Vec<usize> = first.iter().map(|event| window.node(event.position)).collect();
             self.enter(run, iterations, tolerances, (time, &known), most)?;
             return Ok(Outcome::Done);
         }
@@ -370,9 +367,7 @@ impl Refined {
                 }
             }
         }
-        found
-            .outside
-            .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.outside.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         Ok(found)
     }
 

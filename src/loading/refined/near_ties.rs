@@ -81,11 +81,7 @@ pub(super) fn second_pass(
     let other = pass(&correction.by_courses);
     let count = events.len() as f64;
     let change = mean_change(first, &events, time);
-    let part = if correction.is_updated {
-        OF_CHANGE
-    } else {
-        OF_CHANGE_UNCORRECTED
-    };
+    let part = if correction.is_updated { OF_CHANGE } else { OF_CHANGE_UNCORRECTED };
     let error = |event: &WindowEvent| {
         let closing = window.course(event.position).line.closing;
         let of_rate = RATE_ERROR * event.time / closing;
@@ -93,10 +89,7 @@ pub(super) fn second_pass(
         let between = BETWEEN_CORRECTIONS * distance(&other, event, time);
         between.max(changed).max(OF_SPACING * time / count) + of_rate
     };
-    Settled {
-        errors: events.iter().map(error).collect(),
-        events,
-    }
+    Settled { errors: events.iter().map(error).collect(), events }
 }
 
 /// How far an event is from where a pass has it, in a window that ends after `time`.
@@ -191,10 +184,7 @@ impl NearTies<'_> {
     fn make_orbits_equal(&mut self, range: Range<usize>) {
         let mut orbits: Vec<Vec<usize>> = Vec::new();
         for event in range.clone() {
-            match orbits
-                .iter_mut()
-                .find(|orbit| self.are_images(orbit[0], event))
-            {
+            match orbits.iter_mut().find(|orbit| self.are_images(orbit[0], event)) {
                 Some(orbit) => orbit.push(event),
                 None => orbits.push(vec![event]),
             }
@@ -208,10 +198,7 @@ impl NearTies<'_> {
             let times = orbit.iter().map(|&event| events[event].time);
             let time = times.sum::<f64>() / orbit.len() as f64;
             let error = orbit.iter().map(|&event| errors[event]).fold(0.0, f64::max);
-            let alike = |event: usize| WindowEvent {
-                time,
-                ..events[event]
-            };
+            let alike = |event: usize| WindowEvent { time, ..events[event] };
             equal.extend(orbit.into_iter().map(|event| (alike(event), error)));
         }
         let nodes = self.window.nodes();
@@ -237,9 +224,8 @@ impl NearTies<'_> {
         let gap_error = self.sufficient_error(first, last);
         run.timings.ties += 1;
         let gaps = self.exact_gaps(run, iterations, first, gap_error)?;
-        let before: Vec<usize> = (first..=last)
-            .map(|event| self.settled.events[event].position)
-            .collect();
+        let before: Vec<usize> =
+            (first..=last).map(|event| self.settled.events[event].position).collect();
         let gaps: Vec<f64> = before.iter().map(|&p| gaps(self.window.node(p))).collect();
         let Some(mut here) = self.eliminated(first, &before, &gaps)? else {
             return Ok(Some(last + 1));
@@ -280,9 +266,7 @@ impl NearTies<'_> {
         let start = events[0].time;
         let left = gap_error + 2.0 * self.tolerances.tolerance * (self.approach + time);
         for (k, event) in events.iter().enumerate() {
-            let place = before
-                .iter()
-                .position(|position| *position == event.position);
+            let place = before.iter().position(|position| *position == event.position);
             let rate = rates[place.unwrap_or_default()];
             self.settled.errors[first + k] = OF_WAY * (event.time - start) + left / rate;
         }

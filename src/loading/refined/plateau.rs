@@ -106,18 +106,11 @@ mod tests {
                 assert_eq!(state.node, (order[k + 1], 0));
                 // 1/2 N and 1/2 N more on the way.
                 assert_eq!(
-                    (
-                        state.contact.approach,
-                        state.contact.load,
-                        state.approach_error
-                    ),
+                    (state.contact.approach, state.contact.load, state.approach_error),
                     (2.0, 1.0, tie)
                 );
                 let stiffness = state.contact.contact_stiffness.unwrap_or_default();
-                assert!(
-                    (stiffness - (1.0 + 0.5 * k as f64)).abs() < 1e-14,
-                    "{stiffness}"
-                );
+                assert!((stiffness - (1.0 + 0.5 * k as f64)).abs() < 1e-14, "{stiffness}");
             }
         }
         Ok(())

@@ -20,20 +20,12 @@ pub(super) fn enqueue(
 ) -> Result<(), Error> {
     let start = &mark.scalars;
     for event in &settled.events {
-        window
-            .touch(event.position, event.time)
-            .map_err(|bad| run.not_positive_definite(bad))?;
+        window.touch(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
     }
     let steps = window.increments();
     let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
-    let scaled = [0, 1].map(|k| {
-        if total(k) == 0.0 {
-            0.0
-        } else {
-            missing[k] / total(k)
-        }
-    });
+    let scaled = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { missing[k] / total(k) });
     let mut walked = *start;
     let mut along = Vec::with_capacity(settled.events.len());
     for (k, (event, step)) in settled.events.iter().zip(steps).enumerate() {
@@ -58,12 +50,7 @@ pub(super) fn enqueue(
         let error = settled.errors[k];
         load_error += scalars.load_of(scaled[0] * steps[k][0], error);
         let error = scalars.reported_error(OF_TIME * error, OF_LOAD * load_error);
-        run.enqueue_at(
-            &scalars,
-            (step, ContactEvent::Touch, node),
-            contact_nodes,
-            error,
-        )?;
+        run.enqueue_at(&scalars, (step, ContactEvent::Touch, node), contact_nodes, error)?;
     }
     Ok(())
 }
@@ -109,10 +96,7 @@ mod tests {
                 ];
                 let stiffnesses = [
                     (state.contact.contact_stiffness, expected.contact_stiffness),
-                    (
-                        state.contact.interfacial_stiffness,
-                        expected.interfacial_stiffness,
-                    ),
+                    (state.contact.interfacial_stiffness, expected.interfacial_stiffness),
                 ];
                 let stiffnesses =
                     stiffnesses.map(|(a, b)| (a.unwrap_or(f64::NAN), b.unwrap_or_default()));
@@ -131,10 +115,7 @@ mod tests {
         let mark = at(&[0], 1.0)?.mark();
         let mut run = at(&[0, 2], 3.0)?;
         // The event is known to be at 0.5; at 1.0 load and stiffness lack what half a metre of 2/4 N/m gives, 1/4 N.
-        let settled = Settled {
-            events: test_chain::events(&[(0, 1.0)]),
-            errors: vec![0.0],
-        };
+        let settled = Settled { events: test_chain::events(&[(0, 1.0)]), errors: vec![0.0] };
         let window = test_chain::apart(&[(2, 0.5)], 9.0);
         enqueue(&mut run, window, &settled, (&mark, 2.0))?;
         let load = run.queue[0].contact.load;

@@ -25,9 +25,7 @@ impl Strip {
 
     fn path<U: LinearUpdater>(&self, gaps: &[f64], updater: U) -> Result<LoadingSolver<U>, Error> {
         let heights = DMatrix::from_fn(gaps.len(), 1, |ix, _| -gaps[ix]);
-        LoadingSolver::builder(&HeightMap::new(heights)?, self)
-            .updater(updater)
-            .build()
+        LoadingSolver::builder(&HeightMap::new(heights)?, self).updater(updater).build()
     }
 
     /// The states without a factor, how often a window was taken back, and how the path failed.
@@ -72,9 +70,8 @@ impl InfluenceKernel for Strip {
 fn a_node_that_overlaps_unwatched_is_watched() -> Result<(), Error> {
     let mut coefficients = [0.0; 16];
     (coefficients[0], coefficients[12]) = (1.0, -0.4);
-    let gaps = [
-        0.0, 0.1, 0.15, 0.16, 0.17, 0.18, 0.19, 0.20, 0.25, 5.0, 6.0, 7.0, 8.0, 0.26, 9.0, 10.0,
-    ];
+    let gaps =
+        [0.0, 0.1, 0.15, 0.16, 0.17, 0.18, 0.19, 0.20, 0.25, 5.0, 6.0, 7.0, 8.0, 0.26, 9.0, 10.0];
     let exact = Strip::new(&coefficients, ContactGrowth::Unknown)?;
     let exact = exact.path(&gaps, RecursiveCholesky::new())?;
     let exact: Vec<LoadingState> = exact.collect::<Result<_, _>>()?;
@@ -130,20 +127,11 @@ fn a_kernel_that_is_not_positive_definite_names_the_node() -> Result<(), Error> 
     let at = |k: usize| (d * p0[k] + c * p1[k]) / determinant;
     let touches = (gaps[2] + at(0)) / (1.0 - at(1));
     let expected = (1.0 - d) * (1.0 + d - 2.0 * c * c) / determinant;
-    let Some(Error::NotPositiveDefinite {
-        ix: 2,
-        iy: 0,
-        approach,
-        pivot,
-    }) = failure
-    else {
+    let Some(Error::NotPositiveDefinite { ix: 2, iy: 0, approach, pivot }) = failure else {
         unreachable!("{failure:?}");
     };
     // Solutions to 1e-10 of the length.
-    assert!(
-        (approach / touches - 1.0).abs() < 1e-8,
-        "{approach} {touches}"
-    );
+    assert!((approach / touches - 1.0).abs() < 1e-8, "{approach} {touches}");
     // Complements without a factor come in single precision: roundings of 6e-8, a sum of 1.2 and a condition of 9.
     assert!((pivot - expected).abs() < 1e-6, "{pivot} {expected}");
     Ok(())

@@ -26,23 +26,10 @@ fn windows_have_their_sizes() {
 #[test]
 fn any_contradiction_is_one() {
     assert!(Contradictions::default().is_empty());
-    let tension = Contradictions {
-        tension: vec![1],
-        ..Contradictions::default()
-    };
-    let overlap = Contradictions {
-        overlap: vec![1],
-        ..Contradictions::default()
-    };
-    let outside = Contradictions {
-        outside: vec![(0.0, 1)],
-        ..Contradictions::default()
-    };
-    assert!(
-        ![tension, overlap, outside]
-            .iter()
-            .any(Contradictions::is_empty)
-    );
+    let tension = Contradictions { tension: vec![1], ..Contradictions::default() };
+    let overlap = Contradictions { overlap: vec![1], ..Contradictions::default() };
+    let outside = Contradictions { outside: vec![(0.0, 1)], ..Contradictions::default() };
+    assert!(![tension, overlap, outside].iter().any(Contradictions::is_empty));
 }
 
 /// Nodes 2, 4 and 6 are watched beside node 0 from the approach 1 on, and the first two join before 2. There gaps may overlap by
@@ -50,24 +37,11 @@ fn any_contradiction_is_one() {
 #[test]
 fn contradictions_at_the_end_are_found() -> Result<(), Error> {
     let far = 20.0;
-    for (x, tension, overlap, outside) in [
-        (1.9e-3, &[][..], &[][..], &[][..]),
-        (2.1e-3, &[1], &[2], &[10, 8]),
-    ] {
-        let gaps = [
-            0.0,
-            far,
-            1.5,
-            far,
-            2.0 + x,
-            far,
-            2.0 - x,
-            far,
-            2.0 - x,
-            far,
-            2.0 - 1.04 * x,
-            far,
-        ];
+    for (x, tension, overlap, outside) in
+        [(1.9e-3, &[][..], &[][..], &[][..]), (2.1e-3, &[1], &[2], &[10, 8])]
+    {
+        let gaps =
+            [0.0, far, 1.5, far, 2.0 + x, far, 2.0 - x, far, 2.0 - x, far, 2.0 - 1.04 * x, far];
         let mut run = test_chain::solved(&gaps, &[0], 1.0)?;
         let window = test_chain::apart(&[(2, 1.0), (4, 1.0), (6, 1.0)], 9.0);
         let mut refined = Refined::new(None, true);
@@ -80,11 +54,7 @@ fn contradictions_at_the_end_are_found() -> Result<(), Error> {
             &[0, 1],
             1.0,
         )?;
-        assert_eq!(
-            (&found.tension[..], &found.overlap[..]),
-            (tension, overlap),
-            "{x}"
-        );
+        assert_eq!((&found.tension[..], &found.overlap[..]), (tension, overlap), "{x}");
         // At the rate 1; node 10 has overlapped for longer.
         let nodes: Vec<usize> = found.outside.iter().map(|(_, node)| *node).collect();
         assert_eq!(nodes, outside);
@@ -133,19 +103,9 @@ fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Erro
         let mut run = test_chain::solved(&[0.0, 9.0, 1.25, 9.0, 1.5, 9.0], &[0], 1.0)?;
         let mut refined = Refined::new(None, true);
         refined.rate_span = 0.1;
-        let mut candidates = Candidates {
-            nodes: vec![(0.05, 2), (last, 4)],
-            horizon,
-            group: None,
-        };
+        let mut candidates = Candidates { nodes: vec![(0.05, 2), (last, 4)], horizon, group: None };
         let iterations = &mut Altered::inexact(0.0);
-        refined.improve_rates(
-            &mut run,
-            iterations,
-            &tolerances(1e-6),
-            &mut candidates,
-            &[],
-        )?;
+        refined.improve_rates(&mut run, iterations, &tolerances(1e-6), &mut candidates, &[])?;
         assert_eq!(refined.rate_span, rate_span, "{horizon} {last}");
         // Then nodes are chosen anew: all five.
         assert_eq!(candidates.nodes.len(), if rate_span > 0.1 { 5 } else { 2 });
@@ -156,10 +116,8 @@ fn rates_are_found_again_if_they_have_to_serve_much_further() -> Result<(), Erro
 /// Everything is known of the front after the beginning of a window, and found once.
 #[test]
 fn a_window_begins_with_a_solution() -> Result<(), Error> {
-    let (mut run, mut iterations) = (
-        test_chain::run(&[0.0, 9.0, 1.25, 9.0])?,
-        Altered::inexact(0.0),
-    );
+    let (mut run, mut iterations) =
+        (test_chain::run(&[0.0, 9.0, 1.25, 9.0])?, Altered::inexact(0.0));
     run.contact.push(0)?;
     run.scalars.place_at(1.0);
     let mut refined = Refined::new(None, true);
@@ -184,10 +142,8 @@ fn a_window_begins_with_a_solution() -> Result<(), Error> {
 /// the iterations know better. S = (4 − 1/4, 0; 0, 4), and row sums of 6 − 5/4 and 6.
 #[test]
 fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
-    for (knows, lines) in [
-        (false, [[4.25, 0.75], [6.0, 1.0]]),
-        (true, [[4.5, 0.75], [6.5, 0.75]]),
-    ] {
+    for (knows, lines) in [(false, [[4.25, 0.75], [6.0, 1.0]]), (true, [[4.5, 0.75], [6.5, 0.75]])]
+    {
         let mut iterations = Altered::estimates(0.0, move |(_, displacements)| {
             if knows {
                 displacements.fill([0.5, 0.25]);
@@ -197,11 +153,7 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
         run.contact.push(0)?;
         run.scalars.place_at(1.0);
         run.advance_field(&mut iterations, 1.0, f64::INFINITY)?;
-        let candidates = Candidates {
-            nodes: vec![(2.0, 1), (3.0, 3)],
-            horizon: 8.0,
-            group: None,
-        };
+        let candidates = Candidates { nodes: vec![(2.0, 1), (3.0, 3)], horizon: 8.0, group: None };
         let found = Refined::new(None, true).propose(&mut run, &mut iterations, candidates, 5.0)?;
         assert_eq!((found.nodes(), found.horizon()), (&[1, 3][..], 5.0));
         let matrix = test_chain::matrix(&found);
@@ -230,20 +182,13 @@ fn windows_are_gone_through() -> Result<(), Error> {
         let iterations = &mut Altered::inexact(0.0);
         let ended = refined.follow(&mut run, iterations, &tolerances(1e-9), &window, most)?;
         assert!(matches!(ended, Outcome::Done));
-        let found: Vec<_> = run
-            .queue
-            .iter()
-            .map(|state| (state.step, state.node.0))
-            .collect();
+        let found: Vec<_> = run.queue.iter().map(|state| (state.step, state.node.0)).collect();
         assert_eq!(found, [(2, 2), (3, 4)][..nodes]);
         // In the middle of 1.5 and 2.5, or of 2.5 and the horizon at 3.7.
         assert!((run.scalars.approach() - end).abs() < 1e-12);
         assert!((refined.last_span - (end - 1.0)).abs() < 1e-12);
         assert_eq!(run.contact.order(), &[0, 2, 4][..=nodes]);
-        assert_eq!(
-            refined.ranked,
-            Some((run.contact.revision(), run.scalars.approach()))
-        );
+        assert_eq!(refined.ranked, Some((run.contact.revision(), run.scalars.approach())));
         for (state, approach) in run.queue.iter().zip([1.5, 2.5]) {
             assert!((state.contact.approach - approach).abs() < 1e-12);
         }
@@ -265,10 +210,7 @@ fn windows_with_overlap_outside_are_taken_back() -> Result<(), Error> {
     };
     assert!((time - 0.75).abs() < 1e-12);
     assert!(outside.len() == 1 && outside[0].1 == 6 && (outside[0].0 + 0.5).abs() < 1e-12);
-    assert_eq!(
-        (run.contact.order(), run.scalars.approach()),
-        (&[0][..], 1.0)
-    );
+    assert_eq!((run.contact.order(), run.scalars.approach()), (&[0][..], 1.0));
     assert!(run.queue.is_empty());
     Ok(())
 }
@@ -344,18 +286,12 @@ fn windows_without_events_are_gone_through() -> Result<(), Error> {
         run.contact.push(0)?;
         let found = Refined::new(None, true).produce(&mut run, &mut iterations, 2);
         if fails {
-            assert!(
-                matches!(found, Err(Error::NotMonotone { ix: 1, iy: 0, .. })),
-                "{found:?}"
-            );
+            assert!(matches!(found, Err(Error::NotMonotone { ix: 1, iy: 0, .. })), "{found:?}");
             continue;
         }
         found?;
         let states: Vec<_> = run.queue.iter().collect();
-        assert_eq!(
-            (states.len(), states[0].node, states[0].step),
-            (1, (1, 0), 2)
-        );
+        assert_eq!((states.len(), states[0].node, states[0].step), (1, (1, 0), 2));
         let approach = states[0].contact.approach;
         assert!((approach - 10.0 / 3.0).abs() < 1e-6, "{wrong}: {approach}");
         // Node 0 bears a quarter of the approach on 2 m², and the work is half of their product.
@@ -386,10 +322,7 @@ fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
     window.schur_mut().matrix_mut().scale_mut(2.0);
     let ended = refined.follow(&mut run, &mut iterations, &tolerances(1e-9), &window, 9)?;
     assert!(matches!(ended, Outcome::TakenBack));
-    assert_eq!(
-        (run.contact.order(), run.scalars.approach()),
-        (&[0][..], 1.0)
-    );
+    assert_eq!((run.contact.order(), run.scalars.approach()), (&[0][..], 1.0));
     assert!(run.queue.is_empty());
     assert_eq!(refined.most_events(), 1);
     let ended = refined.follow(&mut run, &mut iterations, &tolerances(1e-9), &window, 9)?;
@@ -399,9 +332,6 @@ fn windows_that_leave_out_much_are_taken_back() -> Result<(), Error> {
     let mut iterations = Altered::estimates(1e-9, |(schur, _)| schur.matrix_mut().scale_mut(2.0));
     run.advance_field(&mut iterations, 1.0, 1.0)?;
     refined.produce(&mut run, &mut iterations, 8)?;
-    assert_eq!(
-        (run.contact.order(), run.timings.taken_back),
-        (&[0, 2][..], 1)
-    );
+    assert_eq!((run.contact.order(), run.timings.taken_back), (&[0, 2][..], 1));
     Ok(())
 }

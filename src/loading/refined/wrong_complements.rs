@@ -61,21 +61,11 @@ fn any_iterations_are_corrected() -> Result<(), Error> {
             assert_eq!(state.node, expected.node, "{state:?}");
             let (found, expected) = (state.contact, expected.contact);
             let context = format!("{found:?} {expected:?}");
-            assert!(
-                (found.load - expected.load).abs() <= 1e-3 * expected.load,
-                "{context}"
-            );
-            assert!(
-                (found.mean_gap - expected.mean_gap).abs() <= 1e-4 * initial,
-                "{context}"
-            );
+            assert!((found.load - expected.load).abs() <= 1e-3 * expected.load, "{context}");
+            assert!((found.mean_gap - expected.mean_gap).abs() <= 1e-4 * initial, "{context}");
             let stiffnesses = [
                 (found.contact_stiffness, expected.contact_stiffness, 5e-3),
-                (
-                    found.interfacial_stiffness,
-                    expected.interfacial_stiffness,
-                    0.1,
-                ),
+                (found.interfacial_stiffness, expected.interfacial_stiffness, 0.1),
             ];
             for (found, expected, allowed) in stiffnesses {
                 match (found, expected) {

@@ -28,12 +28,7 @@ fn windows_are_halved_until_they_fit() -> Result<(), Error> {
     let mut run = test_chain::solved(&[0.0; 9], &[0, 1, 2], 1.0)?;
     let fixed = run.memory.fixed;
     let needed = |k: usize| 16 * ((3 + 2 * k).pow(2) + k * k);
-    for (budget, size) in [
-        (needed(8), 8),
-        (needed(8) - 1, 4),
-        (needed(4) - 1, 2),
-        (needed(1), 1),
-    ] {
+    for (budget, size) in [(needed(8), 8), (needed(8) - 1, 4), (needed(4) - 1, 2), (needed(1), 1)] {
         run.memory.budget = fixed + budget;
         assert_eq!(run.affordable(&Dense, 8)?, size);
     }
@@ -86,24 +81,15 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0])?;
     run.scalars.place_at(0.5);
     let mut seen = Vec::new();
-    run.survey(false, |node, line| {
-        seen.push((node, line.gap, line.closing))
-    })?;
-    assert_eq!(
-        seen,
-        [(0, -0.5, 1.0), (1, 0.5, 1.0), (2, 1.5, 1.0), (3, 4.5, 1.0)]
-    );
+    run.survey(false, |node, line| seen.push((node, line.gap, line.closing)))?;
+    assert_eq!(seen, [(0, -0.5, 1.0), (1, 0.5, 1.0), (2, 1.5, 1.0), (3, 4.5, 1.0)]);
     assert_eq!(run.scalars.state(0).mean_gap, 1.5);
     // One metre of approach takes one off.
     run.scalars.advance(1.5);
     assert_eq!(run.scalars.state(0).mean_gap, 0.5);
     for (approach, is_refused) in [(4.9e-10, false), (5.1e-10, true)] {
         run.scalars.place_at(approach);
-        assert_eq!(
-            run.survey(true, |_, _| ()).is_err(),
-            is_refused,
-            "{approach:e}"
-        );
+        assert_eq!(run.survey(true, |_, _| ()).is_err(), is_refused, "{approach:e}");
         run.survey(false, |_, _| ())?;
     }
     // Node 3 alone is out of contact, and the greatest gap is that of node 2: 10⁻¹⁰ (5 + 3) m.
@@ -181,10 +167,7 @@ fn solutions_close_the_contact() -> Result<(), Error> {
             (Ok(()), None) => {}
             (
                 Err(Error::Updater(UpdaterError::ContactNotClosed {
-                    quantity,
-                    ix: 0,
-                    iy: 0,
-                    ..
+                    quantity, ix: 0, iy: 0, ..
                 })),
                 Some(refused),
             ) => assert_eq!(quantity, refused),
@@ -199,29 +182,14 @@ fn errors_say_where_the_path_is() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0; 6])?;
     run.contact.push(3)?;
     run.scalars.place_at(1.5);
-    let bad = BadPivot {
-        node: 5,
-        time: 0.25,
-        pivot: -1.0,
-    };
+    let bad = BadPivot { node: 5, time: 0.25, pivot: -1.0 };
     assert!(matches!(
         run.not_positive_definite(bad),
-        Error::NotPositiveDefinite {
-            ix: 5,
-            iy: 0,
-            approach: 1.75,
-            pivot: -1.0
-        }
+        Error::NotPositiveDefinite { ix: 5, iy: 0, approach: 1.75, pivot: -1.0 }
     ));
     assert!(matches!(
         run.not_monotone("gap", 4, -2.0),
-        Error::NotMonotone {
-            quantity: "gap",
-            ix: 4,
-            iy: 0,
-            approach: 1.5,
-            value: -2.0
-        }
+        Error::NotMonotone { quantity: "gap", ix: 4, iy: 0, approach: 1.5, value: -2.0 }
     ));
     assert!(matches!(run.not_finite(), Error::NotFinite { step: 2 }));
     Ok(())
@@ -274,10 +242,8 @@ fn played<U: LinearUpdater>(
 fn windows_are_those_of_any_updater() -> Result<(), Error> {
     let grid = Grid::new(14, 12, 1.0, 1.5)?;
     let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
-    let kernels: [&dyn InfluenceKernel; 2] = [
-        &Boussinesq::new(grid, 1.0)?,
-        &PeriodicBoussinesq::new(grid, 1.0)?,
-    ];
+    let kernels: [&dyn InfluenceKernel; 2] =
+        [&Boussinesq::new(grid, 1.0)?, &PeriodicBoussinesq::new(grid, 1.0)?];
     for kernel in kernels {
         let builder = LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new());
         let mut path = builder.max_nodes(40).build()?;
@@ -295,10 +261,9 @@ fn windows_are_those_of_any_updater() -> Result<(), Error> {
         let opened = (&nodes[..], ranking[12].0);
         let expected = played(run, &mut Dense, opened)?;
         assert!(expected.events().len() > 2);
-        for found in [
-            played(run, updater, opened)?,
-            played(run, &mut ConjugateGradient::new(), opened)?,
-        ] {
+        for found in
+            [played(run, updater, opened)?, played(run, &mut ConjugateGradient::new(), opened)?]
+        {
             assert!(found.touched().eq(expected.touched()));
             for (found, expected) in found.events().iter().zip(expected.events()) {
                 let error = (found.time - expected.time).abs();
@@ -306,10 +271,7 @@ fn windows_are_those_of_any_updater() -> Result<(), Error> {
             }
             let increments = found.increments().iter().flatten();
             for (found, expected) in increments.zip(expected.increments().iter().flatten()) {
-                assert!(
-                    (found - expected).abs() < 1e-8 * expected.abs(),
-                    "{found} {expected}"
-                );
+                assert!((found - expected).abs() < 1e-8 * expected.abs(), "{found} {expected}");
             }
         }
     }

@@ -31,22 +31,14 @@ fn of_nodes_that_touch_at_once_the_lowest_are_chosen() {
         let mut windowed = windowed(None);
         let early = [1, 3, 5, 6, 8, 9].into_iter().rev().zip(0..);
         let early = early.map(|(node, k)| (1.0 + 1e-10 * f64::from(k), node));
-        let late = [
-            (2.0 + 3e-10, 0),
-            (2.0, 2),
-            (2.0 + 1e-10, 4),
-            (2.0 + 2e-10, 7),
-        ];
+        let late = [(2.0 + 3e-10, 0), (2.0, 2), (2.0 + 1e-10, 4), (2.0 + 2e-10, 7)];
         windowed.ranking = early.chain(late).collect();
         let (found, until) = windowed.choose(size, 1, [approach, 1.0 + 5e-10]);
         let nodes: Vec<usize> = windowed.ranking[..found].iter().map(|(_, n)| *n).collect();
         let nodes = nodes.into_iter().collect::<std::collections::BTreeSet<_>>();
         assert!(nodes.into_iter().eq(expected), "{size}");
         // Roundings of the approach.
-        assert!(
-            until == horizon || (until - horizon).abs() < 1e-11,
-            "{size}: {until}"
-        );
+        assert!(until == horizon || (until - horizon).abs() < 1e-11, "{size}: {until}");
     }
 }
 
@@ -100,28 +92,13 @@ fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
 #[test]
 fn the_first_contradiction_is_found() -> Result<(), Error> {
     let near = |found: Option<f64>, expected: f64| {
-        assert!(
-            found.is_some_and(|found| (found - expected).abs() < 1e-14),
-            "{found:?}"
-        );
+        assert!(found.is_some_and(|found| (found - expected).abs() < 1e-14), "{found:?}");
     };
-    near(
-        contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 9.0], &[0], 1.0)?, 1.0),
-        0.8,
-    );
-    near(
-        contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 0.5], &[0], 1.0)?, 1.0),
-        0.5,
-    );
+    near(contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 9.0], &[0], 1.0)?, 1.0), 0.8);
+    near(contradiction(&test_chain::solved(&[0.0, 0.6, 9.0, 0.5], &[0], 1.0)?, 1.0), 0.5);
     // From a solution at the approach 1 to one at 1.5.
-    near(
-        contradiction(&test_chain::solved(&[0.0, 9.0, 9.0, 1.25], &[0], 1.0)?, 1.5),
-        1.25,
-    );
-    assert_eq!(
-        contradiction(&test_chain::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0),
-        None
-    );
+    near(contradiction(&test_chain::solved(&[0.0, 9.0, 9.0, 1.25], &[0], 1.0)?, 1.5), 1.25);
+    assert_eq!(contradiction(&test_chain::solved(&[0.0, 0.8, 9.0, 9.0], &[0], 1.0)?, 1.0), None);
     // A millionth of a metre is left at node 0, so that eight of them are what rounds.
     for (overlap, is_one) in [(7.99e-6, false), (8.01e-6, true)] {
         let mut given = test_chain::Altered::given(vec![0.25 * (1.0 - 1e-6)], vec![0.25]);
@@ -152,9 +129,7 @@ fn the_first_contradiction_is_found() -> Result<(), Error> {
 /// `watcher`.
 fn verified(gap_of_8: f64, watcher: f64) -> Result<(LoadingRun, usize), Error> {
     let far = 20.0;
-    let gaps = [
-        0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher,
-    ];
+    let gaps = [0.0, far, 1.0, far, 1.25, far, 1.75, far, gap_of_8, far, watcher];
     let mut run = test_chain::run(&gaps)?;
     run.contact.push(0)?;
     run.scalars.place_at(0.5);
@@ -195,14 +170,7 @@ fn events_become_states() -> Result<(), Error> {
     let found: Vec<_> = run
         .queue
         .iter()
-        .map(|state| {
-            (
-                state.step,
-                state.contact.contact_nodes,
-                state.node,
-                state.contact.approach,
-            )
-        })
+        .map(|state| (state.step, state.contact.contact_nodes, state.node, state.contact.approach))
         .collect();
     assert_eq!(found, [(1, 1, (2, 0), 1.0), (2, 2, (4, 0), 1.25)]);
     let found: Vec<_> = run
@@ -222,12 +190,7 @@ fn the_first_node_that_is_left_is_named() -> Result<(), Error> {
     windowed.ranking = vec![(1.0, 5), (3.0, 3), (2.0, 8)];
     assert!(matches!(
         windowed.growth_stopped(&run),
-        Error::NotMonotone {
-            ix: 3,
-            iy: 0,
-            value: 0.0,
-            ..
-        }
+        Error::NotMonotone { ix: 3, iy: 0, value: 0.0, .. }
     ));
     Ok(())
 }

@@ -8,23 +8,12 @@ use crate::{Error, SurfaceError};
 
 /// The integral of a density.
 fn integral(histogram: &Histogram) -> f64 {
-    let widths = histogram
-        .edges()
-        .windows(2)
-        .map(|edges| edges[1] - edges[0]);
-    histogram
-        .density()
-        .iter()
-        .zip(widths)
-        .map(|(density, width)| density * width)
-        .sum()
+    let widths = histogram.edges().windows(2).map(|edges| edges[1] - edges[0]);
+    histogram.density().iter().zip(widths).map(|(density, width)| density * width).sum()
 }
 
 fn bins() -> impl Strategy<Value = Bins> {
-    prop_oneof![
-        (1_usize..40).prop_map(Bins::Linear),
-        (1_usize..20).prop_map(Bins::PerDecade),
-    ]
+    prop_oneof![(1_usize..40).prop_map(Bins::Linear), (1_usize..20).prop_map(Bins::PerDecade),]
 }
 
 proptest! {
@@ -98,37 +87,23 @@ fn values_without_a_range_have_no_bins() -> Result<(), Error> {
 fn impossible_histograms_are_refused() {
     let refused =
         |result: Result<Histogram, Error>| matches!(result, Err(Error::OutOfRange { .. }));
-    for bins in [
-        Bins::Linear(0),
-        Bins::Linear(usize::MAX),
-        Bins::PerDecade(0),
-        Bins::PerDecade(usize::MAX),
-    ] {
+    for bins in
+        [Bins::Linear(0), Bins::Linear(usize::MAX), Bins::PerDecade(0), Bins::PerDecade(usize::MAX)]
+    {
         assert!(refused(Histogram::new([1.0], bins)), "{bins:?}");
     }
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(refused(Histogram::new([1.0, value], Bins::Linear(3))));
     }
-    for edges in [
-        vec![1.0, 1.0],
-        vec![2.0, 1.0],
-        vec![0.0, f64::NAN],
-        vec![0.0, f64::INFINITY],
-    ] {
+    for edges in [vec![1.0, 1.0], vec![2.0, 1.0], vec![0.0, f64::NAN], vec![0.0, f64::INFINITY]] {
         assert!(refused(Histogram::with_edges([1.0], edges)));
     }
     // Of the least double there is no part, and beyond the greatest no edge.
-    assert!(refused(Histogram::new(
-        [f64::from_bits(1)],
-        Bins::Linear(10)
-    )));
+    assert!(refused(Histogram::new([f64::from_bits(1)], Bins::Linear(10))));
     assert!(refused(Histogram::new([f64::MAX], Bins::PerDecade(10))));
     assert!(
         Histogram::new([-f64::MAX, f64::MAX], Bins::Linear(10)).is_ok_and(|histogram| {
-            histogram
-                .density()
-                .iter()
-                .all(|density| density.is_finite())
+            histogram.density().iter().all(|density| density.is_finite())
         })
     );
 }
@@ -150,18 +125,12 @@ fn pressures_count_in_contact_and_gaps_out_of_it() -> Result<(), Error> {
     // Full contact has no gap.
     let full = contact.map(|_| true);
     let found = gap_distribution(&gap, &full, Bins::Linear(4))?;
-    assert_eq!(
-        (found.contact_share, found.histogram.edges()),
-        (1.0, &[][..])
-    );
+    assert_eq!((found.contact_share, found.histogram.edges()), (1.0, &[][..]));
 
     let bins = Bins::Linear(3);
     assert!(matches!(
         pressure_distribution(&pressure.transpose(), &contact, bins),
-        Err(Error::GridMismatch {
-            expected: (2, 4),
-            found: (4, 2)
-        })
+        Err(Error::GridMismatch { expected: (2, 4), found: (4, 2) })
     ));
     let nothing = DMatrix::zeros(0, 3);
     assert!(matches!(
@@ -172,12 +141,7 @@ fn pressures_count_in_contact_and_gaps_out_of_it() -> Result<(), Error> {
     bad[(2, 1)] = f64::NAN;
     assert!(matches!(
         pressure_distribution(&bad, &contact, bins),
-        Err(Error::FieldNotFinite {
-            field: "pressure",
-            ix: 2,
-            iy: 1,
-            ..
-        })
+        Err(Error::FieldNotFinite { field: "pressure", ix: 2, iy: 1, .. })
     ));
     Ok(())
 }

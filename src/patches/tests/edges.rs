@@ -17,12 +17,7 @@ fn counted(case: &Case, contact: &[usize]) -> Result<(Perimeter, f64), Error> {
         picture.is_in[node] = true;
     }
     let [along_x, along_y, border_along_x, border_along_y] = picture.sides(contact.iter().copied());
-    let perimeter = Perimeter {
-        along_x,
-        along_y,
-        border_along_x,
-        border_along_y,
-    };
+    let perimeter = Perimeter { along_x, along_y, border_along_x, border_along_y };
     let area = contact.len() as f64 - Perimeter::AREA_CORRECTION * (along_x + along_y) as f64;
     Ok((perimeter, area * grid.cell_area()))
 }

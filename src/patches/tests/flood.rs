@@ -98,12 +98,9 @@ impl Picture {
         let mut sides = [0; 4];
         for node in nodes {
             let (x, y) = self.place(node);
-            for (place, kind) in [
-                ((x, y - 1), 0),
-                ((x, y + 1), 0),
-                ((x - 1, y), 1),
-                ((x + 1, y), 1),
-            ] {
+            for (place, kind) in
+                [((x, y - 1), 0), ((x, y + 1), 0), ((x - 1, y), 1), ((x + 1, y), 1)]
+            {
                 match self.at(place) {
                     None => sides[kind + 2] += 1,
                     Some(other) if !self.is_in[other] => sides[kind] += 1,

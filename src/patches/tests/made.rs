@@ -80,22 +80,11 @@ fn a_patch_across_the_border_is_put_together() -> Result<(), Error> {
     };
     assert_eq!(patch.centroid, (0.5, 0.0));
     assert_eq!((patch.nodes, patch.area), (6, 12.0));
-    assert_eq!(
-        (patch.perimeter.sides(), patch.perimeter.length(&grid)),
-        (10, 14.0)
-    );
+    assert_eq!((patch.perimeter.sides(), patch.perimeter.length(&grid)), (10, 14.0));
     let patches = Patches::new(&contact, &grid, Boundary::Free, Connectivity::Four)?;
-    let centers: Vec<_> = patches
-        .patches()
-        .iter()
-        .map(|patch| patch.centroid)
-        .collect();
+    let centers: Vec<_> = patches.patches().iter().map(|patch| patch.centroid).collect();
     assert_eq!(centers, [(1.0, 1.0), (5.5, 1.0), (1.0, 7.0), (5.5, 7.0)]);
-    let border: Vec<_> = patches
-        .patches()
-        .iter()
-        .map(|patch| patch.perimeter)
-        .collect();
+    let border: Vec<_> = patches.patches().iter().map(|patch| patch.perimeter).collect();
     assert_eq!((border[0].border_along_x, border[0].border_along_y), (2, 1));
     assert_eq!((border[0].along_x, border[0].along_y), (2, 1));
     assert_eq!(border[0].length(&grid), 8.0);
@@ -127,21 +116,14 @@ fn a_path_with_nodes_that_leave_has_no_order() -> Result<(), Error> {
     let events = [(Touch, (1, 1)), (Touch, (2, 0)), (Release, (1, 1))];
     assert!(matches!(
         contact_sequence(grid, events),
-        Err(Error::NodeLeaves {
-            ix: 1,
-            iy: 1,
-            event: 3
-        })
+        Err(Error::NodeLeaves { ix: 1, iy: 1, event: 3 })
     ));
     assert!(matches!(
         contact_sequence(grid, [(Touch, (1, 1)), (Touch, (1, 1))]),
         Err(Error::AlreadyInContact { ix: 1, iy: 1 })
     ));
     for node in [(3, 0), (0, 2), (usize::MAX, 0), (0, usize::MAX)] {
-        assert!(matches!(
-            contact_sequence(grid, [(Touch, node)]),
-            Err(Error::OutOfRange { .. })
-        ));
+        assert!(matches!(contact_sequence(grid, [(Touch, node)]), Err(Error::OutOfRange { .. })));
     }
     Ok(())
 }
@@ -160,12 +142,7 @@ fn maps_and_fields_need_the_shape_of_the_grid() -> Result<(), Error> {
     pressure[(1, 1)] = f64::INFINITY;
     assert!(matches!(
         patches.loads(&pressure),
-        Err(Error::FieldNotFinite {
-            field: "pressure",
-            ix: 1,
-            iy: 1,
-            ..
-        })
+        Err(Error::FieldNotFinite { field: "pressure", ix: 1, iy: 1, .. })
     ));
     Ok(())
 }
@@ -186,25 +163,16 @@ fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
     let (grid, _, history) = sphere((12, 9), 0.4)?;
     let step = activation_map(&grid, history.states(), |state| state.step as f64)?;
     let approach = activation_map(&grid, history.states(), |state| state.contact.approach)?;
-    let events = history
-        .states()
-        .iter()
-        .map(|state| (state.event, state.node));
+    let events = history.states().iter().map(|state| (state.event, state.node));
     let contact = contact_sequence(grid, events)?;
     assert_eq!(contact.len(), 43);
     for state in history.states() {
         let map = contact.map_at(state.step);
         assert_eq!(step.map(|touched| touched <= state.step as f64), map);
         // Without ties, as here.
-        assert_eq!(
-            approach.map(|touched| touched <= state.contact.approach),
-            map
-        );
+        assert_eq!(approach.map(|touched| touched <= state.contact.approach), map);
     }
-    assert_eq!(
-        step.iter().filter(|touched| touched.is_nan()).count(),
-        108 - 43
-    );
+    assert_eq!(step.iter().filter(|touched| touched.is_nan()).count(), 108 - 43);
     let small = Grid::new(9, 12, 1.0, 1.0)?;
     let refused = activation_map(&small, history.states(), |state| state.contact.load);
     assert!(matches!(refused, Err(Error::OutOfRange { .. })));
@@ -215,17 +183,10 @@ fn the_activation_map_holds_every_contact_map() -> Result<(), Error> {
 #[test]
 fn the_corrected_area_is_closer_to_that_of_hertz() -> Result<(), Error> {
     // (pi - 1 + ln 2) / 24 by hand.
-    assert_relative_eq!(
-        Perimeter::AREA_CORRECTION,
-        0.118_114_159_8,
-        max_relative = 1e-6
-    );
+    assert_relative_eq!(Perimeter::AREA_CORRECTION, 0.118_114_159_8, max_relative = 1e-6);
     for n in [(40, 40), (48, 32)] {
         let (grid, hertz, history) = sphere(n, 0.5)?;
-        let events = history
-            .states()
-            .iter()
-            .map(|state| (state.event, state.node));
+        let events = history.states().iter().map(|state| (state.event, state.node));
         let contact = contact_sequence(grid, events)?;
         let patches = PatchHistory::new(&contact, Boundary::Free, Connectivity::Four);
         let (mut error, mut corrected) = (0.0, 0.0);
@@ -237,11 +198,7 @@ fn the_corrected_area_is_closer_to_that_of_hertz() -> Result<(), Error> {
             corrected += patches.corrected_area(&grid) - area;
         }
         // Measured: -0.24 on square cells, -0.27 on others: the correction is a mean over directions and places.
-        assert!(
-            (corrected / error).abs() < 0.35,
-            "{n:?}: {}",
-            corrected / error
-        );
+        assert!((corrected / error).abs() < 0.35, "{n:?}: {}", corrected / error);
     }
     Ok(())
 }
@@ -270,18 +227,13 @@ fn random_contact_percolates_at_the_threshold_of_the_square_lattice() -> Result<
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));
     let contact = ContactSequence::with_order(grid, order)?;
     let four = 0.592_746;
-    for (connectivity, threshold) in [
-        (Connectivity::Four, four),
-        (Connectivity::Eight, 1.0 - four),
-    ] {
+    for (connectivity, threshold) in [(Connectivity::Four, four), (Connectivity::Eight, 1.0 - four)]
+    {
         for boundary in [Boundary::Free, Boundary::Periodic] {
             let found = Percolation::of(&contact, boundary, connectivity);
             for step in [found.contact_x, found.contact_y, found.leak_x, found.leak_y] {
                 let share = step.map(|step| step as f64 / grid.nodes() as f64);
-                assert!(
-                    share.is_some_and(|share| (share - threshold).abs() < 0.009),
-                    "{found:?}"
-                );
+                assert!(share.is_some_and(|share| (share - threshold).abs() < 0.009), "{found:?}");
             }
         }
     }

@@ -53,10 +53,7 @@ impl Case {
 fn by_height(shape: (usize, usize), waves: &[(u8, u8, f64)], noise: &[f64]) -> Vec<usize> {
     let (nx, ny) = shape;
     let height = |node: usize| {
-        let (x, y) = (
-            (node % nx) as f64 / nx as f64,
-            (node / nx) as f64 / ny as f64,
-        );
+        let (x, y) = ((node % nx) as f64 / nx as f64, (node / nx) as f64 / ny as f64);
         let wave = |&(kx, ky, phase): &(u8, u8, f64)| {
             let turns = f64::from(kx) * x + f64::from(ky) * y + phase;
             (std::f64::consts::TAU * turns).cos()
@@ -81,14 +78,7 @@ fn cases() -> impl Strategy<Value = Case> {
             let rough =
                 (waves, noise).prop_map(move |(waves, noise)| by_height(shape, &waves, &noise));
             let order = prop_oneof![random, rough];
-            (
-                Just(shape),
-                order,
-                0..=nodes,
-                any::<bool>(),
-                any::<bool>(),
-                any::<bool>(),
-            )
+            (Just(shape), order, 0..=nodes, any::<bool>(), any::<bool>(), any::<bool>())
         })
         .prop_map(|(shape, mut order, few, full, periodic, corners)| {
             if !full {
@@ -97,16 +87,8 @@ fn cases() -> impl Strategy<Value = Case> {
             Case {
                 shape,
                 order,
-                boundary: if periodic {
-                    Boundary::Periodic
-                } else {
-                    Boundary::Free
-                },
-                connectivity: if corners {
-                    Connectivity::Eight
-                } else {
-                    Connectivity::Four
-                },
+                boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
+                connectivity: if corners { Connectivity::Eight } else { Connectivity::Four },
             }
         })
 }

@@ -12,12 +12,7 @@ use crate::{Boundary, Grid};
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
 fn sides(perimeter: &Perimeter) -> [usize; 4] {
-    [
-        perimeter.along_x,
-        perimeter.along_y,
-        perimeter.border_along_x,
-        perimeter.border_along_y,
-    ]
+    [perimeter.along_x, perimeter.along_y, perimeter.border_along_x, perimeter.border_along_y]
 }
 
 /// The first state at which something holds, looked at state by state.
@@ -29,11 +24,8 @@ fn first(case: &Case, holds: impl Fn(Picture) -> bool) -> Option<usize> {
 fn joined(before: &[Pool], after: &[Pool], node: usize) -> usize {
     let touched = after.iter().find(|pool| pool.nodes.contains_key(&node));
     let is_part = |pool: &&Pool| {
-        touched.is_some_and(|touched| {
-            pool.nodes
-                .keys()
-                .any(|node| touched.nodes.contains_key(node))
-        })
+        touched
+            .is_some_and(|touched| pool.nodes.keys().any(|node| touched.nodes.contains_key(node)))
     };
     before.iter().filter(is_part).count()
 }

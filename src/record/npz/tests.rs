@@ -105,34 +105,16 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
         }
     };
     let cases: [(&str, Change, &str); 5] = [
-        (
-            &newer,
-            &as_it_is,
-            "version 2 is newer than 1, which this program reads",
-        ),
+        (&newer, &as_it_is, "version 2 is newer than 1, which this program reads"),
         (&other, &as_it_is, "it holds 'lens prescription'"),
-        (
-            "{}",
-            &as_it_is,
-            "its parameters are not understood: missing field `format`",
-        ),
-        (
-            &text,
-            &three,
-            "member 'load': it has 3 numbers, but there are 4 states",
-        ),
+        ("{}", &as_it_is, "its parameters are not understood: missing field `format`"),
+        (&text, &three, "member 'load': it has 3 numbers, but there are 4 states"),
         (&text, &event, "no event is 3"),
     ];
     for (parameters, change, expected) in cases {
         let (written, found) = read(parameters, change);
         written?;
-        let Err(Error::File(FileError::BadFile {
-            path,
-            format: NAME,
-            reason,
-            ..
-        })) = found
-        else {
+        let Err(Error::File(FileError::BadFile { path, format: NAME, reason, .. })) = found else {
             std::fs::remove_file(&file)?;
             return Err(format!("{expected}: {found:?}").into());
         };

@@ -12,24 +12,9 @@ fn ellipse() -> Result<HertzEllipse, Error> {
 #[test]
 fn axis_ratio_agrees_with_the_defining_integrals() -> Result<(), Error> {
     for (axis_ratio, radius_ratio, first, second) in [
-        (
-            0.5,
-            0.351_771_642_284_186_06,
-            2.156_515_647_499_643,
-            1.211_056_027_568_459_4,
-        ),
-        (
-            0.2,
-            0.084_555_312_401_679_4,
-            3.016_112_492_477_647,
-            1.050_502_226_984_45,
-        ),
-        (
-            0.1,
-            0.027_370_194_883_873_69,
-            3.695_637_362_989_873,
-            1.015_993_545_025_224,
-        ),
+        (0.5, 0.351_771_642_284_186_06, 2.156_515_647_499_643, 1.211_056_027_568_459_4),
+        (0.2, 0.084_555_312_401_679_4, 3.016_112_492_477_647, 1.050_502_226_984_45),
+        (0.1, 0.027_370_194_883_873_69, 3.695_637_362_989_873, 1.015_993_545_025_224),
     ] {
         let ellipse = HertzEllipse::new(1.0, radius_ratio, 1.0)?;
         // Rounding of sums of 400 terms, and of the logarithms.
@@ -179,13 +164,7 @@ fn no_approach_no_contact() -> Result<(), Error> {
 #[test]
 fn impossible_paraboloids_are_refused() {
     for (rx, ry, e_star) in [(0.0, 1.0, 1.0), (1.0, f64::NAN, 1.0), (1.0, 1.0, 0.0)] {
-        assert!(matches!(
-            HertzEllipse::new(rx, ry, e_star),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(HertzEllipse::new(rx, ry, e_star), Err(Error::NotPositive { .. })));
     }
-    assert!(matches!(
-        HertzEllipse::new(1e-200, 1e200, 1.0),
-        Err(Error::OutOfRange { .. })
-    ));
+    assert!(matches!(HertzEllipse::new(1e-200, 1e200, 1.0), Err(Error::OutOfRange { .. })));
 }

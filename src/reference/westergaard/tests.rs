@@ -101,11 +101,7 @@ fn light_contact_is_hertzian() -> Result<(), Error> {
     // The difference is of the order of P.
     assert_relative_eq!(a, line.half_width(load), max_relative = 1e-8);
     let x = 0.6 * a;
-    assert_relative_eq!(
-        wave.pressure(x, mean),
-        line.pressure(x, load),
-        max_relative = 2e-8
-    );
+    assert_relative_eq!(wave.pressure(x, mean), line.pressure(x, load), max_relative = 2e-8);
     Ok(())
 }
 
@@ -144,11 +140,7 @@ fn complete_contact_and_beyond() -> Result<(), Error> {
         assert_eq!(wave.gap(0.5 * period, mean), 0.0);
         for x in [0.0, 0.2 * period, 0.5 * period, 7.3 * period] {
             let expected = mean + full * (2.0 * PI * x / period).cos();
-            assert_relative_eq!(
-                wave.pressure(x, mean) / full,
-                expected / full,
-                epsilon = 1e-13
-            );
+            assert_relative_eq!(wave.pressure(x, mean) / full, expected / full, epsilon = 1e-13);
         }
     }
     // Just below, the same to the order of √(1 − P).
@@ -178,9 +170,6 @@ fn edge_of_the_contact() -> Result<(), Error> {
 #[test]
 fn impossible_waves_are_refused() {
     for (d, period, e_star) in [(0.0, 1.0, 1.0), (1.0, f64::NAN, 1.0), (1.0, 1.0, -1.0)] {
-        assert!(matches!(
-            Westergaard::new(d, period, e_star),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(Westergaard::new(d, period, e_star), Err(Error::NotPositive { .. })));
     }
 }

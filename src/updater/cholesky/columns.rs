@@ -154,9 +154,7 @@ impl Columns {
     /// S −= Fᵀ F (lower triangle, column by column).
     pub(super) fn subtract_gram(&self, mut matrix: &mut [f64]) {
         let tiles = self.tiles();
-        let size = tiles
-            .last()
-            .map_or(0, |(start, _, columns)| start + columns.len());
+        let size = tiles.last().map_or(0, |(start, _, columns)| start + columns.len());
         let mut tasks = Vec::with_capacity(tiles.len());
         for first in 0..tiles.len() {
             let (s, rest) = matrix.split_at_mut(tiles[first].2.len() * size);
@@ -308,8 +306,7 @@ impl Columns {
             values.extend(untouched.iter().map(|&position| window(position, event)));
         }
         let blocks = mem::replace(&mut self.blocks, vec![Block { width, values }]);
-        self.spare
-            .extend(blocks.into_iter().map(|block| block.values));
+        self.spare.extend(blocks.into_iter().map(|block| block.values));
         self.rows = before + touched.len();
     }
 

@@ -69,10 +69,9 @@ impl Factor {
             nodes.iter().map(|&node| table.place(node)).collect()
         };
         let (places, contact) = (places_of(nodes), places_of(contact.order()));
-        self.columns
-            .forward_substitute(&self.panels, kept, |row, first, values| {
-                table.fill_column(contact[row], &places[first..], values);
-            });
+        self.columns.forward_substitute(&self.panels, kept, |row, first, values| {
+            table.fill_column(contact[row], &places[first..], values);
+        });
         let forward_done = Instant::now();
         self.timings.forward += forward_done - start;
 
@@ -117,10 +116,7 @@ impl Factor {
         }
         let untouched: Vec<usize> = (0..open.len()).filter(|&position| open[position]).collect();
         self.columns.commit(&mut self.panels, touched, &untouched);
-        self.watched = untouched
-            .iter()
-            .map(|&position| self.watched[position])
-            .collect();
+        self.watched = untouched.iter().map(|&position| self.watched[position]).collect();
         self.timings.commit += start.elapsed();
         Ok(())
     }
@@ -142,10 +138,7 @@ impl Factor {
     ) -> Result<Rotations, Error> {
         check_count(self.len(), contact.len() + 1)?;
         if position >= self.len() {
-            return Err(Error::NodeOutOfGrid {
-                node: position,
-                nodes: self.len(),
-            });
+            return Err(Error::NodeOutOfGrid { node: position, nodes: self.len() });
         }
         let start = Instant::now();
         self.watched.clear();

@@ -48,11 +48,7 @@ impl RecursiveCholesky {
     /// No node in contact.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            factor: Factor::new(),
-            border: Vec::new(),
-            reduced: Vec::new(),
-        }
+        Self { factor: Factor::new(), border: Vec::new(), reduced: Vec::new() }
     }
 
     /// The factor of a contact that is known as a whole, and the contact.
@@ -90,8 +86,7 @@ impl LinearUpdater for RecursiveCholesky {
         self.factor.eliminate(problem, contact, nodes, schur)?;
         let start = Instant::now();
         self.reduced.clear();
-        self.reduced
-            .extend(nodes.iter().map(|&node| problem.rhs(node)));
+        self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
         let columns = &self.factor.columns;
         columns.subtract_products(&self.border, &mut self.reduced);
         for (sum, [_, _, reduced]) in schur.row_sums_mut().iter_mut().zip(&self.reduced) {
@@ -109,9 +104,8 @@ impl LinearUpdater for RecursiveCholesky {
     ) -> Result<(), Error> {
         self.factor.join(problem, contact, touched)?;
         let positions = touched.positions().iter();
-        let mut rows: Vec<_> = positions
-            .filter_map(|&position| self.reduced.get(position).copied())
-            .collect();
+        let mut rows: Vec<_> =
+            positions.filter_map(|&position| self.reduced.get(position).copied()).collect();
         touched.solve(&mut rows);
         self.border.append(&mut rows);
         Ok(())

@@ -116,18 +116,12 @@ mod tests {
         let mut panels = filled();
         assert_eq!(panels.len(), 3);
         assert_eq!([0, 1, 2].map(|p| panels.rows_in(p)), [256, 256, 88]);
-        assert_eq!(
-            [0, 1, 2].map(|p| panels.panel(p).len()),
-            [256 * 256, 512 * 256, 768 * 256]
-        );
+        assert_eq!([0, 1, 2].map(|p| panels.panel(p).len()), [256 * 256, 512 * 256, 768 * 256]);
         for first in [0, 1, 255, 256, 257, 511, 512, 599, 600] {
-            let rows: Vec<(f64, usize)> = panels
-                .rows_mut(first)
-                .map(|row| (row[0], row.len()))
-                .collect();
-            let expected: Vec<(f64, usize)> = (first..600)
-                .map(|r| (r as f64, (r / 256 + 1) * 256))
-                .collect();
+            let rows: Vec<(f64, usize)> =
+                panels.rows_mut(first).map(|row| (row[0], row.len())).collect();
+            let expected: Vec<(f64, usize)> =
+                (first..600).map(|r| (r as f64, (r / 256 + 1) * 256)).collect();
             assert_eq!(rows, expected);
         }
         for p in 0..3 {
@@ -151,15 +145,9 @@ mod tests {
 
     #[test]
     fn what_is_cut_is_given_back() {
-        for (rows, panels_left) in [
-            (700, 3),
-            (513, 3),
-            (512, 2),
-            (257, 2),
-            (256, 1),
-            (1, 1),
-            (0, 0),
-        ] {
+        for (rows, panels_left) in
+            [(700, 3), (513, 3), (512, 2), (257, 2), (256, 1), (1, 1), (0, 0)]
+        {
             let mut panels = filled();
             panels.truncate(rows);
             assert_eq!((panels.rows(), panels.len()), (rows.min(600), panels_left));

@@ -78,12 +78,10 @@ mod tests {
             for rows in 0..10 {
                 for width in [columns, columns + 3] {
                     let entry = |r: usize, c: usize| ((5 * r + 3 * c) % 11) as f64 - 4.0;
-                    let a: Vec<f64> = (0..rows * width)
-                        .map(|k| entry(k / width, k % width))
-                        .collect();
-                    let y: Vec<[f64; 2]> = (0..rows)
-                        .map(|r| [r as f64 - 2.0, 3.0 - r as f64])
-                        .collect();
+                    let a: Vec<f64> =
+                        (0..rows * width).map(|k| entry(k / width, k % width)).collect();
+                    let y: Vec<[f64; 2]> =
+                        (0..rows).map(|r| [r as f64 - 2.0, 3.0 - r as f64]).collect();
                     let start = |c: usize| [c as f64, 7.0];
                     let mut x: [Vec<f64>; 2] =
                         [0, 1].map(|k| (0..columns).map(|c| start(c)[k]).collect());

@@ -38,20 +38,14 @@ impl Field {
 impl Equilibrium {
     /// Before any contact.
     pub(super) fn zero(nodes: usize) -> Self {
-        Self {
-            load: Field::zero(nodes),
-            rate: Field::zero(nodes),
-            ..Self::default()
-        }
+        Self { load: Field::zero(nodes), rate: Field::zero(nodes), ..Self::default() }
     }
 
     /// The pressures on its contact, the first nodes of a sequence, and all displacements, as they are.
     pub(super) fn write(&self, contact: &ContactSequence, solved: &mut Solved) {
         let values = |field: &Field| {
             let nodes = contact.order()[..self.count].iter();
-            nodes
-                .map(|&node| field.pressure.get(node).copied().unwrap_or(0.0))
-                .collect()
+            nodes.map(|&node| field.pressure.get(node).copied().unwrap_or(0.0)).collect()
         };
         solved.solution.pressure = values(&self.load);
         solved.solution.rate = values(&self.rate);
@@ -83,10 +77,7 @@ impl Equilibrium {
     pub(super) fn left(&self, problem: &Problem, node: usize) -> [f64; 2] {
         let overlap = self.approach - problem.initial_gap()[node];
         let rate = self.rate.displacement.get(node);
-        [
-            overlap - self.load.displacement[node],
-            rate.map_or(0.0, |rate| 1.0 - rate),
-        ]
+        [overlap - self.load.displacement[node], rate.map_or(0.0, |rate| 1.0 - rate)]
     }
 
     /// `x_jᵀ r` for what is left on the contact near a proposed node.
@@ -122,10 +113,7 @@ impl Equilibrium {
             sums[0] += self.load.pressure[node];
             sums[1] += rate;
         }
-        for (k, values) in [&mut solution.pressure, &mut solution.rate]
-            .into_iter()
-            .enumerate()
-        {
+        for (k, values) in [&mut solution.pressure, &mut solution.rate].into_iter().enumerate() {
             let factor = 1.0 + lacking[k] / sums[k];
             if factor.is_finite() {
                 for value in values {
@@ -141,11 +129,7 @@ mod tests {
     use super::*;
 
     fn field(pressure: [f64; 2], displacement: &[f64], drift: f64) -> Field {
-        Field {
-            pressure: pressure.to_vec(),
-            displacement: displacement.to_vec(),
-            drift,
-        }
+        Field { pressure: pressure.to_vec(), displacement: displacement.to_vec(), drift }
     }
 
     #[test]
@@ -210,11 +194,7 @@ mod tests {
         let (problem, _, mut solved) = solved()?;
         let left = [0, 1, 2].map(|node| solved.left(&problem, node));
         assert_eq!(left, [[0.5, 0.5], [0.5, 0.75], [-0.125, 0.0]]);
-        let local = Local {
-            node: 3,
-            contact: vec![1, 2],
-            weights: vec![0.5, 2.0],
-        };
+        let local = Local { node: 3, contact: vec![1, 2], weights: vec![0.5, 2.0] };
         // 0.5 · 0.5 − 2 · 0.125, and 0.5 · 0.75.
         assert_eq!(solved.left_near(&problem, &local), [0.0, 0.375]);
         // Of a rate that was not asked for nothing is left.
@@ -228,18 +208,12 @@ mod tests {
     fn sums_are_right_to_second_order() -> Result<(), crate::Error> {
         let (problem, contact, mut solved) = solved()?;
         let scaled = |solved: &Equilibrium| {
-            let mut solution = Solution {
-                pressure: vec![0.5, 0.25],
-                rate: vec![0.25, 0.5],
-            };
+            let mut solution = Solution { pressure: vec![0.5, 0.25], rate: vec![0.25, 0.5] };
             solved.scale(&problem, &contact, &mut solution);
             [solution.pressure, solution.rate].concat()
         };
         let [load, rate] = [1.0 + 0.0625 / 0.75, 1.0 + 0.125 / 0.75];
-        assert_eq!(
-            scaled(&solved),
-            [0.5 * load, 0.25 * load, 0.25 * rate, 0.5 * rate]
-        );
+        assert_eq!(scaled(&solved), [0.5 * load, 0.25 * load, 0.25 * rate, 0.5 * rate]);
         // Sums of nothing scale nothing, and without a rate there is nothing to scale by.
         solved.load.pressure.fill(0.0);
         assert_eq!(scaled(&solved), [0.5, 0.25, 0.25 * rate, 0.5 * rate]);
@@ -256,14 +230,7 @@ mod tests {
         assert_eq!(solved.load.pressure, [0.5, 0.0, 0.25, 0.0]);
         assert!(!solved.load.is_known());
         let zero = Equilibrium::zero(3);
-        assert_eq!(
-            (
-                zero.count,
-                zero.rate.pressure.len(),
-                zero.load.displacement.len()
-            ),
-            (0, 3, 3)
-        );
+        assert_eq!((zero.count, zero.rate.pressure.len(), zero.load.displacement.len()), (0, 3, 3));
         Ok(())
     }
 }

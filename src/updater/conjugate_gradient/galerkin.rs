@@ -25,15 +25,9 @@ struct Source {
 /// differs by the square of the error of x, and is never greater. The lower triangle is written.
 pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     let table = problem.table();
-    let sources: Vec<Source> = locals
-        .iter()
-        .map(|local| Source::new(problem, local))
-        .collect();
+    let sources: Vec<Source> = locals.iter().map(|local| Source::new(problem, local)).collect();
     let size = locals.len();
-    let products = sources
-        .iter()
-        .map(|source| products(source.near.len(), size))
-        .sum();
+    let products = sources.iter().map(|source| products(source.near.len(), size)).sum();
     let mut columns: Vec<(usize, &mut [f64])> =
         matrix.chunks_mut(size.max(1)).enumerate().collect();
     parallel::for_each(products, &mut columns, |(j, column)| {
@@ -66,19 +60,14 @@ impl Source {
         };
         let offset = |node: u32| {
             let (ix, iy) = grid.coordinates(node as usize);
-            [
-                shortest(ix as i32 - own[0], grid.nx()),
-                shortest(iy as i32 - own[1], grid.ny()),
-            ]
+            [shortest(ix as i32 - own[0], grid.nx()), shortest(iy as i32 - own[1], grid.ny())]
         };
         let answers = local.contact.iter().zip(&local.weights);
         let answers: Vec<([i32; 2], f64)> = std::iter::once(([0, 0], 1.0))
             .chain(answers.map(|(&node, x)| (offset(node), -x)))
             .collect();
         let nodes = std::iter::once(local.node).chain(local.contact.iter().map(|&n| n as usize));
-        let near = nodes
-            .zip(&answers)
-            .map(|(node, (_, p))| (table.place(node), *p));
+        let near = nodes.zip(&answers).map(|(node, (_, p))| (table.place(node), *p));
         let mut near: Vec<(usize, f64)> = near.collect();
         near.sort_unstable_by_key(|(place, _)| *place);
         let axes = [0, 1].map(|axis| Axis::of(answers.iter().map(|(offset, _)| offset[axis])));
@@ -95,10 +84,8 @@ impl Source {
         for (row, y) in weights.iter().zip(&axes[1].points[..axes[1].count]) {
             for (weight, x) in row.iter().zip(&axes[0].points[..axes[0].count]) {
                 let wrapped = |own: i32, d: i32, n: usize| (own + d).rem_euclid(n as i32) as usize;
-                let node = grid.index(
-                    wrapped(own[0], *x, grid.nx()),
-                    wrapped(own[1], *y, grid.ny()),
-                );
+                let node =
+                    grid.index(wrapped(own[0], *x, grid.nx()), wrapped(own[1], *y, grid.ny()));
                 far.push((table.place(node), *weight));
             }
         }
@@ -141,9 +128,7 @@ impl Source {
 
 /// Displacement of a place under some pressures.
 fn displacement(table: &KernelTable, place: usize, pressures: &[(usize, f64)]) -> f64 {
-    let terms = pressures
-        .iter()
-        .map(|&(other, p)| table.between(place, other) * p);
+    let terms = pressures.iter().map(|&(other, p)| table.between(place, other) * p);
     terms.sum()
 }
 
@@ -169,10 +154,8 @@ struct Axis {
 
 impl Axis {
     fn of(offsets: impl Iterator<Item = i32> + Clone) -> Self {
-        let (first, last) = (
-            offsets.clone().min().unwrap_or_default(),
-            offsets.max().unwrap_or_default(),
-        );
+        let (first, last) =
+            (offsets.clone().min().unwrap_or_default(), offsets.max().unwrap_or_default());
         let count = POINTS.min((last - first + 1) as usize);
         let mut points = [0; POINTS];
         for (k, point) in points[..count].iter_mut().enumerate() {

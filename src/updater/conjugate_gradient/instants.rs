@@ -48,11 +48,8 @@ impl Instants {
         let left_out = solved.iter().zip(carried).map(|(a, b)| a - b);
         let most = left_out.clone().fold(0.0, |most: f64, p| most.max(p.abs()));
         let unit = if most > 0.0 { most } else { 1.0 };
-        let instant = Instant {
-            sum,
-            left_out: left_out.map(|p| (p / unit) as f32).collect(),
-            unit,
-        };
+        let instant =
+            Instant { sum, left_out: left_out.map(|p| (p / unit) as f32).collect(), unit };
         let place = self.known.partition_point(|other| other.sum < sum);
         self.known.insert(place, instant);
         if self.known.len() > MOST {

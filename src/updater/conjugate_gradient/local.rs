@@ -62,11 +62,7 @@ impl Neighbourhood {
         if let Some(&(last, _, _)) = offsets.get(CANDIDATES) {
             offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
         }
-        Self {
-            grid,
-            boundary,
-            offsets,
-        }
+        Self { grid, boundary, offsets }
     }
 
     /// The grid of the nodes.
@@ -108,15 +104,8 @@ impl Neighbourhood {
     /// the square of its error.
     pub(super) fn solve(&self, table: &KernelTable, set: &NodeSet, node: usize) -> Local {
         let contact = self.nearest(set, node);
-        let places: Vec<usize> = contact
-            .iter()
-            .map(|&other| table.place(other as usize))
-            .collect();
-        let (size, own, unit) = (
-            contact.len(),
-            table.place(node),
-            table.self_influence().recip(),
-        );
+        let places: Vec<usize> = contact.iter().map(|&other| table.place(other as usize)).collect();
+        let (size, own, unit) = (contact.len(), table.place(node), table.self_influence().recip());
         let mut matrix = vec![0.0_f32; size * size];
         for (j, &place) in places.iter().enumerate() {
             let column = &mut matrix[j * size + j..(j + 1) * size];
@@ -124,19 +113,13 @@ impl Neighbourhood {
                 *value = (table.between(other, place) * unit) as f32;
             }
         }
-        let coupling = places
-            .iter()
-            .map(|&place| (table.between(place, own) * unit) as f32);
+        let coupling = places.iter().map(|&place| (table.between(place, own) * unit) as f32);
         let mut x: Vec<f32> = coupling.collect();
         vectorized(
             #[inline(always)]
             || solve_in_place(&mut matrix, size, &mut x),
         );
-        Local {
-            node,
-            contact,
-            weights: x.into_iter().map(f64::from).collect(),
-        }
+        Local { node, contact, weights: x.into_iter().map(f64::from).collect() }
     }
 }
 
@@ -228,10 +211,9 @@ mod tests {
     /// The nearest 144 in whole shells, by distances to all nodes, the shorter way round where they repeat.
     #[test]
     fn the_nearest_nodes_are_found() -> Result<(), Error> {
-        for (grid, periodic) in [
-            (Grid::new(14, 13, 1.0, 1.5)?, false),
-            (Grid::new(13, 15, 1.5, 1.0)?, true),
-        ] {
+        for (grid, periodic) in
+            [(Grid::new(14, 13, 1.0, 1.5)?, false), (Grid::new(13, 15, 1.5, 1.0)?, true)]
+        {
             let problem = flat(grid, periodic)?;
             let neighbourhood = Neighbourhood::new(&problem);
             for watched in [0, 70, grid.nodes() - 1] {
@@ -241,11 +223,7 @@ mod tests {
                     let (a, b) = (grid.coordinates(node as usize), grid.coordinates(watched));
                     let along = |a: usize, b: usize, n: usize, d: f64| {
                         let cells = a.abs_diff(b);
-                        d * (if periodic {
-                            cells.min(n - cells)
-                        } else {
-                            cells
-                        }) as f64
+                        d * (if periodic { cells.min(n - cells) } else { cells }) as f64
                     };
                     along(a.0, b.0, grid.nx(), grid.dx()).powi(2)
                         + along(a.1, b.1, grid.ny(), grid.dy()).powi(2)
@@ -253,10 +231,8 @@ mod tests {
                 let mut by_distance = set.nodes().to_vec();
                 by_distance.sort_by(|a, b| squared(*a).total_cmp(&squared(*b)));
                 let last = squared(by_distance[NEAREST - 1]) * (1.0 + 1e-6);
-                let mut expected: Vec<u32> = by_distance
-                    .into_iter()
-                    .filter(|node| squared(*node) <= last)
-                    .collect();
+                let mut expected: Vec<u32> =
+                    by_distance.into_iter().filter(|node| squared(*node) <= last).collect();
                 let mut found = neighbourhood.nearest(&set, watched);
                 assert!(found.is_sorted_by(|a, b| squared(*a) <= squared(*b) * (1.0 + 1e-9)));
                 found.sort_unstable();
@@ -278,22 +254,12 @@ mod tests {
         }
         let wide = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, false)?);
         let farthest = |beside: &Neighbourhood| beside.offsets.last().map(|last| last.0);
-        assert_eq!(
-            (wide.offsets.len(), farthest(&wide)),
-            (CANDIDATES, Some(1024.0))
-        );
+        assert_eq!((wide.offsets.len(), farthest(&wide)), (CANDIDATES, Some(1024.0)));
         let corner = set(51 * 51, |node| node < 20 * 51);
         // 20 of 51 rows, seen from the middle of the last one: those of 26 rows and more below are not.
-        assert!(
-            wide.nearest(&corner, 50 * 51 + 25)
-                .iter()
-                .all(|&node| node >= 18 * 51)
-        );
+        assert!(wide.nearest(&corner, 50 * 51 + 25).iter().all(|&node| node >= 18 * 51));
         let around = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, true)?);
-        assert_eq!(
-            (around.offsets.len(), farthest(&around)),
-            (51 * 51 - 1, Some(1250.0))
-        );
+        assert_eq!((around.offsets.len(), farthest(&around)), (51 * 51 - 1, Some(1250.0)));
         // Of few nodes all are taken into account.
         let problem = flat(Grid::new(80, 2, 1.0, 1.0)?, false)?;
         let found = Neighbourhood::new(&problem).nearest(&set(160, |node| node > 80), 0);
@@ -306,16 +272,9 @@ mod tests {
     fn as_many_nodes_are_in_reach_on_long_cells() -> Result<(), Error> {
         let grid = Grid::new(20, 300, 16.0, 1.0)?;
         let offsets = Neighbourhood::new(&flat(grid, false)?).offsets;
-        assert!(
-            (CANDIDATES..CANDIDATES + 8).contains(&offsets.len()),
-            "{}",
-            offsets.len()
-        );
-        let [most_x, most_y] = [
-            |o: &(f64, i32, i32)| o.2.abs(),
-            |o: &(f64, i32, i32)| o.1.abs(),
-        ]
-        .map(|along| offsets.iter().map(along).max());
+        assert!((CANDIDATES..CANDIDATES + 8).contains(&offsets.len()), "{}", offsets.len());
+        let [most_x, most_y] = [|o: &(f64, i32, i32)| o.2.abs(), |o: &(f64, i32, i32)| o.1.abs()]
+            .map(|along| offsets.iter().map(along).max());
         assert_eq!((most_x, most_y), (Some(8), Some(128)));
         // However long they are, the search comes to an end.
         let longest = Grid::new(3, 60, 1e-45, 1e45)?;
@@ -355,11 +314,7 @@ mod tests {
         for size in [1, 2, 4, 5, 16, 18, 37] {
             let entry = |i: usize, j: usize| {
                 let (i, j) = (i.min(j), i.max(j));
-                if i == j {
-                    64.0
-                } else {
-                    ((3 * i + 5 * j) % 7) as f32 / 8.0
-                }
+                if i == j { 64.0 } else { ((3 * i + 5 * j) % 7) as f32 / 8.0 }
             };
             let expected = |i: usize| (i % 5) as f32 - 2.0;
             let mut matrix: Vec<f32> = (0..size * size)
@@ -367,9 +322,8 @@ mod tests {
                 // Nothing above the diagonal is read.
                 .map(|(i, j)| if i < j { f32::NAN } else { entry(i, j) })
                 .collect();
-            let mut x: Vec<f32> = (0..size)
-                .map(|i| (0..size).map(|j| entry(i, j) * expected(j)).sum())
-                .collect();
+            let mut x: Vec<f32> =
+                (0..size).map(|i| (0..size).map(|j| entry(i, j) * expected(j)).sum()).collect();
             solve_in_place(&mut matrix, size, &mut x);
             for (i, found) in x.iter().enumerate() {
                 // The condition number is near 1: some ten roundings of 6·10⁻⁸ of numbers up to 2.

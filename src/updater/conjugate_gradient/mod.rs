@@ -57,13 +57,7 @@ pub struct ConjugateGradient {
 
 impl Default for ConjugateGradient {
     fn default() -> Self {
-        Self {
-            criteria: Criteria {
-                tolerance: 1e-10,
-                max_iterations: 5000,
-            },
-            solutions: None,
-        }
+        Self { criteria: Criteria { tolerance: 1e-10, max_iterations: 5000 }, solutions: None }
     }
 }
 
@@ -109,9 +103,7 @@ impl ConjugateGradient {
         contact: &ContactSequence,
     ) -> Result<&mut Solutions, Error> {
         problem.check_nodes(contact.order())?;
-        let solutions = self
-            .solutions
-            .get_or_insert_with(|| Solutions::new(problem));
+        let solutions = self.solutions.get_or_insert_with(|| Solutions::new(problem));
         solutions.grid().check_shape(problem.grid().shape())?;
         Ok(solutions)
     }
@@ -175,11 +167,7 @@ impl Iterations for ConjugateGradient {
         solved: &mut Solved,
     ) -> Result<(), Error> {
         let criteria = self.criteria;
-        let aim = if span < f64::INFINITY {
-            Aim::Span(span)
-        } else {
-            Aim::Exact
-        };
+        let aim = if span < f64::INFINITY { Aim::Span(span) } else { Aim::Exact };
         let solutions = self.solutions(problem, contact)?;
         inside(|| solutions.advance(criteria, problem, contact, (approach, aim), solved))
     }
@@ -232,11 +220,7 @@ impl Iterations for ConjugateGradient {
 
     fn check_cells(&self, problem: &Problem) -> Result<(), Error> {
         let expected = "at most 10 without a factor; a path with one takes any";
-        check_cells(
-            &problem.grid(),
-            problem.boundary(),
-            (Self::MAX_ASPECT, expected),
-        )
+        check_cells(&problem.grid(), problem.boundary(), (Self::MAX_ASPECT, expected))
     }
 }
 

@@ -29,10 +29,7 @@ impl Proposed {
         (nodes, count): (&[usize], usize),
         left: impl Fn(&Local) -> f64,
     ) -> Result<Self, Error> {
-        let of = |&node: &usize| Local {
-            node,
-            ..Local::default()
-        };
+        let of = |&node: &usize| Local { node, ..Local::default() };
         let mut locals: Vec<Local> = nodes.iter().map(of).collect();
         let products = locals.len() * PRODUCTS;
         parallel::for_each(products, &mut locals, |local| {
@@ -44,11 +41,7 @@ impl Proposed {
         for (sum, local) in complement.row_sums_mut().iter_mut().zip(&locals) {
             *sum = left(local);
         }
-        Ok(Self {
-            locals,
-            count,
-            complement,
-        })
+        Ok(Self { locals, count, complement })
     }
 
     /// Their Schur complement.
@@ -94,10 +87,7 @@ impl Proposed {
         let of = |local: &Local| {
             let left = now.left_near(problem, local);
             let node = local.node;
-            [
-                now.load.displacement[node] + left[0],
-                now.rate.displacement[node] + left[1],
-            ]
+            [now.load.displacement[node] + left[0], now.rate.displacement[node] + left[1]]
         };
         self.locals.iter().map(of).collect()
     }
@@ -118,11 +108,8 @@ impl Proposed {
         let Some(factor) = self.factor_of(joined) else {
             return;
         };
-        let near: Vec<[f64; 2]> = self
-            .locals
-            .iter()
-            .map(|local| equilibrium.left_near(problem, local))
-            .collect();
+        let near: Vec<[f64; 2]> =
+            self.locals.iter().map(|local| equilibrium.left_near(problem, local)).collect();
         let places = factor.positions();
         let left = places.iter().zip(joined).map(|(&place, &node)| {
             let left = equilibrium.left(problem, node);
@@ -130,10 +117,7 @@ impl Proposed {
         });
         let mut change: Vec<[f64; 2]> = left.collect();
         factor.solve_both(&mut change);
-        let Solved {
-            solution,
-            displacement,
-        } = solved;
+        let Solved { solution, displacement } = solved;
         let pressures = [&mut solution.pressure, &mut solution.rate];
         let fields = if equilibrium.rate.is_known() { 2 } else { 1 };
         let fields = pressures.into_iter().zip(displacement).take(fields);
@@ -174,9 +158,7 @@ impl Proposed {
         let Some(factor) = self.factor_of(joined) else {
             return (pressure, 0.0);
         };
-        let left = joined
-            .iter()
-            .map(|&node| [rhs(node) - field.displacement[node]]);
+        let left = joined.iter().map(|&node| [rhs(node) - field.displacement[node]]);
         let sum = self.spread(&factor, left.collect(), &mut pressure);
         (pressure, sum)
     }

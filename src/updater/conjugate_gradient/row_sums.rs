@@ -23,11 +23,7 @@ pub(super) struct RowSums {
 impl RowSums {
     /// Of which nothing but a start is known.
     pub(super) fn start(count: usize, pressure: Vec<f64>) -> Self {
-        Self {
-            count,
-            start: pressure,
-            field: Field::default(),
-        }
+        Self { count, start: pressure, field: Field::default() }
     }
 
     /// Follows nodes that were proposed and have joined since, and solves on the whole contact if what is known is
@@ -102,21 +98,14 @@ mod tests {
         let problem = test_chain::problem(&[0.0; 4])?;
         let mut sums = RowSums::start(2, vec![1.0, 2.0, 3.0, 4.0]);
         sums.field.displacement = vec![4.0, 1.5, 4.0, 0.0];
-        let local = Local {
-            node: 1,
-            contact: vec![0, 2],
-            weights: vec![0.25; 2],
-        };
+        let local = Local { node: 1, contact: vec![0, 2], weights: vec![0.25; 2] };
         // 6 − 1.5 − (5 − 4)/4 − (6 − 4)/4.
         let left = sums.left_at(&problem, &local);
         // Row sums are those of a transform.
         assert!((left - 3.75).abs() < 1e-13, "{left}");
         let contact = ContactSequence::with_order(problem.grid(), [3])?;
         sums.keep(&contact);
-        assert_eq!(
-            (sums.count(), &sums.start[..]),
-            (1, &[0.0, 0.0, 0.0, 4.0][..])
-        );
+        assert_eq!((sums.count(), &sums.start[..]), (1, &[0.0, 0.0, 0.0, 4.0][..]));
         assert!(!sums.field.is_known());
         Ok(())
     }
@@ -152,14 +141,7 @@ mod tests {
             }
             let mut directions = Directions::default();
             solver.choose(&contact, contact.len());
-            sums.follow(
-                (&mut solver, &mut directions),
-                &proposed,
-                1000,
-                &problem,
-                &contact,
-                open,
-            )?;
+            sums.follow((&mut solver, &mut directions), &proposed, 1000, &problem, &contact, open)?;
             let known = if is_solved { contact.len() } else { before };
             assert_eq!(sums.count(), known, "{before} {joined:?} {open}");
             // To 3·10⁻³ of the greatest, and of what closes if that is less.

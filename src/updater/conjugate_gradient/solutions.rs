@@ -58,13 +58,7 @@ impl Solutions {
             }
             Field::of(pressure)
         });
-        self.now = Equilibrium {
-            count: contact.len(),
-            approach,
-            serves: 0.0,
-            load,
-            rate,
-        };
+        self.now = Equilibrium { count: contact.len(), approach, serves: 0.0, load, rate };
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
     }
 
@@ -129,14 +123,8 @@ impl Solutions {
         let is_here = now.count == contact.len() && now.load.is_known() && now.approach == approach;
         if !(is_here && aim.span() <= now.serves) {
             let now = mem::take(&mut self.now);
-            match self.solve_from(
-                criteria,
-                problem,
-                contact,
-                (contact.len(), approach),
-                aim,
-                &now,
-            ) {
+            match self.solve_from(criteria, problem, contact, (contact.len(), approach), aim, &now)
+            {
                 Ok((equilibrium, directions)) => {
                     if now.count < contact.len() && now.load.is_known() {
                         self.before = Some(now);
@@ -179,8 +167,7 @@ impl Solutions {
         let mut solved = Solved::default();
         let (equilibrium, _) = found?;
         equilibrium.write(contact, &mut solved);
-        self.proposed
-            .improve(problem, contact, &equilibrium, &mut solved);
+        self.proposed.improve(problem, contact, &equilibrium, &mut solved);
         let [displacement, _] = solved.displacement;
         Ok(displacement)
     }
@@ -237,8 +224,7 @@ impl Solutions {
         };
         let nothing = Field::zero(problem.grid().nodes());
         let start = nothing.pressure.clone();
-        self.solver
-            .solve(&equation, start, &nothing, &mut Directions::default())
+        self.solver.solve(&equation, start, &nothing, &mut Directions::default())
     }
 
     /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one serve the
@@ -272,9 +258,7 @@ impl Solutions {
                 max_iterations,
             };
             let (start, _) = self.proposed.carried(&from.rate, joined, equation.rhs);
-            rate = self
-                .solver
-                .solve(&equation, start, &from.rate, &mut directions)?;
+            rate = self.solver.solve(&equation, start, &from.rate, &mut directions)?;
         }
         let equation = Equation {
             rhs: overlap,
@@ -289,22 +273,14 @@ impl Solutions {
         if !wants_rate {
             self.instants.complete(sum, &mut start);
         }
-        let load = self
-            .solver
-            .solve(&equation, start, &base, &mut directions)?;
+        let load = self.solver.solve(&equation, start, &base, &mut directions)?;
         if let Some(carried) = carried {
             if wants_rate {
                 self.instants.clear();
             }
             self.instants.add(sum, &load.pressure, &carried);
         }
-        let solved = Equilibrium {
-            count,
-            approach,
-            serves: aim.span(),
-            load,
-            rate,
-        };
+        let solved = Equilibrium { count, approach, serves: aim.span(), load, rate };
         Ok((solved, directions))
     }
 

@@ -50,9 +50,7 @@ pub(super) fn problem() -> Result<Problem, Error> {
 /// The greatest difference from a dense solution, over its greatest value.
 fn error(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
-    let most = expected
-        .iter()
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let most = expected.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let errors = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
     errors.fold(0.0, f64::max) / most
 }
@@ -101,14 +99,9 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     }
     let mut end = Solved::default();
     updater.advance(&problem, &contact, approach, span, &mut end)?;
-    for (count, at) in [
-        (63, approach),
-        (60, approach),
-        (30, approach),
-        (66, approach),
-        (66, 2.5),
-        (66, 3.5),
-    ] {
+    for (count, at) in
+        [(63, approach), (60, approach), (30, approach), (66, approach), (66, 2.5), (66, 3.5)]
+    {
         let (expected, displacement) = dense(&problem, &contact, (count, at))?;
         let found = updater.probe(&problem, &contact, count, at, 0.0)?;
         // Gaps are exact to some 10⁻⁸ of the approach inside a path.
@@ -168,10 +161,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     }
     assert!(matches!(
         updater.join(&problem, &contact, &touched),
-        Err(Error::LengthMismatch {
-            expected: 66,
-            found: 63
-        })
+        Err(Error::LengthMismatch { expected: 66, found: 63 })
     ));
     for node in 73..77 {
         contact.push(node)?;
@@ -180,17 +170,10 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     updater.join(&problem, &contact, &touched)?;
     assert!(matches!(
         updater.solve(&problem, &contact, 68, 3.0, &mut solution),
-        Err(Error::LengthMismatch {
-            expected: 67,
-            found: 68
-        })
+        Err(Error::LengthMismatch { expected: 67, found: 68 })
     ));
     contact.truncate(59);
-    assert!(
-        updater
-            .join(&problem, &contact, &WindowFactor::default())
-            .is_err()
-    );
+    assert!(updater.join(&problem, &contact, &WindowFactor::default()).is_err());
     let propose = |updater: &mut ConjugateGradient, contact: &_| {
         updater.propose(&problem, contact, &[90], &mut Schur::default())
     };
@@ -212,10 +195,7 @@ fn on_long_periodic_cells_nothing_is_proposed() -> Result<(), Error> {
     let contact = ContactSequence::with_order(grid, (0..30).step_by(3))?;
     let mut updater = ConjugateGradient::new();
     let refused = updater.propose(&problem, &contact, &[1], &mut Schur::default());
-    assert!(
-        matches!(refused, Err(Error::OutOfRange { value: 1e4, .. })),
-        "{refused:?}"
-    );
+    assert!(matches!(refused, Err(Error::OutOfRange { value: 1e4, .. })), "{refused:?}");
     let mut found = Solution::default();
     updater.solve(&problem, &contact, 10, 3.0, &mut found)?;
     let (expected, _) = dense(&problem, &contact, (10, 3.0))?;

@@ -49,11 +49,9 @@ impl Tolerances {
     pub(super) fn of(criteria: Criteria, aim: Aim, length: f64, open: f64) -> Self {
         let least = criteria.tolerance * length;
         match aim {
-            Aim::Exact => Self {
-                load: least,
-                rate: LEAST_RATE_TOLERANCE,
-                drift: [f64::INFINITY; 2],
-            },
+            Aim::Exact => {
+                Self { load: least, rate: LEAST_RATE_TOLERANCE, drift: [f64::INFINITY; 2] }
+            }
             Aim::Gaps(error) => Self {
                 load: ADJOINT * error.max(least),
                 rate: LEAST_RATE_TOLERANCE,
@@ -79,10 +77,7 @@ mod tests {
     use super::*;
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
-        let criteria = Criteria {
-            tolerance: 1e-10,
-            max_iterations: 1,
-        };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1 };
         Tolerances::of(criteria, aim, length, open)
     }
 
@@ -108,39 +103,14 @@ mod tests {
         check(tolerances(Aim::Exact, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
         // Gaps, to the tolerance times 30 or an error times 30.
         check(tolerances(Aim::Gaps(0.0), 2.0, 0.5), 6e-9, 1e-11, [none; 2]);
-        check(
-            tolerances(Aim::Gaps(1e-6), 2.0, 0.5),
-            3e-5,
-            1e-11,
-            [none; 2],
-        );
+        check(tolerances(Aim::Gaps(1e-6), 2.0, 0.5), 3e-5, 1e-11, [none; 2]);
         // A window of a hundredth of the length: 2e-6 of the span, and a quarter of 30 times the least.
-        check(
-            tolerances(Aim::Span(1e-2), 1.0, 0.5),
-            30.0 * 1e-8,
-            1.5e-5,
-            [7.5e-10, 7.5e-9],
-        );
+        check(tolerances(Aim::Span(1e-2), 1.0, 0.5), 30.0 * 1e-8, 1.5e-5, [7.5e-10, 7.5e-9]);
         // A shorter one.
-        check(
-            tolerances(Aim::Span(1e-3), 1.0, 0.5),
-            30.0 * 2e-9,
-            1.5e-5,
-            [7.5e-10, 7.5e-8],
-        );
+        check(tolerances(Aim::Span(1e-3), 1.0, 0.5), 30.0 * 2e-9, 1.5e-5, [7.5e-10, 7.5e-8]);
         // Gaps that hardly close: 1e-3 of the rate.
-        check(
-            tolerances(Aim::Span(1e-3), 1.0, 1e-3),
-            30.0 * 2e-9,
-            1e-6,
-            [7.5e-10, 7.5e-8],
-        );
+        check(tolerances(Aim::Span(1e-3), 1.0, 1e-3), 30.0 * 2e-9, 1e-6, [7.5e-10, 7.5e-8]);
         // A window that is long beside the length: 3e-7 of length over span.
-        check(
-            tolerances(Aim::Span(10.0), 0.1, 0.5),
-            30.0 * 1e-9,
-            3e-9,
-            [7.5e-11, 7.5e-13],
-        );
+        check(tolerances(Aim::Span(10.0), 0.1, 0.5), 30.0 * 1e-9, 3e-9, [7.5e-11, 7.5e-13]);
     }
 }

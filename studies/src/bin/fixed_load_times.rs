@@ -47,11 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let map = HeightMap::sample(&surface, &grid)?;
         let path = arguments.out.join(format!("self_affine_{nodes}.npy"));
         write_npy(&path, map.matrix())?;
-        let loads: Vec<_> = arguments
-            .load
-            .iter()
-            .map(|l| (l * unit).to_string())
-            .collect();
+        let loads: Vec<_> = arguments.load.iter().map(|l| (l * unit).to_string()).collect();
         println!("{} 1 {}", path.display(), loads.join(" "));
         let kernel = Boussinesq::new(grid, 1.0)?;
         for &load in &arguments.load {

@@ -81,11 +81,7 @@ fn run(
     }
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    Ok(Run {
-        solver,
-        nodes,
-        seconds,
-    })
+    Ok(Run { solver, nodes, seconds })
 }
 
 /// Floating-point operations per second of a plain product of square matrices, on all threads.
@@ -139,11 +135,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds / gemm_seconds
     );
 
-    let side = if options.paper_full {
-        options.nodes
-    } else {
-        options.paper_nodes
-    };
+    let side = if options.paper_full { options.nodes } else { options.paper_nodes };
     let sphere = Sphere::new(side)?;
     let ours = if options.paper_full {
         exact.seconds

@@ -39,11 +39,7 @@ enum What {
 
 fn main() -> Result<(), Box<dyn Error>> {
     match Options::parse().what {
-        What::Drift {
-            nodes,
-            contact,
-            every,
-        } => drift(nodes, contact, every),
+        What::Drift { nodes, contact, every } => drift(nodes, contact, every),
         What::Condition => condition(),
     }
 }
@@ -59,9 +55,7 @@ fn drift(nodes: usize, contact: usize, every: usize) -> Result<(), Box<dyn Error
         .updater(RecursiveCholesky::new())
         .max_nodes(contact)
         .build()?;
-    let mut loads = FixedLoadSolver::builder(&surface, &kernel)
-        .tolerance(1e-11)
-        .build()?;
+    let mut loads = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-11).build()?;
     let cell = path.grid().cell_area();
     println!("| nodes | load | mean gap | energy | stiffness | approach | gap in contact |");
     println!("|---|---|---|---|---|---|---|");
@@ -115,11 +109,7 @@ fn kernels(grid: Grid) -> [(&'static str, Result<Kernel, asperity::Error>); 3] {
     let free = Boussinesq::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
     let periodic = PeriodicBoussinesq::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
     let spectral = Spectral::new(grid, 1.0).map(|kernel| Box::new(kernel) as Kernel);
-    [
-        ("free, Love", free),
-        ("periodic, Love", periodic),
-        ("spectral", spectral),
-    ]
+    [("free, Love", free), ("periodic, Love", periodic), ("spectral", spectral)]
 }
 
 fn condition() -> Result<(), Box<dyn Error>> {
@@ -144,13 +134,10 @@ fn line(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<String, asperity::E
     let surface = rough(grid)?;
     let problem = Problem::new(&surface, kernel)?;
     let nodes = grid.nodes();
-    let matrix = DMatrix::from_fn(nodes, nodes, |i, j| {
-        problem.coefficient(i, j).unwrap_or(0.0)
-    });
+    let matrix = DMatrix::from_fn(nodes, nodes, |i, j| problem.coefficient(i, j).unwrap_or(0.0));
     let values = matrix.symmetric_eigenvalues();
-    let mut path = LoadingSolver::builder(&surface, kernel)
-        .updater(RecursiveCholesky::new())
-        .build()?;
+    let mut path =
+        LoadingSolver::builder(&surface, kernel).updater(RecursiveCholesky::new()).build()?;
     let (mut pressure, mut contact) = (0.0_f64, 0.0_f64);
     while let Some(state) = path.next() {
         if state?.contact.contact_nodes % 8 != 0 {

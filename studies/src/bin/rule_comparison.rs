@@ -157,9 +157,7 @@ impl Rates {
         gap: &DMatrix<f64>,
         contact: &DMatrix<bool>,
     ) -> Result<Option<(usize, usize)>, Box<dyn Error>> {
-        let y2 = self
-            .factor
-            .solve(&DVector::from_element(self.contact.len(), 1.0));
+        let y2 = self.factor.solve(&DVector::from_element(self.contact.len(), 1.0));
         let (nx, ny) = gap.shape();
         let mut pressure = DMatrix::zeros(nx, ny);
         for (&node, rate) in self.contact.iter().zip(&y2) {

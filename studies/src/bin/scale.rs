@@ -49,9 +49,8 @@ fn run<U: LinearUpdater>(
     let bar = ProgressBar::new(options.contact_nodes as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let start = Instant::now();
-    let mut builder = LoadingSolver::builder(&surface, &kernel)
-        .updater(updater)
-        .max_nodes(options.contact_nodes);
+    let mut builder =
+        LoadingSolver::builder(&surface, &kernel).updater(updater).max_nodes(options.contact_nodes);
     if let Some(megabytes) = options.budget {
         builder = builder.memory_budget(megabytes * 1_000_000);
     }

@@ -19,16 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
     let stored = |name: &str| read_npy(data.join(format!("{name}.npy")));
     report("periodic_32x24", stored("periodic_32x24")?, (2e-5, 3e-5))?;
-    report(
-        "selfaffine_48",
-        stored("selfaffine_48")?,
-        (1e-2 / 48.0, 1e-2 / 48.0),
-    )?;
-    report(
-        "periodic_128",
-        stored("periodic_128")?,
-        (1.0 / 128.0, 1.0 / 128.0),
-    )?;
+    report("selfaffine_48", stored("selfaffine_48")?, (1e-2 / 48.0, 1e-2 / 48.0))?;
+    report("periodic_128", stored("periodic_128")?, (1.0 / 128.0, 1.0 / 128.0))?;
     report("formula_45x28", formula(), (2e-6, 3.5e-6))?;
     Ok(())
 }
@@ -62,10 +54,7 @@ fn report(name: &str, heights: DMatrix<f64>, cell: (f64, f64)) -> Result<(), asp
 
     let fitted = map.trend(Trend::Plane);
     print("tilt of the plane", fitted.tilt());
-    print(
-        "rms height above the plane",
-        map.level(Trend::Plane)?.map().rms_height(),
-    );
+    print("rms height above the plane", map.level(Trend::Plane)?.map().rms_height());
     let level = map.level(Trend::Quadratic)?;
     print("rms height above the quadratic", level.map().rms_height());
 
@@ -77,48 +66,36 @@ fn report(name: &str, heights: DMatrix<f64>, cell: (f64, f64)) -> Result<(), asp
     print("unit square: m4", moments.m4());
     let thirds = (moments.m40() + 3.0 * moments.m22() + moments.m04()) / 3.0;
     print("unit square: (m40 + 3 m22 + m04)/3", thirds);
-    print(
-        "unit square: rms gradient, spectral",
-        moments.rms_gradient(),
-    );
+    print("unit square: rms gradient, spectral", moments.rms_gradient());
     let pressure = unit.full_contact_pressure(1.0)?;
-    print(
-        "unit square: least mean pressure of full contact over E*",
-        -pressure.min(),
-    );
+    print("unit square: least mean pressure of full contact over E*", -pressure.min());
 
     // A disc and a third of all other nodes are missing.
     let missing = |ix: usize, iy: usize| {
         let (x, y) = (2.0 * ix as f64 - nx as f64, 2.0 * iy as f64 - ny as f64);
         x * x + y * y < 0.2 * (nx * ny) as f64 || (GOLDEN * (ix + nx * iy) as f64).fract() < 0.33
     };
-    let holed = DMatrix::from_fn(nx, ny, |ix, iy| {
-        if missing(ix, iy) {
-            f64::NAN
-        } else {
-            heights[(ix, iy)]
-        }
-    });
+    let holed =
+        DMatrix::from_fn(
+            nx,
+            ny,
+            |ix, iy| {
+                if missing(ix, iy) { f64::NAN } else { heights[(ix, iy)] }
+            },
+        );
     let filled = fill_missing(holed)?;
     print(
         "rms height with missing nodes filled",
         Topography::new(*map.grid(), filled)?.map().rms_height(),
     );
 
-    for (k, bin) in map
-        .radial_psd(&RadialBins::PerDecade(10))?
-        .iter()
-        .enumerate()
-    {
+    for (k, bin) in map.radial_psd(&RadialBins::PerDecade(10))?.iter().enumerate() {
         print(&format!("radial wavevector {k}"), bin.wavevector);
         print(&format!("radial density {k}"), bin.density);
     }
     for (axis, letter) in [(Axis::X, 'x'), (Axis::Y, 'y')] {
         for (k, bin) in map.psd_along(axis).iter().enumerate() {
-            print(
-                &format!("profile wavevector along {letter} {k}"),
-                bin.wavevector,
-            );
+            print(&format!("profile wavevector along {letter} {k}"), bin.wavevector);
             print(&format!("profile density along {letter} {k}"), bin.density);
         }
     }

@@ -139,9 +139,6 @@ mod tests {
             bad(Some(7)).to_string(),
             "ground.gwy is no readable GWY file: it ends early (at byte 7)"
         );
-        assert_eq!(
-            bad(None).to_string(),
-            "ground.gwy is no readable GWY file: it ends early"
-        );
+        assert_eq!(bad(None).to_string(), "ground.gwy is no readable GWY file: it ends early");
     }
 }

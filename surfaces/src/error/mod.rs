@@ -196,11 +196,7 @@ impl Error {
         if is_so {
             return Ok(value);
         }
-        Err(Self::OutOfRange {
-            quantity,
-            value,
-            expected,
-        })
+        Err(Self::OutOfRange { quantity, value, expected })
     }
 
     /// `Ok(value)` if `value` is finite, the typed error otherwise.

@@ -24,15 +24,10 @@ const TOLERANCE: f64 = 2.0 * f32::EPSILON as f64;
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let tags = Tags::read(file)?;
     let (nx, ny) = shape(tags.number("Cols")?, tags.number("Rows")?)?;
-    let cell = (
-        tags.number("PixelSizeXMeter")?,
-        tags.number("PixelSizeYMeter")?,
-    );
+    let cell = (tags.number("PixelSizeXMeter")?, tags.number("PixelSizeYMeter")?);
     let offset: u64 = tags.number("DepthImageOffset")?;
     if offset == 0 {
-        return Err(Fault::malformed(
-            "there is no depth image in it: DepthImageOffset is 0",
-        ));
+        return Err(Fault::malformed("there is no depth image in it: DepthImageOffset is 0"));
     }
     let missing: Option<f64> = match tags.find("InvalidPixelValue") {
         Some(_) => Some(tags.number("InvalidPixelValue")?),
@@ -95,9 +90,8 @@ impl<'a> Tags<'a> {
     }
 
     fn number<T: std::str::FromStr>(&self, key: &str) -> Result<T, Fault> {
-        let value = self
-            .find(key)
-            .ok_or_else(|| Fault::malformed(format!("there is no tag {key}")))?;
+        let value =
+            self.find(key).ok_or_else(|| Fault::malformed(format!("there is no tag {key}")))?;
         value.parse().map_err(|_| {
             Fault::malformed(format!("tag {key} is '{value}', but a number was expected"))
         })

@@ -38,9 +38,7 @@ pub struct ArchiveWriter<W: Write + Seek> {
 
 impl<W: Write + Seek> ArchiveWriter<W> {
     pub fn new(output: W) -> Self {
-        Self {
-            zip: ZipWriter::new(Output::new(output)),
-        }
+        Self { zip: ZipWriter::new(Output::new(output)) }
     }
 
     fn begin(
@@ -124,21 +122,16 @@ impl Archive {
                 Ok(bytes)
             })
             .map_err(|fault| fault.in_file(path, format))?;
-        Ok(Self {
-            path: path.to_path_buf(),
-            format,
-            bytes,
-        })
+        Ok(Self { path: path.to_path_buf(), format, bytes })
     }
 
     /// What `parse` makes of a member.
     fn member<T>(&self, name: &str, parse: impl Fn(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
         let parsed = self.bytes_of(name).and_then(|bytes| parse(&bytes));
         let in_member = |fault| match fault {
-            Fault::Malformed { offset, reason } => Fault::Malformed {
-                offset,
-                reason: format!("member '{name}': {reason}"),
-            },
+            Fault::Malformed { offset, reason } => {
+                Fault::Malformed { offset, reason: format!("member '{name}': {reason}") }
+            }
             other => other,
         };
         parsed.map_err(|fault| in_member(fault).in_file(&self.path, self.format))

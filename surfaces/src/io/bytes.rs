@@ -31,9 +31,7 @@ pub(super) fn read_all(mut source: impl Read) -> Result<Vec<u8>, Fault> {
 /// An empty vector with room for so many elements.
 pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, Fault> {
     let mut values = Vec::new();
-    values
-        .try_reserve_exact(count)
-        .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
+    values.try_reserve_exact(count).map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
     Ok(values)
 }
 
@@ -53,10 +51,7 @@ macro_rules! numbers {
     )*};
 }
 
-#[cfg_attr(
-    not(feature = "io"),
-    expect(dead_code, reason = "NumPy's format needs few of these")
-)]
+#[cfg_attr(not(feature = "io"), expect(dead_code, reason = "NumPy's format needs few of these"))]
 impl<'a> Bytes<'a> {
     pub(super) fn new(all: &'a [u8]) -> Self {
         Self { all, at: 0 }
@@ -77,10 +72,7 @@ impl<'a> Bytes<'a> {
         if offset > self.all.len() {
             return Err(Fault::at(
                 self.at,
-                format!(
-                    "byte {offset} is referred to, but the file has {} bytes",
-                    self.all.len()
-                ),
+                format!("byte {offset} is referred to, but the file has {} bytes", self.all.len()),
             ));
         }
         self.at = offset;
@@ -93,10 +85,7 @@ impl<'a> Bytes<'a> {
         let taken = rest.get(..count).ok_or_else(|| {
             Fault::at(
                 self.at,
-                format!(
-                    "expected {count} more bytes, but the file ends after {}",
-                    rest.len()
-                ),
+                format!("expected {count} more bytes, but the file ends after {}", rest.len()),
             )
         })?;
         self.at += count;
@@ -112,10 +101,7 @@ impl<'a> Bytes<'a> {
     pub(super) fn until(&mut self, end: u8) -> Result<&'a [u8], Fault> {
         let rest = &self.all[self.at..];
         let length = rest.iter().position(|byte| *byte == end).ok_or_else(|| {
-            Fault::at(
-                self.at,
-                format!("expected a byte {end:#04x}, but the file ends"),
-            )
+            Fault::at(self.at, format!("expected a byte {end:#04x}, but the file ends"))
         })?;
         self.at += length + 1;
         Ok(&rest[..length])
@@ -135,9 +121,7 @@ impl<'a> Bytes<'a> {
     /// The next `N` bytes.
     pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
         let at = self.at;
-        self.take(N)?
-            .try_into()
-            .map_err(|_| Fault::at(at, "the file ends"))
+        self.take(N)?.try_into().map_err(|_| Fault::at(at, "the file ends"))
     }
 
     numbers!(u8: u8, u16: u16, u32: u32, i32: i32, f32: f32, f64: f64);
@@ -155,6 +139,5 @@ pub(super) fn shape(nx: u64, ny: u64) -> Result<(usize, usize), Fault> {
 #[cfg(feature = "io")]
 pub(super) fn latin1(bytes: &[u8]) -> String {
     let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
-    text.trim_matches(|c: char| c == '\0' || c.is_whitespace())
-        .to_string()
+    text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string()
 }

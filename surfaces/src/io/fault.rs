@@ -24,18 +24,12 @@ pub(super) enum Fault {
 impl Fault {
     /// A defect of the file as a whole.
     pub(super) fn malformed(reason: impl Into<String>) -> Self {
-        Self::Malformed {
-            offset: None,
-            reason: reason.into(),
-        }
+        Self::Malformed { offset: None, reason: reason.into() }
     }
 
     /// A defect at a place in the file.
     pub(super) fn at(offset: usize, reason: impl Into<String>) -> Self {
-        Self::Malformed {
-            offset: Some(offset),
-            reason: reason.into(),
-        }
+        Self::Malformed { offset: Some(offset), reason: reason.into() }
     }
 
     /// The error of the whole operation, which says which file it is about.
@@ -43,12 +37,9 @@ impl Fault {
         let path = path.to_path_buf();
         match self {
             Self::Io(source) => Error::File(FileError::Io { path, source }),
-            Self::Malformed { offset, reason } => Error::File(FileError::BadFile {
-                path,
-                format,
-                offset,
-                reason,
-            }),
+            Self::Malformed { offset, reason } => {
+                Error::File(FileError::BadFile { path, format, offset, reason })
+            }
             Self::Refused(error) => error,
         }
     }

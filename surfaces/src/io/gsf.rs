@@ -26,8 +26,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let data = bytes.offset().next_multiple_of(4);
     bytes.seek(data)?;
     let values = decode(bytes.elements(nx * ny, 4)?, 4, |b| {
-        b.try_into()
-            .map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)))
+        b.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)))
     })?;
     bytes.end(format_args!("{nx} x {ny} heights"))?;
     // Sides default to 1 in the format, which is no size of any surface.
@@ -36,12 +35,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         (Some(x), Some(y)) => Some((x / nx as f64, y / ny as f64)),
         _ => None,
     };
-    let unit = |name| {
-        header
-            .value(name)
-            .filter(|unit| !unit.is_empty())
-            .map(str::to_string)
-    };
+    let unit = |name| header.value(name).filter(|unit| !unit.is_empty()).map(str::to_string);
     Ok(vec![Channel {
         name: header.value("Title").unwrap_or_default().to_string(),
         height_unit: unit("ZUnits"),
@@ -70,20 +64,14 @@ impl<'a> Header<'a> {
             .value(name)
             .ok_or_else(|| Fault::at(self.at, format!("expected a line '{name} = '")))?;
         value.parse().map_err(|_| {
-            Fault::at(
-                self.at,
-                format!("{name} is '{value}', but a number of nodes was expected"),
-            )
+            Fault::at(self.at, format!("{name} is '{value}', but a number of nodes was expected"))
         })
     }
 
     fn length(&self, name: &str) -> Result<Option<f64>, Fault> {
         let parse = |value: &str| {
             value.parse().map_err(|_| {
-                Fault::at(
-                    self.at,
-                    format!("{name} is '{value}', but a length was expected"),
-                )
+                Fault::at(self.at, format!("{name} is '{value}', but a length was expected"))
             })
         };
         self.value(name).map(parse).transpose()
@@ -139,14 +127,7 @@ mod tests {
     /// Headers of all lengths modulo four, since data begin at a multiple of four; f32 holds these values exactly.
     #[test]
     fn what_is_written_is_read_back() -> Result<(), Box<dyn std::error::Error>> {
-        for (nx, unit) in [
-            (7, "m"),
-            (7, "nm"),
-            (1000, "m"),
-            (7, "rad"),
-            (12, "Pa m"),
-            (7, ""),
-        ] {
+        for (nx, unit) in [(7, "m"), (7, "nm"), (1000, "m"), (7, "rad"), (12, "Pa m"), (7, "")] {
             let grid = Grid::new(nx, 5, 2e-6, 3e-6)?;
             let mut field = DMatrix::from_fn(nx, 5, |ix, iy| 0.25 * ix as f64 - iy as f64);
             field[(3, 2)] = f64::NAN;

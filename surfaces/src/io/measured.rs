@@ -44,11 +44,7 @@ impl MeasuredSurface {
     ///
     /// Those of [`fill_missing`].
     pub fn fill_missing(self) -> Result<Self, Error> {
-        Ok(Self {
-            heights: fill_missing(self.heights)?,
-            missing: 0,
-            ..self
-        })
+        Ok(Self { heights: fill_missing(self.heights)?, missing: 0, ..self })
     }
 
     /// The grid of the measurement.
@@ -125,10 +121,7 @@ mod tests {
         let filled = measured.fill_missing()?;
         assert_eq!(filled.missing, 0);
         assert_eq!((&filled.title, &filled.notes), (&title, &notes));
-        assert_eq!(
-            filled.to_string(),
-            "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m"
-        );
+        assert_eq!(filled.to_string(), "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m");
         let grid = filled.grid()?;
         assert_eq!((grid.shape(), grid.dx(), grid.dy()), ((4, 3), 0.5, 0.25));
         let surface = filled.topography()?;
@@ -145,19 +138,13 @@ mod tests {
     #[test]
     fn a_missing_node_and_an_unknown_size_are_refused() -> Result<(), Error> {
         let hole = plane(Some((0.5, 0.25))).topography();
-        assert!(
-            matches!(hole, Err(Error::HeightNotFinite { ix: 1, iy: 1, .. })),
-            "{hole:?}"
-        );
+        assert!(matches!(hole, Err(Error::HeightNotFinite { ix: 1, iy: 1, .. })), "{hole:?}");
         let unknown = plane(None);
         assert_eq!(
             unknown.to_string(),
             "Gwyddion Simple Field: 4 x 3 nodes, of unknown size, 1 nodes (8.33 %) missing"
         );
-        assert!(matches!(
-            unknown.grid(),
-            Err(Error::File(FileError::NoSide))
-        ));
+        assert!(matches!(unknown.grid(), Err(Error::File(FileError::NoSide))));
         let surface = unknown.fill_missing()?.topography();
         assert!(matches!(surface, Err(Error::File(FileError::NoSide))));
         Ok(())

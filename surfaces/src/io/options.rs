@@ -189,11 +189,7 @@ impl ReadOptions {
         let mut missing = 0;
         for value in &mut channel.values {
             // Infinite values mark missing nodes as well, in files of several makers.
-            *value = if value.is_finite() {
-                *value * height
-            } else {
-                f64::NAN
-            };
+            *value = if value.is_finite() { *value * height } else { f64::NAN };
             missing += usize::from(value.is_nan());
         }
         let (nx, ny) = channel.shape;
@@ -298,28 +294,18 @@ impl ReadOptions {
             return;
         };
         let mut marked = 0;
-        for (value, _) in channel
-            .values
-            .iter_mut()
-            .zip(mask)
-            .filter(|(_, marked)| **marked)
-        {
+        for (value, _) in channel.values.iter_mut().zip(mask).filter(|(_, marked)| **marked) {
             *value = f64::NAN;
             marked += 1;
         }
         if marked > 0 {
-            notes.push(format!(
-                "{marked} nodes that a mask marks are taken as missing"
-            ));
+            notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
         }
     }
 }
 
 fn names(channels: &[Channel]) -> Vec<String> {
-    channels
-        .iter()
-        .map(|channel| channel.name.clone())
-        .collect()
+    channels.iter().map(|channel| channel.name.clone()).collect()
 }
 
 /// Metres for a unit: the one given, otherwise that of the file.

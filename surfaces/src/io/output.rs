@@ -14,12 +14,7 @@ pub(super) struct Output<W> {
 
 impl<W> Output<W> {
     pub(super) fn new(inner: W) -> Self {
-        Self {
-            inner,
-            failure: None,
-            at: 0,
-            end: 0,
-        }
+        Self { inner, failure: None, at: 0, end: 0 }
     }
 
     /// The outcome of some work on the output, unless it has failed before; then `otherwise`.

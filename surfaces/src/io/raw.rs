@@ -52,10 +52,7 @@ pub(super) fn positive(name: &str, value: f64, offset: usize) -> Result<f64, Fau
     if value > 0.0 && value.is_finite() {
         return Ok(value);
     }
-    Err(Fault::at(
-        offset,
-        format!("{name} is {value}, but a positive number was expected"),
-    ))
+    Err(Fault::at(offset, format!("{name} is {value}, but a positive number was expected")))
 }
 
 /// Values decoded from elements of a fixed size, with memory asked for once.

@@ -43,9 +43,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let (nx, ny) = header.shape;
     bytes.end(format_args!("{nx} x {ny} heights"))?;
     let number = header.number;
-    let values = decode(&data, number.size(), |value| {
-        header.height(number.decode(value))
-    })?;
+    let values = decode(&data, number.size(), |value| header.height(number.decode(value)))?;
     let (cell, lateral_unit) = header.cell();
     Ok(vec![Channel {
         name: header.name,
@@ -143,11 +141,7 @@ impl Header {
     }
 
     fn height(&self, value: f64) -> f64 {
-        if self.missing == Some(value) {
-            f64::NAN
-        } else {
-            value * self.spacing.2 + self.offset
-        }
+        if self.missing == Some(value) { f64::NAN } else { value * self.spacing.2 + self.offset }
     }
 
     /// The cell and its unit: metres where x and y have two units.
@@ -242,18 +236,12 @@ fn inflate(bytes: &mut Bytes, length: usize) -> Result<Vec<u8>, Fault> {
             ));
         }
         // Nothing is reserved for what is only claimed, and one byte more than that shows a stream that is too long.
-        let found = ZlibDecoder::new(stream)
-            .take(length + 1)
-            .read_to_end(&mut data)
-            .map_err(|error| {
+        let found =
+            ZlibDecoder::new(stream).take(length + 1).read_to_end(&mut data).map_err(|error| {
                 Fault::at(at, format!("the compressed heights are damaged: {error}"))
             })?;
         if found as u64 != length {
-            let more = if found as u64 > length {
-                "more"
-            } else {
-                "less"
-            };
+            let more = if found as u64 > length { "more" } else { "less" };
             return Err(Fault::at(
                 at,
                 format!(

@@ -18,9 +18,7 @@ const SHAPE: (usize, usize) = (7, 5);
 const MISSING: [(usize, usize); 2] = [(2, 1), (6, 4)];
 
 pub(super) fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests/data/surface_files")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/surface_files").join(name)
 }
 
 /// Asserts that a file holds the map to `digits` (relative to the height of each node), with cells of 2 µm × 3 µm if

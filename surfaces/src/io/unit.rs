@@ -38,10 +38,7 @@ const UNITS: [(&[&str], f64); 9] = [
 
 impl LengthUnit {
     /// The metre.
-    pub const METRE: Self = Self {
-        symbol: "m",
-        metres: 1.0,
-    };
+    pub const METRE: Self = Self { symbol: "m", metres: 1.0 };
 
     /// Its length \[m\].
     #[must_use]
@@ -63,15 +60,8 @@ impl FromStr for LengthUnit {
         UNITS
             .iter()
             .find(|(names, _)| names.contains(&text.trim()))
-            .map(|(names, metres)| Self {
-                symbol: names[0],
-                metres: *metres,
-            })
-            .ok_or_else(|| {
-                Error::File(FileError::NoLength {
-                    unit: text.to_string(),
-                })
-            })
+            .map(|(names, metres)| Self { symbol: names[0], metres: *metres })
+            .ok_or_else(|| Error::File(FileError::NoLength { unit: text.to_string() }))
     }
 }
 

@@ -49,11 +49,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let step = positive("the step in height", length()?, conditions + STEP)?;
 
     let mut channels = Vec::new();
-    for (k, place) in places
-        .into_iter()
-        .enumerate()
-        .filter(|(_, place)| *place > 0)
-    {
+    for (k, place) in places.into_iter().enumerate().filter(|(_, place)| *place > 0) {
         bytes.seek(place as usize)?;
         let mut channel = image(&mut bytes, step)?;
         channel.name = format!("Height {}", k + 1);
@@ -91,16 +87,14 @@ fn image(bytes: &mut Bytes, step: f64) -> Result<Channel, Fault> {
     }
     let _range = (bytes.u32()?, bytes.u32()?);
     bytes.take(PALETTE)?;
-    let values = decode(bytes.take(length)?, number.size(), |value| {
-        number.decode(value) * step
-    })?;
+    let values = decode(bytes.take(length)?, number.size(), |value| number.decode(value) * step)?;
     let zeros = values.iter().filter(|value| **value == 0.0).count();
     let mut channel = Channel::in_metres((nx, ny), values, None);
     if zeros > 0 {
         channel.mask = Some(channel.values.iter().map(|value| *value == 0.0).collect());
-        channel.notes.push(format!(
-            "{zeros} nodes hold 0, and are marked: they may not have been measured"
-        ));
+        channel
+            .notes
+            .push(format!("{zeros} nodes hold 0, and are marked: they may not have been measured"));
     }
     Ok(channel)
 }

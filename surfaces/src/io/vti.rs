@@ -55,10 +55,7 @@ pub(super) fn write(
             place * (8 + bytes)
         )?;
     }
-    write!(
-        output,
-        "</CellData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_"
-    )?;
+    write!(output, "</CellData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_")?;
     for (_, field) in fields {
         output.write_all(&(bytes as u64).to_le_bytes())?;
         for value in field.iter() {
@@ -91,10 +88,7 @@ mod tests {
     /// What XML gives a meaning to, and what it does not allow.
     #[test]
     fn names_are_written_as_xml_has_them() {
-        assert_eq!(
-            escaped("a<b & \"c\"\n\u{7f}µ"),
-            "a&lt;b &amp; &quot;c&quot;µ"
-        );
+        assert_eq!(escaped("a<b & \"c\"\n\u{7f}µ"), "a&lt;b &amp; &quot;c&quot;µ");
     }
 
     /// Read back by hand; VTK itself reads it in `studies/files/check_vti.py`.

@@ -35,12 +35,8 @@ pub fn write_whole(
     work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
 ) -> Result<(), Error> {
     let path = path.as_ref();
-    write(path, work).map_err(|source| {
-        Error::File(FileError::Io {
-            path: path.to_path_buf(),
-            source,
-        })
-    })
+    write(path, work)
+        .map_err(|source| Error::File(FileError::Io { path: path.to_path_buf(), source }))
 }
 
 fn write(

@@ -173,23 +173,14 @@ mod tests {
         assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
         let found = doubts(1e-5, tilted(1e-8))?;
         let [doubt @ Doubt::Tilted { plane, left }] = found[..] else {
-            return Err(Error::TooFewWaves {
-                found: 0,
-                needed: 1,
-            });
+            return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         // 16 columns at 1e-8 m each: an rms height of 1e-8 √((16² − 1)/12), and two waves of rms 0.7e-9.
         assert!((plane / 4.61e-8 - 1.0).abs() < 0.01, "{plane}");
         assert!((left / 1e-9 - 1.0).abs() < 0.1, "{left}");
         let text = doubt.to_string();
-        assert!(
-            text.contains(&format!("{plane:.3e} m of its rms height")),
-            "{text}"
-        );
-        assert!(
-            text.contains(&format!("{left:.3e} m is roughness")),
-            "{text}"
-        );
+        assert!(text.contains(&format!("{plane:.3e} m of its rms height")), "{text}");
+        assert!(text.contains(&format!("{left:.3e} m is roughness")), "{text}");
         Ok(())
     }
 
@@ -198,12 +189,7 @@ mod tests {
     fn heights_that_overflow_are_not_tilted() -> Result<(), Error> {
         let sign = |k: f64| if k < 8.0 { 1.0 } else { -1.0 };
         let found = doubts(1.0, |x, y| f64::MAX * sign(x) * sign(y))?;
-        assert!(
-            !found
-                .iter()
-                .any(|doubt| matches!(doubt, Doubt::Tilted { .. })),
-            "{found:?}"
-        );
+        assert!(!found.iter().any(|doubt| matches!(doubt, Doubt::Tilted { .. })), "{found:?}");
         Ok(())
     }
 
@@ -242,10 +228,7 @@ mod tests {
     fn heights_smaller_than_atoms_are_noticed() -> Result<(), Error> {
         let found = doubts(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
         let [doubt @ Doubt::Smooth { rms_height }] = found[..] else {
-            return Err(Error::TooFewWaves {
-                found: 0,
-                needed: 1,
-            });
+            return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         assert!((rms_height / 5e-13 - 1.0).abs() < 0.1, "{rms_height}");
         assert!(doubt.to_string().contains("less than a tenth of an atom"));
@@ -260,17 +243,11 @@ mod tests {
         let wave = |waves: f64, x: f64| (std::f64::consts::TAU * waves * x / 16.0).sin() / waves;
         let found = doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
         let [doubt @ Doubt::Unresolved { share }] = found[..] else {
-            return Err(Error::TooFewWaves {
-                found: 0,
-                needed: 1,
-            });
+            return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         assert!((share - 0.5).abs() < 0.1, "{share}");
         assert!(doubt.to_string().contains("% of the mean square gradient"));
-        assert_eq!(
-            doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?,
-            []
-        );
+        assert_eq!(doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
         Ok(())
     }
 }

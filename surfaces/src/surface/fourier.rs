@@ -73,11 +73,7 @@ impl Waves {
             }
         });
         coefficients[(0, 0)] = Complex64::ZERO;
-        Self {
-            grid: *grid,
-            mean,
-            coefficients,
-        }
+        Self { grid: *grid, mean, coefficients }
     }
 
     /// The grid of the map.
@@ -97,12 +93,7 @@ impl Waves {
         let entries = self.coefficients.as_slice().iter().enumerate().skip(1);
         entries.map(move |(entry, value)| {
             let (k, q, count) = self.place(entry % ny, entry / ny);
-            Wave {
-                k,
-                q,
-                power: value.norm_sqr(),
-                count,
-            }
+            Wave { k, q, power: value.norm_sqr(), count }
         })
     }
 
@@ -117,11 +108,7 @@ impl Waves {
 
     /// The mean and the sum of the waves at the nodes.
     pub(super) fn restore(self) -> DMatrix<f64> {
-        let Self {
-            grid,
-            mean,
-            mut coefficients,
-        } = self;
+        let Self { grid, mean, mut coefficients } = self;
         let (nx, ny) = grid.shape();
         let along_y = FftPlanner::new().plan_fft_inverse(ny);
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
@@ -162,11 +149,7 @@ impl Waves {
     /// Wave numbers, wavevector and number of waves of the coefficient `[(row, column)]`.
     fn place(&self, row: usize, column: usize) -> ((i64, i64), (f64, f64), usize) {
         let (nx, ny) = self.grid.shape();
-        let ky = if 2 * row > ny {
-            row as i64 - ny as i64
-        } else {
-            row as i64
-        };
+        let ky = if 2 * row > ny { row as i64 - ny as i64 } else { row as i64 };
         let own = column == 0 || 2 * column == nx;
         let q = self.grid.wave_vector(column, row);
         ((column as i64, ky), q, if own { 1 } else { 2 })
@@ -187,16 +170,7 @@ mod tests {
     /// Parseval, the number of waves, and the way back, on grids of any parity.
     #[test]
     fn waves_add_up_to_the_heights() -> Result<(), Error> {
-        for (nx, ny) in [
-            (1, 1),
-            (1, 8),
-            (8, 1),
-            (2, 2),
-            (7, 9),
-            (12, 35),
-            (35, 12),
-            (40, 34),
-        ] {
+        for (nx, ny) in [(1, 1), (1, 8), (8, 1), (2, 2), (7, 9), (12, 35), (35, 12), (40, 34)] {
             let grid = Grid::new(nx, ny, 0.5, 2.0)?;
             let heights = DMatrix::from_fn(nx, ny, |ix, iy| 1e6 + noise(ix + nx * iy));
             let mean = heights.mean();

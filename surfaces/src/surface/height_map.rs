@@ -41,9 +41,7 @@ impl HeightMap {
         if nx == 0 || ny == 0 {
             return Err(Error::EmptyGrid { nx, ny });
         }
-        Ok(Self {
-            heights: all_finite(heights)?,
-        })
+        Ok(Self { heights: all_finite(heights)? })
     }
 
     /// A map of heights, at least one, that are known to be finite.
@@ -192,19 +190,13 @@ impl HeightMap {
     /// or underflow: it changes no digit of anything else.
     fn unit(&self) -> f64 {
         let greatest = self.heights.amax();
-        if greatest > 0.0 {
-            libm::scalbn(1.0, libm::ilogb(greatest))
-        } else {
-            1.0
-        }
+        if greatest > 0.0 { libm::scalbn(1.0, libm::ilogb(greatest)) } else { 1.0 }
     }
 
     /// Mean of a function of the height, summed column by column to keep rounding small.
     fn mean(&self, value: impl Fn(f64) -> f64) -> f64 {
         let columns = self.heights.column_iter();
-        let sum: f64 = columns
-            .map(|column| column.iter().map(|z| value(*z)).sum::<f64>())
-            .sum();
+        let sum: f64 = columns.map(|column| column.iter().map(|z| value(*z)).sum::<f64>()).sum();
         sum / self.heights.len() as f64
     }
 }
@@ -241,10 +233,7 @@ mod tests {
     #[test]
     fn malformed_maps_are_refused() {
         for (nx, ny) in [(0, 0), (0, 3), (3, 0)] {
-            assert!(matches!(
-                HeightMap::new(DMatrix::zeros(nx, ny)),
-                Err(Error::EmptyGrid { .. })
-            ));
+            assert!(matches!(HeightMap::new(DMatrix::zeros(nx, ny)), Err(Error::EmptyGrid { .. })));
         }
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut heights = DMatrix::zeros(3, 4);
@@ -263,10 +252,7 @@ mod tests {
         let transposed = Grid::new(3, 2, 1.0, 1.0)?;
         assert!(matches!(
             map.heights(&transposed),
-            Err(Error::GridMismatch {
-                expected: (3, 2),
-                found: (2, 3)
-            })
+            Err(Error::GridMismatch { expected: (3, 2), found: (2, 3) })
         ));
         assert!(map.rms_gradient(&transposed).is_err());
         Ok(())

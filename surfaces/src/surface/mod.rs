@@ -58,10 +58,7 @@ pub trait Surface {
     where
         Self: Sized,
     {
-        Sum {
-            first: self,
-            second: other,
-        }
+        Sum { first: self, second: other }
     }
 }
 

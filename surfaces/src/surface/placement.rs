@@ -123,10 +123,7 @@ mod tests {
     fn a_centre_must_be_finite() {
         assert!(matches!(
             Placement::at(0.0, f64::NAN),
-            Err(Error::OutOfRange {
-                quantity: "centre y",
-                ..
-            })
+            Err(Error::OutOfRange { quantity: "centre y", .. })
         ));
         assert!(Placement::at(f64::INFINITY, 0.0).is_err());
     }

@@ -65,8 +65,7 @@ placed!(Paraboloid, "the apex");
 
 impl Surface for Paraboloid {
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement
-            .heights(grid, |x, y| -(x * x + y * y) / (2.0 * self.radius))
+        self.placement.heights(grid, |x, y| -(x * x + y * y) / (2.0 * self.radius))
     }
 }
 
@@ -111,9 +110,8 @@ placed!(EllipticParaboloid, "the apex");
 
 impl Surface for EllipticParaboloid {
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| {
-            -(x * x / (2.0 * self.radius_x) + y * y / (2.0 * self.radius_y))
-        })
+        self.placement
+            .heights(grid, |x, y| -(x * x / (2.0 * self.radius_x) + y * y / (2.0 * self.radius_y)))
     }
 }
 
@@ -214,8 +212,7 @@ placed!(Cone, "the apex");
 
 impl Surface for Cone {
     fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement
-            .heights(grid, |x, y| -self.slope * libm::hypot(x, y))
+        self.placement.heights(grid, |x, y| -self.slope * libm::hypot(x, y))
     }
 }
 
@@ -235,9 +232,7 @@ impl FlatPunch {
     ///
     /// [`Error::OutOfRange`] for a height that is not finite.
     pub fn new(height: f64) -> Result<Self, Error> {
-        Ok(Self {
-            height: Error::require_finite("height", height)?,
-        })
+        Ok(Self { height: Error::require_finite("height", height)? })
     }
 
     /// The height \[m\].
@@ -291,10 +286,8 @@ mod tests {
             assert_eq!(centered, Cone::new(0.1)?.heights(&grid)?);
         }
         let square = Grid::square(31, 1.1e-3)?;
-        for heights in [
-            Paraboloid::new(0.3)?.heights(&square)?,
-            Cone::new(0.3)?.heights(&square)?,
-        ] {
+        for heights in [Paraboloid::new(0.3)?.heights(&square)?, Cone::new(0.3)?.heights(&square)?]
+        {
             assert_eq!(heights, heights.transpose());
         }
         Ok(())
@@ -305,15 +298,9 @@ mod tests {
         let grid = Grid::new(9, 7, 1e-3, 2e-3)?;
         let (cx, cy) = (3.5e-3, 5e-3);
         let paraboloid = Paraboloid::new(0.5)?.centered_at(cx, cy)?.heights(&grid)?;
-        let elliptic = EllipticParaboloid::new(0.5, 0.25)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
-        let along_x = Cylinder::new(0.5, Axis::X)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
-        let along_y = Cylinder::new(0.5, Axis::Y)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
+        let elliptic = EllipticParaboloid::new(0.5, 0.25)?.centered_at(cx, cy)?.heights(&grid)?;
+        let along_x = Cylinder::new(0.5, Axis::X)?.centered_at(cx, cy)?.heights(&grid)?;
+        let along_y = Cylinder::new(0.5, Axis::Y)?.centered_at(cx, cy)?.heights(&grid)?;
         let cone = Cone::new(0.2)?.centered_at(cx, cy)?.heights(&grid)?;
         for ix in 0..9 {
             for iy in 0..7 {
@@ -358,20 +345,14 @@ mod tests {
             not_positive(Cylinder::new(bad, Axis::X).err());
             not_positive(Cone::new(bad).err());
         }
-        assert!(matches!(
-            FlatPunch::new(f64::NAN),
-            Err(Error::OutOfRange { .. })
-        ));
+        assert!(matches!(FlatPunch::new(f64::NAN), Err(Error::OutOfRange { .. })));
     }
 
     #[test]
     fn heights_beyond_the_range_of_numbers_are_refused() -> Result<(), Error> {
         let grid = Grid::square(4, 1e10)?;
         let heights = Paraboloid::new(1e-300)?.heights(&grid);
-        assert!(matches!(
-            heights,
-            Err(Error::HeightNotFinite { ix: 0, iy: 0, .. })
-        ));
+        assert!(matches!(heights, Err(Error::HeightNotFinite { ix: 0, iy: 0, .. })));
         Ok(())
     }
 }

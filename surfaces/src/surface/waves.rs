@@ -144,15 +144,9 @@ mod tests {
         let grid = Grid::with_sides(40, 30, 1e-2, 2e-2)?;
         let (cx, cy) = (1.3e-3, -2e-3);
         let (d, lx, ly) = (3e-6, 2.7e-3, 5.1e-3);
-        let along_x = Wave::new(d, lx, Axis::X)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
-        let along_y = Wave::new(d, ly, Axis::Y)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
-        let both = BiWave::new(d, lx, ly)?
-            .centered_at(cx, cy)?
-            .heights(&grid)?;
+        let along_x = Wave::new(d, lx, Axis::X)?.centered_at(cx, cy)?.heights(&grid)?;
+        let along_y = Wave::new(d, ly, Axis::Y)?.centered_at(cx, cy)?.heights(&grid)?;
+        let both = BiWave::new(d, lx, ly)?.centered_at(cx, cy)?.heights(&grid)?;
         for ix in 0..40 {
             for iy in 0..30 {
                 let (x, y) = grid.position(ix, iy);

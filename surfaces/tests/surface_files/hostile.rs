@@ -57,10 +57,7 @@ fn with_each_file(test: &str, check: impl Fn(&[u8], &mut Target) + Sync) {
     files().par_iter().for_each(|file| {
         let name = file.file_name().unwrap().to_string_lossy();
         let path = Scratch::new(&format!("{test}-{name}"));
-        let mut target = Target {
-            file: File::create(&path.0).unwrap(),
-            path,
-        };
+        let mut target = Target { file: File::create(&path.0).unwrap(), path };
         check(&fs::read(file).unwrap(), &mut target);
     });
 }
@@ -68,9 +65,7 @@ fn with_each_file(test: &str, check: impl Fn(&[u8], &mut Target) + Sync) {
 /// Reads these bytes to the end: nothing is left that could stop the reader but the bytes.
 fn read(bytes: &[u8], target: &mut Target, what: impl Fn() -> String) {
     target.overwrite(bytes);
-    let options = ReadOptions::new()
-        .height_unit(LengthUnit::METRE)
-        .lateral_unit(LengthUnit::METRE);
+    let options = ReadOptions::new().height_unit(LengthUnit::METRE).lateral_unit(LengthUnit::METRE);
     let mut panicked = false;
     let memory = measure(|| {
         let outcome = catch_unwind(AssertUnwindSafe(|| match options.read(&target.path.0) {
@@ -109,14 +104,8 @@ fn files_that_end_anywhere_are_harmless() {
 /// Counts of nodes and lengths of blocks, in bytes and in digits, become none, or more than there can be.
 #[test]
 fn extreme_numbers_anywhere_are_harmless() {
-    const NUMBERS: [&[u8]; 6] = [
-        b"\0",
-        b"\x7f",
-        b"\xff",
-        b"\xff\xff",
-        b"\xff\xff\xff\xff",
-        b"9999",
-    ];
+    const NUMBERS: [&[u8]; 6] =
+        [b"\0", b"\x7f", b"\xff", b"\xff\xff", b"\xff\xff\xff\xff", b"9999"];
     with_each_file("extreme", |whole, target| {
         for place in 0..whole.len() {
             for number in NUMBERS {
@@ -160,25 +149,13 @@ fn consistent_lies_cost_no_memory() {
     type Lie = (&'static str, &'static [(usize, &'static [u8])]);
     const LIES: [Lie; 5] = [
         ("missing_iso2_f8.sdf", &[(42, &SIDE), (46, &SIDE)]),
-        (
-            "missing_i16.sur",
-            &[(108, &SIDE), (112, &SIDE), (116, &NODES)],
-        ),
+        ("missing_i16.sur", &[(108, &SIDE), (112, &SIDE), (116, &NODES)]),
         (
             "missing_i32_compressed.sur",
-            &[
-                (98, &[16, 0]),
-                (108, &SIDE),
-                (112, &SIDE),
-                (116, &NODES),
-                (516, &DATA),
-            ],
+            &[(98, &[16, 0]), (108, &SIDE), (112, &SIDE), (116, &NODES), (516, &DATA)],
         ),
         ("missing_f32.al3d", &[(141, b"32768"), (193, b"32768")]),
-        (
-            "missing_u32.vk4",
-            &[(388, &HALF), (392, &HALF), (404, &NODES)],
-        ),
+        ("missing_u32.vk4", &[(388, &HALF), (392, &HALF), (404, &NODES)]),
     ];
     with_each_file("lie", |whole, target| {
         let name = target.path.0.to_string_lossy().into_owned();

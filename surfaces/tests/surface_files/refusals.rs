@@ -65,11 +65,7 @@ fn files_that_cannot_be_written() {
     let nowhere = Scratch::new("nowhere");
     let mut places = vec![nowhere.0.join("file")];
     // A device that is always full, where there is one.
-    places.extend(
-        [PathBuf::from("/dev/full")]
-            .into_iter()
-            .filter(|path| path.exists()),
-    );
+    places.extend([PathBuf::from("/dev/full")].into_iter().filter(|path| path.exists()));
     for place in places {
         for error in [
             write_npy(&place, &field).unwrap_err(),

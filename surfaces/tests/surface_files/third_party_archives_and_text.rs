@@ -74,18 +74,13 @@ impl Found<'_> {
         for (node, expected) in self.samples {
             let height = found.heights[*node];
             let same = height.is_nan() && expected.is_nan();
-            assert!(
-                same || close(height, *expected, scale),
-                "{name}: {height} at {node:?}"
-            );
+            assert!(same || close(height, *expected, scale), "{name}: {height} at {node:?}");
         }
     }
 }
 
 fn metres() -> ReadOptions {
-    ReadOptions::new()
-        .height_unit(LengthUnit::METRE)
-        .lateral_unit(LengthUnit::METRE)
+    ReadOptions::new().height_unit(LengthUnit::METRE).lateral_unit(LengthUnit::METRE)
 }
 
 #[test]
@@ -156,10 +151,7 @@ fn a_map_without_a_unit_is_refused() -> TestResult {
     };
     assert_eq!(channels(&path)?, ["Test"]);
     let refused = ReadOptions::new().read(&path);
-    assert!(matches!(
-        refused,
-        Err(Error::File(FileError::NoUnit { found: None, .. }))
-    ));
+    assert!(matches!(refused, Err(Error::File(FileError::NoUnit { found: None, .. }))));
     // With units it can be read: xreal and yreal are 128.
     let found = metres().read(path)?;
     assert_eq!(found.heights.shape(), (128, 128));
@@ -255,12 +247,7 @@ fn lists_of_points() -> TestResult {
         .assert_in("xyz-1.txt", &metres())?;
     found(1.125, 0, &[((0, 0), 1.0), ((2, 1), 1.0), ((1, 2), 2.0)])
         .assert_in("xyz-1-different-order.txt", &metres())?;
-    let gaps = [
-        ((3, 0), 2.0),
-        ((0, 3), 1.0),
-        ((1, 0), f64::NAN),
-        ((2, 1), f64::NAN),
-    ];
+    let gaps = [((3, 0), 2.0), ((0, 3), 1.0), ((1, 0), f64::NAN), ((2, 1), f64::NAN)];
     found(1.4285714285714286, 2, &gaps).assert_in("xyz-2.txt", &metres())
 }
 

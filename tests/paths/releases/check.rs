@@ -33,23 +33,14 @@ pub(super) fn check<U: LinearUpdater>(
         let expected = complementary(&matrix, &gaps, kernel.own_approach(state));
         let scale = expected.max().max(1e-3);
         let error = (DVector::from_column_slice(pressure.as_slice()) - &expected).amax();
-        assert!(
-            error <= tolerance * scale,
-            "{state:?}: pressure {error:e} of {scale:e}"
-        );
+        assert!(error <= tolerance * scale, "{state:?}: pressure {error:e} of {scale:e}");
         let error = (expected.sum() - state.contact.load).abs();
-        assert!(
-            error <= tolerance * scale * gaps.len() as f64,
-            "{state:?}: load {error:e}"
-        );
+        assert!(error <= tolerance * scale * gaps.len() as f64, "{state:?}: load {error:e}");
         let displacement = (&matrix * &expected).mean();
         let mean_gap =
             DVector::from_column_slice(&gaps).mean() + displacement - kernel.own_approach(state);
         let error = (mean_gap - state.contact.mean_gap).abs();
-        assert!(
-            error <= tolerance * (1.0 + kernel.own_approach(state)),
-            "{state:?}: {error:e}"
-        );
+        assert!(error <= tolerance * (1.0 + kernel.own_approach(state)), "{state:?}: {error:e}");
     };
     while let Some(state) = path.next() {
         let state = state.unwrap();
@@ -80,18 +71,13 @@ pub(super) fn check<U: LinearUpdater>(
             assert!(state.contact.load >= last.contact.load);
             // Half way from the last event to this one the contact is that after the last.
             let interval: History = [*last, state].into_iter().collect();
-            let middle = interval
-                .at_load(0.5 * (last.contact.load + state.contact.load))
-                .unwrap();
+            let middle = interval.at_load(0.5 * (last.contact.load + state.contact.load)).unwrap();
             compare(&path.pressure_at(&middle).unwrap(), &middle);
             let work = 0.5
                 * (last.contact.load + state.contact.load)
                 * (state.contact.approach - last.contact.approach);
             let error = (state.contact.energy - last.contact.energy - work).abs();
-            assert!(
-                error <= tolerance * (1.0 + state.contact.energy.abs()),
-                "{error:e}"
-            );
+            assert!(error <= tolerance * (1.0 + state.contact.energy.abs()), "{error:e}");
         }
         states.push(state);
     }
@@ -106,15 +92,11 @@ pub(super) fn check<U: LinearUpdater>(
     let half = history.at_load(0.5 * last.contact.load).unwrap();
     compare(&path.pressure_at(&half).unwrap(), &half);
     let first_half = history.at_area_fraction(0.5);
-    let expected = states
-        .iter()
-        .find(|state| state.contact.contact_nodes >= gaps.len() / 2);
+    let expected = states.iter().find(|state| state.contact.contact_nodes >= gaps.len() / 2);
     assert_eq!(first_half.as_ref(), expected);
     // Nothing happens any more: the same contact far beyond.
     let beyond = loaded(last, 10.0 * last.contact.load + 1.0);
     compare(&path.pressure_at(&beyond).unwrap(), &beyond);
-    let releases = states
-        .iter()
-        .filter(|state| state.event == ContactEvent::Release);
+    let releases = states.iter().filter(|state| state.event == ContactEvent::Release);
     releases.count()
 }

@@ -9,9 +9,7 @@ pub(super) fn from_first_touch(gaps: &[f64]) -> Vec<f64> {
 }
 
 pub(super) fn restrict(matrix: &DMatrix<f64>, nodes: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| {
-        matrix[(nodes[i], nodes[j])]
-    })
+    DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| matrix[(nodes[i], nodes[j])])
 }
 
 /// p ≥ 0, g + C p − δ ≥ 0, one of them zero at each node: least squares with bounds after Lawson and
@@ -34,9 +32,7 @@ pub(super) fn complementary(matrix: &DMatrix<f64>, gaps: &[f64], approach: f64) 
             let b = DVector::from_iterator(free.len(), free.iter().map(|&i| rhs[i]));
             let solved = restrict(matrix, &free).cholesky().unwrap().solve(&b);
             let blocking = free.iter().zip(&solved).filter(|(_, s)| **s <= 0.0);
-            let step = blocking
-                .map(|(&i, s)| p[i] / (p[i] - s))
-                .fold(1.0, f64::min);
+            let step = blocking.map(|(&i, s)| p[i] / (p[i] - s)).fold(1.0, f64::min);
             for (&i, s) in free.iter().zip(&solved) {
                 p[i] += step * (s - p[i]);
             }

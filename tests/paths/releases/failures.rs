@@ -119,8 +119,7 @@ impl LinearUpdater for Spoiled {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        self.inner
-            .solve(problem, contact, count, approach, solution)?;
+        self.inner.solve(problem, contact, count, approach, solution)?;
         self.solutions += 1;
         if self.solutions == self.spoiled {
             solution.pressure.fill(f64::NAN);
@@ -136,11 +135,7 @@ fn states_before_a_failure_stay() {
     let expected: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
     // One solution before first touch, one at every event.
     for good in 0..expected.len() {
-        let updater = Spoiled {
-            inner: RecursiveCholesky::new(),
-            solutions: 0,
-            spoiled: good + 2,
-        };
+        let updater = Spoiled { inner: RecursiveCholesky::new(), solutions: 0, spoiled: good + 2 };
         let mut path = kernel.path_with(&gaps, updater);
         for expected in &expected[..good] {
             assert_eq!(path.next().unwrap().unwrap(), *expected);
@@ -155,10 +150,7 @@ fn states_before_a_failure_stay() {
             let exact = complementary(&kernel.matrix(), &from_first_touch(&gaps), approach);
             let found = path.pressure_at(state).unwrap();
             let error = (DVector::from_column_slice(found.as_slice()) - &exact).amax();
-            assert!(
-                error <= EXACT * exact.max().max(1e-3),
-                "{state:?}: {error:e}"
-            );
+            assert!(error <= EXACT * exact.max().max(1e-3), "{state:?}: {error:e}");
         }
         let nodes = path.state().map_or(0, |state| state.contact.contact_nodes);
         assert_eq!(path.contact_order().len(), nodes);

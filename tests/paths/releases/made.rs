@@ -39,14 +39,9 @@ fn a_surface_whose_node_leaves_can_be_made_from_any_set_of_holes_that_says_so() 
             // The same sign as y2, in every gauge.
             let total = rates.sum();
             for (share, rate) in shares.iter().zip(&rates) {
-                assert!(
-                    (share / n as f64 - rate / total).abs() < 1e-10,
-                    "{share} {rate}"
-                );
+                assert!((share / n as f64 - rate / total).abs() < 1e-10, "{share} {rate}");
             }
-            let least = (0..inside.len())
-                .min_by(|&a, &b| shares[a].total_cmp(&shares[b]))
-                .unwrap();
+            let least = (0..inside.len()).min_by(|&a, &b| shares[a].total_cmp(&shares[b])).unwrap();
             // Others that lose pressure do so from a thousand times as much, and later.
             if shares[least] > -0.05 || made > 200 {
                 continue;
@@ -92,11 +87,7 @@ fn a_node_whose_pressure_stays_does_not_leave() {
     let heights = HeightMap::new(DMatrix::from_fn(5, 1, |ix, _| -gaps[ix])).unwrap();
     let mut path = LoadingSolver::new(&heights, &kernel).unwrap();
     let states: Vec<_> = path.by_ref().map(Result::unwrap).collect();
-    assert!(
-        states
-            .iter()
-            .all(|state| state.event == ContactEvent::Touch)
-    );
+    assert!(states.iter().all(|state| state.event == ContactEvent::Touch));
     let order: Vec<usize> = states.iter().map(|state| state.node.0).collect();
     assert_eq!(order, [1, 0, 2, 4]);
     assert_eq!(path.end(), Some(LoadingEnd::NoMoreEvents));

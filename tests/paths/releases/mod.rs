@@ -65,13 +65,10 @@ fn nodes_that_touch_and_leave_together() {
         let shape = [(4, 4), (5, 3), (6, 5), (9, 1)][random.random_range(0..4)];
         let values: Vec<f64> = (0..36).map(|_| random.random_range(-0.6..1.0)).collect();
         let boundary = [Boundary::Free, Boundary::Periodic][seed as usize % 2];
-        let kernel = Table::new(shape, boundary, |di, dj| {
-            values[di.unsigned_abs() + 6 * dj.unsigned_abs()]
-        });
+        let kernel =
+            Table::new(shape, boundary, |di, dj| values[di.unsigned_abs() + 6 * dj.unsigned_abs()]);
         let steps = random.random_range(1..4);
-        let levels: Vec<f64> = (0..36)
-            .map(|_| f64::from(random.random_range(0..steps)))
-            .collect();
+        let levels: Vec<f64> = (0..36).map(|_| f64::from(random.random_range(0..steps))).collect();
         let (nx, ny) = shape;
         let gaps: Vec<f64> = (0..nx * ny)
             .map(|node| {

@@ -12,11 +12,8 @@ fn cases(count: usize) -> impl Iterator<Item = (Table, Vec<f64>, Vec<LoadingStat
         let states: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
         (kernel, gaps, states)
     });
-    let leaves = |states: &[LoadingState]| {
-        states
-            .iter()
-            .any(|state| state.event == ContactEvent::Release)
-    };
+    let leaves =
+        |states: &[LoadingState]| states.iter().any(|state| state.event == ContactEvent::Release);
     all.filter(move |(_, _, states)| leaves(states)).take(count)
 }
 
@@ -40,28 +37,15 @@ fn paths_with_releases_go_on_from_any_state() {
             assert_eq!(rest.len(), all.len() - at);
             for (found, expected) in rest.iter().zip(&all[at..]) {
                 assert_eq!(
-                    (
-                        found.step,
-                        found.event,
-                        found.node,
-                        found.contact.contact_nodes
-                    ),
-                    (
-                        expected.step,
-                        expected.event,
-                        expected.node,
-                        expected.contact.contact_nodes
-                    )
+                    (found.step, found.event, found.node, found.contact.contact_nodes),
+                    (expected.step, expected.event, expected.node, expected.contact.contact_nodes)
                 );
                 for (a, b) in [
                     (found.contact.approach, expected.contact.approach),
                     (found.contact.load, expected.contact.load),
                     (found.contact.mean_gap, expected.contact.mean_gap),
                 ] {
-                    assert!(
-                        (a - b).abs() <= 1e-9 * (1.0 + b.abs()),
-                        "{found:?} {expected:?}"
-                    );
+                    assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{found:?} {expected:?}");
                 }
             }
             assert_eq!(resumed.contact_order(), whole.contact_order());
@@ -69,10 +53,7 @@ fn paths_with_releases_go_on_from_any_state() {
                 let (found, expected) = (resumed.pressure_at(state), whole.pressure_at(state));
                 let (found, expected) = (found.unwrap(), expected.unwrap());
                 let error = (&found - &expected).amax();
-                assert!(
-                    error <= 1e-9 * (1.0 + expected.amax()),
-                    "{error:e}, {state:?}"
-                );
+                assert!(error <= 1e-9 * (1.0 + expected.amax()), "{error:e}, {state:?}");
             }
         }
     }
@@ -84,9 +65,7 @@ fn paths_with_releases_go_on_from_any_state() {
 fn earlier_contacts_are_factored_within_the_budget() {
     let (kernel, gaps, all) = cases(1).next().unwrap();
     let surface = kernel.heights(&gaps);
-    let release = all
-        .iter()
-        .position(|state| state.event == ContactEvent::Release);
+    let release = all.iter().position(|state| state.event == ContactEvent::Release);
     let before = all[release.unwrap() - 1];
     let (mut ended, mut refused, mut answered) = (0, 0, 0);
     for budget in (0..3_000_000).step_by(20_000) {
@@ -102,11 +81,7 @@ fn earlier_contacts_are_factored_within_the_budget() {
         }
         match path.pressure_at(&before) {
             Ok(_) => answered += 1,
-            Err(Error::MemoryBudget {
-                needed,
-                budget: given,
-                nodes_that_fit,
-            }) => {
+            Err(Error::MemoryBudget { needed, budget: given, nodes_that_fit }) => {
                 assert!(needed > given && given == budget, "{needed} {given}");
                 assert_eq!(nodes_that_fit, path.contact_order().len());
                 assert_eq!(answered, 0, "more room is less");
@@ -132,10 +107,7 @@ fn records_with_releases_are_read_back() {
         let name = format!("asperity-releases-{}-{number}.npz", std::process::id());
         let file = std::env::temp_dir().join(name);
         record.write_npz(&file, &[]).unwrap();
-        let (bytes, read) = (
-            std::fs::read(&file).unwrap(),
-            LoadingRecord::read_npz(&file),
-        );
+        let (bytes, read) = (std::fs::read(&file).unwrap(), LoadingRecord::read_npz(&file));
         std::fs::remove_file(&file).unwrap();
         let read = read.unwrap();
         assert_eq!(read.states(), all);

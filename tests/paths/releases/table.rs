@@ -45,9 +45,8 @@ impl Table {
         let random = DMatrix::from_fn(mx, my, |i, j| {
             coefficient(i as isize - nx as isize + 1, j as isize - ny as isize + 1)
         });
-        let mut coefficients = DMatrix::from_fn(mx, my, |i, j| {
-            random[(i, j)] + random[(mx - 1 - i, my - 1 - j)]
-        });
+        let mut coefficients =
+            DMatrix::from_fn(mx, my, |i, j| random[(i, j)] + random[(mx - 1 - i, my - 1 - j)]);
         if boundary == Boundary::Periodic {
             let wrapped = coefficients.clone();
             let fold = |i: usize, n: usize| (i + 1) % n + n - 1;
@@ -57,12 +56,7 @@ impl Table {
             });
         }
         coefficients[(nx - 1, ny - 1)] = 0.0;
-        let mut table = Self {
-            grid,
-            boundary,
-            growth: ContactGrowth::Unknown,
-            coefficients,
-        };
+        let mut table = Self { grid, boundary, growth: ContactGrowth::Unknown, coefficients };
         let least = table.matrix().symmetric_eigenvalues().min();
         table.coefficients *= 0.95 / -least;
         table.coefficients[(nx - 1, ny - 1)] = 1.0;
@@ -112,10 +106,7 @@ impl Table {
 
     pub(super) fn path_with<U: LinearUpdater>(&self, gaps: &[f64], updater: U) -> LoadingSolver<U> {
         let heights = self.heights(gaps);
-        LoadingSolver::builder(&heights, self)
-            .updater(updater)
-            .build()
-            .unwrap()
+        LoadingSolver::builder(&heights, self).updater(updater).build().unwrap()
     }
 }
 
@@ -124,11 +115,7 @@ pub(super) fn case(seed: u64) -> (Table, Vec<f64>) {
     let mut random = StdRng::seed_from_u64(seed);
     let shapes = [(20, 1), (5, 4), (6, 6), (1, 30), (3, 7), (8, 9)];
     let shape = shapes[random.random_range(0..shapes.len())];
-    let boundary = if random.random_bool(0.5) {
-        Boundary::Free
-    } else {
-        Boundary::Periodic
-    };
+    let boundary = if random.random_bool(0.5) { Boundary::Free } else { Boundary::Periodic };
     let kernel = Table::random(shape, boundary, &mut random);
     let gaps = (0..kernel.grid.nodes()).map(|_| random.random_range(0.0..1.0));
     let gaps = gaps.collect();

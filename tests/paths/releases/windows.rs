@@ -18,9 +18,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
     for seed in 0..400 {
         let mut random = StdRng::seed_from_u64(3000 + seed);
         let mut kernel = Table::random((6, 4), Boundary::Free, &mut random);
-        kernel
-            .coefficients
-            .apply(|value| *value *= if *value == 1.0 { 1.0 } else { 0.35 });
+        kernel.coefficients.apply(|value| *value *= if *value == 1.0 { 1.0 } else { 0.35 });
         let gaps: Vec<f64> = (0..24).map(|_| random.random_range(0.0..0.5)).collect();
         let expected: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
         let matrix = kernel.matrix();
@@ -31,11 +29,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
             let y2 = own.map(|own| own.solve(&DVector::from_element(order.len(), 1.0)));
             let rates = y2.map(|y2| {
                 (0..24).all(|i| {
-                    order
-                        .iter()
-                        .zip(&y2)
-                        .map(|(&j, y)| matrix[(i, j)] * y)
-                        .sum::<f64>()
+                    order.iter().zip(&y2).map(|(&j, y)| matrix[(i, j)] * y).sum::<f64>()
                         < 1.0 + 1e-12
                 })
             });
@@ -62,10 +56,7 @@ fn windows_of_kernels_whose_gaps_are_not_convex() {
                         expected.contact.contact_stiffness.unwrap(),
                     ),
                 ] {
-                    assert!(
-                        (found - expected).abs() < 1e-12 * (1.0 + expected),
-                        "{state:?}"
-                    );
+                    assert!((found - expected).abs() < 1e-12 * (1.0 + expected), "{state:?}");
                 }
             }
             assert!(path.next().is_none());

@@ -163,17 +163,11 @@ fn a_wrong_answer_at_any_call_is_refused_or_changes_nothing() {
                 }
                 (Ok(Ok(states)), struck) => {
                     // A number in place of a coefficient is always noticed.
-                    assert!(
-                        !struck || !matches!(wrong, Wrong::Coefficient(_)),
-                        "{context}"
-                    );
+                    assert!(!struck || !matches!(wrong, Wrong::Coefficient(_)), "{context}");
                     for (state, expected) in states.iter().zip(&expected) {
                         // Rounding of windows and of events that are found one at a time.
                         let change = (state.contact.load - expected.contact.load).abs();
-                        assert!(
-                            change <= 1e-12 * expected.contact.load,
-                            "{context}: {state:?}"
-                        );
+                        assert!(change <= 1e-12 * expected.contact.load, "{context}: {state:?}");
                     }
                     assert_eq!(states.len(), expected.len(), "{context}");
                 }
@@ -200,18 +194,10 @@ fn a_negated_distance_is_refused_or_followed() {
     let half_space = Failing::new(Wrong::Mean, usize::MAX).inner;
     let (mut refused, mut followed) = (0, 0);
     for (di, dj) in (-4..5).flat_map(|di| (0..4).map(move |dj| (di, dj))) {
-        for growth in [
-            ContactGrowth::Unknown,
-            ContactGrowth::Monotone,
-            ContactGrowth::Convex,
-        ] {
+        for growth in [ContactGrowth::Unknown, ContactGrowth::Monotone, ContactGrowth::Convex] {
             let coefficient = |i, j| {
                 let value = half_space.coefficient(i, j);
-                if (i, j) == (di, dj) || (-i, -j) == (di, dj) {
-                    -value
-                } else {
-                    value
-                }
+                if (i, j) == (di, dj) || (-i, -j) == (di, dj) { -value } else { value }
             };
             let table =
                 KernelTable::from_fn(half_space.grid(), Boundary::Free, growth, coefficient);

@@ -17,11 +17,8 @@ const WATCHED: [Part; 2] = [Part::Schur, Part::RowSums];
 
 /// Changes of all numbers of an answer, and of the last one.
 fn changes(parts: [Part; 2], values: [fn(f64) -> f64; 3]) -> Vec<Fault> {
-    let each = parts
-        .into_iter()
-        .flat_map(|part| values.map(|value| (part, value)));
-    each.flat_map(|(part, value)| [Fault::Each(part, value), Fault::Last(part, value)])
-        .collect()
+    let each = parts.into_iter().flat_map(|part| values.map(|value| (part, value)));
+    each.flat_map(|(part, value)| [Fault::Each(part, value), Fault::Last(part, value)]).collect()
 }
 
 /// Follows a path for each call that the fault may strike. Returns how many were struck, and how many ended with an error.

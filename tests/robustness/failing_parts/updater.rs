@@ -56,13 +56,7 @@ pub(super) struct Failing<U> {
 
 impl<U> Failing<U> {
     pub(super) fn new(inner: U, fault: Fault, at: usize) -> Self {
-        Self {
-            inner,
-            fault,
-            at: Cell::new(at),
-            calls: Cell::new(0),
-            struck: Cell::new(None),
-        }
+        Self { inner, fault, at: Cell::new(at), calls: Cell::new(0), struck: Cell::new(None) }
     }
 
     /// How many calls there were.
@@ -134,11 +128,9 @@ impl<U> Failing<U> {
 fn change(fault: Fault, values: &mut [f64]) {
     match fault {
         Fault::Each(_, change) => values.iter_mut().for_each(|value| *value = change(*value)),
-        Fault::Last(_, change) => values
-            .iter_mut()
-            .rev()
-            .take(1)
-            .for_each(|value| *value = change(*value)),
+        Fault::Last(_, change) => {
+            values.iter_mut().rev().take(1).for_each(|value| *value = change(*value))
+        }
         _ => {}
     }
 }
@@ -202,8 +194,7 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         contact: &ContactSequence,
         touched: &WindowFactor,
     ) -> Result<(), Error> {
-        self.call("join", |inner| inner.join(problem, contact, touched))
-            .map(drop)
+        self.call("join", |inner| inner.join(problem, contact, touched)).map(drop)
     }
 
     fn solve(
@@ -214,9 +205,8 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
-        let spoilt = self.call("solve", |inner| {
-            inner.solve(problem, contact, count, approach, solution)
-        })?;
+        let spoilt =
+            self.call("solve", |inner| inner.solve(problem, contact, count, approach, solution))?;
         match spoilt {
             // An empty answer has nothing to spoil.
             Some(fault) if count == 0 && !matches!(fault, Fault::Length(1..)) => {
@@ -229,8 +219,7 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
     }
 
     fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        self.call("truncate", |inner| inner.truncate(problem, contact))
-            .map(drop)
+        self.call("truncate", |inner| inner.truncate(problem, contact)).map(drop)
     }
 
     fn release(
@@ -240,10 +229,7 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
         node: usize,
         position: usize,
     ) -> Result<(), Error> {
-        self.call("release", |inner| {
-            inner.release(problem, contact, node, position)
-        })
-        .map(drop)
+        self.call("release", |inner| inner.release(problem, contact, node, position)).map(drop)
     }
 
     fn window_cost(&self) -> WindowCost {
@@ -263,7 +249,6 @@ impl<U: LinearUpdater> LinearUpdater for Failing<U> {
     }
 
     fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        self.call("make_room", |inner| inner.make_room(problem, bytes))
-            .map(drop)
+        self.call("make_room", |inner| inner.make_room(problem, bytes)).map(drop)
     }
 }

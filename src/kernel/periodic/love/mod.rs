@@ -123,9 +123,7 @@ impl PeriodicBoussinesq {
         let cells = in_long_sides(&grid)?;
         let symbol = symbol(&cells)?;
         let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));
-        Ok(Self {
-            half_space: Symmetric::new(grid, e_star, &symbol, gauge)?,
-        })
+        Ok(Self { half_space: Symmetric::new(grid, e_star, &symbol, gauge)? })
     }
 
     /// The same kernel in the gauge `gauge` \[m/Pa\].
@@ -194,9 +192,7 @@ impl InfluenceKernel for PeriodicBoussinesq {
     }
 
     fn origin(&self) -> KernelOrigin {
-        KernelOrigin::PeriodicBoussinesq {
-            e_star: self.e_star(),
-        }
+        KernelOrigin::PeriodicBoussinesq { e_star: self.e_star() }
     }
 }
 

@@ -97,10 +97,7 @@ fn symbol_is_the_sum_over_aliases() -> Result<(), Error> {
         }
         // All of S together is 4.5 D; the smallest symbol is about 0.6 short sides. Measured, with
         // the sum's own rounding: 1.6e-15 up to 4 : 1, 6e-15 at 20 : 1, 3e-13 at 1000 : 1.
-        assert!(
-            worst < 5e-16 * aspect.max(8.0),
-            "{nx} x {ny}, {dx} x {dy}: {worst:e}"
-        );
+        assert!(worst < 5e-16 * aspect.max(8.0), "{nx} x {ny}, {dx} x {dy}: {worst:e}");
     }
     Ok(())
 }
@@ -160,12 +157,7 @@ fn scales_with_cell_and_modulus() -> Result<(), Error> {
     let scaled = PeriodicBoussinesq::new(Grid::new(9, 4, 1e-9, 0.6e-9)?, 1e11)?;
     for (i, j) in [(0, 1), (3, 0), (4, 2)] {
         // Scales are powers of ten and round.
-        assert_close(
-            scaled.symbol(i, j),
-            1e-20 * unit.symbol(i, j),
-            1e-15,
-            "symbol",
-        );
+        assert_close(scaled.symbol(i, j), 1e-20 * unit.symbol(i, j), 1e-15, "symbol");
         let expected = 1e-20 * unit.coefficient(i, j);
         assert_close(scaled.coefficient(i, j), expected, 1e-14, "coefficient");
     }
@@ -204,12 +196,9 @@ fn values_are_even_and_periodic() -> Result<(), Error> {
 #[test]
 fn least_gauges() -> Result<(), Error> {
     // s* M E* / (long side of the grid), to the digits of an independent computation.
-    for (nx, ny, expected) in [
-        (8, 8, 0.7672),
-        (32, 32, 0.7612),
-        (512, 512, 0.7608),
-        (32, 16, 0.6436),
-    ] {
+    for (nx, ny, expected) in
+        [(8, 8, 0.7672), (32, 32, 0.7612), (512, 512, 0.7608), (32, 16, 0.6436)]
+    {
         let kernel = kernel(nx, ny, 1.0, 1.0)?;
         let least = kernel.least_gauge().unwrap_or(f64::NAN);
         let found = least * (nx * ny) as f64 / nx as f64;
@@ -239,10 +228,7 @@ fn there_is_a_least_gauge_on_every_grid() -> Result<(), Error> {
 fn refuses_what_makes_no_sense() -> Result<(), Error> {
     let grid = Grid::new(4, 4, 1.0, 1.0)?;
     for e_star in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            PeriodicBoussinesq::new(grid, e_star),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(PeriodicBoussinesq::new(grid, e_star), Err(Error::NotPositive { .. })));
     }
     assert!(matches!(
         PeriodicBoussinesq::new(Grid::new(4, 4, 1.0, 1001.0)?, 1.0),

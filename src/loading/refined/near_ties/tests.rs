@@ -17,11 +17,7 @@ fn alone(nodes: &[usize], lines: &[[f64; 2]]) -> Window {
 fn correction(window: &Window, matrix: &DMatrix<f64>) -> Correction {
     let mut window = window.clone();
     window.schur_mut().matrix_mut().copy_from(matrix);
-    Correction {
-        by_courses: window.clone(),
-        window,
-        is_updated: true,
-    }
+    Correction { by_courses: window.clone(), window, is_updated: true }
 }
 
 fn close(found: &[f64], expected: &[f64]) {
@@ -41,12 +37,8 @@ fn errors_are_what_the_passes_differ_by() {
     let of = |times: [f64; 5]| times.map(|time| course([time, 1.0, 0.0, 0.0])).into_iter();
     let first = events(&[(0, 1.0), (1, 2.0), (2, 4.0), (3, 4.5)]);
     let mut correction = correction(&window, &DMatrix::identity(5, 5));
-    correction
-        .window
-        .set_courses(of([1.25, 3.5, 4.0, 4.5, 3.0]));
-    correction
-        .by_courses
-        .set_courses(of([1.25, 3.0, 4.0, 4.5, 3.0]));
+    correction.window.set_courses(of([1.25, 3.5, 4.0, 4.5, 3.0]));
+    correction.by_courses.set_courses(of([1.25, 3.0, 4.0, 4.5, 3.0]));
     let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0));
     // What has not touched by the end is put there.
     let expected = [(0, 1.25), (1, 3.5), (2, 4.0), (3, 4.0)];
@@ -59,10 +51,7 @@ fn errors_are_what_the_passes_differ_by() {
     // Half of the changes.
     correction.is_updated = false;
     let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0));
-    close(
-        &settled.errors,
-        &of_rates([0.406_25, 1.031_25, 0.281_25, 8.0]),
-    );
+    close(&settled.errors, &of_rates([0.406_25, 1.031_25, 0.281_25, 8.0]));
     // Where all agree, a thousandth of the mean spacing: 4 over 2.
     let same = events(&[(0, 1.25), (1, 3.0)]);
     correction.window = correction.by_courses.clone();
@@ -84,10 +73,7 @@ fn ties<'a>(
         tolerances,
         count: 1,
         approach: 1.0,
-        settled: Settled {
-            events: events(pairs),
-            errors: errors.to_vec(),
-        },
+        settled: Settled { events: events(pairs), errors: errors.to_vec() },
         is_certain: false,
         asked: None,
     }
@@ -162,9 +148,7 @@ fn nodes_that_symmetry_maps_are_told_by_their_lines() {
     let far = |length: f64, error: f64| {
         let (events, lines) = ([(0, 1.0), (1, 1.3)], [[1.0, 0.5]; 2]);
         let tolerances = tolerances(length, 1e-2, 1e-9);
-        with_ties(&events, &[error, 0.15], &lines, tolerances, |ties| {
-            ties.are_images(0, 1)
-        })
+        with_ties(&events, &[error, 0.15], &lines, tolerances, |ties| ties.are_images(0, 1))
     };
     assert!(far(1.0, 0.16) && !far(1.0, 0.14) && !far(0.7, 0.16));
 }
@@ -189,9 +173,7 @@ fn rates_of_gaps_that_hardly_close_are_compared_with_a_thousandth() {
     for (other, images) in [(1e-6 + 1.9e-8, true), (1e-6 + 2.1e-8, false)] {
         let lines = [[1.0, 1e-6], [1.0, other]];
         let (events, tolerances) = ([(0, 1.0), (1, 1.0)], tolerances(2.0, 1e-10, 0.25));
-        let found = with_ties(&events, &[0.0; 2], &lines, tolerances, |ties| {
-            ties.are_images(0, 1)
-        });
+        let found = with_ties(&events, &[0.0; 2], &lines, tolerances, |ties| ties.are_images(0, 1));
         assert_eq!(found, images, "{other:e}");
     }
 }
@@ -202,9 +184,7 @@ fn orbits_are_images_at_one_time() {
     let found = |times: [f64; 3], errors: [f64; 3], last: usize| {
         let (events, lines) = ([0, 1, 2].map(|k| (k, times[k])), [[1.0; 2]; 3]);
         let tolerances = tolerances(2.0, 1e-10, 0.25);
-        with_ties(&events, &errors, &lines, tolerances, |ties| {
-            ties.is_orbit(0, last)
-        })
+        with_ties(&events, &errors, &lines, tolerances, |ties| ties.is_orbit(0, last))
     };
     let good = [1e-4; 3];
     assert!(found([1.0; 3], good, 2) && found([1.0, 1.0, 1.1], good, 1));
@@ -279,11 +259,7 @@ fn solutions_are_as_exact_as_errors_ask() {
 #[test]
 fn events_before_are_eliminated() -> Result<(), Error> {
     let mut window = alone(&[7, 8, 9], &[[1.0; 2]; 3]);
-    let courses = [
-        [1.0, 1.0, 0.125, 0.0],
-        [1.0, 1.0, 0.0, 0.0],
-        [1.0, 2.0, 0.0, 0.0],
-    ];
+    let courses = [[1.0, 1.0, 0.125, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 0.0, 0.0]];
     window.set_courses(courses.map(course).into_iter());
     let mut matrix = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 1.0, 2.0, 4.0, 1.0, 1.0, 1.0, 4.0]);
     let found = correction(&window, &matrix);
@@ -299,20 +275,11 @@ fn events_before_are_eliminated() -> Result<(), Error> {
         let lines = found.courses().map(|course| course.line);
         assert!(lines.clone().map(|line| line.gap).eq([0.25, 0.75]));
         let closing: Vec<f64> = lines.map(|line| line.closing).collect();
-        close(
-            &[test_chain::matrix(&found).as_slice(), &closing].concat(),
-            expected,
-        );
+        close(&[test_chain::matrix(&found).as_slice(), &closing].concat(), expected);
     };
-    check(
-        eliminated(&found, 1, &[1, 2])?,
-        &[3.0, 0.5, 0.5, 3.75, 0.75, 1.875],
-    );
+    check(eliminated(&found, 1, &[1, 2])?, &[3.0, 0.5, 0.5, 3.75, 0.75, 1.875]);
     // With no event before nothing is: at the time 1 the first closes at 1 − 2/8.
-    check(
-        eliminated(&found, 0, &[0, 1])?,
-        &[4.0, 2.0, 2.0, 4.0, 0.75, 1.0],
-    );
+    check(eliminated(&found, 0, &[0, 1])?, &[4.0, 2.0, 2.0, 4.0, 0.75, 1.0]);
     // No factor.
     assert!(eliminated(&without, 1, &[1, 2])?.is_none());
     Ok(())

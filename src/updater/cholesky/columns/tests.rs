@@ -78,10 +78,8 @@ fn room_is_used_again() {
         ([600, 3000], 257, 6, 3000, 3072),
         ([600, 1800], 257, 2, 600, 1024),
     ] {
-        let mut columns = Columns {
-            spare: Vec::from(left.map(Vec::with_capacity)),
-            ..Columns::default()
-        };
+        let mut columns =
+            Columns { spare: Vec::from(left.map(Vec::with_capacity)), ..Columns::default() };
         let room = columns.room(rows, width);
         assert!(room.is_empty());
         // An allocator may give a little more.
@@ -120,10 +118,7 @@ fn blocks_are_of_much_the_same_width() {
 #[test]
 fn columns_are_solved_for_and_kept() {
     let factor = factor();
-    let mut columns = Columns {
-        rows: ROWS_HERE,
-        ..Columns::default()
-    };
+    let mut columns = Columns { rows: ROWS_HERE, ..Columns::default() };
     let mut numbers: Vec<usize> = (0..350).collect();
     watch(&mut columns, &factor, &[], &numbers);
     check(&columns, &numbers, ROWS_HERE);
@@ -174,35 +169,24 @@ fn check_products(columns: &Columns, numbers: &[usize]) {
 #[test]
 fn nodes_that_touch_become_rows() {
     let mut factor = factor();
-    let mut columns = Columns {
-        rows: ROWS_HERE,
-        ..Columns::default()
-    };
+    let mut columns = Columns { rows: ROWS_HERE, ..Columns::default() };
     let numbers: Vec<usize> = (0..100).collect();
     watch(&mut columns, &factor, &[], &numbers);
     let mut schur = Schur::default();
     schur.resize(100).unwrap();
-    schur
-        .matrix_mut()
-        .copy_from(&nalgebra::DMatrix::from_fn(100, 100, dominant));
+    schur.matrix_mut().copy_from(&nalgebra::DMatrix::from_fn(100, 100, dominant));
     // From both blocks, in no order.
     let positions = [70, 3, 99, 50];
     let touched = WindowFactor::of(schur, &positions).unwrap();
     let untouched: Vec<usize> = (0..100).filter(|p| !positions.contains(p)).collect();
     columns.commit(&mut factor, &touched, &untouched);
-    assert_eq!(
-        (factor.rows(), columns.rows),
-        (ROWS_HERE + 4, ROWS_HERE + 4)
-    );
+    assert_eq!((factor.rows(), columns.rows), (ROWS_HERE + 4, ROWS_HERE + 4));
     for (event, row) in factor.rows_mut(ROWS_HERE).enumerate() {
         for (c, value) in row[..ROWS_HERE].iter().enumerate() {
             assert!((value - solution(c, positions[event])).abs() < 1e-13);
         }
         for earlier in 0..=event {
-            assert_eq!(
-                row[ROWS_HERE + earlier],
-                touched.factor(positions[event], earlier)
-            );
+            assert_eq!(row[ROWS_HERE + earlier], touched.factor(positions[event], earlier));
         }
     }
     check(&columns, &untouched, ROWS_HERE);

@@ -89,10 +89,7 @@ pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, k: usize) -> Rot
         }
     }
     panels.truncate(rows.saturating_sub(1));
-    Rotations {
-        first: k,
-        rotations,
-    }
+    Rotations { first: k, rotations }
 }
 
 #[cfg(test)]

@@ -25,10 +25,7 @@ fn points_lie_between_the_ends() {
     ] {
         let axis = Axis::of(offsets.iter().copied());
         assert_eq!(&axis.points[..axis.count], expected);
-        assert_eq!(
-            (axis.first(), axis.last()),
-            (expected[0], expected[expected.len() - 1])
-        );
+        assert_eq!((axis.first(), axis.last()), (expected[0], expected[expected.len() - 1]));
     }
 }
 
@@ -40,21 +37,12 @@ fn interpolation_is_exact_for_polynomials() {
         (4, 6, [3.0, 1.0, -0.5, 0.0, 0.0, 0.0]),
         (7, 7, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ] {
-        let at = |x: i32| {
-            polynomial
-                .iter()
-                .rev()
-                .fold(0.0, |sum, c| sum * f64::from(x) + c)
-        };
+        let at = |x: i32| polynomial.iter().rev().fold(0.0, |sum, c| sum * f64::from(x) + c);
         let axis = Axis::of([first, last].into_iter());
         for offset in first..=last {
             let weights = axis.weights(offset);
             let points = &axis.points[..axis.count];
-            let found: f64 = points
-                .iter()
-                .zip(weights)
-                .map(|(&x, weight)| at(x) * weight)
-                .sum();
+            let found: f64 = points.iter().zip(weights).map(|(&x, weight)| at(x) * weight).sum();
             // Roundings of numbers up to 10³.
             assert!((found - at(offset)).abs() < 1e-11, "{offset}: {found}");
         }
@@ -75,14 +63,10 @@ fn distances_go_the_shorter_way() -> Result<(), Error> {
 fn nodes_of(problem: &Problem, pressures: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let node = |place: usize| {
         let nodes = 0..problem.grid().nodes();
-        nodes
-            .into_iter()
-            .find(|&node| problem.table().place(node) == place)
+        nodes.into_iter().find(|&node| problem.table().place(node) == place)
     };
-    let mut found: Vec<(usize, f64)> = pressures
-        .iter()
-        .map(|&(place, p)| (node(place).unwrap_or(usize::MAX), p))
-        .collect();
+    let mut found: Vec<(usize, f64)> =
+        pressures.iter().map(|&(place, p)| (node(place).unwrap_or(usize::MAX), p)).collect();
     found.sort_by_key(|(node, _)| *node);
     found
 }
@@ -114,10 +98,8 @@ fn sources_are_as_large_as_their_contact() -> Result<(), Error> {
         ];
         expected.sort_by_key(|(node, _)| *node);
         assert_eq!(nodes_of(&problem, &source.near), expected);
-        let far: Vec<(usize, f64)> = nodes_of(&problem, &source.far)
-            .into_iter()
-            .filter(|(_, p)| p.abs() > 1e-12)
-            .collect();
+        let far: Vec<(usize, f64)> =
+            nodes_of(&problem, &source.far).into_iter().filter(|(_, p)| p.abs() > 1e-12).collect();
         assert_eq!(source.far.len(), 8);
         assert_eq!(far.len(), 3);
         for ((node, p), (expected_node, expected)) in far.into_iter().zip(expected) {
@@ -155,14 +137,8 @@ fn sources_far_away_are_interpolated() -> Result<(), Error> {
             let answers: Vec<usize> = (ix - half..=ix + half).filter(|&x| x != ix).collect();
             Local {
                 node: grid.index(ix, 4),
-                contact: answers
-                    .iter()
-                    .map(|&x| grid.index(x, 3 + x % 3) as u32)
-                    .collect(),
-                weights: answers
-                    .iter()
-                    .map(|&x| 0.3 / (1.0 + x.abs_diff(ix) as f64))
-                    .collect(),
+                contact: answers.iter().map(|&x| grid.index(x, 3 + x % 3) as u32).collect(),
+                weights: answers.iter().map(|&x| 0.3 / (1.0 + x.abs_diff(ix) as f64)).collect(),
             }
         };
         for (half, error) in [(2, 1e-13), (4, 1e-5)] {
@@ -170,11 +146,7 @@ fn sources_far_away_are_interpolated() -> Result<(), Error> {
             let mut matrix = vec![0.0; 4];
             schur(&problem, &locals, &mut matrix);
             let expected = energy(&problem, &locals[0], &locals[1]);
-            assert!(
-                (matrix[1] / expected - 1.0).abs() < error,
-                "{half}: {} {expected}",
-                matrix[1]
-            );
+            assert!((matrix[1] / expected - 1.0).abs() < error, "{half}: {} {expected}", matrix[1]);
             // Nothing is written above the diagonal.
             assert_eq!(matrix[2], 0.0);
         }
@@ -191,17 +163,13 @@ fn sources_near_each_other_are_exact() -> Result<(), Error> {
         let problem = flat(grid, periodic)?;
         let is_in = |node: usize| node % 3 == 1 || node % 7 == 2;
         let contact: Vec<usize> = (0..grid.nodes()).filter(|&node| is_in(node)).collect();
-        let watched: Vec<usize> = (0..grid.nodes())
-            .filter(|&node| !is_in(node))
-            .step_by(4)
-            .collect();
+        let watched: Vec<usize> =
+            (0..grid.nodes()).filter(|&node| !is_in(node)).step_by(4).collect();
         let mut set = NodeSet::new(grid.nodes());
         set.assign(is_in);
         let neighbourhood = Neighbourhood::new(&problem);
-        let locals: Vec<Local> = watched
-            .iter()
-            .map(|&node| neighbourhood.solve(problem.table(), &set, node))
-            .collect();
+        let locals: Vec<Local> =
+            watched.iter().map(|&node| neighbourhood.solve(problem.table(), &set, node)).collect();
         let size = watched.len();
         let mut found = vec![0.0; size * size];
         schur(&problem, &locals, &mut found);

@@ -17,11 +17,8 @@ fn proposed() -> Result<(Problem, Proposed), Error> {
     let matrix = [3.5, -0.25, f64::NAN, 3.75];
     complement.as_mut_slice().copy_from_slice(&matrix);
     complement.row_sums_mut().copy_from_slice(&[7.0, 1.5]);
-    let proposed = Proposed {
-        locals: vec![local(1, &[0, 2]), local(3, &[2])],
-        count: 2,
-        complement,
-    };
+    let proposed =
+        Proposed { locals: vec![local(1, &[0, 2]), local(3, &[2])], count: 2, complement };
     Ok((problem, proposed))
 }
 
@@ -46,34 +43,22 @@ fn nodes_that_join_are_carried() -> Result<(), Error> {
     let overlap = |node: usize| 4.0 - problem.initial_gap()[node];
     let one = 1.5 / 3.5;
     let (pressure, sum) = proposed.carried(&field, &[1], overlap);
-    near(
-        &pressure,
-        &[1.0 - one / 4.0, one, 0.5 - one / 4.0, 0.0, 0.0],
-    );
+    near(&pressure, &[1.0 - one / 4.0, one, 0.5 - one / 4.0, 0.0, 0.0]);
     near(&[sum], &[one]);
     // Both, with what is left of 3 m and 1 m: 1.5 and 0.5. 3.5 · 3.75 − 1/16 = 13.0625.
     let p1 = (1.5 * 3.75 + 0.5 * 0.25) / 13.0625;
     let p3 = (0.5 * 3.5 + 1.5 * 0.25) / 13.0625;
     for joined in [[1, 3], [3, 1]] {
         let (pressure, sum) = proposed.carried(&field, &joined, overlap);
-        near(
-            &pressure,
-            &[1.0 - p1 / 4.0, p1, 0.5 - p1 / 4.0 - p3 / 4.0, p3, 0.0],
-        );
+        near(&pressure, &[1.0 - p1 / 4.0, p1, 0.5 - p1 / 4.0 - p3 / 4.0, p3, 0.0]);
         near(&[sum], &[p1 + p3]);
     }
     // Nobody, a node that was not watched, and displacements that are not known.
     for joined in [&[][..], &[4], &[1, 4]] {
-        assert_eq!(
-            proposed.carried(&field, joined, overlap),
-            (field.pressure.clone(), 0.0)
-        );
+        assert_eq!(proposed.carried(&field, joined, overlap), (field.pressure.clone(), 0.0));
     }
     field.displacement.clear();
-    assert_eq!(
-        proposed.carried(&field, &[1], overlap),
-        (field.pressure.clone(), 0.0)
-    );
+    assert_eq!(proposed.carried(&field, &[1], overlap), (field.pressure.clone(), 0.0));
     Ok(())
 }
 
@@ -145,10 +130,7 @@ fn residuals_improve_solutions_inside_a_window() -> Result<(), Error> {
     let (problem, proposed) = proposed()?;
     let contact = ContactSequence::with_order(problem.grid(), [0, 2, 1])?;
     let fresh = || Solved {
-        solution: Solution {
-            pressure: vec![1.0, 2.0, 3.0],
-            rate: vec![4.0, 5.0, 6.0],
-        },
+        solution: Solution { pressure: vec![1.0, 2.0, 3.0], rate: vec![4.0, 5.0, 6.0] },
         displacement: [vec![0.0; 5], vec![10.0; 5]],
     };
     let flat = |solved: &Solved| {

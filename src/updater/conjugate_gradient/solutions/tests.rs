@@ -1,10 +1,7 @@
 use super::super::tests::{by_gap, problem};
 use super::*;
 
-const CRITERIA: Criteria = Criteria {
-    tolerance: 1e-10,
-    max_iterations: 1000,
-};
+const CRITERIA: Criteria = Criteria { tolerance: 1e-10, max_iterations: 1000 };
 
 /// A window at its end: 60 nodes were in contact and ten proposed, of which six have joined.
 struct Window {
@@ -33,22 +30,14 @@ impl Window {
     }
 
     fn propose(&mut self, nodes: &[usize]) -> Result<(), Error> {
-        let Self {
-            problem,
-            contact,
-            solutions,
-        } = self;
+        let Self { problem, contact, solutions } = self;
         let proposed = solutions.propose(CRITERIA, problem, contact, nodes);
         proposed.map(|_| ())
     }
 
     /// Asks for a solution, and checks that there is a value for each node: of rates where they are known.
     fn ask(&mut self, asked: Asked, count: usize, approach: f64) -> Result<(), Error> {
-        let Self {
-            problem,
-            contact,
-            solutions,
-        } = self;
+        let Self { problem, contact, solutions } = self;
         let (at, mut solved) = ((count, approach), Solved::default());
         match asked {
             Asked::Advance(span) => {
@@ -99,11 +88,7 @@ fn solutions_inside_a_window_are_kept() -> Result<(), Error> {
     ] {
         window.ask(asked, count, approach)?;
         let Window { solutions, .. } = &window;
-        assert_eq!(
-            solutions.instants.len(),
-            known,
-            "{count} {approach} {asked:?}"
-        );
+        assert_eq!(solutions.instants.len(), known, "{count} {approach} {asked:?}");
         assert_eq!((solutions.count(), solutions.now.approach), (66, 3.0));
     }
     Ok(())
@@ -117,23 +102,11 @@ fn windows_are_taken_back() -> Result<(), Error> {
         window.contact.truncate(left);
         window.solutions.truncate(&window.contact);
         let solutions = &window.solutions;
-        assert_eq!(
-            (solutions.count(), solutions.now.load.is_known()),
-            (left, is_known)
-        );
-        assert_eq!(
-            (solutions.instants.len(), solutions.before.is_none()),
-            (0, true)
-        );
+        assert_eq!((solutions.count(), solutions.now.load.is_known()), (left, is_known));
+        assert_eq!((solutions.instants.len(), solutions.before.is_none()), (0, true));
         // Row sums that were solved for are kept where the window began.
         assert_eq!(solutions.sums.count(), left);
-        let pressures = solutions
-            .now
-            .load
-            .pressure
-            .iter()
-            .filter(|p| **p != 0.0)
-            .count();
+        let pressures = solutions.now.load.pressure.iter().filter(|p| **p != 0.0).count();
         assert_eq!(pressures, left);
     }
     Ok(())
@@ -181,19 +154,13 @@ fn solutions_are_taken_over() -> Result<(), Error> {
     let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0])?;
     let contact = ContactSequence::with_order(problem.grid(), [2, 0])?;
     let mut solutions = Solutions::new(&problem);
-    let solution = Solution {
-        pressure: vec![5.0, 6.0],
-        rate: vec![7.0, 8.0],
-    };
+    let solution = Solution { pressure: vec![5.0, 6.0], rate: vec![7.0, 8.0] };
     solutions.take_over(&contact, 3.0, &solution);
     let now = &solutions.now;
     assert_eq!((solutions.count(), now.approach, now.serves), (2, 3.0, 0.0));
     assert_eq!(now.load.pressure, [6.0, 0.0, 5.0]);
     assert_eq!(now.rate.pressure, [8.0, 0.0, 7.0]);
     assert!(!now.load.is_known() && !now.rate.is_known());
-    assert_eq!(
-        (solutions.sums.count(), solutions.grid()),
-        (2, problem.grid())
-    );
+    assert_eq!((solutions.sums.count(), solutions.grid()), (2, problem.grid()));
     Ok(())
 }

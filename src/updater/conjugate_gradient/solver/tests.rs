@@ -20,17 +20,8 @@ fn solved(
     let (problem, contact) = problem()?;
     let mut solver = Solver::new(&problem);
     solver.choose(&contact, contact.len());
-    let equation = Equation {
-        rhs: |_| 1.0,
-        tolerance,
-        most_drift,
-        max_iterations: 1000,
-    };
-    let start = if base.is_known() {
-        base.pressure.clone()
-    } else {
-        vec![0.0; 240]
-    };
+    let equation = Equation { rhs: |_| 1.0, tolerance, most_drift, max_iterations: 1000 };
+    let start = if base.is_known() { base.pressure.clone() } else { vec![0.0; 240] };
     let field = solver.solve(&equation, start, base, &mut Directions::default())?;
     let mut fresh = Field::of(field.pressure.clone());
     solver.complete(&mut fresh)?;
@@ -45,9 +36,7 @@ fn solved(
 
 /// The greatest difference.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .fold(0.0, |most, (a, b)| (a - b).abs().max(most))
+    a.iter().zip(b).fold(0.0, |most, (a, b)| (a - b).abs().max(most))
 }
 
 /// The first residual is 1, and the first step begins with it: what the step may have spoilt of displacements is 2·10⁻⁷ of both of
@@ -60,9 +49,7 @@ fn what_single_precision_spoils_is_known() -> Result<(), Error> {
     assert!(distance(&field.displacement, &fresh.displacement) < 3.0 * field.drift);
     let left = |field: &Field| {
         let nodes = (0..240).step_by(3);
-        nodes.fold(0.0, |most: f64, node| {
-            most.max((1.0 - field.displacement[node]).abs())
-        })
+        nodes.fold(0.0, |most: f64, node| most.max((1.0 - field.displacement[node]).abs()))
     };
     assert!(left(&fresh) < 4e-6, "{:e}", left(&fresh));
     // Pressures are near 1 for each metre and cell, and the condition number is some ten.
@@ -70,11 +57,7 @@ fn what_single_precision_spoils_is_known() -> Result<(), Error> {
     // More exact than single precision: computed afresh, and nothing is spoilt.
     for (tolerance, most_drift) in [(1e-11, f64::INFINITY), (4e-6, 1e-12)] {
         let (field, fresh, expected) = solved(tolerance, most_drift, &Field::default())?;
-        assert!(
-            field.drift <= most_drift.min(0.5 * tolerance),
-            "{:e}",
-            field.drift
-        );
+        assert!(field.drift <= most_drift.min(0.5 * tolerance), "{:e}", field.drift);
         assert!(distance(&field.displacement, &fresh.displacement) < 1e-6 * tolerance.max(1e-6));
         assert!(left(&fresh) <= tolerance);
         assert!(distance(&field.pressure, &expected) < 1e3 * tolerance * worst(&expected));
@@ -125,18 +108,10 @@ fn iterations_come_to_an_end() -> Result<(), Error> {
     let mut solver = Solver::new(&problem);
     solver.choose(&contact, contact.len());
     for (most, tolerance) in [(0, 1e-3), (2, 1e-12)] {
-        let equation = Equation {
-            rhs: |_| 1.0,
-            tolerance,
-            most_drift: f64::INFINITY,
-            max_iterations: most,
-        };
-        let failed = solver.solve(
-            &equation,
-            vec![0.0; 240],
-            &Field::default(),
-            &mut Directions::default(),
-        );
+        let equation =
+            Equation { rhs: |_| 1.0, tolerance, most_drift: f64::INFINITY, max_iterations: most };
+        let failed =
+            solver.solve(&equation, vec![0.0; 240], &Field::default(), &mut Directions::default());
         assert!(
             matches!(
                 failed,

@@ -69,9 +69,7 @@ pub(crate) fn solve(
     let spectrum = surface.spectrum(&grid)?;
     let heights = HeightMap::sample(&surface, &grid)?;
     let kernel = Spectral::new(grid, E_STAR)?;
-    let mut solver = FixedLoadSolver::builder(&heights, &kernel)
-        .stiffness(stiffness)
-        .build()?;
+    let mut solver = FixedLoadSolver::builder(&heights, &kernel).stiffness(stiffness).build()?;
     let solved = loads.iter().map(|load| {
         let solution = solver.solve(load * E_STAR * grid.nominal_area())?;
         read(&solution, &grid, band, spectrum, *load)
@@ -92,18 +90,10 @@ fn read(
     let gaps = gap_distribution(&solution.gap, map, Bins::PerDecade(GAP_BINS))?;
     let open = 1.0 - gaps.contact_share;
     let middle = |edges: &[f64]| (edges[0] * edges[1]).sqrt();
-    let gaps = gaps
-        .histogram
-        .edges()
-        .windows(2)
-        .zip(gaps.histogram.density());
+    let gaps = gaps.histogram.edges().windows(2).zip(gaps.histogram.density());
     let found = pressure_distribution(&solution.pressure, map, Bins::Linear(PRESSURE_BINS))?;
     let share = found.contact_share;
-    let pressures = found
-        .histogram
-        .edges()
-        .windows(2)
-        .zip(found.histogram.density());
+    let pressures = found.histogram.edges().windows(2).zip(found.histogram.density());
     Ok(Contact {
         nodes: grid.nx(),
         band,

@@ -36,30 +36,20 @@ impl Report {
             return [f64::NAN; 3];
         };
         let (a, b) = (&fine[load], &finest[load]);
-        [
-            2.0 * b.area - a.area,
-            2.0 * b.corrected - a.corrected,
-            (4.0 * b.gap - a.gap) / 3.0,
-        ]
+        [2.0 * b.area - a.area, 2.0 * b.corrected - a.corrected, (4.0 * b.gap - a.gap) / 3.0]
     }
 
     /// The corrected area on the coarsest mesh, over its limit, under one load.
     fn left_by_coarsest(&self, load: f64) -> f64 {
         let coarsest = self.meshes.first();
         let place = coarsest.and_then(|mesh| mesh.iter().position(|c| c.load == load));
-        coarsest.zip(place).map_or(f64::NAN, |(mesh, place)| {
-            mesh[place].corrected / self.limits(place)[1]
-        })
+        coarsest
+            .zip(place)
+            .map_or(f64::NAN, |(mesh, place)| mesh[place].corrected / self.limits(place)[1])
     }
 
     pub(crate) fn text(&self) -> String {
-        [
-            self.introduction(),
-            self.resolution(),
-            self.spectra(),
-            self.challenge(),
-        ]
-        .join("\n\n")
+        [self.introduction(), self.resolution(), self.spectra(), self.challenge()].join("\n\n")
     }
 
     fn introduction(&self) -> String {
@@ -81,11 +71,7 @@ impl Report {
     }
 
     fn resolution(&self) -> String {
-        let band = self
-            .meshes
-            .first()
-            .and_then(|m| m.first())
-            .map_or(0, |c| c.band);
+        let band = self.meshes.first().and_then(|m| m.first()).map_or(0, |c| c.band);
         let mut text = format!(
             "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on three meshes. *Limit*: Richardson's \
              extrapolation from the finest two, of first order for the area as counted and of second for the mean gap.\n\n\
@@ -210,11 +196,7 @@ impl Report {
     }
 
     fn all(&self) -> impl Iterator<Item = &Contact> {
-        self.meshes
-            .iter()
-            .flatten()
-            .chain(&self.bands)
-            .chain(&self.loads)
+        self.meshes.iter().flatten().chain(&self.bands).chain(&self.loads)
     }
 
     pub(crate) fn csv(&self) -> String {
@@ -241,12 +223,7 @@ impl Report {
     }
 
     pub(crate) fn charts(&self, reference: f64) -> Result<Vec<Chart>, Error> {
-        Ok(vec![
-            self.kappa(),
-            self.gaps(reference),
-            self.pressures(reference)?,
-            self.mean_gap(),
-        ])
+        Ok(vec![self.kappa(), self.gaps(reference), self.pressures(reference)?, self.mean_gap()])
     }
 
     fn kappa(&self) -> Chart {
@@ -255,12 +232,7 @@ impl Report {
             each.collect::<Vec<_>>()
         };
         let flat = |name: &str, colour, value: f64| {
-            Series::new(
-                name,
-                colour,
-                Style::Dashed,
-                [(90.0, value), (1400.0, value)],
-            )
+            Series::new(name, colour, Style::Dashed, [(90.0, value), (1400.0, value)])
         };
         Chart {
             title: "Area over load at 0.01 E*, 4 cells to λₛ".to_string(),
@@ -271,12 +243,7 @@ impl Report {
                 flat("√(8/π)", BLACK, AreaLoadLaw::PERSSON),
                 Series::new("cells counted", ORANGE, Style::Line, points(Contact::kappa)),
                 Series::new("", ORANGE, Style::Dots, points(Contact::kappa)),
-                Series::new(
-                    "corrected",
-                    BLUE,
-                    Style::Line,
-                    points(Contact::corrected_kappa),
-                ),
+                Series::new("corrected", BLUE, Style::Line, points(Contact::corrected_kappa)),
                 Series::new("", BLUE, Style::Dots, points(Contact::corrected_kappa)),
             ],
             legend: Corner::TopRight,
@@ -287,8 +254,7 @@ impl Report {
     fn at(&self, reference: f64) -> Vec<(String, &Contact)> {
         let of = self.meshes.iter().flatten().filter(|c| c.load == reference);
         let all = of.chain(self.bands.last());
-        all.map(|c| (format!("L/λₛ = {}, {}²", c.band, c.nodes), c))
-            .collect()
+        all.map(|c| (format!("L/λₛ = {}, {}²", c.band, c.nodes), c)).collect()
     }
 
     fn gaps(&self, reference: f64) -> Chart {
@@ -315,12 +281,7 @@ impl Report {
         });
         let mut series = vec![Series::new("Persson", BLACK, Style::Dashed, persson)];
         for (k, (name, c)) in at.into_iter().enumerate() {
-            series.push(Series::new(
-                name,
-                colour(k),
-                Style::Line,
-                c.pressures.clone(),
-            ));
+            series.push(Series::new(name, colour(k), Style::Line, c.pressures.clone()));
         }
         Ok(Chart {
             title: format!("Distribution of the pressure at {reference} E*"),
@@ -333,15 +294,12 @@ impl Report {
 
     fn mean_gap(&self) -> Chart {
         let points = |contacts: &mut dyn Iterator<Item = &Contact>| {
-            contacts
-                .map(|c| (c.load, c.gap / c.spectrum.rms_height()))
-                .collect::<Vec<_>>()
+            contacts.map(|c| (c.load, c.gap / c.spectrum.rms_height())).collect::<Vec<_>>()
         };
         let mut series = Vec::new();
         for (k, mesh) in self.meshes.iter().chain([&self.loads]).enumerate() {
-            let name = mesh.first().map_or(String::new(), |c| {
-                format!("L/λₛ = {}, {}²", c.band, c.nodes)
-            });
+            let name =
+                mesh.first().map_or(String::new(), |c| format!("L/λₛ = {}, {}²", c.band, c.nodes));
             let points = points(&mut mesh.iter());
             series.push(Series::new(name, colour(k), Style::Line, points.clone()));
             series.push(Series::new("", colour(k), Style::Dots, points));

@@ -57,23 +57,14 @@ impl Full {
             peak = solution.pressure.max() / full;
             // ½ p u in the mean, both in proportion to the wave.
             let energy = full * AMPLITUDE / 8.0;
-            let relative = [
-                found / full,
-                peak / (1.0 + BEYOND),
-                solution.state.energy / energy,
-            ];
+            let relative = [found / full, peak / (1.0 + BEYOND), solution.state.energy / energy];
             errors.push((nodes, relative.map(|ratio| (ratio - 1.0).abs())));
             let mut is_full = |load: f64| -> Result<bool, Error> {
                 Ok(solver.solve(load)?.state.contact_nodes == grid.nodes())
             };
             bracketed &= is_full(found * (1.0 + BRACKET))? && !is_full(found * (1.0 - BRACKET))?;
         }
-        Ok(Self {
-            kernel,
-            errors,
-            peak,
-            bracketed,
-        })
+        Ok(Self { kernel, errors, peak, bracketed })
     }
 
     /// Order of the error of the load of full contact.
@@ -104,10 +95,7 @@ pub(crate) struct Limit {
 impl Limit {
     /// The ratio at the limit itself, by a line in the power of the distance.
     pub(crate) fn extrapolated(&self) -> f64 {
-        let points = self
-            .ratios
-            .iter()
-            .map(|(d, r)| (d.powf(self.power), r.mean));
+        let points = self.ratios.iter().map(|(d, r)| (d.powf(self.power), r.mean));
         Line::fit(&points.collect::<Vec<_>>()).intercept
     }
 
@@ -132,20 +120,15 @@ impl Limit {
             let crest = (x + offset.0 * grid.dx(), y + offset.1 * grid.dy());
             let kernel = half_space(Some(Periodic::Love), grid, 1.0)?;
             let surface = surface(crest)?;
-            let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-                .stiffness(false)
-                .build()?;
+            let mut solver =
+                FixedLoadSolver::builder(&surface, &kernel).stiffness(false).build()?;
             for (distance, ratios) in distances.iter().zip(&mut found) {
                 let solution = solver.solve(load(*distance) * full)?;
                 ratios.push(ratio(&exact, solution.state.load, area(&solution, &grid)?));
             }
         }
         let spread = found.into_iter().map(Spread::of);
-        Ok(Self {
-            nodes,
-            ratios: distances.iter().copied().zip(spread).collect(),
-            power,
-        })
+        Ok(Self { nodes, ratios: distances.iter().copied().zip(spread).collect(), power })
     }
 }
 

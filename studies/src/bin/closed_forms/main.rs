@@ -49,20 +49,12 @@ fn run(options: &Options) -> Result<(), Failure> {
     curves.extend(punch::circular().map_err(failed)?);
     curves.push(square.curve());
     curves.extend(plane::curves().map_err(failed)?);
-    let report = Report {
-        curves,
-        punch: square,
-        wave: Comparison::new().map_err(failed)?,
-    };
+    let report = Report { curves, punch: square, wave: Comparison::new().map_err(failed)? };
     Findings {
         study: "closed_forms",
         text: report.text(),
         tables: vec![("closed_forms", report.csv())],
-        pictures: vec![Picture {
-            name: "closed_forms",
-            charts: report.charts(),
-            columns: 3,
-        }],
+        pictures: vec![Picture { name: "closed_forms", charts: report.charts(), columns: 3 }],
     }
     .write(&options.places)
 }

@@ -21,10 +21,7 @@ const AMPLITUDE: f64 = 0.01;
 pub(crate) fn curves() -> Result<Vec<Curve>, Error> {
     let mut curves = Vec::new();
     curves.extend(Curve::of("cylinder", &on_all(cylinder)?, &[]));
-    for (name, kernel) in [
-        ("wave, Love", Periodic::Love),
-        ("wave, spectral", Periodic::Spectral),
-    ] {
+    for (name, kernel) in [("wave, Love", Periodic::Love), ("wave, spectral", Periodic::Spectral)] {
         curves.extend(Curve::of(name, &on_all(|cells| wave(cells, kernel))?, &[]));
     }
     Ok(curves)
@@ -47,9 +44,8 @@ fn cylinder(cells: usize) -> Result<Errors, Error> {
     for (offset, _) in APEXES {
         let x = grid.center().0 + offset;
         let surface = Cylinder::new(RADIUS * a, Axis::Y)?.centered_at(x, 0.0)?;
-        let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-            .tolerance(TOLERANCE)
-            .build()?;
+        let mut solver =
+            FixedLoadSolver::builder(&surface, &kernel).tolerance(TOLERANCE).build()?;
         for solution in solver.sweep(loads(hertz.load_at_half_width(a) * length)) {
             let solution = solution?;
             let load = solution.state.load / length;
@@ -71,9 +67,8 @@ fn wave(cells: usize, kernel: Periodic) -> Result<Errors, Error> {
     for (offset, _) in APEXES {
         let x = grid.center().0 + offset * grid.dx();
         let surface = Wave::new(AMPLITUDE, 1.0, Axis::X)?.centered_at(x, 0.0)?;
-        let mut solver = FixedLoadSolver::builder(&surface, &kernel)
-            .tolerance(TOLERANCE)
-            .build()?;
+        let mut solver =
+            FixedLoadSolver::builder(&surface, &kernel).tolerance(TOLERANCE).build()?;
         for solution in solver.sweep(loads(RATIO * exact.full_contact_pressure())) {
             let solution = solution?;
             // On the unit square loads are mean pressures.

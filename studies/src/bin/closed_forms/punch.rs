@@ -64,12 +64,7 @@ impl SquarePunch {
             let solution = solver(&FlatPunch::default(), grid)?.solve(1.0)?;
             Ok((n, solution.state.contact_stiffness.unwrap_or(f64::NAN)))
         };
-        Ok(Self {
-            stiffness: PUNCH_CELLS
-                .iter()
-                .map(stiffness)
-                .collect::<Result<_, Error>>()?,
-        })
+        Ok(Self { stiffness: PUNCH_CELLS.iter().map(stiffness).collect::<Result<_, Error>>()? })
     }
 
     /// Richardson's extrapolation from each two grids, first order: the pressure is singular along the edge.

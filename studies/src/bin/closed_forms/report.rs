@@ -68,12 +68,7 @@ impl Report {
                 let _ = write!(text, " {} |", scientific(*error, 2));
             }
             let verdict = verdict(curve.agrees());
-            let _ = writeln!(
-                text,
-                " {:.2} | {} | {verdict} |",
-                curve.order(),
-                curve.expected
-            );
+            let _ = writeln!(text, " {:.2} | {} | {verdict} |", curve.order(), curve.expected);
         }
         let agreeing = self.curves.iter().filter(|curve| curve.agrees()).count();
         let _ = write!(
@@ -138,11 +133,7 @@ impl Report {
                  1 − {b} {}: {}",
                 full.kernel.name(),
                 full.peak,
-                if full.bracketed {
-                    "on every grid"
-                } else {
-                    "on some grids only"
-                },
+                if full.bracketed { "on every grid" } else { "on some grids only" },
                 verdict(full.agrees()),
                 b = scientific(BRACKET, 1),
             )
@@ -218,12 +209,8 @@ impl Report {
         let (from, to) = (CELLS[0] as f64, CELLS[CELLS.len() - 1] as f64);
         let order = quantity.order();
         let guide = |cells: f64| (cells, 2.5 * most * (from / cells).powf(order));
-        let mut series = vec![Series::new(
-            format!("order {order}"),
-            GREY,
-            Style::Dashed,
-            [from, to].map(guide),
-        )];
+        let mut series =
+            vec![Series::new(format!("order {order}"), GREY, Style::Dashed, [from, to].map(guide))];
         for curve in curves() {
             let (colour, style) = look(curve.contact);
             let points = curve.points.clone();
@@ -256,19 +243,9 @@ impl Report {
             y: Axis::plain("area over that of the limit", low, high).with_room(0.5, 0.2),
             series: vec![
                 Series::new("", GREY, Style::Dashed, [(1e-4, 1.0), (0.1, 1.0)]),
-                Series::new(
-                    "contact over Hertz, P → 0",
-                    BLUE,
-                    Style::Line,
-                    light.clone(),
-                ),
+                Series::new("contact over Hertz, P → 0", BLUE, Style::Line, light.clone()),
                 Series::new("", BLUE, Style::Dots, light),
-                Series::new(
-                    "no contact over cracks, P → 1",
-                    ORANGE,
-                    Style::Line,
-                    heavy.clone(),
-                ),
+                Series::new("no contact over cracks, P → 1", ORANGE, Style::Line, heavy.clone()),
                 Series::new("", ORANGE, Style::Dots, heavy),
             ],
             legend: Corner::BottomLeft,

@@ -81,9 +81,7 @@ pub(crate) fn pressure_ratio(
     };
     let nodes = match ring {
         None => vec![solution.pressure.iamax_full()],
-        Some(_) => (0..grid.nodes())
-            .map(|node| grid.coordinates(node))
-            .collect(),
+        Some(_) => (0..grid.nodes()).map(|node| grid.coordinates(node)).collect(),
     };
     let ratios: Vec<f64> = nodes.into_iter().filter_map(ratio).collect();
     ratios.iter().sum::<f64>() / ratios.len() as f64
@@ -91,9 +89,7 @@ pub(crate) fn pressure_ratio(
 
 pub(crate) fn solver(surface: &dyn Surface, grid: Grid) -> Result<FixedLoadSolver, Error> {
     let kernel = Boussinesq::new(grid, 1.0)?;
-    FixedLoadSolver::builder(surface, &kernel)
-        .tolerance(TOLERANCE)
-        .build()
+    FixedLoadSolver::builder(surface, &kernel).tolerance(TOLERANCE).build()
 }
 
 /// A grid of unit cells around a contact of these semi-axes.

@@ -11,10 +11,7 @@ use crate::study::{Family, Study};
 const SHOWN: [usize; 3] = [0, 2, 4];
 
 fn line(families: &[Family], x: fn(&Family) -> f64, y: impl Fn(&Family) -> f64) -> Vec<(f64, f64)> {
-    families
-        .iter()
-        .map(|family| (x(family), y(family)))
-        .collect()
+    families.iter().map(|family| (x(family), y(family))).collect()
 }
 
 fn cells(family: &Family) -> f64 {
@@ -63,13 +60,7 @@ impl Study {
             ]
         };
         let mut kappa = Vec::from(theories(from, to));
-        kappa.extend(curves(
-            &self.meshes,
-            cells,
-            State::kappa,
-            Style::Dashed,
-            ", counted",
-        ));
+        kappa.extend(curves(&self.meshes, cells, State::kappa, Style::Dashed, ", counted"));
         kappa.extend(curves(
             &self.meshes,
             cells,
@@ -79,13 +70,11 @@ impl Study {
         ));
         let mut left = Vec::new();
         for (place, load) in SHOWN.into_iter().enumerate() {
-            for (k, (name, style)) in [(", gap", Style::Line), (", stiffness", Style::Dashed)]
-                .into_iter()
-                .enumerate()
+            for (k, (name, style)) in
+                [(", gap", Style::Line), (", stiffness", Style::Dashed)].into_iter().enumerate()
             {
-                let points = line(&self.meshes, cells, |family| {
-                    100.0 * self.beside_finest(family, load)[k]
-                });
+                let points =
+                    line(&self.meshes, cells, |family| 100.0 * self.beside_finest(family, load)[k]);
                 let name = format!("{}{name}", LOADS[load]);
                 left.push(Series::new(name, colour(place), style, points.clone()));
                 left.push(Series::new("", colour(place), Style::Dots, points));
@@ -94,13 +83,7 @@ impl Study {
         let values = left.iter().flat_map(|s| s.points.iter().map(|p| p.1));
         let (low, high) = values.fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
         let mut widths = Vec::from(theories(narrow, wide));
-        widths.extend(curves(
-            &self.bands,
-            band,
-            State::corrected_kappa,
-            Style::Line,
-            "",
-        ));
+        widths.extend(curves(&self.bands, band, State::corrected_kappa, Style::Line, ""));
         vec![
             Chart {
                 title: "Area over load, λᵣ/λₛ = 8".to_string(),

@@ -16,20 +16,12 @@ impl Kept {
             let rows = reader.deserialize::<(usize, usize, u64, [f64; 5])>();
             let read = rows.map(|row| {
                 let (band, cells, seed, [load, area, corrected, gap, stiffness]) = row?;
-                let state = State {
-                    load,
-                    area,
-                    corrected,
-                    gap,
-                    stiffness,
-                };
+                let state = State { load, area, corrected, gap, stiffness };
                 Ok((Mesh { band, cells }, seed, state))
             });
             read.collect()
         });
-        Self {
-            rows: rows.unwrap_or_default(),
-        }
+        Self { rows: rows.unwrap_or_default() }
     }
 
     /// The states of one surface under all loads, if all are there.

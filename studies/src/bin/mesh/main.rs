@@ -62,11 +62,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         study: "mesh",
         text: study.text(),
         tables: vec![("mesh", study.csv())],
-        pictures: vec![Picture {
-            name: "mesh",
-            charts: study.charts(),
-            columns: 2,
-        }],
+        pictures: vec![Picture { name: "mesh", charts: study.charts(), columns: 2 }],
     }
     .write(&options.places)
 }

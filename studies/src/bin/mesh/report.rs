@@ -16,13 +16,7 @@ const MIDDLE: usize = 2;
 
 impl Study {
     pub(crate) fn text(&self) -> String {
-        [
-            self.introduction(),
-            self.mesh(),
-            self.choice(),
-            self.spectrum(),
-        ]
-        .join("\n\n")
+        [self.introduction(), self.mesh(), self.choice(), self.spectrum()].join("\n\n")
     }
 
     fn introduction(&self) -> String {
@@ -70,10 +64,7 @@ impl Study {
         let _ = write!(
             text,
             "\nḡ/h_rms and K_i h_rms/(A₀ p̄):\n\n| p̄/(E\\* h′) | |{}\n|---|---|{}\n",
-            self.meshes
-                .iter()
-                .map(|f| format!(" {} cells |", f.mesh.cells))
-                .collect::<String>(),
+            self.meshes.iter().map(|f| format!(" {} cells |", f.mesh.cells)).collect::<String>(),
             "---|".repeat(self.meshes.len()),
         );
         for (place, load) in LOADS.iter().enumerate() {
@@ -119,32 +110,20 @@ impl Study {
             self.kappa_of(self.meshes.first()),
             self.meshes.first().map_or(0, |f| f.mesh.cells),
             self.limit(LIGHTEST).decimals(2),
-            if between {
-                "The limit is"
-            } else {
-                "The limit is not"
-            },
-            if between {
-                "at every load"
-            } else {
-                "at each load"
-            },
+            if between { "The limit is" } else { "The limit is not" },
+            if between { "at every load" } else { "at each load" },
         );
         text
     }
 
     fn kappa_of(&self, family: Option<&Family>) -> String {
-        family.map_or(String::new(), |family| {
-            family.spread(LIGHTEST, State::kappa).decimals(2)
-        })
+        family.map_or(String::new(), |family| family.spread(LIGHTEST, State::kappa).decimals(2))
     }
 
     fn choice(&self) -> String {
         let share = 100.0 * ENOUGH;
         let cells = |found: Option<usize>| {
-            found.map_or("no mesh of these".to_string(), |cells| {
-                format!("{cells} cells")
-            })
+            found.map_or("no mesh of these".to_string(), |cells| format!("{cells} cells"))
         };
         let counted = self.coarsest(|f, load| self.left(f, load)[0].abs() <= ENOUGH);
         let corrected = self.coarsest(|f, load| self.left(f, load)[1].abs() <= ENOUGH);
@@ -166,10 +145,8 @@ impl Study {
         );
         let worst = |value: &dyn Fn(usize) -> f64| {
             let each = (0..LOADS.len()).map(value);
-            let worst = each.fold(
-                0.0_f64,
-                |worst, x| if x.abs() > worst.abs() { x } else { worst },
-            );
+            let worst =
+                each.fold(0.0_f64, |worst, x| if x.abs() > worst.abs() { x } else { worst });
             format!("{:+.1}", 100.0 * worst).replace('-', "−")
         };
         for (place, family) in self.meshes.iter().enumerate() {
@@ -219,23 +196,16 @@ impl Study {
             }
         };
         table(&mut text, State::corrected_kappa);
-        for (name, value) in [
-            ("ḡ/h_rms", (|s| s.gap) as fn(&State) -> f64),
-            ("K_i h_rms/(A₀ p̄)", |s| s.stiffness),
-        ] {
+        for (name, value) in
+            [("ḡ/h_rms", (|s| s.gap) as fn(&State) -> f64), ("K_i h_rms/(A₀ p̄)", |s| s.stiffness)]
+        {
             let columns = LOADS.map(|load| format!(" {load} |")).concat();
             let rules = "---|".repeat(LOADS.len());
-            let _ = write!(
-                text,
-                "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n"
-            );
+            let _ = write!(text, "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n");
             table(&mut text, value);
         }
         let trend = self.trend(MIDDLE);
-        let slope = Spread {
-            mean: trend.slope,
-            deviation: trend.error,
-        };
+        let slope = Spread { mean: trend.slope, deviation: trend.error };
         let _ = write!(
             text,
             "\nV. A. Yastrebov, G. Anciaux and J.-F. Molinari (J. Mech. Phys. Solids 107 (2017) 469) find that at a given \
@@ -243,11 +213,7 @@ impl Study {
              its standard error over all surfaces). **Verdict: {}** (criterion: negative by more than two standard errors).",
             LOADS[MIDDLE],
             slope.decimals(3),
-            if trend.falls() {
-                "agrees"
-            } else {
-                "not resolved"
-            },
+            if trend.falls() { "agrees" } else { "not resolved" },
         );
         text
     }

@@ -54,13 +54,7 @@ impl Mesh {
 
     fn surface(self, seed: u64) -> Result<SelfAffine, asperity::SurfaceError> {
         let cutoff = ROLLOFF / self.band as f64;
-        SelfAffine::new(
-            HURST,
-            ROLLOFF,
-            cutoff,
-            Amplitude::RmsHeight(RMS_HEIGHT),
-            seed,
-        )
+        SelfAffine::new(HURST, ROLLOFF, cutoff, Amplitude::RmsHeight(RMS_HEIGHT), seed)
     }
 
     /// Nayak's parameter of the spectrum.

@@ -35,11 +35,7 @@ impl Family {
             bar.inc(1);
             states
         });
-        Ok(Self {
-            mesh,
-            nayak: mesh.nayak()?,
-            seeds: states.collect::<Result<_, _>>()?,
-        })
+        Ok(Self { mesh, nayak: mesh.nayak()?, seeds: states.collect::<Result<_, _>>()? })
     }
 
     /// A number of the states under one load.
@@ -82,16 +78,10 @@ impl Study {
         let bands: Vec<_> = bands.map(|band| Mesh { band, cells: CELLS }).collect();
         let bar = ProgressBar::new(surfaces * (meshes.len() + bands.len()) as u64);
         let all = |meshes: Vec<Mesh>| {
-            let each = meshes
-                .into_iter()
-                .map(|mesh| Family::new(mesh, surfaces, kept, &bar));
+            let each = meshes.into_iter().map(|mesh| Family::new(mesh, surfaces, kept, &bar));
             each.collect::<Result<Vec<_>, _>>()
         };
-        let study = Self {
-            surfaces,
-            meshes: all(meshes)?,
-            bands: all(bands)?,
-        };
+        let study = Self { surfaces, meshes: all(meshes)?, bands: all(bands)? };
         bar.finish_and_clear();
         Ok(study)
     }
@@ -157,9 +147,6 @@ impl Study {
         let mean = points.iter().map(|p| p.0).sum::<f64>() / n;
         let spread: f64 = points.iter().map(|p| (p.0 - mean).powi(2)).sum();
         let residual: f64 = points.iter().map(|p| (p.1 - line.at(p.0)).powi(2)).sum();
-        Trend {
-            slope: line.slope,
-            error: (residual / (n - 2.0) / spread).sqrt(),
-        }
+        Trend { slope: line.slope, error: (residual / (n - 2.0) / spread).sqrt() }
     }
 }

@@ -64,13 +64,7 @@ fn exponentials(fits: &[Fits]) -> impl Iterator<Item = Claim> {
     names.into_iter().enumerate().flat_map(move |(k, names)| {
         let [offset, amplitude, scale] = names;
         [
-            Claim::number(
-                offset,
-                (y0, "−2.56"),
-                fits,
-                |f| f.light[k].offset,
-                |s| s.decimals(2),
-            ),
+            Claim::number(offset, (y0, "−2.56"), fits, |f| f.light[k].offset, |s| s.decimals(2)),
             Claim::number(
                 amplitude,
                 (a, "2.26"),
@@ -78,13 +72,7 @@ fn exponentials(fits: &[Fits]) -> impl Iterator<Item = Claim> {
                 |f| f.light[k].amplitude,
                 |s| s.decimals(2),
             ),
-            Claim::number(
-                scale,
-                (t, "0.0021"),
-                fits,
-                |f| f.light[k].scale,
-                |s| s.decimals(4),
-            ),
+            Claim::number(scale, (t, "0.0021"), fits, |f| f.light[k].scale, |s| s.decimals(4)),
         ]
     })
 }
@@ -98,8 +86,7 @@ pub(crate) fn possible(report: &Report, claims: &[Claim]) -> Vec<String> {
         // The paper does not say which gradient it means.
         (fits(0) || fits(1)) && fits(2)
     });
-    fits.map(|(_, family)| quoted(family.rough.name()))
-        .collect()
+    fits.map(|(_, family)| quoted(family.rough.name())).collect()
 }
 
 fn quoted(name: &str) -> String {
@@ -115,10 +102,7 @@ fn by_patches(report: &Report, claims: &[Claim], possible: &[String]) -> String 
     let holds = names.iter().zip(&patches.found);
     let holds = holds.filter(|(_, found)| found.verdict == Verdict::Agrees);
     let holds: Vec<String> = holds.map(|(name, _)| quoted(name)).collect();
-    let left: Vec<String> = holds
-        .into_iter()
-        .filter(|name| possible.contains(name))
-        .collect();
+    let left: Vec<String> = holds.into_iter().filter(|name| possible.contains(name)).collect();
     format!(
         " Of these, \"most of the contact patches are small\" (Fig. 4) holds for {} at every area, as far as \"small\" means \
          fewer than ten cells.",
@@ -130,11 +114,8 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
     let study = &report.study;
     let names = report.names();
     let possible = possible(report, claims);
-    let excluded: Vec<String> = names
-        .iter()
-        .map(|name| quoted(name))
-        .filter(|name| !possible.contains(name))
-        .collect();
+    let excluded: Vec<String> =
+        names.iter().map(|name| quoted(name)).filter(|name| !possible.contains(name)).collect();
     let mut counts = String::new();
     for (place, name) in names.iter().enumerate() {
         let count = |verdict| {

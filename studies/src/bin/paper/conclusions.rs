@@ -73,11 +73,7 @@ fn approach(fits: &[Fits]) -> Vec<Claim> {
             (share(fit.deviation.mean), share(fit.of_power.mean))
         });
         let list = |value: fn(&(f64, f64)) -> f64| shares.map(|s| percent(value(&s), 1)).join(", ");
-        let text = format!(
-            "rms {} % of the range of u; power {} %",
-            list(|s| s.0),
-            list(|s| s.1)
-        );
+        let text = format!("rms {} % of the range of u; power {} %", list(|s| s.0), list(|s| s.1));
         let verdict = if shares.iter().all(|(ours, _)| *ours <= FITS) {
             Verdict::of(&[true, shares.iter().all(|(ours, power)| ours <= power)])
         } else {
@@ -161,10 +157,7 @@ fn approach(fits: &[Fits]) -> Vec<Claim> {
 fn gap(gaps: &[Gap]) -> Vec<Claim> {
     let inside = gaps.iter().map(|found| {
         let text = format!("{} % off at most", percent(found.inside, 1));
-        Found::new(
-            text,
-            Verdict::within(found.inside, TOLERANCE, 2.0 * TOLERANCE),
-        )
+        Found::new(text, Verdict::within(found.inside, TOLERANCE, 2.0 * TOLERANCE))
     });
     let end = |value: fn(&Gap) -> f64, paper: f64| {
         gaps.iter().map(move |found| {
@@ -174,11 +167,7 @@ fn gap(gaps: &[Gap]) -> Vec<Claim> {
     };
     let outside = gaps.iter().map(|found| {
         let [below, above] = found.outside;
-        let text = format!(
-            "γ {} and {} of its greatest",
-            signed(below, 2),
-            signed(above, 2)
-        );
+        let text = format!("γ {} and {} of its greatest", signed(below, 2), signed(above, 2));
         let short = [below, above].map(|share| share < 1.0 - TOLERANCE);
         Found::new(text, Verdict::of(&short))
     });
@@ -190,10 +179,7 @@ fn gap(gaps: &[Gap]) -> Vec<Claim> {
             signed(moderate, 2),
             signed(heavy, 2)
         );
-        Found::new(
-            text,
-            Verdict::of(&[light, moderate, heavy].map(|exponent| exponent > 1.0)),
-        )
+        Found::new(text, Verdict::of(&[light, moderate, heavy].map(|exponent| exponent > 1.0)))
     });
     let ranges = GROWTH
         .map(|(from, to)| format!("{} to {}", scientific(from, 1), scientific(to, 1)))

@@ -99,10 +99,7 @@ pub(crate) struct Found {
 
 impl Found {
     pub(crate) fn new(text: impl Into<String>, verdict: Verdict) -> Self {
-        Self {
-            text: text.into(),
-            verdict,
-        }
+        Self { text: text.into(), verdict }
     }
 }
 
@@ -124,12 +121,7 @@ impl Claim {
         criterion: impl Into<String>,
         found: impl IntoIterator<Item = Found>,
     ) -> Self {
-        Self {
-            name,
-            paper,
-            criterion: criterion.into(),
-            found: found.into_iter().collect(),
-        }
+        Self { name, paper, criterion: criterion.into(), found: found.into_iter().collect() }
     }
 
     /// A number of the paper; `show` writes the spread.

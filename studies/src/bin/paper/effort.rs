@@ -38,12 +38,7 @@ impl Effort {
             AREAS.map(|area| {
                 let contact = (area * (mesh * mesh) as f64) as usize;
                 let factor = 4.0 * (contact as f64).powi(2);
-                Path {
-                    mesh,
-                    area,
-                    contact,
-                    factor,
-                }
+                Path { mesh, area, contact, factor }
             })
         };
         let (nodes, held) =

@@ -60,11 +60,7 @@ impl Convergence {
             -Line::fit(&points).slope
         };
         let orders = (order(|e| e.inner), order(|e| e.rms));
-        Ok(Self {
-            case,
-            errors,
-            orders,
-        })
+        Ok(Self { case, errors, orders })
     }
 
     /// The errors on the mesh of the paper.
@@ -101,12 +97,7 @@ pub(crate) fn make(directory: &Path) -> Result<Figure3, Failure> {
     }
     write(directory, &cases, &lengths, &waves)?;
     let picture = draw(directory, &cases, &lengths, &waves)?;
-    Ok(Figure3 {
-        cases,
-        lengths,
-        waves,
-        picture,
-    })
+    Ok(Figure3 { cases, lengths, waves, picture })
 }
 
 fn write(
@@ -123,20 +114,11 @@ fn write(
         }
     }
     let header = ["case", "x", "pressure", "closed_form"];
-    write_csv(
-        &directory.join("figure3_pressure.csv"),
-        &header,
-        rows.into_iter(),
-    )?;
+    write_csv(&directory.join("figure3_pressure.csv"), &header, rows.into_iter())?;
     let errors = cases.iter().flat_map(|convergence| {
         let name = convergence.case.name();
         convergence.errors.iter().map(move |(nodes, error)| {
-            [
-                name.clone(),
-                nodes.to_string(),
-                error.inner.to_string(),
-                error.rms.to_string(),
-            ]
+            [name.clone(), nodes.to_string(), error.inner.to_string(), error.rms.to_string()]
         })
     });
     let lengths = lengths.iter().map(|(length, change)| {
@@ -163,11 +145,7 @@ fn draw(
     let mut pressures = Vec::new();
     let shown = [
         (Case::Cylinder, BLACK, "cylinder, p/p₀, x/a"),
-        (
-            Case::FreeWaves(0.5, WAVES),
-            BLUE,
-            "full contact, p/p*, 2x/λ",
-        ),
+        (Case::FreeWaves(0.5, WAVES), BLUE, "full contact, p/p*, 2x/λ"),
         (Case::FreeWaves(0.25, WAVES), ORANGE, "half contact"),
         (Case::FreeWaves(0.125, WAVES), GREEN, "quarter contact"),
     ];
@@ -194,9 +172,7 @@ fn draw(
         let name = convergence.case.name();
         let points = |value: fn(&PlaneError) -> f64| {
             let points = convergence.errors.iter();
-            points
-                .map(move |(n, e)| (*n as f64, value(e)))
-                .collect::<Vec<_>>()
+            points.map(move |(n, e)| (*n as f64, value(e))).collect::<Vec<_>>()
         };
         errors.push(Series::new("", colour, Style::Line, points(|e| e.inner)));
         errors.push(Series::new(name, colour, Style::Dots, points(|e| e.inner)));
@@ -206,12 +182,7 @@ fn draw(
     }
     let slope =
         |order: i32, at: f64| MESHES.map(|n| (n as f64, at * (21.0 / n as f64).powi(order)));
-    errors.push(Series::new(
-        "orders 1 and 2",
-        GREY,
-        Style::Dashed,
-        slope(1, 0.06),
-    ));
+    errors.push(Series::new("orders 1 and 2", GREY, Style::Dashed, slope(1, 0.06)));
     errors.push(Series::new("", GREY, Style::Dashed, slope(2, 3e-4)));
     let mesh = Chart {
         title: "Error of the pressure: inner (dots), rms (dashed)".to_string(),
@@ -230,9 +201,7 @@ fn draw(
                 "order 2",
                 GREY,
                 Style::Dashed,
-                lengths
-                    .iter()
-                    .map(|(l, _)| (*l, lengths[4].1 * (4.0 / l).powi(2))),
+                lengths.iter().map(|(l, _)| (*l, lengths[4].1 * (4.0 / l).powi(2))),
             ),
         ],
         legend: Corner::TopRight,
@@ -247,16 +216,10 @@ fn draw(
                 "order 2",
                 GREY,
                 Style::Dashed,
-                waves
-                    .iter()
-                    .map(|(n, _)| (*n, waves[1].1 * (3.0 / n).powi(2))),
+                waves.iter().map(|(n, _)| (*n, waves[1].1 * (3.0 / n).powi(2))),
             ),
         ],
         legend: Corner::TopRight,
     };
-    chart::draw(
-        &[pressure, mesh, length, count],
-        2,
-        &directory.join("figure3.png"),
-    )
+    chart::draw(&[pressure, mesh, length, count], 2, &directory.join("figure3.png"))
 }

@@ -111,16 +111,10 @@ fn family_maps(study: &Study, family: &Family) -> Result<Vec<Map>, Failure> {
         let Some(point) = run.at_area(area) else {
             continue;
         };
-        let solution = solver
-            .solve(point.load * NOMINAL_AREA * E_STAR)
-            .map_err(failed)?;
-        let patches = Patches::new(
-            &solution.contact_map,
-            &grid,
-            Boundary::Free,
-            Connectivity::Four,
-        )
-        .map_err(failed)?;
+        let solution = solver.solve(point.load * NOMINAL_AREA * E_STAR).map_err(failed)?;
+        let patches =
+            Patches::new(&solution.contact_map, &grid, Boundary::Free, Connectivity::Four)
+                .map_err(failed)?;
         let mut sizes: Vec<usize> = patches.patches().iter().map(|patch| patch.nodes).collect();
         sizes.sort_unstable();
         let contact = sizes.iter().sum::<usize>() as f64;
@@ -204,10 +198,7 @@ impl Map {
                 let edge = |node: usize, nodes: usize| (panel.width as usize * node / nodes) as i32;
                 let x = panel.left + edge(ix, nx);
                 let y = panel.top + panel.height - edge(iy + 1, ny);
-                let size = (
-                    edge(ix + 1, nx) - edge(ix, nx),
-                    edge(iy + 1, ny) - edge(iy, ny),
-                );
+                let size = (edge(ix + 1, nx) - edge(ix, nx), edge(iy + 1, ny) - edge(iy, ny));
                 let corners = [(x, y), (x + size.0, y + size.1)];
                 area.draw(&Rectangle::new(corners, colour(pressure).filled()))?;
             }
@@ -220,27 +211,11 @@ impl Map {
             panel.frame_below(area, &Axis::linear("x", "m", 0.0, SIDE))?;
         }
         let title = |line: i32, text: String| {
-            let at = (
-                panel.left + panel.width / 2,
-                panel.top - FINE * (30 - 18 * line),
-            );
-            panel.write(
-                area,
-                &text,
-                at,
-                FINE * FONT,
-                anchor(HPos::Center, VPos::Center),
-            )
+            let at = (panel.left + panel.width / 2, panel.top - FINE * (30 - 18 * line));
+            panel.write(area, &text, at, FINE * FONT, anchor(HPos::Center, VPos::Center))
         };
         title(0, self.surface.to_string())?;
-        title(
-            1,
-            format!(
-                "A/A₀ = {:.1} %, W = {:.2e} A₀E*",
-                100.0 * self.area,
-                self.load
-            ),
-        )
+        title(1, format!("A/A₀ = {:.1} %, W = {:.2e} A₀E*", 100.0 * self.area, self.load))
     }
 }
 

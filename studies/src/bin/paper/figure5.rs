@@ -53,11 +53,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
             lines.push((line, worst.fold(0.0, f64::max) / STRAIGHT));
             rows.extend(run.points.iter().map(|p| {
                 let numbers = [run.seed as f64, p.load, p.area, p.corrected];
-                [
-                    vec![family.rough.name().to_string()],
-                    numbers.map(|n| n.to_string()).to_vec(),
-                ]
-                .concat()
+                [vec![family.rough.name().to_string()], numbers.map(|n| n.to_string()).to_vec()]
+                    .concat()
             }));
             let name = if index == 0 { family.rough.name() } else { "" };
             let all = run.points.iter().map(|p| (p.load, p.area));
@@ -81,12 +78,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
         });
     }
     below.extend(lines_drawn);
-    whole.push(Series::new(
-        "the paper's end",
-        PURPLE,
-        Style::Dots,
-        [PAPER_END],
-    ));
+    whole.push(Series::new("the paper's end", PURPLE, Style::Dots, [PAPER_END]));
     write_csv(
         &directory.join("figure5.csv"),
         &["surface", "seed", "load", "area", "corrected_area"],

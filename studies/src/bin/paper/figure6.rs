@@ -53,36 +53,21 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure6, Failure> 
         let mut series = Vec::new();
         for (index, run) in family.runs.iter().enumerate() {
             rows.extend(run.points.iter().map(|p| {
-                let numbers = [
-                    run.seed as f64,
-                    p.area,
-                    p.ratio(gradient),
-                    p.corrected_ratio(gradient),
-                ];
-                [
-                    vec![family.rough.name().to_string()],
-                    numbers.map(|n| n.to_string()).to_vec(),
-                ]
-                .concat()
+                let numbers =
+                    [run.seed as f64, p.area, p.ratio(gradient), p.corrected_ratio(gradient)];
+                [vec![family.rough.name().to_string()], numbers.map(|n| n.to_string()).to_vec()]
+                    .concat()
             }));
             let name = |text: &'static str| if index == 0 { text } else { "" };
             let raw = run.points.iter().map(|p| (p.area, p.ratio(gradient)));
-            let corrected = run
-                .points
-                .iter()
-                .map(|p| (p.area, p.corrected_ratio(gradient)));
+            let corrected = run.points.iter().map(|p| (p.area, p.corrected_ratio(gradient)));
             series.push(Series::new(
                 name("corrected for the staircase"),
                 GREY,
                 Style::Line,
                 corrected,
             ));
-            series.push(Series::new(
-                name("cells counted"),
-                colour(place),
-                Style::Line,
-                raw,
-            ));
+            series.push(Series::new(name("cells counted"), colour(place), Style::Line, raw));
         }
         for (value, colour, name) in [
             (AreaLoadLaw::BUSH_GIBSON_THOMAS, GREEN, "√(2π), Bush et al."),
@@ -107,10 +92,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure6, Failure> 
         rows.into_iter(),
     )?;
     let picture = chart::draw(&charts, 2, &directory.join("figure6.png"))?;
-    Ok(Figure6 {
-        ratios: study.families.iter().map(Ratios::of).collect(),
-        picture,
-    })
+    Ok(Figure6 { ratios: study.families.iter().map(Ratios::of).collect(), picture })
 }
 
 /// Contact area over that of Persson's theory, of each surface the mean over the seeds.
@@ -154,11 +136,7 @@ impl Family {
                 None => *run.last()?,
             };
             let law = AreaLoadLaw::new(self.gradient, E_STAR).ok()?;
-            let found = if corrected {
-                point.corrected
-            } else {
-                point.area
-            };
+            let found = if corrected { point.corrected } else { point.area };
             Some(found / law.persson(point.load * E_STAR))
         })
     }
@@ -170,9 +148,8 @@ impl Ratios {
         let raw = |area| family.at_area(area, |p| p.ratio(gradient));
         let corrected = |area| family.at_area(area, |p| p.corrected_ratio(gradient));
         let range = |mean: &dyn Fn(f64) -> f64| {
-            let near: Vec<f64> = logarithmic(LEAST, 1.0)
-                .filter(|a| (mean(*a) / 2.0 - 1.0).abs() <= 0.1)
-                .collect();
+            let near: Vec<f64> =
+                logarithmic(LEAST, 1.0).filter(|a| (mean(*a) / 2.0 - 1.0).abs() <= 0.1).collect();
             Some((*near.first()?, *near.last()?))
         };
         let steps = |value: &dyn Fn(f64) -> Option<f64>, end: Option<f64>| {
@@ -197,9 +174,7 @@ impl Ratios {
             over_persson: areas
                 .map(|area| [false, true].map(|corrected| family.over_persson(area, corrected)))
                 .collect(),
-            at: AREAS
-                .map(|area| (area, raw(area), corrected(area)))
-                .to_vec(),
+            at: AREAS.map(|area| (area, raw(area), corrected(area))).to_vec(),
             end,
             end_corrected: family.at_end(|p| p.corrected_ratio(gradient)),
             near_two: [range(&|a| raw(a).mean), range(&|a| corrected(a).mean)],

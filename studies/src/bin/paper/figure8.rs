@@ -58,18 +58,10 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
         let colour = colour(place);
         for (index, run) in family.runs.iter().enumerate() {
             rows.extend(run.points.iter().map(|p| {
-                let numbers = [
-                    run.seed as f64,
-                    p.load,
-                    p.mean_gap,
-                    p.interfacial_stiffness,
-                    p.decay(),
-                ];
-                [
-                    vec![family.rough.name().to_string()],
-                    numbers.map(|n| n.to_string()).to_vec(),
-                ]
-                .concat()
+                let numbers =
+                    [run.seed as f64, p.load, p.mean_gap, p.interfacial_stiffness, p.decay()];
+                [vec![family.rough.name().to_string()], numbers.map(|n| n.to_string()).to_vec()]
+                    .concat()
             }));
             let name = if index == 0 { family.rough.name() } else { "" };
             let line = |value: fn(&crate::run::Point) -> f64| {
@@ -99,12 +91,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
         charts.push(Series::new("", GREY, Style::Dashed, to.clone()));
     }
     let ends = [(LEAST, 1.0), (GREATEST_LOAD, 1.0)];
-    growth.push(Series::new(
-        "1: growth at a constant rate",
-        BLACK,
-        Style::Dashed,
-        ends,
-    ));
+    growth.push(Series::new("1: growth at a constant rate", BLACK, Style::Dashed, ends));
     write_csv(
         &directory.join("figure8.csv"),
         &[
@@ -158,10 +145,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure8, Failure> 
 fn logarithmic(run: &Run) -> Line {
     let (from, to) = PAPER_RANGE;
     let loads = (0..=SAMPLES).map(|k| from * (to / from).powf(k as f64 / SAMPLES as f64));
-    let points: Vec<_> = loads
-        .filter_map(|w| run.at_load(w))
-        .map(|p| (p.load.ln(), p.mean_gap))
-        .collect();
+    let points: Vec<_> =
+        loads.filter_map(|w| run.at_load(w)).map(|p| (p.load.ln(), p.mean_gap)).collect();
     Line::fit(&points)
 }
 
@@ -173,12 +158,7 @@ fn exponents(family: &Family) -> Vec<(f64, f64)> {
         from * (to / from).powf(k as f64 / SAMPLES as f64)
     });
     loads
-        .map(|load| {
-            (
-                load,
-                exponent(family, (load / half, (load * half).min(GREATEST_LOAD))).mean,
-            )
-        })
+        .map(|load| (load, exponent(family, (load / half, (load * half).min(GREATEST_LOAD))).mean))
         .filter(|(_, exponent)| exponent.is_finite())
         .collect()
 }
@@ -196,26 +176,15 @@ fn exponent(family: &Family, (from, to): (f64, f64)) -> Spread {
 impl Gap {
     fn of(family: &Family) -> Self {
         let lines: Vec<Line> = family.runs.iter().map(logarithmic).collect();
-        let mean = |load: f64| {
-            family
-                .spread(|run| run.at_load(load).map(|p| p.decay()))
-                .mean
-        };
+        let mean = |load: f64| family.spread(|run| run.at_load(load).map(|p| p.decay())).mean;
         let curve: Vec<(f64, f64)> = (0..=SAMPLES)
             .map(|k| LEAST * (GREATEST_LOAD / LEAST).powf(k as f64 / SAMPLES as f64))
             .map(|load| (load, mean(load)))
             .collect();
         let greatest = curve.iter().map(|(_, g)| *g).fold(0.0, f64::max);
-        let flat = || {
-            curve
-                .iter()
-                .filter(|(_, g)| *g >= (1.0 - TOLERANCE) * greatest)
-        };
+        let flat = || curve.iter().filter(|(_, g)| *g >= (1.0 - TOLERANCE) * greatest);
         let loads = flat().map(|(load, _)| *load);
-        let range = (
-            loads.clone().fold(f64::INFINITY, f64::min),
-            loads.fold(0.0, f64::max),
-        );
+        let range = (loads.clone().fold(f64::INFINITY, f64::min), loads.fold(0.0, f64::max));
         let end = |load: f64| {
             let runs = family.runs.iter().zip(&lines);
             Spread::of(

@@ -29,9 +29,7 @@ pub(crate) fn rules(report: &Report) -> String {
             scientific(found.least_gap, 2),
         )
     };
-    let parted = rules
-        .parted
-        .map_or("never".to_string(), |step| format!("at node {}", step + 1));
+    let parted = rules.parted.map_or("never".to_string(), |step| format!("at node {}", step + 1));
     format!(
         "### The two rules for the next contact\n\n\
          Table 1, seed 1, {} × {} nodes, {} nodes in contact ({:.2} % of the area), by the rule of this crate, *the gap \
@@ -66,11 +64,7 @@ pub(crate) fn peers(report: &Report) -> String {
             "| {} {} | {} | {} | {} | {} | {} | {:.9} | {:.9} | {} |",
             peer.program,
             peer.version,
-            if peer.program == "aspher" {
-                "free"
-            } else {
-                "periodic"
-            },
+            if peer.program == "aspher" { "free" } else { "periodic" },
             scientific(peer.tolerance, 1),
             scientific(peer.load, 1),
             peer.nodes[0],
@@ -108,11 +102,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
         .map(|found| found.on_paper_mesh().inner)
         .fold(0.0, f64::max);
     let wave = |half_width: f64| {
-        let found = report
-            .figure3
-            .cases
-            .iter()
-            .find(|f| f.case == Case::Wave(half_width));
+        let found = report.figure3.cases.iter().find(|f| f.case == Case::Wave(half_width));
         found.map_or(0.0, |found| found.on_paper_mesh().inner)
     };
     let boundary = boundary_effect(report);
@@ -127,9 +117,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
     let slopes = all(&|i| report.figure7.fits[i].line[0].decimals(1));
     let approaches = all(&|i| report.figure7.fits[i].approach.decimals(1));
     let starts = all(&|i| {
-        let starts = report.figure7.fits[i]
-            .light
-            .map(|fit| fit.offset.mean + fit.amplitude.mean);
+        let starts = report.figure7.fits[i].light.map(|fit| fit.offset.mean + fit.amplitude.mean);
         starts.map(|start| signed(start, 2)).join(", ")
     });
     let raw = all(&|i| report.figure6.ratios[i].at[1].1.decimals(2));
@@ -249,9 +237,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
 fn boundary_effect(report: &Report) -> String {
     let of = |program: &str, load: f64| {
         let mut peers = report.peers.iter();
-        peers
-            .find(|p| p.program == program && p.load == load)
-            .map(|p| p.nodes[1] as f64)
+        peers.find(|p| p.program == program && p.load == load).map(|p| p.nodes[1] as f64)
     };
     let texts: Vec<String> = report
         .peers

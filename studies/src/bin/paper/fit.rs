@@ -88,12 +88,8 @@ impl Fit {
         let x = DVector::from_iterator(points.len(), points.iter().map(|p| p.0 / unit));
         let y = DVector::from_iterator(points.len(), points.iter().map(|p| p.1 / height));
         let mut model = SeparableModelBuilder::<f64>::new(&["t"])
-            .function(&["t"], move |x: &DVector<f64>, t: f64| {
-                x.map(|x| shape.value(x, t))
-            })
-            .partial_deriv("t", move |x: &DVector<f64>, t: f64| {
-                x.map(|x| shape.slope(x, t))
-            });
+            .function(&["t"], move |x: &DVector<f64>, t: f64| x.map(|x| shape.value(x, t)))
+            .partial_deriv("t", move |x: &DVector<f64>, t: f64| x.map(|x| shape.slope(x, t)));
         if offset {
             model =
                 model.invariant_function(|x: &DVector<f64>| DVector::from_element(x.len(), 1.0));
@@ -102,9 +98,7 @@ impl Fit {
             .independent_variable(x.clone())
             .initial_parameters(vec![shape.guess()])
             .build()?;
-        let problem = SeparableProblemBuilder::new(model)
-            .observations(y.clone())
-            .build()?;
+        let problem = SeparableProblemBuilder::new(model).observations(y.clone()).build()?;
         let fit = LevMarSolver::default()
             .solve(problem)
             .map_err(|_| format!("the fit of {shape:?} did not converge"))?;
@@ -122,10 +116,7 @@ impl Fit {
         };
         let squares = points.iter().map(|(x, y)| (found.at(*x) - y).powi(2));
         let mean = squares.sum::<f64>() / points.len() as f64;
-        Ok(Self {
-            deviation: mean.sqrt(),
-            ..found
-        })
+        Ok(Self { deviation: mean.sqrt(), ..found })
     }
 
     /// y at x.

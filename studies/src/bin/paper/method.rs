@@ -29,10 +29,7 @@ fn figure3(report: &Report) -> Claim {
         "\"good agreement\"",
         "*agrees* if the rms error over the contact of the cylinder and of the paper's free waves on its mesh is at most 1 % of \
          p₀ or p\\*, *near* 2 %, else *differs*",
-        [Found::new(
-            format!("{} %", percent(worst, 2)),
-            Verdict::within(worst, 0.01, 0.02),
-        )],
+        [Found::new(format!("{} %", percent(worst, 2)), Verdict::within(worst, 0.01, 0.02))],
     )
 }
 
@@ -43,10 +40,7 @@ fn negative(report: &Report) -> Claim {
         "no negative pressure, by its rule",
         "\"without any\"",
         "*agrees* if no examined state of the rule \"smallest gap\" has a pressure below −10⁻¹⁰ of the mean, else *differs*",
-        [Found::new(
-            format!("{} of {} states", found.negative, found.examined),
-            verdict,
-        )],
+        [Found::new(format!("{} of {} states", found.negative, found.examined), verdict)],
     )
 }
 
@@ -76,18 +70,14 @@ fn gradients(found: &Iterations) -> [Claim; 2] {
 
 /// A number of steps of plain conjugate gradients.
 pub(crate) fn said(steps: Option<usize>) -> String {
-    steps.map_or(format!("more than {}", polonsky_keer::MOST), |steps| {
-        steps.to_string()
-    })
+    steps.map_or(format!("more than {}", polonsky_keer::MOST), |steps| steps.to_string())
 }
 
 fn effort(effort: &Effort) -> Vec<Claim> {
     let largest = effort.paths.iter().filter(|path| path.mesh == 1024);
     let largest: Vec<_> = largest.map(|path| path.factor).collect();
-    let texts: Vec<String> = largest
-        .iter()
-        .map(|bytes| format!("{} GB", signed(bytes / 1e9, 1)))
-        .collect();
+    let texts: Vec<String> =
+        largest.iter().map(|bytes| format!("{} GB", signed(bytes / 1e9, 1))).collect();
     let fits: Vec<bool> = largest.iter().map(|bytes| *bytes <= MEMORY).collect();
     vec![
         Claim::new(

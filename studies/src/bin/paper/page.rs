@@ -8,10 +8,8 @@ use crate::{candidates, conclusions, criteria, findings, method, sections, state
 use asperity_cli::outcome::Failure;
 
 /// The study writes between these lines of the page, and leaves the rest alone.
-const FIGURES: [&str; 2] = [
-    "<!-- written by the study `paper`: begin -->",
-    "<!-- written by the study `paper`: end -->",
-];
+const FIGURES: [&str; 2] =
+    ["<!-- written by the study `paper`: begin -->", "<!-- written by the study `paper`: end -->"];
 /// The same for the whole path.
 const WHOLE_PATH: [&str; 2] = [
     "<!-- written by the study `paper`, whole path: begin -->",
@@ -103,9 +101,7 @@ impl Report {
             findings::peers(self),
             findings::list(self, &candidates::possible(self, &candidates))?,
         ];
-        Ok(sections
-            .map(|text| text.trim_end().to_string())
-            .join("\n\n"))
+        Ok(sections.map(|text| text.trim_end().to_string()).join("\n\n"))
     }
 
     fn introduction(&self) -> String {

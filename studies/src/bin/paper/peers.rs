@@ -88,9 +88,7 @@ fn by_path(
     kernel: &Spectral,
     load: f64,
 ) -> Result<(usize, f64), asperity::Error> {
-    let mut path = LoadingSolver::builder(heights, kernel)
-        .max_load(load)
-        .build()?;
+    let mut path = LoadingSolver::builder(heights, kernel).max_load(load).build()?;
     for state in path.by_ref() {
         state?;
     }

@@ -77,9 +77,7 @@ impl Case {
             vec![1.0]
         } else {
             let step = (WIDTHS.1 - WIDTHS.0) / SAMPLES as f64;
-            (0..SAMPLES)
-                .map(|k| WIDTHS.0 + (k as f64 + 0.5) * step)
-                .collect()
+            (0..SAMPLES).map(|k| WIDTHS.0 + (k as f64 + 0.5) * step).collect()
         };
         let profiles = self.profiles(nodes, length, &widths)?;
         let mut mean = PlaneError::default();
@@ -120,10 +118,8 @@ impl Case {
                 let grid = Grid::new(5 * nodes, 1, cell, ly)?;
                 let cylinder = Cylinder::new(RADIUS, Axis::Y)?;
                 let kernel = Boussinesq::new(grid, 1.0)?;
-                let targets: Vec<f64> = widths
-                    .iter()
-                    .map(|w| hertz.load_at_half_width(*w))
-                    .collect();
+                let targets: Vec<f64> =
+                    widths.iter().map(|w| hertz.load_at_half_width(*w)).collect();
                 let greatest = targets.iter().copied().fold(0.0, f64::max);
                 let path = LoadingSolver::builder(&cylinder, &kernel).max_load(greatest * ly);
                 let mut plane = Plane::follow(path)?;
@@ -192,15 +188,10 @@ impl Plane {
         let grid = self.path.grid();
         let state = self.history.at_load(load);
         let present = self.history.states().len();
-        let state = state.ok_or(Error::StateNotReached {
-            step: present + 1,
-            present,
-        })?;
+        let state = state.ok_or(Error::StateNotReached { step: present + 1, present })?;
         let pressure = self.path.pressure_at(&state)?;
         let x = |ix: usize| grid.position(ix, 0).0 - grid.center().0;
-        Ok((0..grid.nx())
-            .map(|ix| (x(ix), pressure[(ix, 0)]))
-            .collect())
+        Ok((0..grid.nx()).map(|ix| (x(ix), pressure[(ix, 0)])).collect())
     }
 
     /// The same at the load that gives some cells this mean pressure: it grows with the load.

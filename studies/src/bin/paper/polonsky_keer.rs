@@ -72,8 +72,6 @@ pub(crate) fn steps(
 /// The mean over the nodes with pressure.
 fn mean_in_contact(values: &[f64], pressure: &[f64]) -> f64 {
     let inside = values.iter().zip(pressure).filter(|(_, p)| **p > 0.0);
-    let (sum, count) = inside.fold((0.0, 0), |(sum, count), (value, _)| {
-        (sum + value, count + 1)
-    });
+    let (sum, count) = inside.fold((0.0, 0), |(sum, count), (value, _)| (sum + value, count + 1));
     sum / f64::from(count)
 }

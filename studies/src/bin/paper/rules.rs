@@ -58,9 +58,7 @@ impl Rules {
         let smallest_gap = follow(ContactRule::SmallestGap)?;
         let sq = heights.rms_height();
         let pairs = || exact.states.iter().zip(&smallest_gap.states);
-        let load = pairs()
-            .skip(100)
-            .map(|(a, b)| (b.contact.load / a.contact.load - 1.0).abs());
+        let load = pairs().skip(100).map(|(a, b)| (b.contact.load / a.contact.load - 1.0).abs());
         let approach = pairs().map(|(a, b)| (b.contact.approach - a.contact.approach).abs() / sq);
         let nodes_of = |findings: &Findings| findings.order.clone();
         let (first, second) = (nodes_of(&exact), nodes_of(&smallest_gap));
@@ -84,10 +82,8 @@ fn examine(
     steps: usize,
 ) -> Result<Findings, asperity::Error> {
     let half_space = Boussinesq::new(grid, E_STAR)?;
-    let mut path = LoadingSolver::builder(heights, &half_space)
-        .rule(rule)
-        .max_nodes(steps)
-        .build()?;
+    let mut path =
+        LoadingSolver::builder(heights, &half_space).rule(rule).max_nodes(steps).build()?;
     let sq = path.problem().rms_height();
     let mut found = Findings::default();
     while let Some(state) = path.next() {

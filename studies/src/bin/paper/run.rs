@@ -88,13 +88,9 @@ impl Run {
             .map_err(failed)?;
         for solution in solver.sweep(targets) {
             let solution = solution.map_err(failed)?;
-            let patches = Patches::new(
-                &solution.contact_map,
-                &grid,
-                Boundary::Free,
-                Connectivity::Four,
-            )
-            .map_err(failed)?;
+            let patches =
+                Patches::new(&solution.contact_map, &grid, Boundary::Free, Connectivity::Four)
+                    .map_err(failed)?;
             let areas = patches.patches().iter();
             let areas = areas.map(|patch| patch.perimeter.corrected_area(patch.nodes, &grid));
             points.push(Point::new(&solution.state, areas.sum(), false));
@@ -107,11 +103,7 @@ impl Run {
             100.0 * points.last().map_or(0.0, |point| point.area),
             start.elapsed().as_secs_f64() - seconds,
         );
-        Ok(Self {
-            rough,
-            seed,
-            points,
-        })
+        Ok(Self { rough, seed, points })
     }
 
     /// The state at a load, interpolated between computed ones: approach and mean gap by the cubics that
@@ -147,11 +139,7 @@ impl Run {
     pub(crate) fn at_area(&self, area: f64) -> Option<Point> {
         let after = self.points.partition_point(|point| point.area < area);
         let (b, a) = (self.points.get(after)?, self.points.get(after.max(1) - 1)?);
-        let t = if b.area > a.area {
-            (area - a.area) / (b.area - a.area)
-        } else {
-            1.0
-        };
+        let t = if b.area > a.area { (area - a.area) / (b.area - a.area) } else { 1.0 };
         self.at_load((1.0 - t) * a.load + t * b.load)
     }
 
@@ -233,11 +221,7 @@ impl Run {
                 event: row[7] == 1.0,
             })
         });
-        Some(Self {
-            rough,
-            seed,
-            points: points.collect::<Result<_, _>>().ok()?,
-        })
+        Some(Self { rough, seed, points: points.collect::<Result<_, _>>().ok()? })
     }
 }
 
@@ -302,10 +286,7 @@ fn follow(
         }
     }
     states.extend(pending);
-    let areas = corrected_areas(&ContactSequence::with_order(
-        path.grid(),
-        path.contact_order(),
-    )?);
+    let areas = corrected_areas(&ContactSequence::with_order(path.grid(), path.contact_order())?);
     let points = states.iter().map(|state| {
         let area = areas.get(state.contact.contact_nodes.wrapping_sub(1));
         Point::new(&state.contact, area.copied().unwrap_or_default(), true)
@@ -330,9 +311,7 @@ fn loads_beyond(last: f64) -> Vec<f64> {
         return Vec::new();
     }
     let steps = (ratio.ln() / STEP.ln()).ceil();
-    (0..=steps as usize)
-        .map(|k| last * ratio.powf(k as f64 / steps))
-        .collect()
+    (0..=steps as usize).map(|k| last * ratio.powf(k as f64 / steps)).collect()
 }
 
 /// Stiffness of the rigid flat punch on the same mesh, K Sq / A₀E*: where the contact stiffness ends.

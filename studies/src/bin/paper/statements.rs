@@ -63,15 +63,9 @@ fn line(fits: &[Straight], seeds: u64) -> Vec<Claim> {
     });
     let slopes = fits.iter().map(|fit| {
         let [below, lower, upper] = fit.slopes.map(|s| s.decimals(2));
-        let text = format!(
-            "{below}, {lower}, {upper}; {} of {seeds} seeds",
-            fit.falling
-        );
+        let text = format!("{below}, {lower}, {upper}; {} of {seeds} seeds", fit.falling);
         let mean = fit.slopes.map(|s| s.mean);
-        let all = [
-            fit.falling as u64 == seeds,
-            mean[0] > mean[1] && mean[1] > mean[2],
-        ];
+        let all = [fit.falling as u64 == seeds, mean[0] > mean[1] && mean[1] > mean[2]];
         Found::new(text, Verdict::of(&all))
     });
     vec![
@@ -104,14 +98,9 @@ fn theories(ratios: &[Ratios]) -> Vec<Claim> {
     let light = ratios.iter().map(|found| {
         let k = [found.at[1].1, found.at[1].2];
         let middle = 0.5 * (bush + persson);
-        let decided = k
-            .iter()
-            .all(|k| (k.mean - middle).abs() > 2.0 * k.deviation);
-        let verdict = if decided {
-            Verdict::of(&k.map(|k| k.mean > middle))
-        } else {
-            Verdict::Undecided
-        };
+        let decided = k.iter().all(|k| (k.mean - middle).abs() > 2.0 * k.deviation);
+        let verdict =
+            if decided { Verdict::of(&k.map(|k| k.mean > middle)) } else { Verdict::Undecided };
         let text = format!("k = {}, {} corrected", k[0].decimals(2), k[1].decimals(2));
         Found::new(text, verdict)
     });

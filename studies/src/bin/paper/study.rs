@@ -55,10 +55,8 @@ impl Study {
         for rough in Rough::ALL {
             let mut runs = Vec::new();
             for seed in 1..=seeds {
-                let found = options
-                    .reuse
-                    .then(|| Run::read(directory, rough, nodes, seed))
-                    .flatten();
+                let found =
+                    options.reuse.then(|| Run::read(directory, rough, nodes, seed)).flatten();
                 let run = match found {
                     Some(run) => run,
                     None => {

@@ -30,20 +30,7 @@ const COLUMNS: [&str; 12] = [
 /// Agreement with the surface: the file has all digits, sums of heights may round.
 const SAME: f64 = 1e-9;
 
-type Row = (
-    usize,
-    usize,
-    usize,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-);
+type Row = (usize, usize, usize, f64, f64, f64, f64, f64, f64, f64, f64, f64);
 
 /// The path of Table 1, seed 1, to full contact.
 pub(crate) struct WholePath {
@@ -89,11 +76,7 @@ impl WholePath {
         // First touch carries no load and divides nothing.
         let points = rows.iter().zip(&areas).skip(1);
         let points = points.map(|(row, area)| point(row, *area)).collect();
-        let run = Run {
-            rough: Rough::Table1,
-            seed: 1,
-            points,
-        };
+        let run = Run { rough: Rough::Table1, seed: 1, points };
         let gradient = Rough::Table1.gradient(mesh).map_err(failed)?;
         Ok(Self {
             mesh,
@@ -122,10 +105,7 @@ fn check(rows: &[Row], grid: Grid, heights: &HeightMap) -> Result<ContactSequenc
     for (place, row) in rows.iter().enumerate() {
         let (step, ix, iy) = (row.0, row.1, row.2);
         if step != place + 1 || ix >= grid.nx() || iy >= grid.ny() {
-            return Err(format!(
-                "line {} has step {step} at ({ix}, {iy})",
-                place + 2
-            ));
+            return Err(format!("line {} has step {step} at ({ix}, {iy})", place + 2));
         }
         if row.3 < approach || row.4 < load {
             return Err(format!("approach or load falls at step {step}"));

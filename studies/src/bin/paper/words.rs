@@ -19,17 +19,13 @@ pub(crate) fn scientific(value: f64, digits: usize) -> String {
 
 /// A spread in other units.
 pub(crate) fn scaled(spread: Spread, factor: f64) -> Spread {
-    Spread {
-        mean: spread.mean * factor,
-        deviation: spread.deviation * factor.abs(),
-    }
+    Spread { mean: spread.mean * factor, deviation: spread.deviation * factor.abs() }
 }
 
 /// A range of areas.
 pub(crate) fn areas(range: Option<(f64, f64)>) -> String {
-    range.map_or("none".to_string(), |(from, to)| {
-        format!("{:.1}–{:.0} %", 100.0 * from, 100.0 * to)
-    })
+    range
+        .map_or("none".to_string(), |(from, to)| format!("{:.1}–{:.0} %", 100.0 * from, 100.0 * to))
 }
 
 /// Names with commas and a last "and".

@@ -52,11 +52,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     println!("{text}");
     let mut outcome = Outcome::default();
     if let Some(page) = &options.report {
-        let section = Section {
-            study: "peers",
-            text: &text,
-            pictures: &[],
-        };
+        let section = Section { study: "peers", text: &text, pictures: &[] };
         outcome.written(section.publish(page));
     }
     outcome.finish()
@@ -103,7 +99,5 @@ fn write(directory: &Path) -> Result<(), Failure> {
             table.write_record(row).map_err(lost)?;
         }
     }
-    table
-        .flush()
-        .map_err(|error| Failure::new("cannot write ours.csv", error))
+    table.flush().map_err(|error| Failure::new("cannot write ours.csv", error))
 }

@@ -27,19 +27,13 @@ pub(crate) fn solve(rough: &Rough) -> Result<Vec<Solved>, Error> {
     let mut all = Vec::new();
     for (name, periodic) in [("free", None), ("periodic", Some(Periodic::Spectral))] {
         let kernel = half_space(periodic, rough.grid, 1.0)?;
-        let mut solver = FixedLoadSolver::builder(&rough.heights, &kernel)
-            .tolerance(TOLERANCE)
-            .build()?;
+        let mut solver =
+            FixedLoadSolver::builder(&rough.heights, &kernel).tolerance(TOLERANCE).build()?;
         for load in LOADS {
             let mean_pressure = load * gradient;
             let solution = solver.solve(mean_pressure * rough.grid.nominal_area())?;
             let pressed = solution.pressure.iter().filter(|p| **p > 0.0);
-            all.push(Solved {
-                half_space: name,
-                mean_pressure,
-                nodes: pressed.count(),
-                solution,
-            });
+            all.push(Solved { half_space: name, mean_pressure, nodes: pressed.count(), solution });
         }
     }
     Ok(all)

@@ -79,33 +79,22 @@ impl<'a> Cell<'a> {
             && self.nodes() == 0
             && self.pressure() <= PRESSURE
             && self.gap() <= GAP
-            && self
-                .stiffness()
-                .is_none_or(|difference| difference <= STIFFNESS)
+            && self.stiffness().is_none_or(|difference| difference <= STIFFNESS)
     }
 
     fn marked(&self, text: String) -> String {
-        if self.agrees() {
-            text
-        } else {
-            format!("**{text}**")
-        }
+        if self.agrees() { text } else { format!("**{text}**") }
     }
 }
 
 fn table(rows: &[Row], surfaces: &[&str], show: impl Fn(&Cell) -> String) -> String {
     let names = COLUMNS.map(|(program, half_space)| format!(" {program}, {half_space} |"));
-    let mut text = format!(
-        "| surface |{}\n|---|{}\n",
-        names.concat(),
-        "---|".repeat(COLUMNS.len())
-    );
+    let mut text =
+        format!("| surface |{}\n|---|{}\n", names.concat(), "---|".repeat(COLUMNS.len()));
     for surface in surfaces {
         let cells = COLUMNS.map(|column| {
             let cell = Cell::new(rows, surface, column);
-            cell.map_or(" – |".to_string(), |cell| {
-                format!(" {} |", cell.marked(show(&cell)))
-            })
+            cell.map_or(" – |".to_string(), |cell| format!(" {} |", cell.marked(show(&cell))))
         });
         // Writing to a string cannot fail.
         let _ = writeln!(text, "| {surface} |{}", cells.concat());
@@ -139,17 +128,13 @@ pub(crate) fn text(rows: &[Row], waves: &[Wave]) -> String {
         surfaces.iter().flat_map(move |surface| of(surface))
     };
     let compared = cells().filter(|(_, _, cell)| cell.is_some()).count();
-    let agreeing = cells()
-        .filter(|(_, _, cell)| cell.as_ref().is_some_and(Cell::agrees))
-        .count();
+    let agreeing = cells().filter(|(_, _, cell)| cell.as_ref().is_some_and(Cell::agrees)).count();
     let solved = rows.len();
     let pressures = table(rows, &surfaces, |cell| {
         format!("{}, {}", cell.nodes(), scientific(cell.pressure(), 1))
     });
     let stiffnesses = table(rows, &surfaces, |cell| {
-        let stiffness = cell
-            .stiffness()
-            .map_or("–".to_string(), |x| scientific(x, 1));
+        let stiffness = cell.stiffness().map_or("–".to_string(), |x| scientific(x, 1));
         format!("{}, {stiffness}", scientific(cell.gap(), 1))
     });
     let mut text = format!(

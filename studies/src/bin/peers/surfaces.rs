@@ -33,11 +33,7 @@ pub(crate) struct Rough {
 pub(crate) fn all() -> Result<Vec<Rough>, Error> {
     let square = Grid::square(NODES, 1.0)?;
     let on_square = |name, heights: DMatrix<f64>| -> Result<Rough, Error> {
-        Ok(Rough {
-            name,
-            grid: square,
-            heights: HeightMap::new(heights)?,
-        })
+        Ok(Rough { name, grid: square, heights: HeightMap::new(heights)? })
     };
     let self_affine = |hurst, amplitude| -> Result<DMatrix<f64>, SurfaceError> {
         SelfAffine::new(hurst, ROLLOFF, CUTOFF, amplitude, SEED)?.heights(&square)
@@ -52,16 +48,10 @@ pub(crate) fn all() -> Result<Vec<Rough>, Error> {
         on_square("anisotropic", anisotropic()?)?,
         on_square("Weibull heights", weibull(&gaussian))?,
         on_square("log-normal heights", gaussian.map(log_normal))?,
-        on_square(
-            "rms gradient 1",
-            self_affine(0.8, Amplitude::RmsGradient(1.0))?,
-        )?,
+        on_square("rms gradient 1", self_affine(0.8, Amplitude::RmsGradient(1.0))?)?,
         on_square("ground, with bow", ground(&square)?)?,
         on_square("steps", gaussian.map(|z| step * (z / step).floor()))?,
-        on_grid(
-            "96 × 64, cells 3 : 1",
-            Grid::with_sides(96, 64, 1.0, 2.0 / 9.0)?,
-        )?,
+        on_grid("96 × 64, cells 3 : 1", Grid::with_sides(96, 64, 1.0, 2.0 / 9.0)?)?,
         on_grid("32 × 24, cells 3 : 1", Grid::with_sides(32, 24, 1.0, 0.25)?)?,
         on_grid("32 × 32", Grid::square(32, 1.0)?)?,
         on_grid("32 × 27", Grid::with_sides(32, 27, 1.0, 27.0 / 32.0)?)?,
@@ -74,11 +64,7 @@ fn on_grid(name: &'static str, grid: Grid) -> Result<Rough, Error> {
     let cutoff = 4.0 * grid.dx().max(grid.dy());
     let amplitude = Amplitude::RmsHeight(RMS_HEIGHT);
     let surface = SelfAffine::new(0.8, 3.0 * cutoff, cutoff, amplitude, SEED)?;
-    Ok(Rough {
-        name,
-        grid,
-        heights: HeightMap::sample(&surface, &grid)?,
-    })
+    Ok(Rough { name, grid, heights: HeightMap::sample(&surface, &grid)? })
 }
 
 /// An isotropic surface on a longer side, pressed together.

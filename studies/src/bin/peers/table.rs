@@ -52,10 +52,7 @@ pub(crate) fn read() -> Result<Vec<Row>, Failure> {
     let failed = |error: asperity::Error| Failure::new("the comparison with other programs", error);
     let bad = |error: csv::Error| Failure::new("cannot read peers.csv", error);
     let mut reader = csv::Reader::from_reader(TABLE.as_bytes());
-    let lines: Vec<Line> = reader
-        .deserialize()
-        .collect::<Result<_, _>>()
-        .map_err(bad)?;
+    let lines: Vec<Line> = reader.deserialize().collect::<Result<_, _>>().map_err(bad)?;
     let mut rows = Vec::new();
     for rough in surfaces::all().map_err(failed)? {
         let rms_height = rough.heights.rms_height();
@@ -124,6 +121,5 @@ pub(crate) fn waves() -> Result<Vec<Wave>, Failure> {
             response,
         })
     });
-    wave.collect::<Result<_, _>>()
-        .map_err(|error| Failure::new("cannot read waves.csv", error))
+    wave.collect::<Result<_, _>>().map_err(|error| Failure::new("cannot read waves.csv", error))
 }

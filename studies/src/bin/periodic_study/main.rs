@@ -79,21 +79,10 @@ fn run(options: &Options) -> Result<(), Failure> {
     Findings {
         study: "periodic_study",
         text,
-        tables: vec![
-            ("periodic_study", study.csv()),
-            ("westergaard", convergence.csv()),
-        ],
+        tables: vec![("periodic_study", study.csv()), ("westergaard", convergence.csv())],
         pictures: vec![
-            Picture {
-                name: "periodic_study",
-                charts: study.charts(),
-                columns: 2,
-            },
-            Picture {
-                name: "westergaard",
-                charts: convergence.charts(),
-                columns: 3,
-            },
+            Picture { name: "periodic_study", charts: study.charts(), columns: 2 },
+            Picture { name: "westergaard", charts: convergence.charts(), columns: 3 },
         ],
     }
     .write(&options.places)

@@ -168,10 +168,7 @@ impl Study {
             let (load, area, gap, stiffness) = (s.load, s.area, s.gap, s.stiffness);
             let (seed, corrected) = (s.seed, s.corrected);
             // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{seed},{load:e},{area:e},{corrected:e},{gap:e},{stiffness:e}"
-            );
+            let _ = writeln!(text, "{seed},{load:e},{area:e},{corrected:e},{gap:e},{stiffness:e}");
         }
         text
     }

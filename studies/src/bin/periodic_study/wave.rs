@@ -106,14 +106,7 @@ impl Errors {
         let path = LoadingSolver::new(&wave, &half_space(Some(kernel), grid, 1.0)?)?;
         let states: Vec<LoadingState> = path.collect::<Result<_, _>>()?;
         let full = exact.full_contact_pressure();
-        let mut errors = Self {
-            kernel,
-            nodes,
-            gap: 0.0,
-            area: 0.0,
-            stiffness: 0.0,
-            full: 0.0,
-        };
+        let mut errors = Self { kernel, nodes, gap: 0.0, area: 0.0, stiffness: 0.0, full: 0.0 };
         for pair in states.windows(2) {
             let (before, at) = (pair[0], pair[1]);
             let pressure = at.contact.mean_pressure();
@@ -129,10 +122,7 @@ impl Errors {
                     before.contact.contact_area_fraction - exact.contact_area_fraction(pressure);
                 errors.area = errors.area.max(area.abs());
                 // A path always has it.
-                let stiffness = before
-                    .contact
-                    .interfacial_stiffness
-                    .unwrap_or(f64::INFINITY);
+                let stiffness = before.contact.interfacial_stiffness.unwrap_or(f64::INFINITY);
                 let per_area = stiffness / grid.nominal_area();
                 let stiffness = per_area / exact.interfacial_stiffness(pressure) - 1.0;
                 errors.stiffness = errors.stiffness.max(stiffness.abs());

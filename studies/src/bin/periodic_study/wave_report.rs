@@ -27,10 +27,7 @@ impl Convergence {
         };
         let ([gap, area, full], [spectral_gap, spectral_area, _]) =
             (of(Periodic::Love), of(Periodic::Spectral));
-        let exact = self
-            .of(Periodic::Spectral)
-            .map(|e| e.full)
-            .fold(0.0, f64::max);
+        let exact = self.of(Periodic::Spectral).map(|e| e.full).fold(0.0, f64::max);
         let agrees = [Periodic::Love, Periodic::Spectral].iter().all(|kernel| {
             let mut columns = COLUMNS.iter();
             columns.all(|(_, value, order)| {
@@ -95,10 +92,8 @@ impl Convergence {
     pub(crate) fn charts(&self) -> Vec<Chart> {
         let extent = |value: fn(&Errors) -> f64| {
             let values = || self.errors.iter().map(value);
-            let (least, most) = (
-                values().fold(f64::INFINITY, f64::min),
-                values().fold(0.0, f64::max),
-            );
+            let (least, most) =
+                (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
             (least, most)
         };
         let finest = extent(|e| e.nodes as f64).1;

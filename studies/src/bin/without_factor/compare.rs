@@ -19,11 +19,8 @@ type Difference<'a> = &'a dyn Fn(&LoadingState, &LoadingState) -> f64;
 /// Prints how a path differs from an exact one. The approach that is computed with contains the displacement `uniform` for each
 /// unit of load.
 pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64) {
-    let place: HashMap<(usize, usize), usize> = exact
-        .iter()
-        .enumerate()
-        .map(|(k, state)| (state.node, k))
-        .collect();
+    let place: HashMap<(usize, usize), usize> =
+        exact.iter().enumerate().map(|(k, state)| (state.node, k)).collect();
     let count = found.len().min(exact.len());
     let approach = |k: usize| exact[k].contact.approach;
     let computed = |state: &LoadingState| state.contact.approach + uniform * state.contact.load;
@@ -58,10 +55,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
             }
         }
         let error = (state.contact.approach - approach(own)).abs();
-        let (first, last) = (
-            own.saturating_sub(AROUND),
-            (own + AROUND).min(exact.len() - 1),
-        );
+        let (first, last) = (own.saturating_sub(AROUND), (own + AROUND).min(exact.len() - 1));
         let spacing = (approach(last) - approach(first)) / (last - first) as f64;
         if spacing > 0.0 {
             errors.push(error / spacing);
@@ -84,15 +78,10 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
     println!("  approach over spacing: {}", quantiles(errors));
     // Where no tie makes the order of equals matter.
     let clear = |k: &usize| {
-        let next = exact
-            .get(k + 1)
-            .map_or(f64::INFINITY, |next| next.contact.approach);
+        let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.contact.approach);
         approach(*k) > 0.0 && next - approach(*k) > tie(*k)
     };
-    let alike: Vec<usize> = (0..count)
-        .filter(clear)
-        .filter(|&k| !is_full(&exact[k]))
-        .collect();
+    let alike: Vec<usize> = (0..count).filter(clear).filter(|&k| !is_full(&exact[k])).collect();
     let initial = exact[0].contact.mean_gap;
     let columns: [(&str, Difference<'_>); 5] = [
         ("load", &|a, b| relative(a.contact.load, b.contact.load)),
@@ -111,9 +100,7 @@ pub(crate) fn print(found: &[LoadingState], exact: &[LoadingState], uniform: f64
         ("mean gap over initial", &|a, b| {
             (a.contact.mean_gap - b.contact.mean_gap).abs() / initial
         }),
-        ("energy", &|a, b| {
-            relative(a.contact.energy, b.contact.energy)
-        }),
+        ("energy", &|a, b| relative(a.contact.energy, b.contact.energy)),
     ];
     for (name, error) in columns {
         let errors = alike.iter().map(|&k| error(&found[k], &exact[k]));

@@ -23,13 +23,9 @@ pub(crate) fn compare(
 ) -> Result<(), Box<dyn Error>> {
     let problem = Problem::new(surface, kernel)?;
     let grid = problem.grid();
-    let order: Vec<usize> = states
-        .iter()
-        .map(|event| event.node.0 + grid.nx() * event.node.1)
-        .collect();
-    let mut solver = FixedLoadSolver::builder(surface, kernel)
-        .tolerance(TOLERANCE)
-        .build()?;
+    let order: Vec<usize> =
+        states.iter().map(|event| event.node.0 + grid.nx() * event.node.1).collect();
+    let mut solver = FixedLoadSolver::builder(surface, kernel).tolerance(TOLERANCE).build()?;
     let (mut sets, mut worst) = (0, 0.0_f64);
     for k in 1..=loads {
         let count = (states.len() - 2) * k / (loads + 1) + 1;
@@ -37,9 +33,7 @@ pub(crate) fn compare(
         let load = 0.5 * (state.load + next.load);
         let solution = solver.solve(load)?;
         let mut expected = vec![false; grid.nodes()];
-        order[..count]
-            .iter()
-            .for_each(|&node| expected[node] = true);
+        order[..count].iter().for_each(|&node| expected[node] = true);
         let different = expected.iter().zip(&solution.contact_map);
         let different = different.filter(|(a, b)| a != b).count();
         sets += usize::from(different > 0);

@@ -88,9 +88,7 @@ fn run<U: LinearUpdater>(
     let nodes = kernel.grid().nodes();
     let most = options.contact_nodes.unwrap_or(nodes);
     let start = Instant::now();
-    let mut builder = LoadingSolver::builder(surface, kernel)
-        .updater(updater)
-        .max_nodes(most);
+    let mut builder = LoadingSolver::builder(surface, kernel).updater(updater).max_nodes(most);
     if let Some(size) = options.window {
         builder = builder.window_size(size);
     }

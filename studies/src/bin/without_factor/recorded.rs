@@ -21,11 +21,7 @@ pub(crate) fn read(file: &Path) -> Result<Vec<Event>, Box<dyn Error>> {
         found.ok_or_else(|| format!("no column {name}"))
     };
     let [ix, iy] = [place("ix")?, place("iy")?];
-    let numbers = [
-        place("approach")?,
-        place("load")?,
-        place("contact_stiffness")?,
-    ];
+    let numbers = [place("approach")?, place("load")?, place("contact_stiffness")?];
     let mut events = Vec::new();
     for record in reader.records() {
         let record = record?;

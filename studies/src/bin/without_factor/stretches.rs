@@ -29,9 +29,7 @@ pub(crate) fn compare(record: &LoadingRecord, stretches: usize) -> Result<(), Bo
             .window_size(1)
             .max_nodes(states[count - 1].contact.contact_nodes + LENGTH)
             .resume(&before)?;
-        let exact = path
-            .by_ref()
-            .collect::<Result<Vec<LoadingState>, asperity::Error>>()?;
+        let exact = path.by_ref().collect::<Result<Vec<LoadingState>, asperity::Error>>()?;
         let found = &states[count..];
         let length = exact.len().min(found.len());
         let (exact, found) = (&exact[..length], &found[..length]);

@@ -97,20 +97,14 @@ pub(crate) fn make(
         Shape::Pyramid => formula(&|x, y| -0.1 * x.abs().max(y.abs())),
         Shape::Tiled => {
             let tile = rough(&Grid::new(nx / 2, ny / 2, grid.dx(), grid.dy())?)?;
-            DMatrix::from_fn(nx, ny, |ix, iy| {
-                tile[(ix % tile.nrows(), iy % tile.ncols())]
-            })
+            DMatrix::from_fn(nx, ny, |ix, iy| tile[(ix % tile.nrows(), iy % tile.ncols())])
         }
         Shape::Waves => {
             let wave = |x: f64| (4.0 * std::f64::consts::TAU * x).cos();
             formula(&|x, y| 0.01 * (wave(x) + wave(y)))
         }
         Shape::Punch => formula(&|x, y| {
-            if x.abs().max(y.abs()) < 0.25 {
-                0.0
-            } else {
-                -2e-3
-            }
+            if x.abs().max(y.abs()) < 0.25 { 0.0 } else { -2e-3 }
         }),
         Shape::Pits => flat_but(&[
             (at(nx / 2, ny / 2), -2e-3),

@@ -55,15 +55,7 @@ fn reason(file: &[u8]) -> String {
 /// Heights in µm, with -99 for those that are missing; float32 has seven digits.
 fn micrometres(channel: &Channel) -> Vec<f64> {
     let heights = channel.values.iter();
-    heights
-        .map(|z| {
-            if z.is_nan() {
-                -99.0
-            } else {
-                (z * 1e11).round() / 1e5
-            }
-        })
-        .collect()
+    heights.map(|z| if z.is_nan() { -99.0 } else { (z * 1e11).round() / 1e5 }).collect()
 }
 
 #[test]
@@ -105,22 +97,10 @@ fn defects_are_named() {
     for (key, value, reason_given) in [
         ("Cols", "three", "tag Cols is 'three'"),
         ("Cols", "-3", "tag Cols is '-3'"),
-        (
-            "Rows",
-            "3",
-            "expected 44 more bytes, but the file ends after 32",
-        ),
+        ("Rows", "3", "expected 44 more bytes, but the file ends after 32"),
         ("DepthImageOffset", "0", "no depth image"),
-        (
-            "DepthImageOffset",
-            "99999999999",
-            "but the file has 532 bytes",
-        ),
-        (
-            "InvalidPixelValue",
-            "none",
-            "tag InvalidPixelValue is 'none'",
-        ),
+        ("DepthImageOffset", "99999999999", "but the file has 532 bytes"),
+        ("InvalidPixelValue", "none", "tag InvalidPixelValue is 'none'"),
         ("PixelSizeXMeter", "", "tag PixelSizeXMeter is ''"),
     ] {
         let reason = reason(&with(key, value));

@@ -148,17 +148,12 @@ fn values(field: &Object) -> Result<((usize, usize), Vec<f64>), Fault> {
             format!("a field of {nx} x {ny} nodes has {} values", data.len() / 8),
         ));
     }
-    let values = decode(data, 8, |b| {
-        b.try_into().map_or(f64::NAN, f64::from_le_bytes)
-    })?;
+    let values = decode(data, 8, |b| b.try_into().map_or(f64::NAN, f64::from_le_bytes))?;
     Ok(((nx, ny), values))
 }
 
 fn lacks(field: &Object, name: &str) -> Fault {
-    Fault::at(
-        field.begin(),
-        format!("the GwyDataField has no '{name}' of the right type"),
-    )
+    Fault::at(field.begin(), format!("the GwyDataField has no '{name}' of the right type"))
 }
 
 /// What a unit is called; `None` if there is no name, or an empty one: the numbers are counts then.

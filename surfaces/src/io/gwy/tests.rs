@@ -55,10 +55,7 @@ fn the_map_of_a_file_is_that_of_its_formula() -> TestResult {
     // Written as doubles; a product with the unit rounds.
     let masked = assert_read("masked.gwy", &ReadOptions::new(), 1e-15, true)?;
     assert_eq!(masked.title, "made");
-    assert_eq!(
-        masked.notes,
-        ["2 nodes that a mask marks are taken as missing"]
-    );
+    assert_eq!(masked.notes, ["2 nodes that a mask marks are taken as missing"]);
     let all = ReadOptions::new().ignore_mask().read(path("masked.gwy"))?;
     assert_eq!((all.missing, all.notes.len()), (0, 0));
     assert!((all.heights[(2, 1)] + 39e-9).abs() < 1e-22);
@@ -94,10 +91,7 @@ fn every_map_can_be_chosen() -> TestResult {
     assert!(
         matches!(volts, Err(Error::File(FileError::NoUnit { found: Some(unit), .. })) if unit == "V")
     );
-    assert!(matches!(
-        any,
-        Err(Error::File(FileError::WhichChannel { .. }))
-    ));
+    assert!(matches!(any, Err(Error::File(FileError::WhichChannel { .. }))));
     Ok(())
 }
 
@@ -171,10 +165,7 @@ fn defects_are_named() {
     let count = |n: i32| n.to_le_bytes();
     let defects = [
         (object("GwyDataField", &[]), "no 'xres'"),
-        (
-            object("GwyDataField", &[component("xres", b'i', &count(-1))]),
-            "xres is -1",
-        ),
+        (object("GwyDataField", &[component("xres", b'i', &count(-1))]), "xres is -1"),
         (
             object(
                 "GwyDataField",
@@ -186,10 +177,7 @@ fn defects_are_named() {
             ),
             "3 x 1 nodes has 1 values",
         ),
-        (
-            object("GwyDataField", &[component("xres", b'!', &[])]),
-            "'xres' has the type 0x21",
-        ),
+        (object("GwyDataField", &[component("xres", b'!', &[])]), "'xres' has the type 0x21"),
         (
             // A claim of 32 GiB in a file of some bytes.
             object("GwyDataField", &[component("data", b'D', &[255; 4])]),

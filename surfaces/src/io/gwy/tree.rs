@@ -35,11 +35,7 @@ impl<'a> Object<'a> {
         let size = bytes.u32()?;
         let begin = bytes.offset();
         bytes.elements(usize::try_from(size).unwrap_or(usize::MAX), 1)?;
-        Ok(Self {
-            name,
-            within: within.get(..bytes.offset()).unwrap_or(within),
-            begin,
-        })
+        Ok(Self { name, within: within.get(..bytes.offset()).unwrap_or(within), begin })
     }
 
     /// Where its components begin in the file.
@@ -59,10 +55,7 @@ impl<'a> Object<'a> {
     pub(super) fn components(&self) -> Result<Components<'a>, Fault> {
         let mut bytes = Bytes::new(self.within);
         bytes.seek(self.begin)?;
-        Ok(Components {
-            bytes,
-            within: self.within,
-        })
+        Ok(Components { bytes, within: self.within })
     }
 
     /// The value of the first component of this name.

@@ -107,10 +107,7 @@ impl Header {
             1 => usize::from(bytes.u16()?),
             2 | 3 => bytes.u32()? as usize,
             major => {
-                return Err(Fault::at(
-                    6,
-                    format!("version {major} of the format is unknown"),
-                ));
+                return Err(Fault::at(6, format!("version {major} of the format is unknown")));
             }
         };
         if size > MAX_TEXT {
@@ -181,19 +178,11 @@ impl<'a> Cursor<'a> {
     }
 
     fn expect(&mut self, symbol: char) -> Result<(), Fault> {
-        if self.take(symbol) {
-            Ok(())
-        } else {
-            Err(self.unexpected())
-        }
+        if self.take(symbol) { Ok(()) } else { Err(self.unexpected()) }
     }
 
     fn end(&self) -> Result<(), Fault> {
-        if self.0.trim().is_empty() {
-            Ok(())
-        } else {
-            Err(self.unexpected())
-        }
+        if self.0.trim().is_empty() { Ok(()) } else { Err(self.unexpected()) }
     }
 
     /// A quoted string without escapes.
@@ -249,11 +238,7 @@ mod tests {
 
     #[test]
     fn headers_of_every_writer_are_understood() -> Result<(), Fault> {
-        let expected = Header {
-            shape: vec![3, 40],
-            fortran_order: true,
-            descr: ">f4".to_string(),
-        };
+        let expected = Header { shape: vec![3, 40], fortran_order: true, descr: ">f4".to_string() };
         for text in [
             "{'descr': '>f4', 'fortran_order': True, 'shape': (3, 40), }          \n",
             "{'shape': (3L, 40L), 'fortran_order': True, 'descr': '>f4'}",

@@ -48,8 +48,7 @@ pub fn read_npy_from(source: impl Read, name: impl AsRef<Path>) -> Result<DMatri
 
 /// The array in all bytes of a file.
 fn whole(read: Result<Vec<u8>, Fault>, path: &Path) -> Result<DMatrix<f64>, Error> {
-    read.and_then(|bytes| matrix(&bytes))
-        .map_err(|fault| fault.in_file(path, NAME))
+    read.and_then(|bytes| matrix(&bytes)).map_err(|fault| fault.in_file(path, NAME))
 }
 
 /// Writes a matrix to a NumPy `.npy` file, as `float64`, little-endian, in C order.
@@ -92,11 +91,7 @@ pub(super) fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
     let run = if header.fortran_order { nx } else { ny };
     for (slow, bytes) in elements.chunks_exact(run * element.size()).enumerate() {
         for (fast, value) in bytes.chunks_exact(element.size()).enumerate() {
-            let node = if header.fortran_order {
-                fast + nx * slow
-            } else {
-                slow + nx * fast
-            };
+            let node = if header.fortran_order { fast + nx * slow } else { slow + nx * fast };
             values[node] = element.decode(value);
         }
     }
@@ -127,10 +122,7 @@ pub(super) fn text(file: &[u8]) -> Result<String, Fault> {
     let length = header.descr.strip_prefix("<U");
     let length: Option<usize> = length.and_then(|length| length.parse().ok());
     let length = length.ok_or_else(|| {
-        Fault::malformed(format!(
-            "the element is of type '{}', not a text",
-            header.descr
-        ))
+        Fault::malformed(format!("the element is of type '{}', not a text", header.descr))
     })?;
     let letters = rest(input, length, 4)?.chunks_exact(4);
     letters
@@ -150,9 +142,7 @@ fn rest<'a>(mut input: Bytes<'a>, count: usize, size: usize) -> Result<&'a [u8],
 
 fn dimensions(header: &Header, expected: usize) -> Fault {
     let found = header.shape.len();
-    Fault::malformed(format!(
-        "the array has {found} dimensions, but {expected} were expected"
-    ))
+    Fault::malformed(format!("the array has {found} dimensions, but {expected} were expected"))
 }
 
 pub(super) fn write(mut output: impl Write, matrix: &DMatrix<f64>) -> std::io::Result<()> {

@@ -89,22 +89,13 @@ fn what_is_written_is_read_back() -> TestResult {
     let data = &bytes[bytes.len() - 7 * 5 * 8..];
     assert_eq!(data[8..16], matrix[(0, 1)].to_le_bytes());
     let header = String::from_utf8_lossy(&bytes[10..bytes.len() - data.len()]).into_owned();
-    assert!(
-        header.contains("'<f8'") && header.contains("(7, 5"),
-        "{header}"
-    );
+    assert!(header.contains("'<f8'") && header.contains("(7, 5"), "{header}");
     Ok(())
 }
 
 #[test]
 fn the_elements_begin_at_a_multiple_of_64() {
-    for shape in [
-        (1, 1),
-        (7, 5),
-        (48, 48),
-        (32768, 32768),
-        (9_999_999, 12_345_678),
-    ] {
+    for shape in [(1, 1), (7, 5), (48, 48), (32768, 32768), (9_999_999, 12_345_678)] {
         let header = header_of("<f8", &[shape.0, shape.1]);
         assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"));
         let length = u16::from_le_bytes([header[8], header[9]]);
@@ -124,9 +115,7 @@ fn errors_name_the_file() -> TestResult {
     let error = read_npy(&folder).err().ok_or("a directory")?;
     assert!(matches!(&error, Error::File(FileError::BadFile { path, .. }) if *path == folder));
     let unwritable = absent.join("below-a-file-that-is-not-there.npy");
-    let error = write_npy(&unwritable, &dmatrix![1.0])
-        .err()
-        .ok_or("no folder")?;
+    let error = write_npy(&unwritable, &dmatrix![1.0]).err().ok_or("no folder")?;
     assert!(matches!(&error, Error::File(FileError::Io { path, .. }) if *path == unwritable));
     Ok(())
 }
@@ -141,10 +130,7 @@ fn a_pipe_is_refused() -> TestResult {
     if made.is_ok_and(|status| status.success()) {
         let refused = read_npy(&path);
         fs::remove_file(&path)?;
-        assert!(matches!(
-            refused,
-            Err(Error::File(FileError::BadFile { .. }))
-        ));
+        assert!(matches!(refused, Err(Error::File(FileError::BadFile { .. }))));
     }
     Ok(())
 }
@@ -155,10 +141,7 @@ fn heights_that_are_not_finite_are_refused() -> TestResult {
     write_npy(&path, &dmatrix![0.0, 1.0; f64::NAN, 2.0])?;
     let map = read_npy(&path).and_then(HeightMap::new);
     fs::remove_file(&path)?;
-    assert!(matches!(
-        map,
-        Err(Error::HeightNotFinite { ix: 1, iy: 0, .. })
-    ));
+    assert!(matches!(map, Err(Error::HeightNotFinite { ix: 1, iy: 0, .. })));
     Ok(())
 }
 
@@ -189,19 +172,13 @@ fn absurd_sizes_are_refused_before_allocating() {
         "(1, 99999999999999999999999999999999999999999999)",
     ] {
         assert!(
-            matches!(
-                with_shape(shape),
-                Err(Fault::Refused(Error::GridTooLarge { .. }))
-            ),
+            matches!(with_shape(shape), Err(Fault::Refused(Error::GridTooLarge { .. }))),
             "{shape}"
         );
     }
     for shape in ["(0, 0)", "(0, 8)", "(8, 0)", "(0, 18446744073709551616)"] {
         assert!(
-            matches!(
-                with_shape(shape),
-                Err(Fault::Refused(Error::EmptyGrid { .. }))
-            ),
+            matches!(with_shape(shape), Err(Fault::Refused(Error::EmptyGrid { .. }))),
             "{shape}"
         );
     }
@@ -270,15 +247,9 @@ fn dimensions_are_those_asked_for() -> TestResult {
     let flat = of("<f8", &[1, 1], &number);
     for (fault, expected) in [
         (vector(&flat).err(), "has 2 dimensions, but 1 were expected"),
-        (
-            vector(&plain).err(),
-            "has 0 dimensions, but 1 were expected",
-        ),
+        (vector(&plain).err(), "has 0 dimensions, but 1 were expected"),
         (text(&single).err(), "has 1 dimensions, but 0 were expected"),
-        (
-            matrix(&single).err(),
-            "has 1 dimensions, but 2 were expected",
-        ),
+        (matrix(&single).err(), "has 1 dimensions, but 2 were expected"),
     ] {
         let reason = reason(fault);
         assert!(reason.ends_with(expected), "{reason}");

@@ -8,10 +8,7 @@ use crate::io::fault::Fault;
 use crate::io::raw::{Channel, positive};
 
 pub(super) fn parse(file: &[u8], revision: Revision) -> Result<Channel, Fault> {
-    let mut text = Text {
-        bytes: file,
-        at: MAGIC,
-    };
+    let mut text = Text { bytes: file, at: MAGIC };
     // What stands behind the name of the format is a comment, or nothing.
     text.line();
     let fields = Fields(text.clone());
@@ -23,16 +20,12 @@ pub(super) fn parse(file: &[u8], revision: Revision) -> Result<Channel, Fault> {
     if let Some((code, at)) = fields.code("CheckType", &CHECK_TYPES)? {
         require_none("CheckType", code, at)?;
     }
-    let (data_type, at) = fields
-        .code("DataType", &DATA_TYPES)?
-        .ok_or_else(|| fields.missing("DataType"))?;
+    let (data_type, at) =
+        fields.code("DataType", &DATA_TYPES)?.ok_or_else(|| fields.missing("DataType"))?;
     let (scale, at_scale) = fields.number("Zscale")?;
     let header = Header {
         revision,
-        shape: shape(
-            fields.number("NumPoints")?.0,
-            fields.number("NumProfiles")?.0,
-        )?,
+        shape: shape(fields.number("NumPoints")?.0, fields.number("NumProfiles")?.0)?,
         number: number(data_type, at)?,
         spacing: (fields.number("Xscale")?.0, fields.number("Yscale")?.0),
         scale: positive("Zscale", scale, at_scale)?,
@@ -62,10 +55,7 @@ fn skip_fields(text: &mut Text) -> Result<(), Fault> {
             return Ok(());
         }
     }
-    Err(Fault::at(
-        text.at,
-        "the file ends, but a line '*' after the header was expected",
-    ))
+    Err(Fault::at(text.at, "the file ends, but a line '*' after the header was expected"))
 }
 
 /// The heights, and what is to be told of their end.
@@ -93,10 +83,7 @@ fn heights(header: &Header, text: &mut Text) -> Result<(Vec<f64>, Option<String>
         if heights.len() == nodes {
             return Err(Fault::at(
                 at,
-                format!(
-                    "expected '*' after {nx} x {ny} heights, but found '{}'",
-                    shown(word)
-                ),
+                format!("expected '*' after {nx} x {ny} heights, but found '{}'", shown(word)),
             ));
         }
         heights.push(header.height(value(word, at)?));
@@ -104,17 +91,10 @@ fn heights(header: &Header, text: &mut Text) -> Result<(Vec<f64>, Option<String>
     if heights.len() < nodes {
         return Err(Fault::at(
             text.at,
-            format!(
-                "expected {nx} x {ny} heights, but only {} are there",
-                heights.len()
-            ),
+            format!("expected {nx} x {ny} heights, but only {} are there", heights.len()),
         ));
     }
-    let cut = !ended
-        && text
-            .bytes
-            .last()
-            .is_some_and(|end| !end.is_ascii_whitespace());
+    let cut = !ended && text.bytes.last().is_some_and(|end| !end.is_ascii_whitespace());
     let note =
         cut.then(|| "the file ends with its last height, which may be cut short".to_string());
     Ok((heights, note))
@@ -125,15 +105,9 @@ fn value(word: &[u8], at: usize) -> Result<f64, Fault> {
     if word.eq_ignore_ascii_case(b"BAD") {
         return Ok(f64::NAN);
     }
-    std::str::from_utf8(word)
-        .ok()
-        .and_then(|word| word.parse().ok())
-        .ok_or_else(|| {
-            Fault::at(
-                at,
-                format!("expected a height, BAD or '*', but found '{}'", shown(word)),
-            )
-        })
+    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
+        Fault::at(at, format!("expected a height, BAD or '*', but found '{}'", shown(word)))
+    })
 }
 
 /// The header: lines `key = value`, in any order.
@@ -188,10 +162,7 @@ fn parsed<T: std::str::FromStr>(value: &[u8]) -> Option<T> {
 }
 
 fn not_a_number(name: &str, value: &[u8], at: usize) -> Fault {
-    Fault::at(
-        at,
-        format!("{name} is '{}', but a number was expected", shown(value)),
-    )
+    Fault::at(at, format!("{name} is '{}', but a number was expected", shown(value)))
 }
 
 /// The beginning of a text, for an error.
@@ -214,10 +185,7 @@ impl<'a> Text<'a> {
     /// Bytes from here to the first of which this is true, or to the end.
     fn until(&mut self, end: impl Fn(u8) -> bool) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
-        let length = rest
-            .iter()
-            .position(|byte| end(*byte))
-            .unwrap_or(rest.len());
+        let length = rest.iter().position(|byte| end(*byte)).unwrap_or(rest.len());
         self.at += length;
         &rest[..length]
     }

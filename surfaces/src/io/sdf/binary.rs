@@ -34,13 +34,7 @@ pub(super) fn parse(file: &[u8], revision: Revision) -> Result<Channel, Fault> {
     let number = number(data_type, at)?;
     let (check, at) = code()?;
     require_none("CheckType", check, at)?;
-    let header = Header {
-        revision,
-        shape: shape(counts.0, counts.1)?,
-        number,
-        spacing,
-        scale,
-    };
+    let header = Header { revision, shape: shape(counts.0, counts.1)?, number, spacing, scale };
 
     let mut note = None;
     let length = header.nodes().saturating_mul(number.size());
@@ -53,8 +47,6 @@ pub(super) fn parse(file: &[u8], revision: Revision) -> Result<Channel, Fault> {
         note = Some("8 bytes before the heights, which Olympus adds, are skipped".to_string());
     }
     let data = bytes.elements(header.nodes(), number.size())?;
-    let heights = decode(data, number.size(), |value| {
-        header.height(number.decode(value))
-    })?;
+    let heights = decode(data, number.size(), |value| header.height(number.decode(value)))?;
     Ok(header.channel(heights, note))
 }

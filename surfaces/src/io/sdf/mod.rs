@@ -28,10 +28,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         b"ISO-2.0" => Revision::Iso2,
         [b'B', b'C', b'R', b'-', ..] => Revision::Bcr,
         _ => {
-            return Err(Fault::at(
-                1,
-                "the file is neither of ISO-1.0, nor of ISO-2.0, nor of BCR",
-            ));
+            return Err(Fault::at(1, "the file is neither of ISO-1.0, nor of ISO-2.0, nor of BCR"));
         }
     };
     let channel = if magic[0].eq_ignore_ascii_case(&b'a') {
@@ -78,11 +75,7 @@ impl Header {
             Number::F64 => value.abs() >= 1.7e308,
             _ => value == self.marker(),
         };
-        if missing {
-            f64::NAN
-        } else {
-            value * self.scale
-        }
+        if missing { f64::NAN } else { value * self.scale }
     }
 
     /// The integer that marks a missing node.
@@ -149,10 +142,7 @@ fn require_none(name: &str, code: u64, at: usize) -> Result<(), Fault> {
     if code == 0 {
         return Ok(());
     }
-    Err(Fault::at(
-        at,
-        format!("{name} is {code}, but only files without it (0) are read"),
-    ))
+    Err(Fault::at(at, format!("{name} is {code}, but only files without it (0) are read")))
 }
 
 #[cfg(test)]

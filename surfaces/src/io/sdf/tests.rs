@@ -48,9 +48,7 @@ fn reason(file: &[u8]) -> String {
 /// Heights in nm, with -1e9 for those that are missing.
 fn nanometres(channel: &Channel) -> Vec<f64> {
     let heights = channel.values.iter();
-    heights
-        .map(|z| if z.is_nan() { -1e9 } else { (z * 1e9).round() })
-        .collect()
+    heights.map(|z| if z.is_nan() { -1e9 } else { (z * 1e9).round() }).collect()
 }
 
 /// Each type with its own bytes for 1, 7, and its two limits. Oracle: the limits of Rust's types.
@@ -123,14 +121,8 @@ fn the_longer_header_of_olympus_is_understood() -> Result<(), Fault> {
     assert_eq!(found.notes.len(), 1);
     // Eight other bytes too many are a trailer, and so are these ones in other files.
     let other = [&heights[..], b"trailers"].concat();
-    assert_eq!(
-        nanometres(&only(&binary("bISO-1.0", 2, 1, 5, &other))?),
-        [5.0, 6.0]
-    );
-    assert_eq!(
-        nanometres(&only(&binary("bISO-2.0", 2, 1, 5, &data))?),
-        [5.0, 0.0]
-    );
+    assert_eq!(nanometres(&only(&binary("bISO-1.0", 2, 1, 5, &other))?), [5.0, 6.0]);
+    assert_eq!(nanometres(&only(&binary("bISO-2.0", 2, 1, 5, &data))?), [5.0, 0.0]);
     Ok(())
 }
 
@@ -163,12 +155,8 @@ fn texts_of_every_kind_are_read() -> Result<(), Fault> {
         plain.replace("\n*\nmore *\n*\n", "\n*"),
         lower,
         // BCR, with names for codes.
-        plain
-            .replace("aISO-1.0", "ABCR-1.0")
-            .replace("DataType = 7", "DataType = double"),
-        plain
-            .replace("aISO-1.0", "aBCR-0.0")
-            .replace("BAD", "1.7E+308"),
+        plain.replace("aISO-1.0", "ABCR-1.0").replace("DataType = 7", "DataType = double"),
+        plain.replace("aISO-1.0", "aBCR-0.0").replace("BAD", "1.7E+308"),
         ascii("aBCR-1.0", 3, 2, "INTEGER", "1 2 3 4 32767 6")
             .replace("Compression = 0", "Compression = null"),
         ascii("aISO-2.0", 3, 2, "5", "1 2 3 4 -32768 6\n*"),
@@ -201,39 +189,15 @@ fn defects_are_named_with_their_place() {
     let text = ascii("aISO-1.0", 3, 2, "7", "1 2 3\n4 5 6\n*\n");
     for (from, to, reason_given) in [
         ("4 5 6", "4 five 6", "found 'five' at 209"),
-        (
-            "4 5 6",
-            "4 5 6 7",
-            "expected '*' after 3 x 2 heights, but found '7'",
-        ),
+        ("4 5 6", "4 5 6 7", "expected '*' after 3 x 2 heights, but found '7'"),
         ("4 5 6", "4 5", "only 5 are there"),
-        (
-            "\n*\n1 2 3\n4 5 6\n*\n",
-            "\n",
-            "a line '*' after the header was expected",
-        ),
-        (
-            "DataType = 7",
-            "DataType = 8",
-            "DataType is 8, but it has to be 0 to 7",
-        ),
-        (
-            "DataType = 7",
-            "DataType = quadruple",
-            "DataType is 'quadruple'",
-        ),
+        ("\n*\n1 2 3\n4 5 6\n*\n", "\n", "a line '*' after the header was expected"),
+        ("DataType = 7", "DataType = 8", "DataType is 8, but it has to be 0 to 7"),
+        ("DataType = 7", "DataType = quadruple", "DataType is 'quadruple'"),
         ("DataType = 7", "Data = 7", "the header lacks DataType"),
-        (
-            "NumPoints = 3",
-            "NumPoints = -3",
-            "NumPoints is '-3', but a number was expected",
-        ),
+        ("NumPoints = 3", "NumPoints = -3", "NumPoints is '-3', but a number was expected"),
         ("NumPoints = 3", "NumPoints = 30000", "do not fit into the"),
-        (
-            "Xscale = 2e-6",
-            "Xscale = ",
-            "Xscale is '', but a number was expected",
-        ),
+        ("Xscale = 2e-6", "Xscale = ", "Xscale is '', but a number was expected"),
         ("Compression = 0", "Compression = RLL", "Compression is 1"),
         ("CheckType = 0", "CheckType = 3", "CheckType is 3"),
         ("aISO-1.0", "aISO-3.0", "neither of ISO-1.0"),
@@ -244,18 +208,10 @@ fn defects_are_named_with_their_place() {
     }
     let data = [0; 4];
     for (place, byte, reason_given) in [
-        (
-            78,
-            2,
-            "Compression is 2, but only files without it (0) are read at 78",
-        ),
+        (78, 2, "Compression is 2, but only files without it (0) are read at 78"),
         (79, 9, "DataType is 9, but it has to be 0 to 7 at 79"),
         (80, 1, "CheckType is 1"),
-        (
-            42,
-            3,
-            "expected 6 more bytes, but the file ends after 4 at 81",
-        ),
+        (42, 3, "expected 6 more bytes, but the file ends after 4 at 81"),
     ] {
         let mut file = binary("bISO-1.0", 2, 1, 5, &data);
         file[place] = byte;
@@ -269,22 +225,13 @@ fn absurd_sizes_and_scales_are_refused() {
     let shaped = |nx, ny| parse(&binary("bISO-2.0", nx, ny, 7, &[0; 64]));
     assert!(matches!(shaped(32768, 32768), Err(Fault::Malformed { .. })));
     for nx in [32769, u32::MAX] {
-        assert!(matches!(
-            shaped(nx, 1),
-            Err(Fault::Refused(Error::GridTooLarge { .. }))
-        ));
+        assert!(matches!(shaped(nx, 1), Err(Fault::Refused(Error::GridTooLarge { .. }))));
     }
-    assert!(matches!(
-        shaped(0, 3),
-        Err(Fault::Refused(Error::EmptyGrid { .. }))
-    ));
+    assert!(matches!(shaped(0, 3), Err(Fault::Refused(Error::EmptyGrid { .. }))));
     for scale in ["0", "-1e-9", "nan", "inf"] {
         let text = ascii("aISO-1.0", 1, 1, "7", "1\n*\n")
             .replace("Zscale = 1e-9", &format!("Zscale = {scale}"));
         let reason = reason(text.as_bytes());
-        assert!(
-            reason.contains("a positive number was expected"),
-            "{reason}"
-        );
+        assert!(reason.contains("a positive number was expected"), "{reason}");
     }
 }

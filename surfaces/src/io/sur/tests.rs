@@ -24,12 +24,9 @@ fn header(magic: &[u8; 12]) -> Vec<u8> {
     for (place, value) in [(120, 2.0_f32), (124, 3.0), (128, 0.5)] {
         put(&mut file, place, &value.to_le_bytes());
     }
-    for (place, text) in [
-        (164, b"Height"),
-        (180, b"\xb5m    "),
-        (196, b"\xb5m    "),
-        (212, b"nm    "),
-    ] {
+    for (place, text) in
+        [(164, b"Height"), (180, b"\xb5m    "), (196, b"\xb5m    "), (212, b"nm    ")]
+    {
         put(&mut file, place, text);
     }
     file
@@ -80,9 +77,7 @@ fn reason(file: &[u8]) -> String {
 /// Heights in units of the file, with -99 for those that are missing.
 fn heights(channel: &Channel) -> Vec<f64> {
     let values = channel.values.iter();
-    values
-        .map(|z| if z.is_nan() { -99.0 } else { *z })
-        .collect()
+    values.map(|z| if z.is_nan() { -99.0 } else { *z }).collect()
 }
 
 #[test]
@@ -107,10 +102,7 @@ fn special_points_offset_and_zones_are_heeded() -> TestResult {
     put(&mut file, 474, &100.0_f32.to_le_bytes());
     put(&mut file, 334, &[3, 0, 4, 0]);
     file.splice(HEADER..HEADER, *b"comment");
-    assert_eq!(
-        heights(&only(&file)?),
-        [97.5, 100.0, 101.0, 102.0, 96.5, 104.5]
-    );
+    assert_eq!(heights(&only(&file)?), [97.5, 100.0, 101.0, 102.0, 96.5, 104.5]);
     Ok(())
 }
 
@@ -175,10 +167,7 @@ fn streams_that_lie_are_refused() -> TestResult {
     let whole = zipped(&data)?;
     let refused = |streams: &[(u32, Vec<u8>)]| reason(&compressed(streams));
     let less = refused(&[(11, whole.clone())]);
-    assert!(
-        less.contains("hold 11 bytes, but the heights take 12"),
-        "{less}"
-    );
+    assert!(less.contains("hold 11 bytes, but the heights take 12"), "{less}");
     let more = refused(&[(12, zipped(&[&data[..], b"x"].concat())?)]);
     assert!(more.contains("holds more than the 12 bytes"), "{more}");
     let short = refused(&[(12, zipped(&data[1..])?)]);
@@ -203,10 +192,7 @@ fn no_stream_expands_more_than_deflate_can() {
     put(&mut file, 112, &32768_u32.to_le_bytes());
     put(&mut file, 116, &(1_u32 << 30).to_le_bytes());
     let reason = reason(&file);
-    assert!(
-        reason.contains("no 20 compressed bytes can hold 2147483648"),
-        "{reason}"
-    );
+    assert!(reason.contains("no 20 compressed bytes can hold 2147483648"), "{reason}");
 }
 
 #[test]
@@ -218,19 +204,11 @@ fn what_is_no_single_map_is_refused() {
         (18, [8, 0], "a surface with layers (type 8)"),
         (18, [12, 0], "a colour image (type 12)"),
         (18, [13, 0], "a surface with colours (type 13)"),
-        (
-            18,
-            [16, 0],
-            "a surface with colours and intensities (type 16)",
-        ),
+        (18, [16, 0], "a surface with colours and intensities (type 16)"),
         (18, [0, 9], "something unknown (type 2304)"),
         (98, [24, 0], "24 bits"),
         (116, [7, 0], "7 points in the file, but 3 x 2 in a map"),
-        (
-            336,
-            [2, 0],
-            "expected 12 more bytes, but the file ends after 10",
-        ),
+        (336, [2, 0], "expected 12 more bytes, but the file ends after 10"),
     ] {
         let mut file = plain();
         put(&mut file, place, &bytes);
@@ -255,12 +233,7 @@ fn a_profile_is_a_map_if_it_has_several_lines() -> TestResult {
 
 #[test]
 fn absurd_numbers_are_refused() {
-    for (place, value) in [
-        (128, f32::NAN),
-        (128, 0.0),
-        (128, -1.0),
-        (474, f32::INFINITY),
-    ] {
+    for (place, value) in [(128, f32::NAN), (128, 0.0), (128, -1.0), (474, f32::INFINITY)] {
         let mut file = plain();
         put(&mut file, place, &value.to_le_bytes());
         assert!(parse(&file).is_err(), "{value} at {place}");

@@ -33,10 +33,7 @@ impl Dialect {
         } else {
             None
         };
-        Self {
-            separator,
-            decimal_comma,
-        }
+        Self { separator, decimal_comma }
     }
 
     /// The number that a word is, NaN for one that stands for a missing value, `None` for any other word.
@@ -63,9 +60,7 @@ fn parse(word: &[u8]) -> Option<f64> {
 
 /// Words for a missing value, but for those that are numbers to everybody: `NaN`, `inf`.
 fn means_missing(word: &[u8]) -> bool {
-    const WORDS: [&str; 8] = [
-        "bad", "na", "n/a", "#n/a", "null", "none", "missing", "masked",
-    ];
+    const WORDS: [&str; 8] = ["bad", "na", "n/a", "#n/a", "null", "none", "missing", "masked"];
     let unsigned = match word {
         [b'+' | b'-', rest @ ..] => rest,
         _ => word,
@@ -91,10 +86,7 @@ fn means_missing(word: &[u8]) -> bool {
 ///
 /// A row of stars or hyphens alone is an ornament as long as there is no number.
 pub(super) fn is_row(line: &[u8]) -> bool {
-    let dialect = Dialect {
-        separator: None,
-        decimal_comma: false,
-    };
+    let dialect = Dialect { separator: None, decimal_comma: false };
     let mut numbers = false;
     for word in line.split(|byte| matches!(byte, b' ' | b'\t' | b';' | b',')) {
         if word.is_empty() {

@@ -31,16 +31,8 @@ struct Length {
 }
 
 // What Gwyddion writes above a matrix, in the languages that it speaks, in small letters.
-const TITLE: &[&str] = &[
-    "channel",
-    "kanál",
-    "kanal",
-    "canal",
-    "canale",
-    "チャネル",
-    "채널",
-    "канал",
-];
+const TITLE: &[&str] =
+    &["channel", "kanál", "kanal", "canal", "canale", "チャネル", "채널", "канал"];
 const WIDTH: &[&str] = &[
     "width",
     "šířka",
@@ -53,17 +45,8 @@ const WIDTH: &[&str] = &[
     "largura",
     "ширина",
 ];
-const HEIGHT: &[&str] = &[
-    "height",
-    "výška",
-    "höhe",
-    "altura",
-    "hauteur",
-    "altezza",
-    "高さ",
-    "높이",
-    "высота",
-];
+const HEIGHT: &[&str] =
+    &["height", "výška", "höhe", "altura", "hauteur", "altezza", "高さ", "높이", "высота"];
 const VALUE_UNIT: &[&str] = &[
     "value units",
     "jednotky hodnot",
@@ -208,19 +191,14 @@ impl Length {
             .find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c)))
             .unwrap_or(text.len());
         let (value, unit) = text.split_at(end);
-        Some(Self {
-            value: number(value)?,
-            unit: some(unit),
-        })
+        Some(Self { value: number(value)?, unit: some(unit) })
     }
 }
 
 /// A number with a decimal point or comma.
 fn number(text: &str) -> Option<f64> {
     let text = text.trim();
-    text.parse()
-        .or_else(|_| text.replace(',', ".").parse())
-        .ok()
+    text.parse().or_else(|_| text.replace(',', ".").parse()).ok()
 }
 
 fn some(text: &str) -> Option<String> {

@@ -23,11 +23,7 @@ pub(super) struct Line<'a> {
 impl<'a> Lines<'a> {
     /// The lines after the first `skipped` bytes.
     pub(super) fn new(file: &'a [u8], skipped: usize) -> Self {
-        Self {
-            file,
-            at: skipped,
-            number: 0,
-        }
+        Self { file, at: skipped, number: 0 }
     }
 
     /// All bytes that are left.
@@ -44,19 +40,13 @@ impl<'a> Iterator for Lines<'a> {
         if rest.is_empty() {
             return None;
         }
-        let length = rest
-            .iter()
-            .position(|byte| matches!(byte, b'\n' | b'\r'))
-            .unwrap_or(rest.len());
+        let length =
+            rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
         let (bytes, end) = rest.split_at(length);
         let offset = self.at;
         self.at += length + if end.starts_with(b"\r\n") { 2 } else { 1 };
         self.number += 1;
-        Some(Line {
-            bytes,
-            offset,
-            number: self.number,
-        })
+        Some(Line { bytes, offset, number: self.number })
     }
 }
 

@@ -32,10 +32,8 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
     if is_utf16(begin) {
         return true;
     }
-    let controls = begin
-        .iter()
-        .filter(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
-        .count();
+    let controls =
+        begin.iter().filter(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace()).count();
     !begin.contains(&0) && controls * 100 <= begin.len()
 }
 
@@ -45,20 +43,12 @@ fn is_utf16(bytes: &[u8]) -> bool {
 
 pub(super) fn parse(file: &[u8], path: &Path) -> Parsed {
     if is_utf16(file) {
-        return Err(Fault::malformed(
-            "it is encoded as UTF-16: save it as UTF-8",
-        ));
+        return Err(Fault::malformed("it is encoded as UTF-16: save it as UTF-8"));
     }
     let mark = "\u{feff}".as_bytes();
-    let skipped = if file.starts_with(mark) {
-        mark.len()
-    } else {
-        0
-    };
+    let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
     let (header, table) = table::read(Lines::new(file, skipped))?;
-    let is_xyz = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("xyz"));
+    let is_xyz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xyz"));
     let is_matrix = header.has_sides();
     let is_list = header.names_columns || header.lateral_unit.is_some() || is_xyz;
     let channel = if is_matrix {

@@ -73,10 +73,7 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
         ));
     }
     if table.columns > 3 {
-        notes.push(format!(
-            "of {} columns the first three are read, as x, y, z",
-            table.columns
-        ));
+        notes.push(format!("of {} columns the first three are read, as x, y, z", table.columns));
     }
     Ok(Channel {
         name: header.title,

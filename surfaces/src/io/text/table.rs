@@ -36,10 +36,7 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
 
 fn body(lines: Lines) -> Result<Table, Fault> {
     let dialect = Dialect::of(&lines);
-    let mut table = Table {
-        columns: 0,
-        values: Vec::new(),
-    };
+    let mut table = Table { columns: 0, values: Vec::new() };
     let mut first = 0;
     // Whether every row begins, or ends, with an empty cell: the separator belongs to the margin then.
     let (mut begins_empty, mut ends_empty) = (true, true);
@@ -112,11 +109,7 @@ fn no_number(line: &Line, word: &[u8]) -> Fault {
     let shown = word.get(..40).unwrap_or(word);
     Fault::at(
         line.offset,
-        format!(
-            "'{}' in line {} is no number",
-            String::from_utf8_lossy(shown),
-            line.number
-        ),
+        format!("'{}' in line {} is no number", String::from_utf8_lossy(shown), line.number),
     )
 }
 
@@ -133,10 +126,7 @@ fn refuse_second_map(line: &Line) -> Result<(), Fault> {
     if Header::default().add(&line.text()) {
         return Err(Fault::at(
             line.offset,
-            format!(
-                "line {} begins another map: a text has to hold one only",
-                line.number
-            ),
+            format!("line {} begins another map: a text has to hold one only", line.number),
         ));
     }
     Ok(())

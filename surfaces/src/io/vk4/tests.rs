@@ -86,25 +86,13 @@ fn without_zeros_nothing_is_marked() -> Result<(), Fault> {
 fn defects_are_named() {
     let image = [(8, VALUES.to_vec())];
     for (place, number, reason_given) in [
-        (
-            TABLE,
-            u32::MAX,
-            "is referred to, but the file has 1202 bytes",
-        ),
+        (TABLE, u32::MAX, "is referred to, but the file has 1202 bytes"),
         (HEIGHT, 5000, "byte 5000 is referred to"),
-        (
-            400,
-            4,
-            "4 x 2 heights of 8 bits are said to take 6 bytes (compression 0)",
-        ),
+        (400, 4, "4 x 2 heights of 8 bits are said to take 6 bytes (compression 0)"),
         (404, 30000, "3 x 30000 heights"),
         (408, 24, "24 bits"),
         (416, 7, "said to take 7 bytes"),
-        (
-            CONDITIONS + STEP,
-            0,
-            "step in height is 0, but a positive number",
-        ),
+        (CONDITIONS + STEP, 0, "step in height is 0, but a positive number"),
     ] {
         let mut file = file(&image);
         put(&mut file, place, number);

@@ -44,11 +44,7 @@ impl<'a> Archive<'a> {
             .filter(|folder| folder.is_empty() || folder.ends_with('/'))
             .min_by_key(|folder| folder.matches('/').count())
             .ok_or_else(|| Fault::malformed("the archive has no member 'main.xml'"))?;
-        Ok(Self {
-            zip,
-            folder,
-            length: file.len(),
-        })
+        Ok(Self { zip, folder, length: file.len() })
     }
 
     /// The description, as it is.
@@ -74,11 +70,8 @@ impl<'a> Archive<'a> {
         }
         let bytes = self.member(link, expected)?;
         if bytes.len() != expected {
-            let found = if bytes.len() > expected {
-                "more".to_string()
-            } else {
-                bytes.len().to_string()
-            };
+            let found =
+                if bytes.len() > expected { "more".to_string() } else { bytes.len().to_string() };
             return Err(Fault::malformed(format!(
                 "'{link}' has to have {expected} bytes, but it has {found}"
             )));
@@ -101,9 +94,7 @@ impl<'a> Archive<'a> {
             || path.contains(':')
             || path.split('/').any(|folder| folder == "..");
         if leaves {
-            return Err(Fault::malformed(format!(
-                "the link '{link}' leaves the archive"
-            )));
+            return Err(Fault::malformed(format!("the link '{link}' leaves the archive")));
         }
         let path = format!("{}{}", self.folder, path.trim_start_matches("./"));
         let index = self
@@ -115,10 +106,7 @@ impl<'a> Archive<'a> {
         let member = self.zip.by_index(index).map_err(|e| failed(e.into()))?;
         let claimed = usize::try_from(member.size()).unwrap_or(usize::MAX);
         let mut bytes = reserved(claimed.min(limit))?;
-        member
-            .take((limit as u64).saturating_add(1))
-            .read_to_end(&mut bytes)
-            .map_err(failed)?;
+        member.take((limit as u64).saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
         Ok(bytes)
     }
 }

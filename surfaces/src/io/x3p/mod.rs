@@ -32,12 +32,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         link => link,
     };
     let checksum = archive.checksum(link);
-    compare(
-        archive::DESCRIPTION,
-        &description,
-        checksum.as_deref(),
-        &mut notes,
-    );
+    compare(archive::DESCRIPTION, &description, checksum.as_deref(), &mut notes);
     drop(description);
     let values = match &record.points {
         Points::Listed(values) => {
@@ -55,10 +50,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     if record.rotated {
         notes.push("the axes of the file are rotated, which is not applied".to_string());
     }
-    Ok(vec![Channel {
-        notes,
-        ..Channel::in_metres(record.shape, values, Some(record.cell))
-    }])
+    Ok(vec![Channel { notes, ..Channel::in_metres(record.shape, values, Some(record.cell)) }])
 }
 
 /// Metres for a stored number.
@@ -66,11 +58,7 @@ fn scale(record: &Record) -> impl Fn(f64) -> f64 {
     let (increment, offset) = (record.increment, record.offset);
     move |value| {
         // Without an offset nothing is added: -0 would become 0.
-        if offset == 0.0 {
-            value * increment
-        } else {
-            value * increment + offset
-        }
+        if offset == 0.0 { value * increment } else { value * increment + offset }
     }
 }
 
@@ -115,9 +103,7 @@ fn compare(name: &str, bytes: &[u8], md5: Option<&str>, notes: &mut Vec<String>)
     };
     let found = md5_of(bytes);
     if !found.eq_ignore_ascii_case(expected) {
-        notes.push(format!(
-            "the checksum of '{name}' is {found}, but the file says {expected}"
-        ));
+        notes.push(format!("the checksum of '{name}' is {found}, but the file says {expected}"));
     }
 }
 

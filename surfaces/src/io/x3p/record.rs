@@ -76,10 +76,7 @@ impl Record {
         if root.tag_name().name() != "ISO5436_2" {
             return Err(bad(
                 root,
-                format!(
-                    "expected the element ISO5436_2, but found {}",
-                    root.tag_name().name()
-                ),
+                format!("expected the element ISO5436_2, but found {}", root.tag_name().name()),
             ));
         }
         Self::of(root)
@@ -105,9 +102,7 @@ impl Record {
             increment: increment(z)?,
             offset: quantity(z, "Offset", 0.0)?,
             points: points(third, shape)?,
-            checksum: descend(root, &["Record4", "ChecksumFile"])
-                .map_or("", text)
-                .to_string(),
+            checksum: descend(root, &["Record4", "ChecksumFile"]).map_or("", text).to_string(),
             rotated: child(axes, "Rotation").is_some_and(turns),
         })
     }
@@ -119,13 +114,7 @@ fn matrix(third: Node) -> Result<(usize, usize), Fault> {
     let count = |name| {
         let node = descend(dimension, &[name])?;
         text(node).parse::<u64>().map_err(|_| {
-            bad(
-                node,
-                format!(
-                    "{name} is '{}', but a number of points was expected",
-                    text(node)
-                ),
-            )
+            bad(node, format!("{name} is '{}', but a number of points was expected", text(node)))
         })
     };
     let layers = match child(dimension, "SizeZ") {
@@ -164,10 +153,9 @@ fn number(z: Node) -> Result<Number, Fault> {
         "L" => Ok(Number::I32),
         "F" => Ok(Number::F32),
         "D" => Ok(Number::F64),
-        other => Err(bad(
-            node,
-            format!("CZ has the DataType '{other}', but I, L, F or D was expected"),
-        )),
+        other => {
+            Err(bad(node, format!("CZ has the DataType '{other}', but I, L, F or D was expected")))
+        }
     }
 }
 
@@ -190,10 +178,7 @@ fn require(axis: Node, name: &str, expected: &str, meaning: &str) -> Result<(), 
 fn increment(axis: Node) -> Result<f64, Fault> {
     let increment = quantity(axis, "Increment", 1.0)?;
     if increment == 0.0 {
-        return Err(bad(
-            axis,
-            format!("{} has the Increment 0", axis.tag_name().name()),
-        ));
+        return Err(bad(axis, format!("{} has the Increment 0", axis.tag_name().name())));
     }
     Ok(increment)
 }
@@ -204,19 +189,15 @@ fn quantity(axis: Node, name: &str, absent: f64) -> Result<f64, Fault> {
     if found.is_empty() {
         return Ok(absent);
     }
-    found
-        .parse()
-        .ok()
-        .filter(|value: &f64| value.is_finite())
-        .ok_or_else(|| {
-            bad(
-                axis,
-                format!(
-                    "{} has the {name} '{found}', but a number was expected",
-                    axis.tag_name().name()
-                ),
-            )
-        })
+    found.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+        bad(
+            axis,
+            format!(
+                "{} has the {name} '{found}', but a number was expected",
+                axis.tag_name().name()
+            ),
+        )
+    })
 }
 
 /// Whether a matrix of rotation is another than that of no rotation.
@@ -234,13 +215,10 @@ fn points(third: Node, shape: (usize, usize)) -> Result<Points, Fault> {
         return listed(descend(third, &["DataList"])?, shape).map(Points::Listed);
     };
     let member = |path, md5| {
-        child(link, path)
-            .map(text)
-            .filter(|path| !path.is_empty())
-            .map(|path| Link {
-                path: path.to_string(),
-                md5: child(link, md5).map(|md5| text(md5).to_string()),
-            })
+        child(link, path).map(text).filter(|path| !path.is_empty()).map(|path| Link {
+            path: path.to_string(),
+            md5: child(link, md5).map(|md5| text(md5).to_string()),
+        })
     };
     let data = member("PointDataLink", "MD5ChecksumPointData")
         .ok_or_else(|| bad(link, "DataLink names no PointDataLink"))?;
@@ -257,10 +235,7 @@ fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<f64>, Fault> {
             f64::NAN
         } else {
             height.parse().map_err(|_| {
-                bad(
-                    datum,
-                    format!("a Datum is '{height}', but a number was expected"),
-                )
+                bad(datum, format!("a Datum is '{height}', but a number was expected"))
             })?
         };
         values.push(value);
@@ -268,10 +243,7 @@ fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<f64>, Fault> {
     if values.len() != nx * ny {
         return Err(bad(
             list,
-            format!(
-                "{nx} x {ny} points were expected, but the DataList has {}",
-                values.len()
-            ),
+            format!("{nx} x {ny} points were expected, but the DataList has {}", values.len()),
         ));
     }
     Ok(values)
@@ -282,23 +254,18 @@ fn elements<'a, 'b: 'a>(
     node: Node<'a, 'b>,
     name: &'static str,
 ) -> impl Iterator<Item = Node<'a, 'b>> {
-    node.children()
-        .filter(move |child| child.is_element() && child.tag_name().name() == name)
+    node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
 }
 
 fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
-    node.children()
-        .find(|child| child.is_element() && child.tag_name().name() == name)
+    node.children().find(|child| child.is_element() && child.tag_name().name() == name)
 }
 
 /// The element at the end of a path of names.
 fn descend<'a, 'b>(node: Node<'a, 'b>, path: &[&str]) -> Result<Node<'a, 'b>, Fault> {
     path.iter().try_fold(node, |node, name| {
         child(node, name).ok_or_else(|| {
-            bad(
-                node,
-                format!("expected an element {name} in {}", node.tag_name().name()),
-            )
+            bad(node, format!("expected an element {name} in {}", node.tag_name().name()))
         })
     })
 }

@@ -85,23 +85,13 @@ fn what_is_written_is_read_back_to_the_last_bit() -> TestResult {
     assert!(back.notes.is_empty(), "{:?}", back.notes);
     assert_eq!((back.cell, back.missing), (Some((grid.dx(), 0.1)), 2));
     for (found, written) in back.heights.iter().zip(&heights) {
-        let expected = if written.is_finite() {
-            *written
-        } else {
-            f64::NAN
-        };
+        let expected = if written.is_finite() { *written } else { f64::NAN };
         assert_eq!(found.to_bits(), expected.to_bits());
     }
     let other = Grid::square(2, 1.0)?;
-    assert!(matches!(
-        write_x3p(&path, &other, &heights),
-        Err(Error::GridMismatch { .. })
-    ));
+    assert!(matches!(write_x3p(&path, &other, &heights), Err(Error::GridMismatch { .. })));
     let nowhere = folder.join("no such folder").join("file.x3p");
-    assert!(matches!(
-        write_x3p(&nowhere, &grid, &heights),
-        Err(Error::File(FileError::Io { .. }))
-    ));
+    assert!(matches!(write_x3p(&nowhere, &grid, &heights), Err(Error::File(FileError::Io { .. }))));
     Ok(())
 }
 
@@ -126,10 +116,7 @@ fn the_simplest_file_is_read() -> TestResult {
             ("a/main.xml", DESCRIPTION.as_bytes()),
         ],
         // Packed on Windows, and on macOS.
-        vec![
-            ("a\\main.xml", DESCRIPTION.as_bytes()),
-            ("a\\data.bin", &DATA),
-        ],
+        vec![("a\\main.xml", DESCRIPTION.as_bytes()), ("a\\data.bin", &DATA)],
         vec![
             ("__MACOSX/main.xml", b""),
             ("a/main.xml", DESCRIPTION.as_bytes()),
@@ -152,19 +139,13 @@ fn the_simplest_file_is_read() -> TestResult {
 #[test]
 fn increments_and_offsets_are_lengths() -> TestResult {
     let cz = "<DataType>I</DataType>";
-    let scaled = with(
-        cz,
-        "<DataType>I</DataType><Increment>-0.5</Increment><Offset>10</Offset>",
-    )??;
+    let scaled = with(cz, "<DataType>I</DataType><Increment>-0.5</Increment><Offset>10</Offset>")??;
     assert_eq!(scaled.values, [9.5, 11.0]);
     let empty = with(cz, "<DataType>I</DataType><Increment/><Offset/>")??;
     assert_eq!(empty.values, [1.0, -2.0]);
     for wrong in ["0", "x", "inf", "NaN"] {
         let wrong = format!("<DataType>I</DataType><Increment>{wrong}</Increment>");
-        assert!(matches!(
-            with(cz, &wrong)?,
-            Err(Error::File(FileError::BadFile { .. }))
-        ));
+        assert!(matches!(with(cz, &wrong)?, Err(Error::File(FileError::BadFile { .. }))));
     }
     Ok(())
 }
@@ -178,10 +159,7 @@ fn heights_may_stand_in_the_description() -> TestResult {
     let missing = with(link, &list("<Datum/><Datum>3</Datum>"))??;
     assert!(missing.values[0].is_nan() && missing.values[1] == 3.0);
     for wrong in ["<Datum>1</Datum>", "<Datum>1</Datum><Datum>x</Datum>"] {
-        assert!(matches!(
-            with(link, &list(wrong))?,
-            Err(Error::File(FileError::BadFile { .. }))
-        ));
+        assert!(matches!(with(link, &list(wrong))?, Err(Error::File(FileError::BadFile { .. }))));
     }
     Ok(())
 }
@@ -193,20 +171,13 @@ fn checksums_and_rotations_are_noted() -> TestResult {
     };
     // What `md5sum` says of the four bytes, in capital letters.
     let right = md5_of(&DATA).to_uppercase();
-    assert!(
-        with("data.bin</PointDataLink>", &sum(&right))??
-            .notes
-            .is_empty()
-    );
+    assert!(with("data.bin</PointDataLink>", &sum(&right))??.notes.is_empty());
     let wrong = with("data.bin</PointDataLink>", &sum(&"0".repeat(32)))??;
     assert!(wrong.notes.len() == 1 && wrong.notes[0].contains("'data.bin'"));
     let members: [(&str, &[u8]); 3] = [
         ("main.xml", DESCRIPTION.as_bytes()),
         ("data.bin", &DATA),
-        (
-            "md5checksum.hex",
-            b"0123456789abcdef0123456789ABCDEF *main.xml\r\n",
-        ),
+        ("md5checksum.hex", b"0123456789abcdef0123456789ABCDEF *main.xml\r\n"),
     ];
     let wrong = parsed(&archive(&members)?)?;
     assert!(wrong.notes.len() == 1 && wrong.notes[0].contains("'main.xml'"));
@@ -234,46 +205,22 @@ fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
         ("<SizeZ>1", "<SizeZ>2", "SizeZ is 2"),
         ("<SizeX>2", "<SizeX>two", "SizeX is 'two'"),
         ("<SizeX>2", "<SizeX>3", "has to have 6 bytes, but it has 4"),
-        (
-            "<SizeX>2",
-            "<SizeX>1",
-            "has to have 2 bytes, but it has more",
-        ),
-        (
-            "<SizeX>2</SizeX><SizeY>1",
-            "<SizeX>32768</SizeX><SizeY>9",
-            "more than 256 times",
-        ),
-        (
-            "<CX><AxisType>I",
-            "<CX><AxisType>A",
-            "CX has the AxisType 'A'",
-        ),
-        (
-            "<CZ><AxisType>A",
-            "<CZ><AxisType>I",
-            "CZ has the AxisType 'I'",
-        ),
+        ("<SizeX>2", "<SizeX>1", "has to have 2 bytes, but it has more"),
+        ("<SizeX>2</SizeX><SizeY>1", "<SizeX>32768</SizeX><SizeY>9", "more than 256 times"),
+        ("<CX><AxisType>I", "<CX><AxisType>A", "CX has the AxisType 'A'"),
+        ("<CZ><AxisType>A", "<CZ><AxisType>I", "CZ has the AxisType 'I'"),
         ("<DataType>I", "<DataType>X", "the DataType 'X'"),
         ("2e-6", "-2e-6", "a spacing was expected"),
         ("<CX>", "<CW>", "'main.xml'"),
         ("data.bin", "../data.bin", "leaves the archive"),
         ("data.bin", "/data.bin", "leaves the archive"),
         ("data.bin", "C:\\data.bin", "leaves the archive"),
-        (
-            "data.bin",
-            "http://opengps.eu/data.bin",
-            "leaves the archive",
-        ),
+        ("data.bin", "http://opengps.eu/data.bin", "leaves the archive"),
         ("data.bin", "other.bin", "has no member 'other.bin'"),
         ("data.bin", "", "names no PointDataLink"),
         ("Record3>", "Record5>", "expected an element Record3"),
         ("ISO5436_2>", "html>", "expected the element ISO5436_2"),
-        (
-            "<ISO5436_2>",
-            "<!DOCTYPE a [<!ENTITY b 'c'>]><ISO5436_2>",
-            "DTD",
-        ),
+        ("<ISO5436_2>", "<!DOCTYPE a [<!ENTITY b 'c'>]><ISO5436_2>", "DTD"),
     ] {
         let message = with(part, by)?.map_err(|error| error.to_string());
         assert!(
@@ -281,14 +228,8 @@ fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
             "{by}: {message:?} says nothing of {expected}"
         );
     }
-    assert!(matches!(
-        with("<SizeX>2", "<SizeX>0")?,
-        Err(Error::EmptyGrid { .. })
-    ));
-    assert!(matches!(
-        with("<SizeX>2", "<SizeX>99999")?,
-        Err(Error::GridTooLarge { .. })
-    ));
+    assert!(matches!(with("<SizeX>2", "<SizeX>0")?, Err(Error::EmptyGrid { .. })));
+    assert!(matches!(with("<SizeX>2", "<SizeX>99999")?, Err(Error::GridTooLarge { .. })));
     assert!(parsed(&archive(&[("other.xml", b"<a/>")])?).is_err());
     Ok(())
 }
@@ -297,16 +238,11 @@ fn what_is_no_surface_of_one_layer_is_refused() -> TestResult {
 fn an_archive_that_only_wants_to_fill_the_memory_is_refused() -> TestResult {
     let zeros = vec![b' '; 1 << 20];
     let message = |members: &[(&str, &[u8])]| -> Result<String, Box<dyn std::error::Error>> {
-        Ok(parsed(&archive(members)?)
-            .err()
-            .ok_or("it was read")?
-            .to_string())
+        Ok(parsed(&archive(members)?).err().ok_or("it was read")?.to_string())
     };
     // A megabyte of blanks takes a kilobyte.
     assert!(message(&[("main.xml", &zeros)])?.contains("longer than 64 times"));
-    let large = DESCRIPTION
-        .replace("<SizeX>2", "<SizeX>32768")
-        .replace("<SizeY>1", "<SizeY>16");
+    let large = DESCRIPTION.replace("<SizeX>2", "<SizeX>32768").replace("<SizeY>1", "<SizeY>16");
     let data = message(&[("main.xml", large.as_bytes()), ("data.bin", &zeros)])?;
     assert!(data.contains("more than 256 times"), "{data}");
     let elements = [DESCRIPTION, &"<a/>".repeat(3000)].concat();
@@ -320,15 +256,10 @@ fn an_archive_that_only_wants_to_fill_the_memory_is_refused() -> TestResult {
 #[test]
 fn no_depth_of_elements_exhausts_the_stack() -> TestResult {
     // Names that hardly repeat, so that the archive is not refused for shrinking too much.
-    let names: Vec<String> = (0_u64..100_000)
-        .map(|k| format!("a{:x}", k.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
-        .collect();
+    let names: Vec<String> =
+        (0_u64..100_000).map(|k| format!("a{:x}", k.wrapping_mul(0x9e37_79b9_7f4a_7c15))).collect();
     let opened: String = names.iter().map(|name| format!("<{name}>")).collect();
-    let closed: String = names
-        .iter()
-        .rev()
-        .map(|name| format!("</{name}>"))
-        .collect();
+    let closed: String = names.iter().rev().map(|name| format!("</{name}>")).collect();
     let deep = format!("{opened}{closed}</ISO5436_2>");
     let description = DESCRIPTION.replace("</ISO5436_2>", &deep);
     let file = archive(&[("main.xml", description.as_bytes()), ("data.bin", &DATA)])?;
@@ -338,10 +269,7 @@ fn no_depth_of_elements_exhausts_the_stack() -> TestResult {
 
 #[test]
 fn no_beginning_of_a_file_is_taken_for_the_file() -> TestResult {
-    for name in [
-        "missing_i16_mask.x3p",
-        "missing_f64_scaled_folder_stored.x3p",
-    ] {
+    for name in ["missing_i16_mask.x3p", "missing_f64_scaled_folder_stored.x3p"] {
         let bytes = std::fs::read(path(name))?;
         for length in 0..bytes.len() {
             assert!(parsed(&bytes[..length]).is_err(), "{name}, {length} bytes");

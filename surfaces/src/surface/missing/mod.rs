@@ -75,13 +75,7 @@ pub fn fill_missing(mut heights: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let middle = 0.5 * lowest + 0.5 * highest;
     let half_range = 0.5 * highest - 0.5 * lowest;
     let unit = if half_range > 0.0 { half_range } else { 1.0 };
-    let relative = heights.map(|z| {
-        if z.is_finite() {
-            (z - middle) / unit
-        } else {
-            z
-        }
-    });
+    let relative = heights.map(|z| if z.is_finite() { (z - middle) / unit } else { z });
     let (stencil, given, right_side) = Stencil::of_map(&relative);
     drop(relative);
     let solution = inside(|| solve(stencil, given, &right_side))?;

@@ -35,11 +35,7 @@ pub(super) struct Level {
 impl Level {
     fn new(stencil: Stencil) -> Self {
         let (nx, ny) = stencil.shape();
-        Self {
-            stencil,
-            solution: Field::zeros(nx, ny),
-            scratch: Field::zeros(nx, ny),
-        }
+        Self { stencil, solution: Field::zeros(nx, ny), scratch: Field::zeros(nx, ny) }
     }
 }
 
@@ -73,11 +69,7 @@ impl Multigrid {
 }
 
 fn cycle(level: &mut Level, b: &Field, coarser: &mut [(Field, Level)]) {
-    let Level {
-        stencil,
-        solution,
-        scratch,
-    } = level;
+    let Level { stencil, solution, scratch } = level;
     let Some(((sums, next), rest)) = coarser.split_first_mut() else {
         // A single node: its own equation.
         stencil.relax_zero(1.0, b, solution);

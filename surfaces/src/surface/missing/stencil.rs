@@ -24,28 +24,19 @@ pub(super) struct Field {
 impl Field {
     /// Zeros on nx × ny nodes.
     pub(super) fn zeros(nx: usize, ny: usize) -> Self {
-        Self {
-            nx,
-            values: vec![0.0; (nx + 2) * (ny + 2)],
-        }
+        Self { nx, values: vec![0.0; (nx + 2) * (ny + 2)] }
     }
 
     /// The values of the nodes, x first.
     pub(super) fn values(&self) -> impl Iterator<Item = f64> {
-        (1..self.values.len() / self.pitch() - 1)
-            .flat_map(|iy| self.row(iy))
-            .copied()
+        (1..self.values.len() / self.pitch() - 1).flat_map(|iy| self.row(iy)).copied()
     }
 
     /// Greatest absolute value; NaN if one is.
     pub(super) fn greatest(&self) -> f64 {
         let greater = |most: f64, value: &f64| {
             // `f64::max` would pass over NaN.
-            if value.abs() > most || value.is_nan() {
-                value.abs()
-            } else {
-                most
-            }
+            if value.abs() > most || value.is_nan() { value.abs() } else { most }
         };
         self.values.iter().fold(0.0, greater)
     }
@@ -108,13 +99,8 @@ impl Stencil {
         let mut right_side = Field::zeros(nx, ny);
         let pitch = right_side.pitch();
         let mut given = vec![0.0; right_side.values.len()];
-        let mut stencil = Self {
-            nx,
-            ny,
-            east: given.clone(),
-            north: given.clone(),
-            diagonal: Vec::new(),
-        };
+        let mut stencil =
+            Self { nx, ny, east: given.clone(), north: given.clone(), diagonal: Vec::new() };
         let mut connect = |a: usize, b: usize, heights: [f64; 2], weights: &mut [f32]| {
             let mut hold = |node: usize, height: f64| {
                 given[node] += 1.0;
@@ -157,13 +143,8 @@ impl Stencil {
         let (nx, ny) = (self.nx.div_ceil(2), self.ny.div_ceil(2));
         let (pitch, coarse_pitch) = (self.nx + 2, nx + 2);
         let mut held = vec![0.0; coarse_pitch * (ny + 2)];
-        let mut coarse = Self {
-            nx,
-            ny,
-            east: held.clone(),
-            north: held.clone(),
-            diagonal: Vec::new(),
-        };
+        let mut coarse =
+            Self { nx, ny, east: held.clone(), north: held.clone(), diagonal: Vec::new() };
         for iy in 1..=self.ny {
             for ix in 1..=self.nx {
                 let node = ix + pitch * iy;
@@ -226,11 +207,7 @@ impl Stencil {
                 let b = b.row(iy);
                 self.visit(x, iy, |i, sum, diagonal, x| {
                     let step = (b[i] + sum) / diagonal - x;
-                    next[i] = if diagonal > 0.0 {
-                        x + omega * step
-                    } else {
-                        0.0
-                    };
+                    next[i] = if diagonal > 0.0 { x + omega * step } else { 0.0 };
                 });
             },
         );
@@ -273,10 +250,7 @@ impl Stencil {
         let (here, left, right) = (x.row(iy), x.shifted(iy, 0), x.shifted(iy, 2));
         let (below, above) = (x.row(iy - 1), x.row(iy + 1));
         let (west, east) = (self.row(&self.east, iy, 0), self.row(&self.east, iy, 1));
-        let (south, north) = (
-            self.row(&self.north, iy - 1, 1),
-            self.row(&self.north, iy, 1),
-        );
+        let (south, north) = (self.row(&self.north, iy - 1, 1), self.row(&self.north, iy, 1));
         let diagonal = self.row(&self.diagonal, iy, 1);
         for i in 0..self.nx {
             let along_x = f64::from(west[i]) * left[i] + f64::from(east[i]) * right[i];

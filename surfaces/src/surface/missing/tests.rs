@@ -6,9 +6,7 @@ use super::*;
 /// The missing heights by a dense solve of the documented equations.
 fn dense(heights: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let (nx, ny) = heights.shape();
-    let missing: Vec<_> = (0..nx * ny)
-        .filter(|&node| !heights[node].is_finite())
-        .collect();
+    let missing: Vec<_> = (0..nx * ny).filter(|&node| !heights[node].is_finite()).collect();
     let mut matrix = DMatrix::zeros(missing.len(), missing.len());
     let mut right_side = DVector::zeros(missing.len());
     for (row, &node) in missing.iter().enumerate() {
@@ -59,12 +57,7 @@ fn greatest_difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
 fn a_whole_map_stays_as_it_is() -> Result<(), Error> {
     let map = dmatrix![-0.0, 1.0; 2.0, 3.0];
     let filled = fill_missing(map.clone())?;
-    assert!(
-        filled
-            .iter()
-            .zip(map.iter())
-            .all(|(a, b)| a.to_bits() == b.to_bits())
-    );
+    assert!(filled.iter().zip(map.iter()).all(|(a, b)| a.to_bits() == b.to_bits()));
     Ok(())
 }
 
@@ -149,10 +142,7 @@ fn patterns_agree_with_a_dense_solution() -> Result<(), Error> {
             // The error promised, of a range of 2 units, and the last digits of the offset times the number of nodes,
             // which is what the dense solution may lose.
             let allowed = 2e-10 * unit + 1e3 * f64::EPSILON * offset;
-            assert!(
-                error.is_some_and(|e| e < allowed),
-                "{number} {unit} {error:?}"
-            );
+            assert!(error.is_some_and(|e| e < allowed), "{number} {unit} {error:?}");
         }
     }
     Ok(())
@@ -214,11 +204,10 @@ fn large_holes_are_filled() -> Result<(), Error> {
     let plane = DMatrix::from_fn(nx, ny, |ix, iy| 0.4 * ix as f64 - 1.1 * iy as f64);
     let range = plane.max() - plane.min();
     let border = |ix, iy| ix == 0 || iy == 0 || ix == nx - 1 || iy == ny - 1;
-    let kept: [&dyn Fn(usize, usize) -> bool; 3] = [
-        &|_, _| false,
-        &|ix, iy| noise(7 * (ix + 311 * iy)) > 0.98,
-        &|ix, iy| ix % 16 == 3 && iy % 64 != 5,
-    ];
+    let kept: [&dyn Fn(usize, usize) -> bool; 3] =
+        [&|_, _| false, &|ix, iy| noise(7 * (ix + 311 * iy)) > 0.98, &|ix, iy| {
+            ix % 16 == 3 && iy % 64 != 5
+        }];
     for (number, kept) in kept.into_iter().enumerate() {
         let holed = without(plane.clone(), |ix, iy| !border(ix, iy) && !kept(ix, iy));
         let error = greatest_difference(&fill_missing(holed)?, &plane);

@@ -110,12 +110,7 @@ impl SelfAffine {
         seed: u64,
     ) -> Result<Self, Error> {
         let is_exponent = hurst > 0.0 && hurst <= 1.0;
-        Error::require(
-            "Hurst exponent",
-            hurst,
-            is_exponent,
-            "above 0 and at most 1",
-        )?;
+        Error::require("Hurst exponent", hurst, is_exponent, "above 0 and at most 1")?;
         Error::require_positive("roll-off wavelength", rolloff_wavelength)?;
         Error::require_positive("short cut-off wavelength", short_cutoff_wavelength)?;
         Error::require(

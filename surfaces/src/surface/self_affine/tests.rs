@@ -19,11 +19,7 @@ fn moments(heights: &DMatrix<f64>, grid: &Grid) -> (f64, f64) {
     along_y.process(values.as_mut_slice());
     let (lx, ly) = grid.sides();
     let q = |k: usize, n: usize, side: f64| {
-        let signed = if 2 * k > n {
-            k as f64 - n as f64
-        } else {
-            k as f64
-        };
+        let signed = if 2 * k > n { k as f64 - n as f64 } else { k as f64 };
         TAU * signed / side
     };
     let (mut m0, mut m2) = (0.0, 0.0);
@@ -120,11 +116,7 @@ fn a_cutoff_at_two_cells_is_inside_however_it_is_rounded() -> Result<(), Error> 
     for n in [6, 10, 14, 96, 100, 256] {
         for side in [1e-2, 0.1, 0.3, 7.7e-3, 1.0 / 3.0] {
             let grid = Grid::square(n, side)?;
-            for cutoff in [
-                2.0 * side / n as f64,
-                2.0 * grid.dx(),
-                side / (n / 2) as f64,
-            ] {
+            for cutoff in [2.0 * side / n as f64, 2.0 * grid.dx(), side / (n / 2) as f64] {
                 let amplitude = Amplitude::RmsHeight(1.0);
                 let at = SelfAffine::new(0.8, side, cutoff, amplitude, 1)?;
                 let longer = SelfAffine::new(0.8, side, cutoff * (1.0 + 1e-9), amplitude, 1)?;
@@ -142,10 +134,7 @@ fn a_cutoff_at_two_cells_is_inside_however_it_is_rounded() -> Result<(), Error> 
                 // Rounding of heights of order 1.
                 assert!((nyquist(&heights) - amplitude).abs() < 1e-14, "{n} {side}");
                 assert!(nyquist(&longer.heights(&grid)?) < 1e-14, "{n} {side}");
-                assert!(matches!(
-                    shorter.heights(&grid),
-                    Err(Error::CutoffBelowGrid { .. })
-                ));
+                assert!(matches!(shorter.heights(&grid), Err(Error::CutoffBelowGrid { .. })));
             }
         }
     }
@@ -249,10 +238,7 @@ fn seeds_differ() -> Result<(), Error> {
 fn bad_parameters_are_refused() {
     let unit = Amplitude::RmsHeight(1.0);
     for hurst in [0.0, -0.1, 1.0 + 1e-9, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            SelfAffine::new(hurst, 1.0, 0.1, unit, 0),
-            Err(Error::OutOfRange { .. })
-        ));
+        assert!(matches!(SelfAffine::new(hurst, 1.0, 0.1, unit, 0), Err(Error::OutOfRange { .. })));
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         for surface in [
@@ -266,10 +252,7 @@ fn bad_parameters_are_refused() {
             assert!(matches!(surface, Err(Error::NotPositive { .. })));
         }
     }
-    assert!(matches!(
-        SelfAffine::new(0.8, 1.0, 1.1, unit, 0),
-        Err(Error::OutOfRange { .. })
-    ));
+    assert!(matches!(SelfAffine::new(0.8, 1.0, 1.1, unit, 0), Err(Error::OutOfRange { .. })));
     assert!(matches!(
         SelfAffine::zhang2020(0).with_long_cutoff_wavelength(2.4e-3),
         Err(Error::OutOfRange { .. })
@@ -279,20 +262,11 @@ fn bad_parameters_are_refused() {
 #[test]
 fn grids_that_cannot_carry_the_surface_are_refused() -> Result<(), Error> {
     let table = SelfAffine::zhang2020(0);
-    assert!(matches!(
-        table.heights(&Grid::square(255, 1e-2)?),
-        Err(Error::CutoffBelowGrid { .. })
-    ));
+    assert!(matches!(table.heights(&Grid::square(255, 1e-2)?), Err(Error::CutoffBelowGrid { .. })));
     assert!(table.heights(&Grid::with_sides(256, 1, 1e-2, 1.0)?).is_ok());
     // Too small for any wave in the band.
-    assert!(matches!(
-        table.heights(&Grid::square(64, 5e-5)?),
-        Err(Error::NoWaves { .. })
-    ));
-    assert!(matches!(
-        table.heights(&Grid::square(1, 1.0)?),
-        Err(Error::NoWaves { .. })
-    ));
+    assert!(matches!(table.heights(&Grid::square(64, 5e-5)?), Err(Error::NoWaves { .. })));
+    assert!(matches!(table.heights(&Grid::square(1, 1.0)?), Err(Error::NoWaves { .. })));
     // Between the waves of 1/9 and 1/8 of the side.
     let narrow = SelfAffine::new(0.8, 0.12, 0.113, Amplitude::RmsHeight(1.0), 0)?
         .with_long_cutoff_wavelength(0.12)?;

@@ -29,8 +29,7 @@ impl Topography {
         let mut waves = self.waves().without_mean();
         waves.multiply(|qx, qy| 0.5 * e_star * libm::hypot(qx, qy));
         let pressure = waves.restore();
-        self.grid()
-            .check_finite("pressure of full contact", &pressure)?;
+        self.grid().check_finite("pressure of full contact", &pressure)?;
         Ok(pressure)
     }
 }

@@ -160,14 +160,7 @@ impl Topography {
         }
         add(&mut sums, &mut line);
         let [m00, m20, m02, m40, m22, m04] = sums;
-        SpectralMoments {
-            m00,
-            m20,
-            m02,
-            m40,
-            m22,
-            m04,
-        }
+        SpectralMoments { m00, m20, m02, m40, m22, m04 }
     }
 
     /// Root mean square gradient of the trigonometric polynomial through the nodes of a periodic map, without unit:

@@ -68,9 +68,7 @@ impl RadialBins {
                 let edges = ((decades + 1.0) * *rings as f64).ceil().max(2.0);
                 let step = (last - first) / (edges - 1.0);
                 let exponents = (0..edges as usize).map(|k| first + k as f64 * step);
-                Ok(exponents
-                    .map(|exponent| libm::pow(10.0, exponent))
-                    .collect())
+                Ok(exponents.map(|exponent| libm::pow(10.0, exponent)).collect())
             }
             Self::Edges(edges) => {
                 // NaN is not greater than anything.

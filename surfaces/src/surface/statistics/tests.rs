@@ -26,13 +26,9 @@ fn close(found: f64, expected: f64) {
 #[test]
 fn moments_of_a_plane_wave() -> Result<(), Error> {
     let a = 2e-6;
-    for (nx, ny, k) in [
-        (40, 30, (3, -5)),
-        (41, 33, (0, 7)),
-        (35, 48, (17, 1)),
-        (64, 1, (9, 0)),
-        (1, 50, (0, 11)),
-    ] {
+    for (nx, ny, k) in
+        [(40, 30, (3, -5)), (41, 33, (0, 7)), (35, 48, (17, 1)), (64, 1, (9, 0)), (1, 50, (0, 11))]
+    {
         let (map, (qx, qy)) = wave(Grid::new(nx, ny, 1e-5, 1.5e-5)?, k, a)?;
         let m = map.spectral_moments();
         let half = 0.5 * a * a;
@@ -47,10 +43,7 @@ fn moments_of_a_plane_wave() -> Result<(), Error> {
             (m.m22(), (qx * qy).powi(2), q2 * q2),
             (m.m04(), qy.powi(4), q2 * q2),
         ] {
-            assert!(
-                (found - half * factor).abs() < 1e-11 * half * greatest,
-                "{nx} {ny}"
-            );
+            assert!((found - half * factor).abs() < 1e-11 * half * greatest, "{nx} {ny}");
         }
         close(m.m2(), 0.5 * half * q2);
         close(m.m4(), 0.375 * half * q2 * q2);
@@ -70,10 +63,7 @@ fn moments_of_generated_surfaces() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, 0.3, 0.06, Amplitude::RmsHeight(1e-6), 8)?;
     for (nx, ny) in [(64, 81), (75, 70)] {
         let grid = Grid::with_sides(nx, ny, 1.0, 1.2)?;
-        let (spectrum, map) = (
-            surface.spectrum(&grid)?,
-            Topography::sample(&surface, grid)?,
-        );
+        let (spectrum, map) = (surface.spectrum(&grid)?, Topography::sample(&surface, grid)?);
         let m = map.spectral_moments();
         close(m.rms_height(), spectrum.rms_height());
         close(m.rms_gradient(), spectrum.rms_gradient());
@@ -137,10 +127,7 @@ fn too_few_nodes_have_no_differences() -> Result<(), Error> {
 fn densities_of_generated_surfaces() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, 0.25, 0.05, Amplitude::RmsHeight(1e-6), 8)?;
     let grid = Grid::with_sides(96, 64, 1.5, 1.0)?;
-    let (spectrum, map) = (
-        surface.spectrum(&grid)?,
-        Topography::sample(&surface, grid)?,
-    );
+    let (spectrum, map) = (surface.spectrum(&grid)?, Topography::sample(&surface, grid)?);
     let bins = map.radial_psd(&RadialBins::PerDecade(2000))?;
     for bin in &bins {
         let expected = TAU * TAU * spectrum.psd(bin.wavevector);
@@ -148,30 +135,20 @@ fn densities_of_generated_surfaces() -> Result<(), Error> {
         // A ring spans 0.0012 of its wavevector, in which the density, of exponent 3.6, is curved: 3.6 × 4.6/24 of its
         // square. Rings with the roll-off in them differ by half of 3.6 × 0.0012, and beyond the cut-off there is rounding.
         let inside = (bin.wavevector * 0.05 / TAU - 1.0).abs() > 0.002;
-        let tolerance = if (bin.wavevector * 0.25 / TAU - 1.0).abs() > 0.002 {
-            2e-6
-        } else {
-            3e-3
-        };
+        let tolerance = if (bin.wavevector * 0.25 / TAU - 1.0).abs() > 0.002 { 2e-6 } else { 3e-3 };
         assert!(
             !inside || (bin.density - expected).abs() < tolerance * expected + 1e-25 * plateau,
             "{bin:?} {expected}"
         );
     }
     let square = 1e-12;
-    for bins in [
-        RadialBins::Linear,
-        RadialBins::PerDecade(1),
-        RadialBins::Edges(vec![1.0, 9.0, 200.0]),
-    ] {
+    for bins in
+        [RadialBins::Linear, RadialBins::PerDecade(1), RadialBins::Edges(vec![1.0, 9.0, 200.0])]
+    {
         let found = map.radial_psd(&bins)?;
         let sum: f64 = found.iter().map(|bin| bin.waves as f64 * bin.density).sum();
         close(sum / grid.nominal_area(), square);
-        assert!(
-            found
-                .windows(2)
-                .all(|pair| pair[0].wavevector < pair[1].wavevector)
-        );
+        assert!(found.windows(2).all(|pair| pair[0].wavevector < pair[1].wavevector));
     }
     Ok(())
 }
@@ -185,20 +162,11 @@ fn linear_rings_hold_their_waves() -> Result<(), Error> {
         // Points of the square lattice in the ring.
         let lattice =
             (-16..16).flat_map(|x| (-16..16).map(move |y| f64::from(x * x + y * y).sqrt()));
-        let distances: Vec<_> = lattice
-            .filter(|r| (r - f64::from(k)).abs() <= 0.5)
-            .collect();
+        let distances: Vec<_> = lattice.filter(|r| (r - f64::from(k)).abs() <= 0.5).collect();
         assert_eq!(bin.waves, distances.len(), "{k}");
-        close(
-            bin.wavevector,
-            TAU / 2.0 * distances.iter().sum::<f64>() / distances.len() as f64,
-        );
+        close(bin.wavevector, TAU / 2.0 * distances.iter().sum::<f64>() / distances.len() as f64);
         // Two waves of half the amplitude.
-        let expected = if k == 5 {
-            4.0 * 0.5 / distances.len() as f64
-        } else {
-            0.0
-        };
+        let expected = if k == 5 { 4.0 * 0.5 / distances.len() as f64 } else { 0.0 };
         assert!((bin.density - expected).abs() < 1e-15);
     }
     Ok(())
@@ -227,32 +195,16 @@ fn densities_of_profiles() -> Result<(), Error> {
                         parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
                     (re * re + im * im) * (side / n as f64).powi(2) / side
                 };
-                let mean = map_along_x
-                    .heights()
-                    .column_iter()
-                    .map(profile)
-                    .sum::<f64>()
+                let mean = map_along_x.heights().column_iter().map(profile).sum::<f64>()
                     / map_along_x.grid().ny() as f64;
-                assert!(
-                    (bin.density - mean).abs() < 1e-13,
-                    "{axis:?} {k} {bin:?} {mean}"
-                );
+                assert!((bin.density - mean).abs() < 1e-13, "{axis:?} {k} {bin:?} {mean}");
             }
             let sum: f64 = bins
                 .iter()
                 .zip(1..)
-                .map(|(bin, k)| {
-                    if 2 * k == n {
-                        bin.density
-                    } else {
-                        2.0 * bin.density
-                    }
-                })
+                .map(|(bin, k)| if 2 * k == n { bin.density } else { 2.0 * bin.density })
                 .sum();
-            let squares = map_along_x
-                .heights()
-                .column_iter()
-                .map(|profile| profile.variance());
+            let squares = map_along_x.heights().column_iter().map(|profile| profile.variance());
             let mean_square = squares.sum::<f64>() / map_along_x.grid().ny() as f64;
             // Sums of a few hundred squares below 1.
             assert!((sum / side - mean_square).abs() < 1e-13);
@@ -273,10 +225,7 @@ fn bins_that_are_none() -> Result<(), Error> {
         RadialBins::Edges(vec![f64::NAN]),
     ] {
         let refused = map.radial_psd(&bins);
-        assert!(
-            matches!(refused, Err(Error::OutOfRange { .. })),
-            "{bins:?} {refused:?}"
-        );
+        assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{bins:?} {refused:?}");
     }
     assert_eq!(map.radial_psd(&RadialBins::Edges(Vec::new()))?, Vec::new());
     for (nx, ny) in [(1, 1), (1, 2), (2, 2), (1, 7), (7, 1), (2, 300)] {
@@ -294,11 +243,9 @@ fn bandwidth_is_two_cells_to_the_side() -> Result<(), Error> {
         let flat = DMatrix::zeros(nx, ny);
         Ok(Topography::new(Grid::new(nx, ny, 0.5, 2.0)?, flat)?.bandwidth())
     };
-    for (shape, (shortest, longest)) in [
-        ((8, 4), (4.0, 8.0)),
-        ((8, 1), (1.0, 4.0)),
-        ((1, 8), (4.0, 16.0)),
-    ] {
+    for (shape, (shortest, longest)) in
+        [((8, 4), (4.0, 8.0)), ((8, 1), (1.0, 4.0)), ((1, 8), (4.0, 16.0))]
+    {
         let found = bandwidth(shape.0, shape.1)?;
         close(found.0, shortest);
         close(found.1, longest);
@@ -319,10 +266,7 @@ fn pressure_of_full_contact() -> Result<(), Error> {
     let rms = map.spectral_moments().rms_full_contact_pressure(e_star);
     close(rms, (expected.norm_squared() / 1800.0).sqrt());
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            map.full_contact_pressure(bad),
-            Err(Error::NotPositive { .. })
-        ));
+        assert!(matches!(map.full_contact_pressure(bad), Err(Error::NotPositive { .. })));
     }
     let overflow = map.scaled(1e300)?.full_contact_pressure(1e300);
     assert!(matches!(overflow, Err(Error::FieldNotFinite { .. })));

@@ -39,10 +39,7 @@ impl Topography {
     /// [`Error::GridMismatch`] if the shapes differ, and those of [`HeightMap::new`].
     pub fn new(grid: Grid, heights: DMatrix<f64>) -> Result<Self, Error> {
         grid.check_shape(heights.shape())?;
-        Ok(Self {
-            grid,
-            map: HeightMap::new(heights)?,
-        })
+        Ok(Self { grid, map: HeightMap::new(heights)? })
     }
 
     /// The heights of any surface on a grid.

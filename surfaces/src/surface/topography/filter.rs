@@ -70,13 +70,7 @@ impl Topography {
 fn sharp(heights: &DMatrix<f64>, mean: f64, grid: &Grid, cutoff: f64) -> DMatrix<f64> {
     let shortest = TAU / cutoff * (1.0 + SLACK);
     let mut waves = Waves::new(heights, mean, grid);
-    waves.multiply(|qx, qy| {
-        if libm::hypot(qx, qy) <= shortest {
-            1.0
-        } else {
-            0.0
-        }
-    });
+    waves.multiply(|qx, qy| if libm::hypot(qx, qy) <= shortest { 1.0 } else { 0.0 });
     waves.restore()
 }
 
@@ -101,10 +95,7 @@ fn gaussian_along_x(heights: &DMatrix<f64>, cutoff: f64) -> DMatrix<f64> {
         .collect();
     let padded = (nodes + reach).next_power_of_two();
     let mut planner = RealFftPlanner::new();
-    let (forward, inverse) = (
-        planner.plan_fft_forward(padded),
-        planner.plan_fft_inverse(padded),
-    );
+    let (forward, inverse) = (planner.plan_fft_forward(padded), planner.plan_fft_inverse(padded));
     let mut scratch =
         vec![Complex64::ZERO; forward.get_scratch_len().max(inverse.get_scratch_len())];
     let mut line = vec![0.0; padded];
@@ -119,10 +110,7 @@ fn gaussian_along_x(heights: &DMatrix<f64>, cutoff: f64) -> DMatrix<f64> {
     // Lengths are all that transforms could complain of, here and below, and they come from the plans.
     debug_assert!(done.is_ok(), "{done:?}");
     // Weights are even: the transfer function is real.
-    let transfer: Vec<_> = spectrum
-        .iter()
-        .map(|value| value.re / padded as f64)
-        .collect();
+    let transfer: Vec<_> = spectrum.iter().map(|value| value.re / padded as f64).collect();
     let sum = |i: usize| 1.0 + side[i.min(reach)] + side[(nodes - 1 - i).min(reach)];
 
     let mut filtered = heights.clone();

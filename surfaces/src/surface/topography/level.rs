@@ -106,11 +106,7 @@ impl Topography {
         fitted.slopes = (coefficient(1, 0) / dx, coefficient(0, 1) / dy);
         if trend == Trend::Quadratic {
             let (xx, yy) = (coefficient(2, 0), coefficient(0, 2));
-            let per_area = [
-                2.0 * xx / dx / dx,
-                coefficient(1, 1) / dx / dy,
-                2.0 * yy / dy / dy,
-            ];
+            let per_area = [2.0 * xx / dx / dx, coefficient(1, 1) / dx / dy, 2.0 * yy / dy / dy];
             fitted.curvatures = per_area.into();
             fitted.height -= xx * x.mean_square + yy * y.mean_square;
         }
@@ -152,11 +148,7 @@ impl Gram {
         let second = x.iter().map(|x| x * x - mean_square).collect();
         // Exactly 0 where there are too few nodes.
         let norms = [1.0, mean_square, mean_square * (n * n - 4.0) / 15.0];
-        Self {
-            values: [vec![1.0; nodes], x, second],
-            norms,
-            mean_square,
-        }
+        Self { values: [vec![1.0; nodes], x, second], norms, mean_square }
     }
 }
 
@@ -204,11 +196,7 @@ mod tests {
             close(xx, 6e-6 / lx / lx, 1e-5 / lx / lx);
             close(xy, -1.5e-6 / lx / ly, 1e-5 / lx / ly);
             close(yy, -4e-6 / ly / ly, 1e-5 / ly / ly);
-            close(
-                fitted.at(0.3 * lx, 0.8 * ly),
-                polynomial(0.3 * lx, 0.8 * ly),
-                1e-5,
-            );
+            close(fitted.at(0.3 * lx, 0.8 * ly), polynomial(0.3 * lx, 0.8 * ly), 1e-5);
             assert!(map.level(Trend::Quadratic)?.heights().amax() < 1e-18);
         }
         Ok(())

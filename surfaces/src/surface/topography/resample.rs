@@ -59,19 +59,15 @@ fn fourier_along_x(heights: &DMatrix<f64>, nodes: usize) -> DMatrix<f64> {
         return heights.clone();
     }
     let mut planner = RealFftPlanner::new();
-    let (forward, inverse) = (
-        planner.plan_fft_forward(old),
-        planner.plan_fft_inverse(nodes),
-    );
+    let (forward, inverse) = (planner.plan_fft_forward(old), planner.plan_fft_inverse(nodes));
     let mut line = forward.make_input_vec();
     let (mut spectrum, mut resampled) = (forward.make_output_vec(), inverse.make_input_vec());
     let mut scratch = forward.make_scratch_vec();
     let mut inverse_scratch = inverse.make_scratch_vec();
     // Node 0 moves from half an old cell to half a new one.
     let shift = |k: usize| PI * k as f64 * (1.0 / nodes as f64 - 1.0 / old as f64);
-    let factors: Vec<_> = (0..=old.min(nodes) / 2)
-        .map(|k| Complex64::cis(shift(k)) / old as f64)
-        .collect();
+    let factors: Vec<_> =
+        (0..=old.min(nodes) / 2).map(|k| Complex64::cis(shift(k)) / old as f64).collect();
     let mut result = DMatrix::zeros(nodes, heights.ncols());
     let columns = result.as_mut_slice().chunks_exact_mut(nodes);
     for (column, source) in columns.zip(heights.as_slice().chunks_exact(old)) {
@@ -80,11 +76,8 @@ fn fourier_along_x(heights: &DMatrix<f64>, nodes: usize) -> DMatrix<f64> {
         // Lengths are all it could complain of, and they come from the plan.
         debug_assert!(done.is_ok(), "{done:?}");
         resampled.fill(Complex64::ZERO);
-        for (k, ((to, from), factor)) in resampled
-            .iter_mut()
-            .zip(&spectrum)
-            .zip(&factors)
-            .enumerate()
+        for (k, ((to, from), factor)) in
+            resampled.iter_mut().zip(&spectrum).zip(&factors).enumerate()
         {
             let wave = from * factor;
             *to = if 2 * k == old {
@@ -167,14 +160,10 @@ mod tests {
     #[test]
     fn waves_too_short_for_the_new_nodes_are_left_out() -> Result<(), Error> {
         let wave = |nodes: usize, k: f64| {
-            DMatrix::from_fn(nodes, 3, |ix, _| {
-                (TAU * k * (ix as f64 + 0.5) / nodes as f64).cos()
-            })
+            DMatrix::from_fn(nodes, 3, |ix, _| (TAU * k * (ix as f64 + 0.5) / nodes as f64).cos())
         };
-        let map = Topography::new(
-            Grid::with_sides(40, 3, 1.0, 1.0)?,
-            wave(40, 3.0) + wave(40, 11.0),
-        )?;
+        let map =
+            Topography::new(Grid::with_sides(40, 3, 1.0, 1.0)?, wave(40, 3.0) + wave(40, 11.0))?;
         let coarse = map.resample(21, 3, Interpolation::Fourier)?;
         // Rounding of angles up to 70.
         assert!((coarse.heights() - wave(21, 3.0)).amax() < 1e-13);

@@ -22,29 +22,20 @@ impl Topography {
         let iy = within('y', &iy, self.grid.ny())?;
         let grid = Grid::new(ix.len(), iy.len(), self.grid.dx(), self.grid.dy())?;
         let piece = self.heights().view((ix.start, iy.start), grid.shape());
-        Ok(Self {
-            grid,
-            map: HeightMap::of_finite(piece.into_owned()),
-        })
+        Ok(Self { grid, map: HeightMap::of_finite(piece.into_owned()) })
     }
 
     /// The same surface seen from below: −h. Peaks become valleys.
     #[must_use]
     pub fn invert(&self) -> Self {
-        Self {
-            grid: self.grid,
-            map: HeightMap::of_finite(-self.heights()),
-        }
+        Self { grid: self.grid, map: HeightMap::of_finite(-self.heights()) }
     }
 
     /// The map with x and y exchanged, cell included: what turns an image `[row, column]` into
     /// `[(ix, iy)]`.
     #[must_use]
     pub fn transpose(&self) -> Self {
-        Self {
-            grid: self.grid.transposed(),
-            map: HeightMap::of_finite(self.heights().transpose()),
-        }
+        Self { grid: self.grid.transposed(), map: HeightMap::of_finite(self.heights().transpose()) }
     }
 
     /// The mirror image in which the order of the nodes along `axis` is reversed.
@@ -56,10 +47,7 @@ impl Topography {
             Axis::X => (0..nx / 2).for_each(|ix| heights.swap_rows(ix, nx - 1 - ix)),
             Axis::Y => (0..ny / 2).for_each(|iy| heights.swap_columns(iy, ny - 1 - iy)),
         }
-        Self {
-            grid: self.grid,
-            map: HeightMap::of_finite(heights),
-        }
+        Self { grid: self.grid, map: HeightMap::of_finite(heights) }
     }
 
     /// Heights multiplied by `factor`, which may be negative or 0.
@@ -91,12 +79,7 @@ fn within(
         Bound::Unbounded => nodes,
     };
     if end > nodes || start > nodes {
-        return Err(Error::CropOutOfGrid {
-            axis,
-            start,
-            end,
-            nodes,
-        });
+        return Err(Error::CropOutOfGrid { axis, start, end, nodes });
     }
     Ok(start..end.max(start))
 }
@@ -125,30 +108,14 @@ mod tests {
     #[expect(clippy::reversed_empty_ranges, reason = "a user may give one")]
     fn pieces_that_are_none() -> Result<(), Error> {
         let map = map()?;
-        for refused in [
-            map.crop(0..3, ..),
-            map.crop(3.., ..),
-            map.crop(..=usize::MAX, ..),
-        ] {
-            let told = matches!(
-                refused,
-                Err(Error::CropOutOfGrid {
-                    axis: 'x',
-                    nodes: 2,
-                    ..
-                })
-            );
+        for refused in [map.crop(0..3, ..), map.crop(3.., ..), map.crop(..=usize::MAX, ..)] {
+            let told = matches!(refused, Err(Error::CropOutOfGrid { axis: 'x', nodes: 2, .. }));
             assert!(told, "{refused:?}");
         }
         let beyond = map.crop(.., 1..4);
         assert!(matches!(
             beyond,
-            Err(Error::CropOutOfGrid {
-                axis: 'y',
-                start: 1,
-                end: 4,
-                nodes: 3
-            })
+            Err(Error::CropOutOfGrid { axis: 'y', start: 1, end: 4, nodes: 3 })
         ));
         for empty in [map.crop(1..1, ..), map.crop(.., 2..1), map.crop(2.., ..)] {
             assert!(matches!(empty, Err(Error::EmptyGrid { .. })), "{empty:?}");
@@ -159,27 +126,15 @@ mod tests {
     #[test]
     fn mirror_images_and_multiples() -> Result<(), Error> {
         let map = map()?;
-        assert_eq!(
-            *map.flip(Axis::X).heights(),
-            dmatrix![4.0, 5.0, 6.0; 1.0, 2.0, 3.0]
-        );
-        assert_eq!(
-            *map.flip(Axis::Y).heights(),
-            dmatrix![3.0, 2.0, 1.0; 6.0, 5.0, 4.0]
-        );
+        assert_eq!(*map.flip(Axis::X).heights(), dmatrix![4.0, 5.0, 6.0; 1.0, 2.0, 3.0]);
+        assert_eq!(*map.flip(Axis::Y).heights(), dmatrix![3.0, 2.0, 1.0; 6.0, 5.0, 4.0]);
         let transposed = map.transpose();
-        assert_eq!(
-            *transposed.heights(),
-            dmatrix![1.0, 4.0; 2.0, 5.0; 3.0, 6.0]
-        );
+        assert_eq!(*transposed.heights(), dmatrix![1.0, 4.0; 2.0, 5.0; 3.0, 6.0]);
         assert_eq!(*transposed.grid(), Grid::new(3, 2, 2e-3, 1e-3)?);
         assert_eq!(transposed.transpose(), map);
         assert_eq!(map.invert(), map.scaled(-1.0)?);
         // A topography is a surface on its own grid.
-        assert_eq!(
-            Surface::heights(&map.scaled(2.0)?, map.grid())?,
-            2.0 * map.heights()
-        );
+        assert_eq!(Surface::heights(&map.scaled(2.0)?, map.grid())?, 2.0 * map.heights());
         Ok(())
     }
 
@@ -189,15 +144,7 @@ mod tests {
             assert!(matches!(map()?.scaled(bad), Err(Error::OutOfRange { .. })));
         }
         let overflow = map()?.scaled(1e308);
-        assert!(matches!(
-            overflow,
-            Err(Error::HeightNotFinite {
-                count: 5,
-                ix: 1,
-                iy: 0,
-                ..
-            })
-        ));
+        assert!(matches!(overflow, Err(Error::HeightNotFinite { count: 5, ix: 1, iy: 0, .. })));
         Ok(())
     }
 }

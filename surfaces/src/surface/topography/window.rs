@@ -103,11 +103,7 @@ mod tests {
                 let expected = |i: usize| {
                     let t = (i as f64 + 0.5) / nodes as f64;
                     let end = t.min(1.0 - t);
-                    if 2.0 * end < tapered {
-                        (PI * end / tapered).sin().powi(2)
-                    } else {
-                        1.0
-                    }
+                    if 2.0 * end < tapered { (PI * end / tapered).sin().powi(2) } else { 1.0 }
                 };
                 let middle = nodes / 2;
                 for (i, weight) in weights.iter().enumerate() {

@@ -29,10 +29,7 @@ fn settle_all(
 
 /// Events with errors.
 fn before(pairs: &[(usize, f64)], errors: &[f64]) -> Settled {
-    Settled {
-        events: events(pairs),
-        errors: errors.to_vec(),
-    }
+    Settled { events: events(pairs), errors: errors.to_vec() }
 }
 
 /// A correction of pivots of 4.
@@ -51,13 +48,7 @@ fn settled(
     let window = alone(&[2, 4], &[[9.0, 0.5], [9.0, 1.0]]);
     let before = before(&[(0, times[0]), (1, times[1])], &errors);
     let joined = (&initial[..], &[0, 4, 2][..]);
-    let (run, settled) = settle_all(
-        joined,
-        &window,
-        &of_four(&window),
-        before,
-        (tolerance, true),
-    )?;
+    let (run, settled) = settle_all(joined, &window, &of_four(&window), before, (tolerance, true))?;
     let Some(settled) = settled else {
         unreachable!("two events are not contradicted");
     };
@@ -135,10 +126,7 @@ fn three_settled(
     let initial = [0.0, 9.0, first, 9.0, 3.03125, 9.0, 3.0625];
     let window = alone(&[2, 4, 6], &lines);
     let pairs = [(0, 2.0), (1, 2.0 + step), (2, 2.0 + 2.0 * step)];
-    let (before, joined) = (
-        before(&pairs, &[error; 3]),
-        (&initial[..], &[0, 2, 4, 6][..]),
-    );
+    let (before, joined) = (before(&pairs, &[error; 3]), (&initial[..], &[0, 2, 4, 6][..]));
     let (run, found) = settle_all(joined, &window, &of_four(&window), before, (1e-2, false))?;
     Ok((found, run.timings.ties))
 }

@@ -104,10 +104,7 @@ pub(super) fn growths(run: &Run) -> Result<[Fit; 3], Box<dyn Error>> {
 /// (W, K Sq/A₀E*) at evenly spaced loads from [`LEAST_LOAD`] to [`SMALL_LOAD`].
 pub(super) fn growth_loads(run: &Run) -> Vec<(f64, f64)> {
     let points = run.evenly(LEAST_LOAD, SMALL_LOAD, SAMPLES);
-    points
-        .iter()
-        .map(|p| (p.load, p.contact_stiffness))
-        .collect()
+    points.iter().map(|p| (p.load, p.contact_stiffness)).collect()
 }
 
 /// Their rms deviations over the rms K.
@@ -121,9 +118,7 @@ fn growth(run: &Run) -> Result<[f64; 3], Box<dyn Error>> {
 /// A/A₀ of the first state with 95 % of the stiffness of the punch.
 fn saturated_at(run: &Run, punch: f64) -> Option<f64> {
     let mut points = run.points.iter();
-    points
-        .find(|p| p.contact_stiffness >= SATURATED * punch)
-        .map(|p| p.area)
+    points.find(|p| p.contact_stiffness >= SATURATED * punch).map(|p| p.area)
 }
 
 /// The line through −δ/Sq at large loads.

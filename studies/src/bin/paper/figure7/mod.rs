@@ -40,11 +40,8 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
         for (index, run) in family.runs.iter().enumerate() {
             rows.extend(run.points.iter().map(|p| {
                 let numbers = [run.seed as f64, p.load, -p.approach, p.contact_stiffness];
-                [
-                    vec![family.rough.name().to_string()],
-                    numbers.map(|n| n.to_string()).to_vec(),
-                ]
-                .concat()
+                [vec![family.rough.name().to_string()], numbers.map(|n| n.to_string()).to_vec()]
+                    .concat()
             }));
             let name = if index == 0 { family.rough.name() } else { "" };
             let approach = run.points.iter().map(|p| (p.load, -p.approach));
@@ -73,48 +70,18 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure7, Failure> 
     small.push(Series::new("the paper's fit", PURPLE, Style::Line, paper));
     let (slope, intercept) = PAPER_LINE;
     let paper = [0.0, GREATEST_LOAD].map(|w| (w, LINE_UNIT * (intercept + slope * w)));
-    all.push(Series::new(
-        "the paper's line × 20",
-        PURPLE,
-        Style::Dashed,
-        paper,
-    ));
-    rest.push(Series::new(
-        "the paper's line × 20",
-        PURPLE,
-        Style::Dashed,
-        paper.map(less),
-    ));
+    all.push(Series::new("the paper's line × 20", PURPLE, Style::Dashed, paper));
+    rest.push(Series::new("the paper's line × 20", PURPLE, Style::Dashed, paper.map(less)));
     let punch = [(0.0, study.punch), (GREATEST_LOAD, study.punch)];
-    stiffness.push(Series::new(
-        "rigid square punch",
-        GREY,
-        Style::Dashed,
-        punch,
-    ));
+    stiffness.push(Series::new("rigid square punch", GREY, Style::Dashed, punch));
     let punch = [(1e-6, study.punch), (GREATEST_LOAD, study.punch)];
-    logarithmic.push(Series::new(
-        "rigid square punch",
-        GREY,
-        Style::Dashed,
-        punch,
-    ));
+    logarithmic.push(Series::new("rigid square punch", GREY, Style::Dashed, punch));
     write_csv(
         &directory.join("figure7.csv"),
-        &[
-            "surface",
-            "seed",
-            "load",
-            "approach_over_sq",
-            "contact_stiffness",
-        ],
+        &["surface", "seed", "load", "approach_over_sq", "contact_stiffness"],
         rows.into_iter(),
     )?;
-    let lowest = all
-        .iter()
-        .flat_map(|s| &s.points)
-        .map(|p| p.1)
-        .fold(0.0, f64::min);
+    let lowest = all.iter().flat_map(|s| &s.points).map(|p| p.1).fold(0.0, f64::min);
     let charts = [
         Chart {
             title: "Small loads, exponential fits (dashed)".to_string(),

@@ -35,10 +35,6 @@ pub(crate) fn figure4(report: &Report, prefix: &str) -> String {
          Colours of the maps are even in the logarithm of p/E\\*h′. If the pressure is greatest \
          at the border of the square, the cause is the finite punch on a free half-space, and not \
          roughness.",
-        picture(
-            prefix,
-            "figure4",
-            "Contact maps at four areas, coloured by pressure"
-        ),
+        picture(prefix, "figure4", "Contact maps at four areas, coloured by pressure"),
     )
 }

@@ -51,18 +51,12 @@ pub(crate) fn figure6(report: &Report, prefix: &str) -> String {
         .collect();
     let mut persson = String::new();
     for (index, area) in AREAS.iter().map(Some).chain([None]).enumerate() {
-        let at = area.map_or("at 0.1 A₀E\\*".to_string(), |area| {
-            format!("{:.1} %", 100.0 * area)
-        });
+        let at =
+            area.map_or("at 0.1 A₀E\\*".to_string(), |area| format!("{:.1} %", 100.0 * area));
         let _ = write!(persson, "| {at} |");
         for found in ratios {
             let [raw, corrected] = found.over_persson[index];
-            let _ = write!(
-                persson,
-                " {} | {} |",
-                raw.decimals(2),
-                corrected.decimals(2)
-            );
+            let _ = write!(persson, " {} | {} |", raw.decimals(2), corrected.decimals(2));
         }
         persson.push('\n');
     }

@@ -25,11 +25,7 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
          The value does not depend on roughness, so that there is no verdict on it.\n\n\
          **Growth at light loads.** For few asperities of a finite surface a power with the exponent 1/(1 + H) = 0.56 is \
          expected (Pastewka et al., arXiv 1210.4635).",
-        picture(
-            prefix,
-            "figure7",
-            "Approach and contact stiffness against load, with fits"
-        ),
+        picture(prefix, "figure7", "Approach and contact stiffness against load, with fits"),
         table(report),
         scientific(LARGE_LOAD, 1),
         signed(-1.0 / exact, 0),
@@ -62,27 +58,15 @@ fn table(report: &Report) -> String {
     }
     let unit = |spread: Spread| scaled(spread, 1.0 / LINE_UNIT);
     let (slope, intercept) = PAPER_LINE;
-    row("slope, u/20 Sq", &signed(slope, 2), &|f| {
-        unit(f.line[0]).decimals(2)
-    });
-    row("intercept, u/20 Sq", &signed(intercept, 2), &|f| {
-        unit(f.line[1]).decimals(3)
-    });
+    row("slope, u/20 Sq", &signed(slope, 2), &|f| unit(f.line[0]).decimals(2));
+    row("intercept, u/20 Sq", &signed(intercept, 2), &|f| unit(f.line[1]).decimals(3));
     row("slope, u/Sq", "–", &|f| f.line[0].decimals(1));
-    row("approach at 0.1 A₀E\\*, over Sq", "–", &|f| {
-        f.approach.decimals(2)
-    });
+    row("approach at 0.1 A₀E\\*, over Sq", "–", &|f| f.approach.decimals(2));
     let punch = report.study.punch;
-    row(
-        "K at 0.1 A₀E\\*, over the punch on this mesh",
-        "–",
-        &|f| scaled(f.stiffness, 1.0 / punch).decimals(4),
-    );
-    row(
-        "exponent of K ~ W^α, W from 10⁻⁴ to 10⁻³",
-        "–",
-        &|f| f.exponent.decimals(2),
-    );
+    row("K at 0.1 A₀E\\*, over the punch on this mesh", "–", &|f| {
+        scaled(f.stiffness, 1.0 / punch).decimals(4)
+    });
+    row("exponent of K ~ W^α, W from 10⁻⁴ to 10⁻³", "–", &|f| f.exponent.decimals(2));
     let tenth = report.study.families.iter().map(|family| {
         let share = family.at_area(0.1, |p| p.contact_stiffness / punch);
         share.decimals(3)

@@ -124,12 +124,9 @@ fn missing_values_have_many_names() -> TestResult {
         }
     }
     let expected = ((4, 2), vec![1.0, 2.0, MISSING, 4.0, 5.0, 6.0, 7.0, MISSING]);
-    for text in [
-        "1;2;;4\n5;6;7;\n",
-        "1,2,,4\n5,6,7,",
-        "1\t2\t\t4\n5\t6\t7\t\n",
-        "1 ;2; ;4\n5;6;7; \n",
-    ] {
+    for text in
+        ["1;2;;4\n5;6;7;\n", "1,2,,4\n5,6,7,", "1\t2\t\t4\n5\t6\t7\t\n", "1 ;2; ;4\n5;6;7; \n"]
+    {
         assert_eq!(numbers(text)?, expected, "{text:?}");
     }
     // A row, and a margin, of which nothing was measured.
@@ -184,37 +181,19 @@ fn factors_and_marks_of_other_headers_are_applied() -> TestResult {
     let grid = "ncols 4\nnrows 1\nxllcorner 12.5\ncellsize 30\nNODATA_value -9999\n1 -9999 3 4\n";
     let channel = parsed(grid)?;
     assert!(channel.values[1].is_nan() && channel.values[0] == 1.0);
-    assert_eq!(
-        (channel.cell, channel.lateral_unit),
-        (Some((30.0, 30.0)), None)
-    );
+    assert_eq!((channel.cell, channel.lateral_unit), (Some((30.0, 30.0)), None));
     Ok(())
 }
 
 #[test]
 fn defects_are_named_with_their_line() {
     for (text, expected) in [
-        (
-            "# a\n1 2 3 4\n\n5 6 7\n",
-            "line 4 has 3 numbers, but line 2 has 4",
-        ),
-        (
-            "1;2;3;4\n5;6;7;8;9\n",
-            "line 2 has 5 numbers, but line 1 has 4",
-        ),
+        ("# a\n1 2 3 4\n\n5 6 7\n", "line 4 has 3 numbers, but line 2 has 4"),
+        ("1;2;3;4\n5;6;7;8;9\n", "line 2 has 5 numbers, but line 1 has 4"),
         ("1 2 3 4\r\n5 6 x 8\r\n", "'x' in line 2 is no number"),
-        (
-            "1.000,5;2;3;4\n5;6;7;8\n",
-            "'1.000,5' in line 1 is no number",
-        ),
-        (
-            "1 2 3 4\n# Channel: b\n5 6 7 8\n",
-            "line 2 begins another map",
-        ),
-        (
-            "Dear reader,\nthere are no numbers here.\n",
-            "no line in it that consists",
-        ),
+        ("1.000,5;2;3;4\n5;6;7;8\n", "'1.000,5' in line 1 is no number"),
+        ("1 2 3 4\n# Channel: b\n5 6 7 8\n", "line 2 begins another map"),
+        ("Dear reader,\nthere are no numbers here.\n", "no line in it that consists"),
         ("", "no line in it that consists"),
         ("\u{feff}", "no line in it that consists"),
     ] {

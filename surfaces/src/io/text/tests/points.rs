@@ -9,12 +9,7 @@ fn a_list_of_points_is_read_in_any_order() -> TestResult {
     // z = 10 x + y on 3 x 2 nodes with spacings 2 and 5, one of them absent, one without height.
     let points = ["0 0 0", "2 0 20", "4 0 NaN", "0 5 5", "4 5 45"];
     let expected = [0.0, 20.0, MISSING, 5.0, MISSING, 45.0];
-    for order in [
-        [0, 1, 2, 3, 4],
-        [0, 3, 1, 2, 4],
-        [4, 3, 2, 1, 0],
-        [2, 0, 4, 1, 3],
-    ] {
+    for order in [[0, 1, 2, 3, 4], [0, 3, 1, 2, 4], [4, 3, 2, 1, 0], [2, 0, 4, 1, 3]] {
         let text: String = order.iter().map(|k| format!("{}\n", points[*k])).collect();
         let channel = parsed(&text)?;
         assert_eq!((channel.shape, channel.cell), ((3, 2), Some((2.0, 5.0))));
@@ -36,17 +31,9 @@ fn names_of_columns_tell_a_list_and_its_units() -> TestResult {
         ("# X [µm], Y [µm], Z [nm]", Some("µm"), Some("nm")),
         ("\"x (mm)\";\"y (mm)\";\"z (µm)\"", Some("mm"), Some("µm")),
         ("x_um,y_um,height_nm", Some("um"), Some("nm")),
-        (
-            "X Position in mm  Y Position in mm  Z in in",
-            Some("mm"),
-            Some("in"),
-        ),
+        ("X Position in mm  Y Position in mm  Z in in", Some("mm"), Some("in")),
         ("x/mm y/m z/m", None, Some("m")),
-        (
-            "# Channel: a\n# Lateral units: µm\n# Value units: nm",
-            Some("µm"),
-            Some("nm"),
-        ),
+        ("# Channel: a\n# Lateral units: µm\n# Value units: nm", Some("µm"), Some("nm")),
     ] {
         let channel = parsed(format!("{header}\n{points}"))?;
         assert_eq!(channel.shape, (2, 2), "{header}");
@@ -71,11 +58,8 @@ fn a_list_without_units_needs_both() -> TestResult {
     let one = heights.clone().read(&path);
     let both = heights.lateral_unit("mm".parse()?).read(&path);
     std::fs::remove_file(&path)?;
-    let message = |result: Result<_, Error>| {
-        result
-            .map(|_: MeasuredSurface| ())
-            .map_err(|e| e.to_string())
-    };
+    let message =
+        |result: Result<_, Error>| result.map(|_: MeasuredSurface| ()).map_err(|e| e.to_string());
     assert!(message(nothing).is_err_and(|text| text.contains("height_unit")));
     assert!(message(one).is_err_and(|text| text.contains("lateral_unit")));
     // A product with the unit rounds.
@@ -87,9 +71,7 @@ fn a_list_without_units_needs_both() -> TestResult {
 #[test]
 fn coordinates_may_be_rounded_but_not_scattered() -> TestResult {
     let list = |x: &dyn Fn(usize) -> String| -> String {
-        (0..60)
-            .map(|k| format!("{} {} {k}\n", x(k % 20), k / 20))
-            .collect()
+        (0..60).map(|k| format!("{} {} {k}\n", x(k % 20), k / 20)).collect()
     };
     // Thirds with five digits are 3e-5 off at most, with two 0.03.
     let fine = parsed(list(&|k| format!("{:.5}", k as f64 / 3.0)))?;
@@ -99,23 +81,14 @@ fn coordinates_may_be_rounded_but_not_scattered() -> TestResult {
     let dx = coarse.cell.ok_or("no cell")?.0;
     // The last coordinate, 6.33, is 0.0033 too small.
     assert!((dx * 19.0 - 6.33).abs() < 1e-14);
-    assert_refused(
-        list(&|k| format!("{:.1}", k as f64 / 3.0)),
-        "not evenly spaced",
-    );
+    assert_refused(list(&|k| format!("{:.1}", k as f64 / 3.0)), "not evenly spaced");
     assert_refused(
         list(&|k| (k * k).to_string()),
         "x is not evenly spaced: it has 20 different values",
     );
     // Coordinates of an encoder that trembles.
     let trembling: String = (0..60)
-        .map(|k| {
-            format!(
-                "{} {} {k}\n",
-                (k % 20) as f64 + 1e-4 * (k as f64).sin(),
-                k / 20
-            )
-        })
+        .map(|k| format!("{} {} {k}\n", (k % 20) as f64 + 1e-4 * (k as f64).sin(), k / 20))
         .collect();
     assert_eq!(parsed(&trembling)?.shape, (20, 3));
     Ok(())
@@ -124,14 +97,8 @@ fn coordinates_may_be_rounded_but_not_scattered() -> TestResult {
 #[test]
 fn what_is_no_grid_is_refused() {
     for (text, expected) in [
-        (
-            "0 0 1\n1 0 2\n0 1 3\n1 1 4\n1 1 5\n",
-            "point 5 at x = 1, y = 1 is not the first",
-        ),
-        (
-            "0 0 1\n0 1 2\n0 2 3\n0 3 4\n",
-            "all points have x = 0: a profile",
-        ),
+        ("0 0 1\n1 0 2\n0 1 3\n1 1 4\n1 1 5\n", "point 5 at x = 1, y = 1 is not the first"),
+        ("0 0 1\n0 1 2\n0 2 3\n0 3 4\n", "all points have x = 0: a profile"),
         ("0 0 1\nNaN 0 2\n0 1 3\n1 1 4\n", "point 2 has no x"),
         ("1 2\n2 3\n3 4\n4 5\n", "are a profile"),
         ("1\n2\n3\n4\n", "are a profile"),
@@ -142,16 +109,10 @@ fn what_is_no_grid_is_refused() {
     // A diagonal of 100 points on 100 x 100 nodes, and one that no grid can hold.
     let diagonal =
         |count: usize| -> String { (0..count).map(|k| format!("{k} {k} 1\n")).collect() };
-    assert_refused(
-        diagonal(100),
-        "a grid of 100 x 100 nodes would be needed for the 100 points",
-    );
+    assert_refused(diagonal(100), "a grid of 100 x 100 nodes would be needed for the 100 points");
     assert_refused(diagonal(40_000), "more than 32768 different values");
     let two = parsed_as("two.xyz", "1 2\n3 4\n").map_err(|error| error.to_string());
     assert!(two.is_err_and(|text| text.contains("has three columns")));
     let extreme = parsed_as("test.xyz", "-1e308 0 1\n1e308 0 1\n0 1 1\n5e-324 1 1\n");
-    assert!(matches!(
-        extreme,
-        Err(Error::File(FileError::BadFile { .. }))
-    ));
+    assert!(matches!(extreme, Err(Error::File(FileError::BadFile { .. }))));
 }

@@ -24,18 +24,11 @@ impl InverseFft {
         let twiddles = (0..n)
             .map(|k| {
                 // Between -1/2 and 1/2 turn, where the quotient is rounded least.
-                let signed = if 2 * k > n {
-                    k as f64 - n as f64
-                } else {
-                    k as f64
-                };
+                let signed = if 2 * k > n { k as f64 - n as f64 } else { k as f64 };
                 turns::cis(signed / n as f64)
             })
             .collect();
-        Self {
-            factors: factors(n),
-            twiddles,
-        }
+        Self { factors: factors(n), twiddles }
     }
 
     /// Transforms `input` into `output`, both of length n. `scratch` is resized as needed.
@@ -45,10 +38,7 @@ impl InverseFft {
         output: &mut [Complex64],
         scratch: &mut Vec<Complex64>,
     ) {
-        scratch.resize(
-            self.factors.iter().copied().max().unwrap_or(1),
-            Complex64::ZERO,
-        );
+        scratch.resize(self.factors.iter().copied().max().unwrap_or(1), Complex64::ZERO);
         self.recurse(input, 1, output, &self.factors, scratch);
     }
 
@@ -167,9 +157,8 @@ mod tests {
         let mut planner = FftPlanner::new();
         let mut scratch = Vec::new();
         for n in (1..=130).chain([251, 256, 360, 1000, 1009, 1024, 2048, 2310]) {
-            let input: Vec<_> = (0..n)
-                .map(|k| turns::cis(0.618_033_988_749_9 * (k * k) as f64))
-                .collect();
+            let input: Vec<_> =
+                (0..n).map(|k| turns::cis(0.618_033_988_749_9 * (k * k) as f64)).collect();
             let mut expected = input.clone();
             planner.plan_fft_inverse(n).process(&mut expected);
             let mut output = vec![Complex64::ZERO; n];

@@ -59,18 +59,11 @@ fn products(values: &DMatrix<f64>, a: i64, b: i64) -> f64 {
     let across = b.unsigned_abs() as usize;
     let mut sum = 0.0;
     for column in 0..columns.saturating_sub(across) {
-        let (first, second) = if b < 0 {
-            (column + across, column)
-        } else {
-            (column, column + across)
-        };
+        let (first, second) =
+            if b < 0 { (column + across, column) } else { (column, column + across) };
         let line = |column: usize| &values.as_slice()[column * rows..(column + 1) * rows];
         let later = line(second).iter().skip(shift);
-        sum += line(first)
-            .iter()
-            .zip(later)
-            .map(|(x, y)| x * y)
-            .sum::<f64>();
+        sum += line(first).iter().zip(later).map(|(x, y)| x * y).sum::<f64>();
     }
     sum
 }

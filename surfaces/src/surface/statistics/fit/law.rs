@@ -155,20 +155,12 @@ impl Line {
                 return Ok(line);
             }
         }
-        Err(Error::NoConvergence {
-            residual: change,
-            tolerance: 1e-11,
-            iterations: STEPS,
-        })
+        Err(Error::NoConvergence { residual: change, tolerance: 1e-11, iterations: STEPS })
     }
 
     /// The power law through the mean logarithms.
     fn first_guess(rings: &[Ring], rolloff: f64) -> Self {
-        let line = Self {
-            rolloff,
-            parameters: Vector2::zeros(),
-            misfit: 0.0,
-        };
+        let line = Self { rolloff, parameters: Vector2::zeros(), misfit: 0.0 };
         let mut matrix = Matrix2::zeros();
         let mut right_side = Vector2::zeros();
         for ring in rings.iter().filter(|ring| ring.density > 0.0) {
@@ -182,11 +174,7 @@ impl Line {
 
     /// The same roll-off with other parameters.
     fn at(&self, rings: &[Ring], parameters: Vector2<f64>) -> Self {
-        let mut line = Self {
-            rolloff: self.rolloff,
-            parameters,
-            misfit: 0.0,
-        };
+        let mut line = Self { rolloff: self.rolloff, parameters, misfit: 0.0 };
         let terms = rings.iter().map(|ring| {
             let logarithm = parameters.dot(&line.direction(ring));
             ring.weight * (ring.density / libm::exp(logarithm) + logarithm)
@@ -240,10 +228,7 @@ impl Line {
             exponent,
             rolloff: self.rolloff,
             dispersion,
-            errors: Errors {
-                exponent: error(1),
-                rolloff: bent.then(|| error(2)),
-            },
+            errors: Errors { exponent: error(1), rolloff: bent.then(|| error(2)) },
         })
     }
 }

@@ -115,27 +115,18 @@ impl Topography {
         let bins = self.radial_psd(&RadialBins::PerDecade(RINGS_PER_DECADE))?;
         let limit = greatest_wavevector(self);
         // The last ring reaches into wavevectors that not all directions have.
-        let bins: Vec<_> = bins
-            .into_iter()
-            .filter(|bin| bin.wavevector <= limit * (1.0 + 1e-12))
-            .collect();
+        let bins: Vec<_> =
+            bins.into_iter().filter(|bin| bin.wavevector <= limit * (1.0 + 1e-12)).collect();
         let greatest = bins.iter().map(|bin| bin.density).fold(0.0, f64::max);
-        let first = bins
-            .iter()
-            .position(|bin| bin.density > NO_POWER * greatest);
-        let too_few = |found: usize| Error::TooFewWaves {
-            found,
-            needed: FEWEST_RINGS,
-        };
+        let first = bins.iter().position(|bin| bin.density > NO_POWER * greatest);
+        let too_few = |found: usize| Error::TooFewWaves { found, needed: FEWEST_RINGS };
         let Some(first) = first else {
             return Err(too_few(0));
         };
         let bins_with_power = &bins[first..];
         let fall = Fall::of(bins_with_power);
         let intact = fall.map_or(f64::INFINITY, |fall| fall.intact(bins_with_power));
-        let band = bins_with_power
-            .iter()
-            .take_while(|bin| bin.wavevector < intact);
+        let band = bins_with_power.iter().take_while(|bin| bin.wavevector < intact);
         let rings: Vec<_> = band
             .map(|bin| Ring {
                 x: libm::log(bin.wavevector),
@@ -148,10 +139,7 @@ impl Topography {
         }
         let law = fit(&rings)?;
         let unit = greatest / self.grid().nominal_area();
-        let among = (
-            bins_with_power[0].wavevector,
-            bins_with_power[rings.len() - 1].wavevector,
-        );
+        let among = (bins_with_power[0].wavevector, bins_with_power[rings.len() - 1].wavevector);
         let variance =
             dependence::variance(&self.waves(), among, |q| unit * law.density(libm::log(q)));
         // The root of what a mean over independent waves is to be multiplied by.
@@ -170,10 +158,7 @@ impl Topography {
             },
             rolloff_wavelength: law.errors.rolloff.map(|error| {
                 let value = TAU / libm::exp(law.rolloff);
-                Estimate {
-                    value,
-                    standard_error: dependence * error * value,
-                }
+                Estimate { value, standard_error: dependence * error * value }
             }),
             short_cutoff_wavelength: short,
             long_cutoff_wavelength: long,
@@ -232,17 +217,9 @@ fn fall(bins: &[SpectralBin], ring: usize) -> f64 {
         return 0.0;
     };
     let reach = libm::exp(REACH);
-    let below = mean(
-        below
-            .iter()
-            .rev()
-            .take_while(|bin| bin.wavevector * reach >= last.wavevector),
-    );
-    let above = mean(
-        above
-            .iter()
-            .take_while(|bin| bin.wavevector <= next.wavevector * reach),
-    );
+    let below =
+        mean(below.iter().rev().take_while(|bin| bin.wavevector * reach >= last.wavevector));
+    let above = mean(above.iter().take_while(|bin| bin.wavevector <= next.wavevector * reach));
     match (below, above) {
         (Some(below), Some(above)) if below > 0.0 => below / above,
         _ => 0.0,

@@ -8,11 +8,9 @@ use crate::surface::{Amplitude, SelfAffine, Surface, Trend, Window};
 /// width of the rings, whatever the seed.
 #[test]
 fn exact_spectra_are_found() -> Result<(), Error> {
-    for (hurst, rolloff, cutoff, seed) in [
-        (0.8, 0.25, 0.03, 1),
-        (0.3, 0.125, 0.025, 2),
-        (1.0, 0.4, 0.1, 3),
-    ] {
+    for (hurst, rolloff, cutoff, seed) in
+        [(0.8, 0.25, 0.03, 1), (0.3, 0.125, 0.025, 2), (1.0, 0.4, 0.1, 3)]
+    {
         let surface = SelfAffine::new(hurst, rolloff, cutoff, Amplitude::RmsGradient(0.1), seed)?;
         let grid = Grid::with_sides(160, 128, 1.0, 0.9)?;
         let fitted = Topography::sample(&surface, grid)?.fit_self_affine()?;
@@ -41,25 +39,15 @@ fn spectra_without_rolloff_and_with_a_long_cutoff() -> Result<(), Error> {
     let grid = Grid::square(128, 1.0)?;
     let straight = SelfAffine::new(0.6, 1.0, 1.0 / 64.0, Amplitude::RmsHeight(1e-6), 4)?;
     let fitted = Topography::sample(&straight, grid)?.fit_self_affine()?;
-    assert_eq!(
-        (fitted.rolloff_wavelength, fitted.short_cutoff_wavelength),
-        (None, None)
-    );
+    assert_eq!((fitted.rolloff_wavelength, fitted.short_cutoff_wavelength), (None, None));
     assert!((fitted.hurst.value - 0.6).abs() < 1e-3, "{fitted:?}");
     let band = SelfAffine::new(0.6, 0.1, 0.03, Amplitude::RmsHeight(1e-6), 4)?
         .with_long_cutoff_wavelength(0.21)?;
     let fitted = Topography::sample(&band, grid)?.fit_self_affine()?;
     let long = fitted.long_cutoff_wavelength;
     // Between the waves (4, 2) and (4, 3), of length 0.224 and 0.2.
-    assert!(
-        long.is_some_and(|long| (0.2..0.224).contains(&long.value)),
-        "{fitted:?}"
-    );
-    assert!(
-        fitted
-            .rolloff_wavelength
-            .is_some_and(|r| (r.value / 0.1 - 1.0).abs() < 5e-3)
-    );
+    assert!(long.is_some_and(|long| (0.2..0.224).contains(&long.value)), "{fitted:?}");
+    assert!(fitted.rolloff_wavelength.is_some_and(|r| (r.value / 0.1 - 1.0).abs() < 5e-3));
     Ok(())
 }
 
@@ -87,16 +75,10 @@ fn standard_errors_cover() -> Result<(), Error> {
             (covered + u32::from(error.abs() < 1.0), sum + error)
         };
         hurst = count(fitted.hurst, 0.7, hurst);
-        let found = fitted.rolloff_wavelength.ok_or(Error::TooFewWaves {
-            found: 0,
-            needed: 1,
-        })?;
+        let found = fitted.rolloff_wavelength.ok_or(Error::TooFewWaves { found: 0, needed: 1 })?;
         rolloff = count(found, 0.2, rolloff);
         let cutoff = fitted.short_cutoff_wavelength;
-        assert!(
-            cutoff.is_some_and(|c| (c.value / 0.04 - 1.0).abs() < 0.03),
-            "{fitted:?}"
-        );
+        assert!(cutoff.is_some_and(|c| (c.value / 0.04 - 1.0).abs() < 0.03), "{fitted:?}");
         // χ² of some 100 rings, over their number.
         assert!((fitted.dispersion - 1.0).abs() < 0.7, "{fitted:?}");
     }
@@ -138,10 +120,7 @@ fn standard_errors_are_those_of_many_surfaces() -> Result<(), Error> {
         }
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         // Of 150 normal errors it has a standard deviation of 0.12.
-        assert!(
-            (0.64..1.44).contains(&mean),
-            "{mean} with {window:?} and {parts}"
-        );
+        assert!((0.64..1.44).contains(&mean), "{mean} with {window:?} and {parts}");
     }
     Ok(())
 }
@@ -151,14 +130,8 @@ fn standard_errors_are_those_of_many_surfaces() -> Result<(), Error> {
 fn a_window_shows_the_exponent_of_a_piece() -> Result<(), Error> {
     let surface = SelfAffine::new(0.8, 0.1, 1.0 / 128.0, Amplitude::RmsHeight(1.0), 9)?;
     let whole = Topography::sample(&surface, Grid::square(256, 1.0)?)?;
-    let fitted = whole
-        .crop(30..158, 50..178)?
-        .window(Window::Hann)?
-        .fit_self_affine()?;
-    assert!(
-        (fitted.hurst.value - 0.8).abs() < 2.0 * fitted.hurst.standard_error,
-        "{fitted:?}"
-    );
+    let fitted = whole.crop(30..158, 50..178)?.window(Window::Hann)?.fit_self_affine()?;
+    assert!((fitted.hurst.value - 0.8).abs() < 2.0 * fitted.hurst.standard_error, "{fitted:?}");
     Ok(())
 }
 
@@ -166,16 +139,10 @@ fn a_window_shows_the_exponent_of_a_piece() -> Result<(), Error> {
 fn maps_without_waves_are_refused() -> Result<(), Error> {
     for (nx, ny) in [(1, 1), (40, 40), (3, 3), (1, 9)] {
         let flat = Topography::new(Grid::new(nx, ny, 1.0, 1.0)?, DMatrix::zeros(nx, ny))?;
-        assert!(matches!(
-            flat.fit_self_affine(),
-            Err(Error::TooFewWaves { .. })
-        ));
+        assert!(matches!(flat.fit_self_affine(), Err(Error::TooFewWaves { .. })));
     }
     let noise = DMatrix::from_fn(4, 4, |ix, iy| ((ix + 4 * iy) as f64 * 0.618).fract());
     let small = Topography::new(Grid::square(4, 1.0)?, noise)?.fit_self_affine();
-    assert!(
-        matches!(small, Err(Error::TooFewWaves { needed: 8, .. })),
-        "{small:?}"
-    );
+    assert!(matches!(small, Err(Error::TooFewWaves { needed: 8, .. })), "{small:?}");
     Ok(())
 }
