@@ -48,13 +48,13 @@ mod unbounded {
 
 /// The lengths of a contact problem that do not depend on its state: see [`Certificate::length`].
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct LengthScale {
+pub(crate) struct ErrorLength {
     rms_height: f64,
     /// C(0, 0) over the number of nodes if the mean displacement is arbitrary, else zero.
     own_displacement: f64,
 }
 
-impl LengthScale {
+impl ErrorLength {
     /// Of a surface of this rms height on the half-space of `table`.
     pub(crate) fn new(rms_height: f64, table: &KernelTable) -> Self {
         let own = match (table.gauge(), table.computing_gauge()) {
@@ -86,7 +86,7 @@ pub(crate) struct Conditions {
 
 impl Conditions {
     /// For a state under pressures of the sum `sum` at an approach, on a problem with these lengths.
-    pub(crate) fn new(sum: f64, approach: f64, scale: LengthScale) -> Self {
+    pub(crate) fn new(sum: f64, approach: f64, scale: ErrorLength) -> Self {
         let lengths = [approach, scale.own_displacement(sum)];
         Self { sum, length: lengths.into_iter().fold(scale.rms_height(), f64::max) }
     }

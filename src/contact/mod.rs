@@ -10,7 +10,7 @@ mod state;
 mod target;
 
 pub use certificate::Certificate;
-pub(crate) use certificate::{Conditions, LengthScale};
+pub(crate) use certificate::{Conditions, ErrorLength};
 pub use sequence::ContactSequence;
 pub use state::ContactState;
 pub use target::ContactTarget;

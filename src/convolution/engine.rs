@@ -6,18 +6,11 @@ use num_complex::Complex;
 
 use super::real::Real;
 use super::transforms::{Transforms, Workspace};
-use super::transpose::{BLOCK, blocks, gather, interleave, pitch};
+use super::transpose::{blocks, gather, interleave, pitch};
+use super::tuning::{BLOCK, PARALLEL_NODES, PARTS};
 use crate::kernel::KernelTable;
 use crate::parallel::{for_each_block, inside};
 use crate::{Boundary, Error, Grid, KernelError};
-
-/// Parts into which the blocks of a large grid are divided, each with its own working memory.
-///
-/// It does not depend on the number of threads: they take parts as they become free.
-pub(super) const PARTS: usize = 32;
-
-/// Nodes from which threads are worth waking.
-pub(super) const PARALLEL_NODES: usize = 96 * 96;
 
 /// What a Fourier transform of a kernel errs by, relative to the greatest value: a few roundings.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;

@@ -44,6 +44,7 @@ mod size;
 mod tests;
 mod transforms;
 mod transpose;
+mod tuning;
 
 use std::fmt;
 

@@ -1,14 +1,6 @@
 //! Lengths for which the Fourier transform is fast.
 
-/// Prime factors with a fast butterfly, and the time each takes per point.
-///
-/// The times are relative to half that of a factor of two. They come from a least-squares fit to
-/// the times of all lengths up to 4200 with only these factors (rustfft 6.4 with AVX): 0.16, 0.31,
-/// 0.70, 0.78 and 0.90 ns per point.
-const FACTORS: [(usize, usize); 5] = [(2, 2), (3, 4), (5, 9), (7, 10), (11, 11)];
-
-/// What a point costs whatever the factors: it is filled, multiplied by the symbol and copied.
-const PER_POINT: usize = 2;
+use super::tuning::{FACTORS, PER_POINT};
 
 /// The cheapest transform length that is at least `minimum`.
 ///

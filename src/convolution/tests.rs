@@ -4,8 +4,7 @@ use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::engine::{PARALLEL_NODES, PARTS};
-use super::transpose::BLOCK;
+use super::tuning::{BLOCK, PARALLEL_NODES, PARTS};
 use super::{Convolution, direct_sum};
 use crate::kernel::KernelTable;
 use crate::{

@@ -9,11 +9,7 @@
 use num_complex::Complex;
 
 use super::real::Real;
-
-/// Lines stored and transposed together: eight complex numbers are two cache lines.
-///
-/// Blocks of 4 and of 16 took 10-30 % longer on grids of 512 × 512 and 1024 × 1024 nodes.
-pub(super) const BLOCK: usize = 8;
+use super::tuning::BLOCK;
 
 /// Number of blocks needed for so many lines.
 pub(super) fn blocks(lines: usize) -> usize {

@@ -3,28 +3,11 @@
 use super::descent::Descent;
 use super::iterate::{Criteria, Errors, Iterate, Progress};
 use super::level::{Level, Prescribed};
+use super::tuning::{
+    DEAD_BAND, INNER, LEAST_INNER, PATIENCE, STRICTER, STRICTEST, TIGHTENING, UNCONFIRMED,
+};
 use crate::Error;
 use crate::krylov::{dot, greatest, sum, sum_over};
-
-/// Inner iterations stop when the residual on the contact set is below this part of the worst
-/// error in the set itself.
-const INNER: f64 = 0.5;
-/// Where a round has not halved that error, long waves are wrong, which the next round must not
-/// leave to the one after it: it has to be so much more exact, down to the least part.
-const TIGHTENING: f64 = 0.25;
-const LEAST_INNER: f64 = 0.01;
-/// After so many answers that a fresh convolution does not confirm, the tolerance is below rounding.
-const UNCONFIRMED: usize = 10;
-/// Rounding, or tension that was cut off, can spoil an answer so that it is not confirmed: it is asked
-/// for again with this part of the tolerance, down to the least part.
-const STRICTER: f64 = 0.5;
-const STRICTEST: f64 = 0.125;
-/// Nodes join for overlaps above this part of the tolerance: what is smaller is rounding, and nodes
-/// would come and go without end.
-const DEAD_BAND: f64 = 0.1;
-/// Rounds without a smaller error in the set after which nodes join one by one. Where contact grows with the load that
-/// does not happen; on other bodies whole groups of nodes may come and go without end.
-const PATIENCE: usize = 20;
 
 /// The search for the nodes in contact on one grid.
 #[derive(Debug)]
@@ -137,7 +120,7 @@ impl<'a> ActiveSet<'a> {
             Prescribed::Sum(sum) => {
                 self.prefer_single_node(sum)?;
                 let iterate = &mut self.level.iterate;
-                iterate.approach = dot(&iterate.pressure, &iterate.closure) / sum;
+                iterate.approach = dot(&iterate.pressure, &iterate.total_gap) / sum;
             }
         }
         Ok(())
@@ -148,9 +131,9 @@ impl<'a> ActiveSet<'a> {
     fn prefer_single_node(&mut self, sum: f64) -> Result<(), Error> {
         let own = self.level.self_influence - self.level.uniform();
         let gap = &self.level.gap;
-        let Iterate { pressure, closure, .. } = &mut self.level.iterate;
+        let Iterate { pressure, total_gap, .. } = &mut self.level.iterate;
         let energy =
-            sum_over(pressure.len(), |i| pressure[i] / sum * (0.5 * (closure[i] + gap[i])));
+            sum_over(pressure.len(), |i| pressure[i] / sum * (0.5 * (total_gap[i] + gap[i])));
         let lower = |best: usize, node: usize| if gap[node] < gap[best] { node } else { best };
         let highest = (1..gap.len()).fold(0, lower);
         let alone = 0.5 * sum * own + gap[highest];
@@ -171,8 +154,8 @@ impl<'a> ActiveSet<'a> {
             return self.cautious_round(criteria, deepest);
         }
         // Nodes with pressure or overlap.
-        self.level.choose_contact(|node, pressure, closure| {
-            pressure[node] != 0.0 || closure[node] < deepest
+        self.level.choose_contact(|node, pressure, total_gap| {
+            pressure[node] != 0.0 || total_gap[node] < deepest
         })?;
         self.descend(criteria, |descent, progress| descent.run(inner, progress))
     }
@@ -181,13 +164,13 @@ impl<'a> ActiveSet<'a> {
     /// towards the new solution as far as none becomes negative. The energy falls with every change of the set, so
     /// that no set comes again (Nocedal and Wright, Numerical Optimization, 2006, 16.5).
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
-        let closure = &self.level.iterate.closure;
+        let total_gap = &self.level.iterate.total_gap;
         let pressure = &self.level.iterate.pressure;
         let lower = |best: Option<usize>, node: usize| match best {
-            Some(best) if closure[best] <= closure[node] => Some(best),
+            Some(best) if total_gap[best] <= total_gap[node] => Some(best),
             _ => Some(node),
         };
-        let overlapping = (0..closure.len()).filter(|&node| closure[node] < deepest);
+        let overlapping = (0..total_gap.len()).filter(|&node| total_gap[node] < deepest);
         let joining =
             overlapping.filter(|&node| self.is_solved && pressure[node] == 0.0).fold(None, lower);
         self.level
@@ -222,14 +205,14 @@ impl<'a> ActiveSet<'a> {
         if !(matches!(self.prescribed, Prescribed::Approach(_)) && self.level.gauge.is_some()) {
             return Ok(());
         }
-        let Iterate { pressure, closure, contact, .. } = &mut self.level.iterate;
-        if contact.len() < closure.len() {
+        let Iterate { pressure, total_gap, contact, .. } = &mut self.level.iterate;
+        if contact.len() < total_gap.len() {
             return Ok(());
         }
         let wider = |widest: usize, node: usize| {
-            if closure[node] > closure[widest] { node } else { widest }
+            if total_gap[node] > total_gap[widest] { node } else { widest }
         };
-        let widest = (1..closure.len()).fold(0, wider);
+        let widest = (1..total_gap.len()).fold(0, wider);
         pressure[widest] = 0.0;
         self.level.choose_contact(|node, _, _| node != widest)?;
         self.level.refresh()
@@ -248,21 +231,21 @@ impl<'a> ActiveSet<'a> {
             }
         }
         self.level.refresh()?;
-        let Iterate { pressure, closure, approach, .. } = &mut self.level.iterate;
-        let (pressure, closure) = (&*pressure, &*closure);
+        let Iterate { pressure, total_gap, approach, .. } = &mut self.level.iterate;
+        let (pressure, total_gap) = (&*pressure, &*total_gap);
         let carries = |node: usize| pressure[node] > 0.0;
         if let Prescribed::Sum(_) = self.prescribed {
             // The approach that makes the worst gap in contact smallest.
             let in_contact = |sign: f64| {
                 greatest(pressure.len(), f64::NEG_INFINITY, |node| {
-                    if carries(node) { sign * closure[node] } else { f64::NEG_INFINITY }
+                    if carries(node) { sign * total_gap[node] } else { f64::NEG_INFINITY }
                 })
             };
             let (highest, lowest) = (in_contact(1.0), -in_contact(-1.0));
             *approach = lowest + 0.5 * (highest - lowest);
         }
         let approach = *approach;
-        let gap = |node: usize| closure[node] - approach;
+        let gap = |node: usize| total_gap[node] - approach;
         Ok(Errors {
             residual: greatest(pressure.len(), 0.0, |node| {
                 if carries(node) { gap(node).abs() } else { 0.0 }

@@ -1,6 +1,6 @@
 //! What a solver may hold in memory.
 
-use super::settings::COARSEST;
+use super::tuning::COARSEST;
 use crate::convolution::Convolution;
 use crate::kernel::Blocks;
 use crate::krylov::Preconditioner;

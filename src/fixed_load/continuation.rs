@@ -2,12 +2,8 @@
 
 use super::level::Level;
 use super::tangent::Tangent;
+use super::tuning::GREATEST_STEP;
 use crate::krylov::{add_scaled, sum};
-
-/// Greatest change of the load, as a factor, for which the last state is a better start than the
-/// coarser grids. Those begin with an error of 3 % of the approach, a step of 7 % of the load with
-/// 0.8 % (512 × 512 nodes, 12 % in contact).
-const GREATEST_STEP: f64 = 1.25;
 
 /// What is known of a sequence of states besides the last one, which the level holds.
 #[derive(Debug, Clone, Default)]
@@ -64,7 +60,7 @@ impl Continuation {
         let now = sum(&iterate.pressure);
         let change = target - now;
         if !self.tangent.is_known() {
-            let (before, pressure, closure, approach) = match self.earlier.take() {
+            let (before, pressure, total_gap, approach) = match self.earlier.take() {
                 Some(earlier) if is_close(change, now - earlier.sum) => {
                     (earlier.sum, earlier.pressure, earlier.displacement, earlier.approach)
                 }
@@ -74,11 +70,11 @@ impl Continuation {
             self.earlier = Some(Earlier {
                 sum: now,
                 pressure: iterate.pressure.clone(),
-                displacement: iterate.closure.clone(),
+                displacement: iterate.total_gap.clone(),
                 approach: iterate.approach,
             });
             for (now, before) in
-                [(&mut iterate.pressure, &pressure), (&mut iterate.closure, &closure)]
+                [(&mut iterate.pressure, &pressure), (&mut iterate.total_gap, &total_gap)]
             {
                 extrapolate(now, before, factor);
             }
@@ -103,12 +99,12 @@ impl Continuation {
         {
             second = 0.5 * change * change / (now - earlier.sum);
             add_scaled(&mut iterate.pressure, -second, &earlier.pressure);
-            add_scaled(&mut iterate.closure, -second, &earlier.displacement);
+            add_scaled(&mut iterate.total_gap, -second, &earlier.displacement);
             iterate.approach -= second * earlier.approach;
         }
         let first = change + second;
         add_scaled(&mut iterate.pressure, first, &tangent.pressure);
-        add_scaled(&mut iterate.closure, first, &tangent.displacement);
+        add_scaled(&mut iterate.total_gap, first, &tangent.displacement);
         iterate.approach += first * tangent.approach;
         self.earlier = Some(tangent);
     }
@@ -154,12 +150,12 @@ mod tests {
             sign * 2.0 * self.curvature * sum + (1.0 + sign * 0.4) / NODES as f64
         }
 
-        fn closure(&self, node: usize, sum: f64) -> f64 {
+        fn total_gap(&self, node: usize, sum: f64) -> f64 {
             let node = node as f64;
             0.7 + node + sum * (0.2 + 0.1 * node) - self.curvature * node * sum * sum
         }
 
-        fn closure_rate(&self, node: usize, sum: f64) -> f64 {
+        fn total_gap_rate(&self, node: usize, sum: f64) -> f64 {
             let node = node as f64;
             0.2 + 0.1 * node - 2.0 * self.curvature * node * sum
         }
@@ -177,7 +173,7 @@ mod tests {
             let iterate = &mut level.iterate;
             for node in 0..NODES {
                 iterate.pressure[node] = self.pressure(node, sum);
-                iterate.closure[node] = self.closure(node, sum);
+                iterate.total_gap[node] = self.total_gap(node, sum);
             }
             iterate.approach = self.approach(sum);
         }
@@ -189,7 +185,7 @@ mod tests {
             Tangent {
                 rate: (nodes.clone()).map(|node| total * self.pressure_rate(node, sum)).collect(),
                 displacement: nodes
-                    .map(|node| total * (self.closure_rate(node, sum) + level.uniform()))
+                    .map(|node| total * (self.total_gap_rate(node, sum) + level.uniform()))
                     .collect(),
             }
         }
@@ -199,7 +195,7 @@ mod tests {
             let iterate = &level.iterate;
             let nodes = (0..NODES).map(|node| {
                 let pressure = (iterate.pressure[node] - self.pressure(node, sum)).abs();
-                pressure.max((iterate.closure[node] - self.closure(node, sum)).abs())
+                pressure.max((iterate.total_gap[node] - self.total_gap(node, sum)).abs())
             });
             nodes.fold((iterate.approach - self.approach(sum)).abs(), f64::max)
         }
@@ -252,9 +248,9 @@ mod tests {
                 for node in 0..NODES {
                     let gap = level.gap[node];
                     let pressure = factor * states.pressure(node, from);
-                    let closure = gap + factor * (states.closure(node, from) - gap);
+                    let total_gap = gap + factor * (states.total_gap(node, from) - gap);
                     assert!((level.iterate.pressure[node] - pressure).abs() < ROUNDING);
-                    assert!((level.iterate.closure[node] - closure).abs() < ROUNDING);
+                    assert!((level.iterate.total_gap[node] - total_gap).abs() < ROUNDING);
                 }
                 assert!((level.iterate.approach - factor * states.approach(from)).abs() < ROUNDING);
             };
@@ -300,10 +296,10 @@ mod tests {
                 for node in 0..NODES {
                     let pressure =
                         states.pressure(node, from) + change * states.pressure_rate(node, from);
-                    let closure =
-                        states.closure(node, from) + change * states.closure_rate(node, from);
+                    let total_gap =
+                        states.total_gap(node, from) + change * states.total_gap_rate(node, from);
                     assert!((level.iterate.pressure[node] - pressure).abs() < ROUNDING);
-                    assert!((level.iterate.closure[node] - closure).abs() < ROUNDING);
+                    assert!((level.iterate.total_gap[node] - total_gap).abs() < ROUNDING);
                 }
             }
         }

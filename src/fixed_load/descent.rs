@@ -3,11 +3,9 @@
 use super::iterate::{Criteria, Errors, Progress};
 use super::level::{Level, Prescribed};
 use super::release::release;
+use super::tuning::ROUNDINGS;
 use crate::Error;
 use crate::krylov::{Directions, NodeSet, add_scaled, dot, greatest, sum, sum_over};
-
-/// Residuals up to so many roundings of the approach are none.
-const ROUNDINGS: f64 = 4.0;
 
 /// The way down in energy on the contact set of a level, at whose nodes it keeps the fields.
 #[derive(Debug)]
@@ -16,7 +14,7 @@ pub(super) struct Descent<'a> {
     prescribed: Prescribed,
     criteria: Criteria,
     pressure: Vec<f64>,
-    closure: Vec<f64>,
+    total_gap: Vec<f64>,
     /// The preconditioner times the unit vector if the sum is prescribed, and its sum.
     weights: Vec<f64>,
     total_weight: f64,
@@ -25,17 +23,17 @@ pub(super) struct Descent<'a> {
 /// Where a descent began.
 struct Start {
     pressure: Vec<f64>,
-    closure: Vec<f64>,
+    total_gap: Vec<f64>,
     approach: f64,
 }
 
 impl<'a> Descent<'a> {
     /// From the present iterate of `level`.
     pub(super) fn new(level: &'a mut Level, prescribed: Prescribed, criteria: Criteria) -> Self {
-        let (mut pressure, mut closure) = (Vec::new(), Vec::new());
+        let (mut pressure, mut total_gap) = (Vec::new(), Vec::new());
         let contact = &level.iterate.contact;
         contact.gather(&level.iterate.pressure, &mut pressure);
-        contact.gather(&level.iterate.closure, &mut closure);
+        contact.gather(&level.iterate.total_gap, &mut total_gap);
         let mut weights = Vec::new();
         if let Prescribed::Sum(_) = prescribed {
             level.preconditioner.apply(&vec![1.0; contact.len()], &mut weights);
@@ -45,7 +43,7 @@ impl<'a> Descent<'a> {
             prescribed,
             criteria,
             pressure,
-            closure,
+            total_gap,
             total_weight: sum(&weights),
             weights,
         };
@@ -78,7 +76,7 @@ impl<'a> Descent<'a> {
     ) -> Result<Errors, Error> {
         let start = Start {
             pressure: self.pressure.clone(),
-            closure: self.closure.clone(),
+            total_gap: self.total_gap.clone(),
             approach: self.level.iterate.approach,
         };
         let errors = self.iterate(inner, progress)?;
@@ -133,15 +131,15 @@ impl<'a> Descent<'a> {
                 return Ok(errors);
             }
             let approach = self.level.iterate.approach;
-            for (r, g) in residual.iter_mut().zip(&self.closure) {
+            for (r, g) in residual.iter_mut().zip(&self.total_gap) {
                 *r = approach - g;
             }
             let Level { preconditioner, operator, iterate, .. } = &mut *self.level;
             preconditioner.apply(&residual, &mut z);
             let step = directions.advance(operator, &iterate.contact, &residual, &z)?;
             add_scaled(&mut self.pressure, step.length, step.values);
-            add_scaled(&mut self.closure, step.reach, step.image);
-            add_scaled(&mut iterate.closure, step.reach, step.everywhere);
+            add_scaled(&mut self.total_gap, step.reach, step.image);
+            add_scaled(&mut iterate.total_gap, step.reach, step.everywhere);
             self.level.iterate.approach = self.approach();
             progress.iterations += 1;
             errors = self.errors();
@@ -162,10 +160,10 @@ impl<'a> Descent<'a> {
         }
         if let Prescribed::Sum(_) = self.prescribed {
             // On the nodes that still carry.
-            let (x, closure) = (&self.pressure, &self.closure);
+            let (x, total_gap) = (&self.pressure, &self.total_gap);
             let carrying = |i: usize| if x[i] > 0.0 { self.weights[i] } else { 0.0 };
             self.level.iterate.approach =
-                sum_over(x.len(), |i| carrying(i) * closure[i]) / sum_over(x.len(), carrying);
+                sum_over(x.len(), |i| carrying(i) * total_gap[i]) / sum_over(x.len(), carrying);
         }
         Ok(())
     }
@@ -174,10 +172,10 @@ impl<'a> Descent<'a> {
     /// that of the solution.
     fn go_to_the_minimum(&mut self, start: &Start) -> Result<(), Error> {
         // Along the segment the energy is a parabola, known from its slopes.
-        let (x, closure) = (&self.pressure, &self.closure);
+        let (x, total_gap) = (&self.pressure, &self.total_gap);
         let change = |i: usize| x[i] - start.pressure[i];
-        let slope = sum_over(x.len(), |i| (start.closure[i] - start.approach) * change(i));
-        let curvature = sum_over(x.len(), |i| (closure[i] - start.closure[i]) * change(i));
+        let slope = sum_over(x.len(), |i| (start.total_gap[i] - start.approach) * change(i));
+        let curvature = sum_over(x.len(), |i| (total_gap[i] - start.total_gap[i]) * change(i));
         let minimum = -slope / curvature;
         if minimum > 0.0 && minimum < 0.5 {
             for (x, start) in self.pressure.iter_mut().zip(&start.pressure) {
@@ -194,7 +192,7 @@ impl<'a> Descent<'a> {
         iterate.contact.scatter(&self.pressure, &mut iterate.pressure);
         self.level.refresh()?;
         let iterate = &self.level.iterate;
-        iterate.contact.gather(&iterate.closure, &mut self.closure);
+        iterate.contact.gather(&iterate.total_gap, &mut self.total_gap);
         Ok(())
     }
 
@@ -202,7 +200,7 @@ impl<'a> Descent<'a> {
     fn approach(&self) -> f64 {
         match self.prescribed {
             Prescribed::Approach(approach) => approach,
-            Prescribed::Sum(_) => dot(&self.weights, &self.closure) / self.total_weight,
+            Prescribed::Sum(_) => dot(&self.weights, &self.total_gap) / self.total_weight,
         }
     }
 
@@ -213,12 +211,12 @@ impl<'a> Descent<'a> {
 
     /// The worst errors at present.
     fn errors(&self) -> Errors {
-        let (x, closure) = (&self.pressure, &self.closure);
+        let (x, total_gap) = (&self.pressure, &self.total_gap);
         let iterate = &self.level.iterate;
-        let (approach, all) = (iterate.approach, &iterate.closure);
+        let (approach, all) = (iterate.approach, &iterate.total_gap);
         let places = iterate.contact.places();
         Errors {
-            residual: greatest(x.len(), 0.0, |i| (approach - closure[i]).abs()),
+            residual: greatest(x.len(), 0.0, |i| (approach - total_gap[i]).abs()),
             overlap: greatest(all.len(), 0.0, |node| {
                 if places[node] == NodeSet::NONE { approach - all[node] } else { 0.0 }
             }),

@@ -4,17 +4,13 @@ use super::active_set::ActiveSet;
 use super::budget::MemoryBudget;
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
-use super::settings::{COARSEST, Settings};
+use super::settings::Settings;
+use super::tuning::{COARSE_RMS_HEIGHTS, COARSE_TOLERANCE, COARSEST};
 use crate::convolution::Convolution;
 use crate::kernel::Blocks;
 use crate::krylov::sum;
 use crate::parallel::inside;
 use crate::{Error, Problem};
-
-/// Tolerance on the coarser grids, whose solutions are only starts, relative to the approach ...
-const COARSE_TOLERANCE: f64 = 1e-2;
-/// ... or to so many rms heights: long waves that are wrong by more are costly on the finest grid.
-const COARSE_RMS_HEIGHTS: f64 = 10.0;
 
 /// The contact problem on the grid of the caller and on coarser ones.
 #[derive(Debug, Clone)]

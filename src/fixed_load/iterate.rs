@@ -1,5 +1,6 @@
 //! Approximate solutions: what they are, how good they are, and when they are good enough.
 
+use super::tuning::FINEST;
 use crate::krylov::{NodeSet, greatest};
 
 /// An approximate solution on one grid: pressure ≥ 0, with the target's sum if it is one.
@@ -7,13 +8,10 @@ use crate::krylov::{NodeSet, greatest};
 pub(super) struct Iterate {
     pub(super) pressure: Vec<f64>,
     /// Initial gap plus displacement, G = g + C p.
-    pub(super) closure: Vec<f64>,
+    pub(super) total_gap: Vec<f64>,
     pub(super) approach: f64,
     pub(super) contact: NodeSet,
 }
-
-/// Least unit of length of a tolerance, relative to the approach: a hundredth of it is still above rounding.
-const FINEST: f64 = 1e-12;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
@@ -47,7 +45,7 @@ impl Iterate {
     pub(super) fn new(nodes: usize) -> Self {
         Self {
             pressure: vec![0.0; nodes],
-            closure: vec![0.0; nodes],
+            total_gap: vec![0.0; nodes],
             approach: 0.0,
             contact: NodeSet::new(nodes),
         }
@@ -95,7 +93,7 @@ mod tests {
     #[test]
     fn bytes_are_those_of_the_fields() {
         let iterate = Iterate::new(100);
-        let fields = size_of_val(&iterate.pressure[..]) + size_of_val(&iterate.closure[..]);
+        let fields = size_of_val(&iterate.pressure[..]) + size_of_val(&iterate.total_gap[..]);
         assert_eq!(iterate.bytes(), fields + 100 * size_of::<u32>());
     }
 

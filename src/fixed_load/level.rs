@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::budget::MemoryBudget;
 use super::iterate::Iterate;
-use crate::contact::LengthScale;
+use crate::contact::ErrorLength;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::{Operator, Preconditioner, sum};
@@ -47,7 +47,7 @@ pub(super) struct Level {
     pub(super) gauge: Option<f64>,
     /// C(0, 0), in that gauge.
     pub(super) self_influence: f64,
-    pub(super) scale: LengthScale,
+    pub(super) scale: ErrorLength,
     pub(super) iterate: Iterate,
     memory: MemoryBudget,
 }
@@ -73,7 +73,7 @@ impl Level {
             preconditioner: Preconditioner::new(&own),
             gauge,
             self_influence: own.self_influence(),
-            scale: LengthScale::new(rms_height, table),
+            scale: ErrorLength::new(rms_height, table),
             iterate: Iterate::new(gap.len()),
             gap,
             memory,
@@ -104,10 +104,10 @@ impl Level {
 
     /// Computes the displacements of the present pressures afresh.
     pub(super) fn refresh(&mut self) -> Result<(), Error> {
-        let Iterate { pressure, closure, .. } = &mut self.iterate;
+        let Iterate { pressure, total_gap, .. } = &mut self.iterate;
         let displacement = self.operator.apply_field(pressure)?;
-        for ((closure, u), g) in closure.iter_mut().zip(displacement).zip(&self.gap) {
-            *closure = g + u;
+        for ((total_gap, u), g) in total_gap.iter_mut().zip(displacement).zip(&self.gap) {
+            *total_gap = g + u;
         }
         Ok(())
     }
@@ -132,8 +132,8 @@ impl Level {
         &mut self,
         is_in: impl Fn(usize, &[f64], &[f64]) -> bool,
     ) -> Result<(), Error> {
-        let Iterate { pressure, closure, contact, .. } = &mut self.iterate;
-        if !contact.assign(|node| is_in(node, pressure, closure)) {
+        let Iterate { pressure, total_gap, contact, .. } = &mut self.iterate;
+        if !contact.assign(|node| is_in(node, pressure, total_gap)) {
             return Ok(());
         }
         let fits = self.memory.check(contact.len());

@@ -78,6 +78,7 @@ mod solver;
 mod stepper;
 mod sweep;
 mod tangent;
+mod tuning;
 
 pub use builder::FixedLoadBuilder;
 pub use solution::{FixedLoadSolution, SolverEffort};

@@ -1,14 +1,8 @@
 //! Nodes with tension are set free, their neighbours corrected without a convolution.
 
 use super::level::Prescribed;
+use super::tuning::{ACCURACY, PASSES, STEPS};
 use crate::krylov::{SparseInverse, add_scaled, dot, sum};
-
-/// How often nodes that the correction of others has pulled into tension are set free as well.
-const PASSES: usize = 3;
-/// Steps of conjugate gradients for each correction, and their relative tolerance: it only has to
-/// be as good as the preconditioner.
-const STEPS: usize = 6;
-const ACCURACY: f64 = 0.03;
 
 /// Makes the pressures `x` of the contact set of the preconditioner M non-negative.
 ///

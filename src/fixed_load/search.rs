@@ -3,19 +3,9 @@
 use super::level::Level;
 use super::solution::FixedLoadSolution;
 use super::stepper::Stepper;
+use super::tuning::{LONGEST, MOST_STEPS, NARROWEST, ROUNDING, TYPICAL};
 use crate::Error;
 use crate::contact::{ContactState, ContactTarget};
-
-/// Steps after which to give up; bisection alone would halve the bracket so often.
-const MOST_STEPS: usize = 100;
-/// Longest step as the logarithm of a load, as long as there is a bound on one side only.
-const LONGEST: f64 = 1.5;
-/// A bracket of loads that is narrower, relative to the load, holds nothing more.
-const NARROWEST: f64 = 1e-13;
-/// Rounding of a mean gap, relative to the one without load: of gaps, displacements and their sum.
-const ROUNDING: f64 = 1e-14;
-/// Contact area fraction from which to look for a mean gap.
-const TYPICAL: f64 = 0.05;
 
 /// Contact at a target, from the last state of `stepper`.
 ///

@@ -2,9 +2,6 @@
 
 use crate::Error;
 
-/// Sides of at most so many nodes are not coarsened further.
-pub(super) const COARSEST: usize = 16;
-
 /// Settings of a solver.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Settings {

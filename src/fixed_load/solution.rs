@@ -99,10 +99,10 @@ impl FixedLoadSolution {
         let (nx, ny) = level.grid.shape();
         let nodes = level.grid.nodes();
         let cell_area = level.grid.cell_area();
-        let (approach, closure) = (level.iterate.approach, &level.iterate.closure);
+        let (approach, total_gap) = (level.iterate.approach, &level.iterate.total_gap);
         let pressure = DMatrix::from_column_slice(nx, ny, &level.iterate.pressure);
-        let gap = DMatrix::from_iterator(nx, ny, closure.iter().map(|c| c - approach));
-        let displacements = closure.iter().zip(&level.gap).map(|(c, g)| c - g);
+        let gap = DMatrix::from_iterator(nx, ny, total_gap.iter().map(|c| c - approach));
+        let displacements = total_gap.iter().zip(&level.gap).map(|(c, g)| c - g);
         let displacement = DMatrix::from_iterator(nx, ny, displacements);
         let contact_map = pressure.zip_map(&gap, |p, gap| p > 0.0 || gap <= 0.0);
 

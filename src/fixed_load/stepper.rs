@@ -47,8 +47,8 @@ impl<'a> Stepper<'a> {
         iterate.pressure.copy_from_slice(solution.pressure.as_slice());
         iterate.approach = solution.state.approach;
         let gaps = finest.gap.iter().zip(&solution.displacement);
-        for (closure, (gap, displacement)) in iterate.closure.iter_mut().zip(gaps) {
-            *closure = gap + displacement;
+        for (total_gap, (gap, displacement)) in iterate.total_gap.iter_mut().zip(gaps) {
+            *total_gap = gap + displacement;
         }
         let mut stepper = Self::new(settings, hierarchy);
         let tangent = Tangent::of(&mut stepper.hierarchy.finest, solution)?;

@@ -1,17 +1,9 @@
 //! Search directions of conjugate gradients, and the step along one.
 
+use super::tuning::{CHUNK, KEPT, MEMORY};
 use super::{NodeSet, Operator, add_scaled, dot, greatest};
 use crate::Error;
 use crate::parallel::for_each_chunk;
-
-/// Earlier directions to which a new one is made conjugate. One would do in exact arithmetic; with
-/// the second the iteration does not suffer from steps in single precision.
-const MEMORY: usize = 2;
-/// Directions that are kept if they are to serve another right-hand side: the first ones hold the long
-/// waves, which right-hand sides have in common.
-const KEPT: usize = 12;
-/// Values of a field that a thread changes at a time.
-const CHUNK: usize = 4096;
 
 /// A search direction, whose greatest value is 1, and the displacements that it causes, in units of the operator's.
 ///

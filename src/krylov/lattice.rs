@@ -5,11 +5,10 @@
 //! of the node indices. On a periodic grid a lattice goes on beyond the edge wherever its steps fit
 //! the period.
 
+use super::tuning::REACH;
 use crate::Boundary;
 use crate::kernel::KernelTable;
 
-/// Neighbours are looked for up to so many lattice steps along x and y.
-const REACH: isize = 16;
 /// Differences between two neighbours reach twice as far.
 const SPAN: isize = 2 * REACH;
 /// Distance of rows in the table of coefficients.

@@ -10,15 +10,18 @@ mod operator;
 mod pcg;
 mod preconditioner;
 mod sparse_inverse;
+mod tuning;
 mod vector;
 
 pub(crate) use cells::check_cells;
 pub(crate) use directions::Directions;
 pub(crate) use node_set::{Change, NodeSet};
 pub(crate) use operator::Operator;
-pub(crate) use pcg::{Equation, Field, LinearSystem};
 #[cfg(test)]
-pub(crate) use pcg::{SINGLE, worst};
+pub(crate) use pcg::worst;
+pub(crate) use pcg::{Equation, Field, LinearSystem};
 pub(crate) use preconditioner::Preconditioner;
 pub(crate) use sparse_inverse::SparseInverse;
+#[cfg(test)]
+pub(crate) use tuning::SINGLE;
 pub(crate) use vector::{Value, add_scaled, dot, greatest, sum, sum_over};

@@ -3,10 +3,8 @@
 use std::ops::Range;
 
 use super::Value;
+use super::tuning::CHUNK;
 use crate::parallel::for_each_chunk;
-
-/// Values that a thread takes at a time.
-const CHUNK: usize = 8192;
 
 /// A set of nodes in the order of their indices, and where each is among them.
 #[derive(Debug, Clone)]

@@ -1,15 +1,9 @@
 //! Preconditioned conjugate gradients for one linear system on a contact set, from a start and what is known of its
 //! displacements.
 
+use super::tuning::{MARGIN, SINGLE};
 use super::{Directions, NodeSet, Operator, Preconditioner, add_scaled, dot, greatest};
 use crate::Error;
-
-/// Error of a displacement in single precision, relative to the greatest, and to the noise that roundings of the spectrum
-/// come to. Those of several steps are independent of each other, and add up in the square.
-pub(crate) const SINGLE: f64 = 2e-7;
-/// Iterations go on to this part of the tolerance, and displacements are computed afresh once single precision
-/// may have spoilt as much of them: together they stay within it.
-const MARGIN: f64 = 0.5;
 
 /// Pressures of the grid and the displacements that they cause.
 #[derive(Debug, Clone, Default)]

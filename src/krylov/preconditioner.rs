@@ -12,8 +12,8 @@ use crate::kernel::KernelTable;
 ///
 /// symmetric and positive definite. V turns smooth displacements into spurious pressures everywhere,
 /// since the weights of each of its columns sum to less than one: long waves are taken from it, and
-/// solved for on hats.
-/// Where the grid or the contact is too small for hats, M = V.
+/// solved for on hat functions.
+/// Where the grid or the contact is too small for hat functions, M = V.
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     inverse: SparseInverse,
@@ -47,7 +47,7 @@ impl Preconditioner {
     pub(crate) fn apply(&mut self, r: &[f64], z: &mut Vec<f64>) {
         match &mut self.coarse {
             Some(coarse) if coarse.is_useful() => {
-                coarse.take_out(self.inverse.contact(), r, &mut self.rest);
+                coarse.project_out(self.inverse.contact(), r, &mut self.rest);
                 self.inverse.apply(&self.rest, z);
                 coarse.complete(self.inverse.contact(), z);
             }

@@ -4,39 +4,12 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use super::lattice::{Lattice, Lattices, Neighbour};
+use super::tuning::{
+    CHUNK, FEW, GROWTH, MANY, NEIGHBOURS, PARTS, SAME_INFLUENCE, SEARCH, SEARCHED,
+};
 use super::{Change, NodeSet, greatest};
 use crate::kernel::KernelTable;
 use crate::parallel::{for_each_block, for_each_chunk, vectorized};
-
-/// Neighbours on which a node conditions, chosen by time and not by count.
-///
-/// Without the coarse level of the preconditioner, with which there are fewer iterations: one cold solve to 1e-8 on
-/// a 512 × 512 self-affine surface (λ_s = 4 cells), at 3.4, 12.6 and 47 % contact: iterations for the pressure + for the stiffness, all convolutions, and seconds of one
-/// thread with everything (some 0.1 s of it synthesis of the surface).
-///
-/// |  k | 3.4 %               | 12.6 %              | 47 %                |
-/// |---:|---------------------|---------------------|---------------------|
-/// |  4 | 23 + 23, 55, 0.41 s | 34 + 30, 74, 0.67 s | 56 + 42, 111, 1.39 s |
-/// |  8 | 18 + 19, 46, 0.43 s | 25 + 25, 60, 0.62 s | 38 + 36, 85, 1.26 s |
-/// | 12 | 16 + 17, 41, 0.40 s | 24 + 23, 56, 0.60 s | 35 + 31, 77, 1.58 s |
-/// | 16 | 14 + 15, 37, 0.38 s | 21 + 21, 51, 0.66 s | 30 + 29, 69, 1.65 s |
-/// | 32 | 12 + 12, 32, 0.44 s | 17 + 17, 43, 0.99 s | 28 + 24, 62, 3.06 s |
-pub(crate) const NEIGHBOURS: usize = 8;
-
-/// Nodes in contact that a thread takes at a time, to look for neighbours and to copy values.
-const SEARCH: usize = 256;
-const CHUNK: usize = 4096;
-/// Nodes whose neighbours are looked for before their patterns are.
-const BLOCK: usize = 1 << 15;
-/// Parts of the grid whose rows are applied at the same time.
-const PARTS: usize = 8;
-/// If more than one node of so many changes, neighbours are looked for anew at all nodes; and if there
-/// are so many times as many patterns as when that was last done, and `FEW` more.
-const MANY: usize = 128;
-const GROWTH: usize = 2;
-const FEW: usize = 1024;
-/// Influences that differ by less may be the same, relative to C(0, 0).
-const TIE: f32 = 1e-5;
 
 /// ```math
 /// M = U U^T \approx C_{II}^{-1}
@@ -162,7 +135,7 @@ impl<const K: usize> SparseInverse<K> {
     fn choose(&mut self, contact: &NodeSet, nodes: &[u32]) {
         let (lattices, places) = (&self.lattices, contact.places());
         let mut found = Vec::new();
-        for nodes in nodes.chunks(BLOCK) {
+        for nodes in nodes.chunks(SEARCHED) {
             found.resize(nodes.len(), Found::NONE);
             for_each_chunk(&mut found, SEARCH, |chunk, found| {
                 for (found, &node) in found.iter_mut().zip(&nodes[chunk * SEARCH..]) {
@@ -313,7 +286,7 @@ impl<const K: usize> Pattern<K> {
         let found = &found.neighbours;
         self.steps = found.map(|neighbour| neighbour.node as i32);
         if count == K {
-            self.least = lattice.between(found[K - 1].offset, 0) - TIE;
+            self.least = lattice.between(found[K - 1].offset, 0) - SAME_INFLUENCE;
         }
         let mut matrix = [[0.0_f32; K]; K];
         let mut rhs = [0.0_f32; K];

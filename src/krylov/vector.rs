@@ -3,12 +3,8 @@
 
 use std::ops::Range;
 
+use super::tuning::{ALONE, CHUNK};
 use crate::parallel::{for_each_chunk, vectorized};
-
-/// Values a thread takes at a time: 64 KiB of two vectors.
-const CHUNK: usize = 4096;
-/// Up to so many values a thread does them alone: sharing would take longer.
-const ALONE: usize = 8 * CHUNK;
 
 /// Reduces `0..length` chunk by chunk, and the chunks in their order.
 fn reduce<T: Copy + Send>(

@@ -6,7 +6,7 @@ use super::snapshot::Snapshot;
 use super::solver::LoadingSolver;
 use super::state::LoadingState;
 use crate::Error;
-use crate::contact::{Certificate, Conditions, LengthScale};
+use crate::contact::{Certificate, Conditions, ErrorLength};
 use crate::updater::LinearUpdater;
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -174,7 +174,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let nodes = pressure.iter().zip(gaps).zip(&contact);
         let nodes = nodes.map(|((p, gap), in_contact)| (*p, gap, *in_contact));
         let load = state.map_or(0.0, |state| state.load);
-        let scale = LengthScale::new(run.problem.rms_height(), run.problem.table());
+        let scale = ErrorLength::new(run.problem.rms_height(), run.problem.table());
         let sum = load / run.problem.grid().cell_area();
         Ok(Conditions::new(sum, reported, scale).check(nodes))
     }

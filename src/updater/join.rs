@@ -1,11 +1,9 @@
 //! A contact that is known as a whole, joined block by block.
 
+use super::tuning::JOINED;
 use super::{LinearUpdater, Schur, WindowFactor};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
-
-/// Nodes that join at a time: so many that a factor grows at the speed of a matrix product.
-pub(crate) const JOINED: usize = 256;
 
 /// Lets nodes join a contact and its updater in their order, within `budget` bytes.
 ///

@@ -26,6 +26,7 @@ mod iterations;
 mod join;
 mod schur;
 mod solution;
+mod tuning;
 mod window_factor;
 
 pub use check::{UpdaterReport, check};
@@ -37,9 +38,10 @@ pub use dense::Dense;
 pub use handover::Handover;
 pub use iterations::Method;
 pub(crate) use iterations::{Iterations, Solved};
-pub(crate) use join::{JOINED, join_all};
+pub(crate) use join::join_all;
 pub use schur::Schur;
 pub use solution::Solution;
+pub(crate) use tuning::JOINED;
 pub use window_factor::WindowFactor;
 
 use crate::contact::ContactSequence;

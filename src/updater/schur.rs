@@ -4,12 +4,8 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrixView, DMatrixViewMut};
 
+use super::tuning::{PARALLEL, TILE};
 use crate::{Error, UpdaterError, parallel};
-
-/// Columns that a thread changes at a time.
-const TILE: usize = 144;
-/// Watched nodes from which waking threads costs less than it saves.
-const PARALLEL: usize = 400;
 
 /// What remains of the system for k watched nodes once the contact is eliminated: the Schur complement S
 /// (k × k, lower triangle) and the reduced row sums σ.

@@ -1,6 +1,7 @@
 //! The nodes of the window that touched, and the Cholesky factor of their Schur complement.
 
 use super::Schur;
+use super::tuning::BLOCK;
 use crate::Error;
 use crate::parallel::vectorized;
 
@@ -21,11 +22,6 @@ pub struct WindowFactor {
     /// Events that are subtracted from the Schur complement already.
     subtracted: usize,
 }
-
-/// Events that are subtracted from the whole Schur complement at a time. Those since then are
-/// subtracted from one column after the other: together they are least work where a column of so
-/// many events stays in the fastest cache.
-const BLOCK: usize = 32;
 
 impl WindowFactor {
     /// Lets the watched nodes at `positions` touch in that order, one after the other.

@@ -37,8 +37,8 @@ fn spread_out() -> Result<(Level, Prescribed), Error> {
 fn energy(level: &mut Level, pressure: &[f64]) -> Result<f64, Error> {
     level.iterate.pressure.copy_from_slice(pressure);
     level.refresh()?;
-    let closure = dot(pressure, &level.iterate.closure);
-    Ok(0.5 * (closure + dot(pressure, &level.gap)))
+    let total_gap = dot(pressure, &level.iterate.total_gap);
+    Ok(0.5 * (total_gap + dot(pressure, &level.gap)))
 }
 
 /// A step that goes far beyond the minimum of the energy ends at the lowest point of the way; one that does
@@ -51,7 +51,7 @@ fn a_release_goes_as_far_as_the_energy_falls() -> Result<(), Error> {
         let mut descent = Descent::new(&mut level, prescribed, CRITERIA);
         let start = Start {
             pressure: descent.pressure.clone(),
-            closure: descent.closure.clone(),
+            total_gap: descent.total_gap.clone(),
             approach: descent.approach(),
         };
         // Towards the solution and past it, into tension.
@@ -68,7 +68,7 @@ fn a_release_goes_as_far_as_the_energy_falls() -> Result<(), Error> {
             (0..end.len()).filter(|&place| descent.pressure[place] > 0.0).collect();
         let [moment, total] = carrying.iter().fold([0.0; 2], |[moment, total], &place| {
             let weight = descent.weights[place];
-            [moment + weight * descent.closure[place], total + weight]
+            [moment + weight * descent.total_gap[place], total + weight]
         });
         let approach = descent.level.iterate.approach;
         assert!((approach - moment / total).abs() < 1e-13 * approach);
@@ -110,7 +110,7 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
         *x = begin[place] * (1.0 + change(place));
     }
     let start = Start {
-        closure: descent.closure.clone(),
+        total_gap: descent.total_gap.clone(),
         approach: descent.approach(),
         pressure: begin.clone(),
     };
@@ -127,9 +127,9 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
 fn nodes_with_tension_at_the_start_are_released() -> Result<(), Error> {
     let (mut level, prescribed) = spread_out()?;
     let narrow = level.iterate.contact.len();
-    let Iterate { pressure, closure, .. } = &level.iterate;
-    let wide = 1.3 * dot(pressure, closure) / sum(pressure);
-    level.choose_contact(|node, _, closure| closure[node] < wide)?;
+    let Iterate { pressure, total_gap, .. } = &level.iterate;
+    let wide = 1.3 * dot(pressure, total_gap) / sum(pressure);
+    level.choose_contact(|node, _, total_gap| total_gap[node] < wide)?;
     assert!(level.iterate.contact.len() > narrow);
     let mut descent = Descent::new(&mut level, prescribed, CRITERIA);
     let errors = descent.iterate(1e-6, &mut Progress::default())?;
@@ -141,7 +141,7 @@ fn nodes_with_tension_at_the_start_are_released() -> Result<(), Error> {
     descent.move_there()?;
     let start = Start {
         pressure: descent.pressure.clone(),
-        closure: descent.closure.clone(),
+        total_gap: descent.total_gap.clone(),
         approach: descent.approach(),
     };
     descent.release(&start)?;
@@ -158,7 +158,7 @@ fn a_uniform_rounding_takes_no_step() -> Result<(), Error> {
     let mut level = FixedLoadSolver::new(&surface, &Spectral::new(grid, 1.0)?)?.into_finest();
     // Nothing is below tension at the nodes that lie low.
     level.iterate.pressure.copy_from_slice(&[-1.0, 2.0, 2.0, -1.0]);
-    level.iterate.closure.fill(0.5);
+    level.iterate.total_gap.fill(0.5);
     level.choose_contact(|_, _, _| true)?;
     let mut descent = Descent::new(&mut level, Prescribed::Sum(2.0), CRITERIA);
     descent.level.iterate.approach = 0.5 + f64::EPSILON;

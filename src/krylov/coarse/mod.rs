@@ -1,35 +1,19 @@
-//! Long waves of a contact: what bilinear hats can tell of its pressures and displacements.
+//! Long waves of a contact: what bilinear hat functions can tell of its pressures and displacements.
 
-mod hats;
-mod patches;
+mod aggregates;
+mod bilinear;
 
 use nalgebra::DMatrix;
 
 use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
+use crate::krylov::tuning::{FEWEST, MOST, RIDGES, ROWS, SPACING, SPARSE, STALE};
 use crate::parallel::{for_each_chunk, vectorized};
-use hats::Hats;
-use patches::{HatInfluence, Patches};
+use aggregates::{Aggregates, CoarseInfluence};
+use bilinear::BilinearBasis;
 
-/// Cells between the knots of hats, where cells are square.
-const BLOCK: f64 = 32.0;
-/// Hats along the longer side at most: the inverse of E is dense.
-const MOST: f64 = 24.0;
-/// Hats below which there is nothing to be gained.
-const FEWEST: usize = 9;
-/// Nodes in contact for each hat below which nothing is gained either.
-const SPARSE: usize = 16;
-/// The diagonal of E is multiplied by the first of these, since hats are not the long waves themselves;
-/// by the next where E, a sum over patches, is not positive definite.
-const RIDGES: [f64; 3] = [1.3, 2.0, 4.0];
-/// Part of the contact that may change before E is computed anew: at 512 × 512 nodes and 5 to 95 %
-/// contact, E of a set without three tenths of the nodes takes as many steps, give or take two.
-const STALE: f64 = 0.1;
-/// Rows of the inverse of E that a thread takes at a time.
-const ROWS: usize = 64;
-
-/// The coarse space of a contact set I. With `W` the values of the hats at its nodes and `N` the sums of
+/// The coarse space of a contact set I. With `W` the values of the hat functions at its nodes and `N` the sums of
 /// its columns,
 ///
 /// ```math
@@ -37,31 +21,31 @@ const ROWS: usize = 64;
 /// E \approx N^{-1} W^T C_{II} W N^{-1} .
 /// ```
 ///
-/// P takes means over hats: it is symmetric, keeps uniform fields, and has eigenvalues from 0 to 1.
+/// P takes means over hat functions: it is symmetric, keeps uniform fields, and has eigenvalues from 0 to 1.
 #[derive(Debug, Clone)]
 pub(super) struct CoarseSpace {
-    hats: Hats,
-    patches: Patches,
+    basis: BilinearBasis,
+    aggregates: Aggregates,
     /// 1 / C(0, 0).
     unit: f64,
-    /// N, and 1 / N or zero where a hat has no contact.
+    /// N, and 1 / N or zero where a hat function has no contact.
     masses: Vec<f64>,
     per_mass: Vec<f64>,
     /// E⁻¹ times C(0, 0), empty where there is none, and N when it was computed.
     inverse: Vec<f32>,
     inverse_masses: Vec<f64>,
-    /// Means over hats, also in single precision, and what E⁻¹ makes of them.
+    /// Means over hat functions, also in single precision, and what E⁻¹ makes of them.
     means: Vec<f64>,
     scaled: Vec<f32>,
     solved: Vec<f32>,
 }
 
 impl CoarseSpace {
-    /// That of an empty contact; `None` if the grid has room for few hats only.
+    /// That of an empty contact; `None` if the grid has room for few hat functions only.
     pub(super) fn new(table: &KernelTable) -> Option<Self> {
         let grid = table.grid();
         let (lx, ly) = grid.sides();
-        let length = (BLOCK * grid.cell_area().sqrt()).max(lx.max(ly) / MOST);
+        let length = (SPACING * grid.cell_area().sqrt()).max(lx.max(ly) / MOST);
         let along = |side: f64, nodes: usize| ((side / length).round() as usize).clamp(1, nodes);
         let counts = (along(lx, grid.nx()), along(ly, grid.ny()));
         if counts.0 * counts.1 < FEWEST {
@@ -69,8 +53,8 @@ impl CoarseSpace {
         }
         let wraps = table.boundary() == Boundary::Periodic;
         Some(Self {
-            hats: Hats::new(grid.shape(), counts, wraps),
-            patches: Patches::new(table),
+            basis: BilinearBasis::new(grid.shape(), counts, wraps),
+            aggregates: Aggregates::new(table),
             unit: 1.0 / table.self_influence(),
             masses: Vec::new(),
             per_mass: Vec::new(),
@@ -89,17 +73,17 @@ impl CoarseSpace {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        self.hats.bytes() + self.patches.bytes() + size_of_val(&self.inverse[..])
+        self.basis.bytes() + self.aggregates.bytes() + size_of_val(&self.inverse[..])
     }
 
     /// Makes it that of another contact. N is exact; E is left alone until enough has changed.
     pub(super) fn update(&mut self, contact: &NodeSet) {
-        if contact.len() < SPARSE * self.hats.len() {
+        if contact.len() < SPARSE * self.basis.len() {
             self.inverse.clear();
             self.inverse_masses.clear();
             return;
         }
-        self.hats.restrict(contact, &vec![1.0; contact.len()], &mut self.masses);
+        self.basis.restrict(contact, &vec![1.0; contact.len()], &mut self.masses);
         let inverse = |&mass: &f64| if mass > 0.0 { 1.0 / mass } else { 0.0 };
         self.per_mass.clear();
         self.per_mass.extend(self.masses.iter().map(inverse));
@@ -112,14 +96,14 @@ impl CoarseSpace {
 
     /// Computes E and its inverse.
     fn invert(&mut self, contact: &NodeSet) {
-        let size = self.hats.len();
-        let HatInfluence { half, masses } = self.patches.influence(&self.hats, contact);
+        let size = self.basis.len();
+        let CoarseInfluence { half, masses } = self.aggregates.influence(&self.basis, contact);
         let mean = DMatrix::from_fn(size, size, |i, j| {
             let product = masses[i] * masses[j];
             if product > 0.0 {
                 (half[i + size * j] + half[j + size * i]) / product
             } else if i == j {
-                // A hat of which no patch knows stands alone.
+                // A hat function of which no aggregate knows stands alone.
                 1.0
             } else {
                 0.0
@@ -141,25 +125,25 @@ impl CoarseSpace {
     }
 
     /// `rest = r − P r`.
-    pub(super) fn take_out(&mut self, contact: &NodeSet, r: &[f64], rest: &mut Vec<f64>) {
-        self.hats.restrict(contact, r, &mut self.means);
+    pub(super) fn project_out(&mut self, contact: &NodeSet, r: &[f64], rest: &mut Vec<f64>) {
+        self.basis.restrict(contact, r, &mut self.means);
         for (mean, per_mass) in self.means.iter_mut().zip(&self.per_mass) {
             *mean *= -per_mass;
         }
         rest.clear();
         rest.extend_from_slice(r);
-        self.hats.spread(contact, &self.means, rest);
+        self.basis.spread(contact, &self.means, rest);
     }
 
-    /// `z ← z − P z + Q r`, with r what was last given to [`Self::take_out`].
+    /// `z ← z − P z + Q r`, with r what was last given to [`Self::project_out`].
     pub(super) fn complete(&mut self, contact: &NodeSet, z: &mut [f64]) {
         let scale = self.solve();
-        self.hats.restrict(contact, z, &mut self.means);
+        self.basis.restrict(contact, z, &mut self.means);
         let hats = self.solved.iter().zip(&self.per_mass);
         for (mean, (solved, per_mass)) in self.means.iter_mut().zip(hats) {
             *mean = (scale * f64::from(*solved) - *mean) * per_mass;
         }
-        self.hats.spread(contact, &self.means, z);
+        self.basis.spread(contact, &self.means, z);
     }
 
     /// Applies E⁻¹ to minus the means. Returns what the result is in units of.

@@ -2,7 +2,7 @@ use super::*;
 use crate::kernel::KernelTable;
 use crate::{Boussinesq, Error, Grid, PeriodicBoussinesq};
 
-/// Some grids that hats and patches do not divide, with free and periodic boundaries.
+/// Some grids that hat functions and aggregates do not divide, with free and periodic boundaries.
 fn tables() -> Result<Vec<KernelTable>, Error> {
     let mut tables = Vec::new();
     for (nx, ny, dx, dy) in [(100, 100, 1.0, 1.0), (131, 77, 1.0, 1.3), (420, 24, 1.0, 4.0)] {
@@ -46,13 +46,13 @@ fn hats_sum_to_one() -> Result<(), Error> {
         assert!((total - contact.len() as f64).abs() < 1e-9 * total);
         // P keeps what is uniform.
         let mut rest = Vec::new();
-        space.take_out(&contact, &vec![2.0; contact.len()], &mut rest);
+        space.project_out(&contact, &vec![2.0; contact.len()], &mut rest);
         assert!(rest.iter().all(|value| value.abs() < 1e-12));
     }
     Ok(())
 }
 
-/// The hats at a node are what a sum over it alone finds, and their values sum to one.
+/// The hat functions at a node are what a sum over it alone finds, and their values sum to one.
 #[test]
 fn hats_at_a_node() -> Result<(), Error> {
     for table in tables()? {
@@ -62,9 +62,9 @@ fn hats_at_a_node() -> Result<(), Error> {
         let mut sums = Vec::new();
         for node in (0..nx * ny).step_by(7) {
             contact.assign(|other| other == node);
-            space.hats.restrict(&contact, &[1.0], &mut sums);
+            space.basis.restrict(&contact, &[1.0], &mut sums);
             let mut total = 0.0;
-            for (hat, value) in space.hats.at(node % nx, node / nx) {
+            for (hat, value) in space.basis.at(node % nx, node / nx) {
                 total += value;
                 sums[hat] -= value;
             }
@@ -90,7 +90,7 @@ fn means_over_hats() -> Result<(), Error> {
         let (a, b) = (wave(0.013), wave(0.71));
         let mut rest = Vec::new();
         let mut mean = |values: &[f64]| -> Vec<f64> {
-            space.take_out(&contact, values, &mut rest);
+            space.project_out(&contact, values, &mut rest);
             values.iter().zip(&rest).map(|(value, rest)| value - rest).collect()
         };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -105,14 +105,14 @@ fn means_over_hats() -> Result<(), Error> {
     Ok(())
 }
 
-/// The influence between hats is that of all pairs of nodes, but for less than the ridge of E.
+/// The influence between hat functions is that of all pairs of nodes, but for less than the ridge of E.
 #[test]
 fn influence_between_hats() -> Result<(), Error> {
     for table in tables()? {
         let space = space(&table)?;
-        let (nx, size) = (table.grid().nx(), space.hats.len());
+        let (nx, size) = (table.grid().nx(), space.basis.len());
         let contact = islands(&table);
-        let HatInfluence { half, masses } = space.patches.influence(&space.hats, &contact);
+        let CoarseInfluence { half, masses } = space.aggregates.influence(&space.basis, &contact);
         let at = |node: u32| (node as usize % nx, node as usize / nx);
         let mut exact = vec![0.0; size * size];
         let mut column = vec![0.0; size];
@@ -122,12 +122,12 @@ fn influence_between_hats() -> Result<(), Error> {
             for &other in contact.nodes() {
                 let value = table.between(place, table.place(other as usize));
                 let (ix, iy) = at(other);
-                for (hat, weight) in space.hats.at(ix, iy) {
+                for (hat, weight) in space.basis.at(ix, iy) {
                     column[hat] += weight * value / table.self_influence();
                 }
             }
             let (ix, iy) = at(node);
-            for (hat, weight) in space.hats.at(ix, iy) {
+            for (hat, weight) in space.basis.at(ix, iy) {
                 for (sum, value) in exact[size * hat..][..size].iter_mut().zip(&column) {
                     *sum += weight * value;
                 }
@@ -157,19 +157,19 @@ fn small_grids_have_no_hats() -> Result<(), Error> {
     Ok(())
 }
 
-/// Sixteen nodes for each hat are enough, and one less is not.
+/// Sixteen nodes for each hat function are enough, and one less is not.
 #[test]
 fn few_nodes_need_no_hats() -> Result<(), Error> {
     for table in tables()? {
         let mut space = space(&table)?;
-        let least = SPARSE * space.hats.len();
+        let least = SPARSE * space.basis.len();
         let mut contact = NodeSet::new(table.grid().nodes());
         for (nodes, is_useful) in [(least, true), (least - 1, false)] {
             contact.assign(|node| node < nodes);
             space.update(&contact);
             assert_eq!(space.is_useful(), is_useful);
         }
-        // Too few hats.
+        // Too few hat functions.
         let small = KernelTable::new(&Boussinesq::new(Grid::square(8, 8.0)?, 1.0)?)?;
         assert!(CoarseSpace::new(&small).is_none());
     }

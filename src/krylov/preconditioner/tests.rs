@@ -31,7 +31,7 @@ fn strips(table: &KernelTable) -> NodeSet {
 fn symmetric_and_positive_definite() -> Result<(), Error> {
     for table in [free(96, 96)?, periodic(101, 90)?, free(40, 256)?] {
         let mut contact = strips(&table);
-        // Few enough for a dense matrix, enough for hats.
+        // Few enough for a dense matrix, enough for hat functions.
         let (nodes, places) = (contact.nodes().to_vec(), contact.places().to_vec());
         let step = (nodes.len() as u32).div_ceil(450);
         contact.assign(|node| places[node] != NodeSet::NONE && places[node] % step == 0);
@@ -92,7 +92,7 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
     Ok(())
 }
 
-/// Few nodes less, and back: the sparse part and the sums of hats are those of the set at any time.
+/// Few nodes less, and back: the sparse part and the sums of hat functions are those of the set at any time.
 #[test]
 fn follows_small_changes() -> Result<(), Error> {
     for table in [free(200, 130)?, periodic(128, 96)?, periodic(130, 99)?] {

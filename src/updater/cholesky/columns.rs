@@ -9,17 +9,11 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::operations;
-use super::panels::{Panels, ROWS};
+use super::panels::Panels;
 use super::products::subtract_transposed;
 use crate::parallel;
 use crate::updater::WindowFactor;
-
-/// Greatest width of a block of new columns: wide enough for GEMM at full speed, narrow enough
-/// that there are several to share among threads: each block reads all of L.
-const WIDTH: usize = 144;
-
-/// Columns of a block come in so many: the matrix product is slower by a fifth for other widths.
-const UNIT: usize = 48;
+use crate::updater::tuning::{CACHED_ROWS, ROWS, UNIT, WIDTH};
 
 /// The forward-substituted columns `F = L⁻¹C_IP` of the watched nodes P, which grow with the
 /// factor L.
@@ -332,9 +326,6 @@ struct Piece<'a> {
     rows: Vec<&'a mut [f64]>,
     kept: &'a mut [f64],
 }
-
-/// Rows of the columns that are spread over the rows of the factor at a time.
-const CACHED_ROWS: usize = 16;
 
 #[cfg(test)]
 mod tests;

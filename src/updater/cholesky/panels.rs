@@ -4,11 +4,9 @@ mod removal;
 
 use faer::MatRef;
 
-pub(super) use removal::{Rotations, remove};
+use crate::updater::tuning::ROWS;
 
-/// Rows of a panel: large enough that products of blocks run at the speed of plain GEMM, small
-/// enough that the unused upper half of the diagonal blocks does not matter.
-pub(super) const ROWS: usize = 256;
+pub(super) use removal::{Rotations, remove};
 
 /// A lower-triangular matrix L that grows by rows.
 ///

@@ -3,9 +3,7 @@
 use std::array;
 
 use crate::parallel::vectorized;
-
-/// Numbers that are multiplied at a time: two to four of the widest vectors.
-const LANES: usize = 32;
+use crate::updater::tuning::LANES;
 
 /// x −= Aᵀ y for N vectors y, given row by row, with the rows of A `width` apart.
 ///

@@ -6,19 +6,13 @@
 use std::ops::{Deref, Range};
 
 use super::operations;
-use super::panels::{Panels, ROWS};
+use super::panels::Panels;
 use super::products::subtract_transposed;
 use crate::parallel::{self, vectorized};
+use crate::updater::tuning::{COLUMNS_AT_ONCE, GROUP, ROWS, SMALL};
 
-/// Panels that are solved between two meetings of the threads, which take some 0.1 ms each.
-const GROUP: usize = 4;
 /// Rows of such a group.
 const GROUP_ROWS: usize = GROUP * ROWS;
-/// Rows of a triangle that is solved row by row.
-const SMALL: usize = 32;
-/// Unknowns that one thread updates at a time in a backward substitution: enough for rows of L to
-/// stream from memory, few enough to stay in cache.
-const COLUMNS_AT_ONCE: usize = 1024;
 
 impl Panels {
     /// Solves `Lᵀ x = b` in place for right-hand sides of the same length, with the leading part

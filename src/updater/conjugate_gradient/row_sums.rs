@@ -1,11 +1,11 @@
 //! What the contact makes of the row sums of the influence matrix, for the rate of the mean gap.
 
-use super::tuning::{STALE, SUMS_OPEN, SUMS_TOLERANCE};
 use std::mem;
 
 use super::local::Local;
 use super::proposed::Proposed;
 use super::solver::Solver;
+use super::tuning::{STALE, SUMS_OPEN, SUMS_TOLERANCE};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::{Error, Problem};

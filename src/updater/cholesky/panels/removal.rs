@@ -2,9 +2,7 @@
 
 use super::Panels;
 use crate::parallel::vectorized;
-
-/// Rows that are rotated together, so that a rotation is one vector operation.
-const BLOCK: usize = 16;
+use crate::updater::tuning::ROTATED;
 
 /// The plane rotations (c, s) that take a removed column of L into its place.
 #[derive(Debug)]
@@ -46,12 +44,12 @@ pub(in crate::updater::cholesky) fn remove(panels: &mut Panels, k: usize) -> Rot
     let rows = panels.rows;
     let mut rotations = Vec::with_capacity(rows.saturating_sub(k + 1));
     // Some rows side by side, from their new column k on.
-    let mut block = vec![[0.0; BLOCK]; rows.saturating_sub(k)];
-    let mut left = Vec::with_capacity(BLOCK * k);
-    for first in (k + 1..rows).step_by(BLOCK) {
-        let count = BLOCK.min(rows - first);
+    let mut block = vec![[0.0; ROTATED]; rows.saturating_sub(k)];
+    let mut left = Vec::with_capacity(ROTATED * k);
+    for first in (k + 1..rows).step_by(ROTATED) {
+        let count = ROTATED.min(rows - first);
         let known = rotations.len();
-        let mut removed = [0.0; BLOCK];
+        let mut removed = [0.0; ROTATED];
         left.clear();
         for (b, row) in panels.rows_mut(first).take(count).enumerate() {
             left.extend_from_slice(&row[..k]);

@@ -1,26 +1,23 @@
-//! Bilinear hats on blocks of cells.
+//! Bilinear hat functions on blocks of cells.
 
 use crate::krylov::NodeSet;
+use crate::krylov::tuning::{CHUNK, ROWS};
 use crate::parallel::for_each_chunk;
 
-/// Rows of the grid, and nodes in contact, that a thread takes at a time.
-const ROWS: usize = 16;
-const CHUNK: usize = 4096;
-
-/// Hats with evenly spaced knots along both axes of a grid, `W` of the module. They sum to one
+/// Hat functions with evenly spaced knots along both axes of a grid, `W` of the module. They sum to one
 /// everywhere; at the edges of a grid that ends the outermost are constant.
 #[derive(Debug, Clone)]
-pub(super) struct Hats {
+pub(super) struct BilinearBasis {
     along: [Axis; 2],
-    /// Sums over each row of the grid by hat along x.
+    /// Sums over each row of the grid by hat function along x.
     rows: Vec<f64>,
 }
 
-/// The hats along one axis.
+/// The hat functions along one axis.
 #[derive(Debug, Clone)]
 struct Axis {
     count: usize,
-    /// For each index the two hats that are not zero there, and the value of the second.
+    /// For each index the two hat functions that are not zero there, and the value of the second.
     pairs: Vec<[u32; 2]>,
     parts: Vec<f64>,
 }
@@ -47,8 +44,8 @@ impl Axis {
     }
 }
 
-impl Hats {
-    /// So many hats along x and y of a grid of the given shape, which wrap around if it is periodic.
+impl BilinearBasis {
+    /// So many hat functions along x and y of a grid of the given shape, which wrap around if it is periodic.
     pub(super) fn new(shape: (usize, usize), counts: (usize, usize), wraps: bool) -> Self {
         Self {
             along: [Axis::new(shape.0, counts.0, wraps), Axis::new(shape.1, counts.1, wraps)],
@@ -56,12 +53,12 @@ impl Hats {
         }
     }
 
-    /// Number of hats.
+    /// Number of hat functions.
     pub(super) fn len(&self) -> usize {
         self.along[0].count * self.along[1].count
     }
 
-    /// The four hats that are not zero at a node, and their values there.
+    /// The four hat functions that are not zero at a node, and their values there.
     pub(super) fn at(&self, ix: usize, iy: usize) -> [(usize, f64); 4] {
         let [x, y] = &self.along;
         let ([left, right], u) = (x.pairs[ix], x.parts[ix]);
@@ -85,7 +82,7 @@ impl Hats {
             let mut place = nodes.partition_point(|&node| (node as usize) < first * nx);
             for (i, row) in rows.chunks_exact_mut(x.count).enumerate() {
                 let base = (first + i) * nx;
-                // Of a run of nodes between the same two knots: all, and what the second hat has.
+                // Of a run of nodes between the same two knots: all, and what the second hat function has.
                 let (mut pair, mut all, mut second) = ([0; 2], 0.0, 0.0);
                 while let Some(&node) = nodes.get(place)
                     && (node as usize) < base + nx

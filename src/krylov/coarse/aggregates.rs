@@ -1,46 +1,37 @@
-//! `Wᵀ C W` of a contact, from patches that see distant patches as single nodes.
+//! `Wᵀ C W` of a contact, from aggregates that see distant aggregates as single nodes.
 
 use std::ops::Range;
 
-use super::hats::Hats;
+use super::bilinear::BilinearBasis;
 use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
+use crate::krylov::tuning::{LANES, LARGE_SIDE, PARTS, SIDE, SMALL};
 use crate::parallel::{for_each_chunk, vectorized};
 
-/// Patches that are summed over at the same time, and values of a row that are.
-const LANES: usize = 8;
-/// Cells of a patch a side, on grids of at most `SMALL` nodes and on larger ones: sums over pairs of
-/// nodes and over pairs of patches take about as long.
-const SIDE: usize = LANES;
-const LARGE_SIDE: usize = 2 * LANES;
-const SMALL: usize = 1 << 19;
-/// Sums over patches that threads work on at the same time.
-const PARTS: usize = 8;
-
-/// Influence between patches of cells: exact between nodes of the same or of adjacent patches; a patch
+/// Influence between aggregates of cells: exact between nodes of the same or of adjacent aggregates; an aggregate
 /// farther off acts as its number of nodes in contact at the node next to their centre of gravity.
 #[derive(Debug, Clone)]
-pub(super) struct Patches {
+pub(super) struct Aggregates {
     side: usize,
-    /// Nodes and patches along x and y.
+    /// Nodes and aggregates along x and y.
     shape: [usize; 2],
     counts: [usize; 2],
     wraps: bool,
     /// Influence coefficients relative to C(0, 0) as in the table of the kernel, each row followed by
-    /// zeros for the length of a patch.
+    /// zeros for the length of an aggregate.
     coefficients: Vec<f32>,
     stride: usize,
 }
 
-/// The contact as patches see it.
+/// The contact as aggregates see it.
 struct Contact {
-    /// One at the nodes in contact, else zero, up to the end of the last patch of each row.
+    /// One at the nodes in contact, else zero, up to the end of the last aggregate of each row.
     inside: Vec<f32>,
     lumps: Vec<Lump>,
 }
 
-/// A patch as seen from afar.
+/// An aggregate as seen from afar.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lump {
     /// Where in the table its node is.
@@ -50,15 +41,15 @@ struct Lump {
     weights: [f32; 4],
 }
 
-/// What patches make of the hats of a contact, in units of C(0, 0).
-pub(super) struct HatInfluence {
+/// What aggregates make of the hat functions of a contact, in units of C(0, 0).
+pub(super) struct CoarseInfluence {
     /// Column by column, a matrix of which `Wᵀ C W` is the sum with its transpose.
     pub(super) half: Vec<f64>,
-    /// The sums of the columns of W. Not those of the nodes: means over hats must be of the same W.
+    /// The sums of the columns of W. Not those of the nodes: means over hat functions must be of the same W.
     pub(super) masses: Vec<f64>,
 }
 
-impl Patches {
+impl Aggregates {
     pub(super) fn new(table: &KernelTable) -> Self {
         let (nx, ny) = table.grid().shape();
         let side = if nx * ny <= SMALL { SIDE } else { LARGE_SIDE };
@@ -85,22 +76,22 @@ impl Patches {
         size_of_val(&self.coefficients[..])
     }
 
-    /// The influence between all hats on a contact.
-    pub(super) fn influence(&self, hats: &Hats, contact: &NodeSet) -> HatInfluence {
-        let size = hats.len();
-        let seen = self.see(hats, contact);
-        let patches: Vec<usize> =
-            (0..seen.lumps.len()).filter(|&patch| seen.lumps[patch].nodes > 0.0).collect();
+    /// The influence between all hat functions on a contact.
+    pub(super) fn influence(&self, basis: &BilinearBasis, contact: &NodeSet) -> CoarseInfluence {
+        let size = basis.len();
+        let seen = self.see(basis, contact);
+        let aggregates: Vec<usize> =
+            (0..seen.lumps.len()).filter(|&aggregate| seen.lumps[aggregate].nodes > 0.0).collect();
         let mut parts = vec![0.0; PARTS * size * size];
         for_each_chunk(&mut parts, size * size, |part, half| {
             let mut displacements = vec![[0.0; LANES]; size];
-            for patches in patches.chunks(LANES).skip(part).step_by(PARTS) {
+            for aggregates in aggregates.chunks(LANES).skip(part).step_by(PARTS) {
                 vectorized(
                     #[inline(always)]
-                    || self.displacements(patches, &seen, &mut displacements),
+                    || self.displacements(aggregates, &seen, &mut displacements),
                 );
-                for (lane, &patch) in patches.iter().enumerate() {
-                    let lump = &seen.lumps[patch];
+                for (lane, &aggregate) in aggregates.iter().enumerate() {
+                    let lump = &seen.lumps[aggregate];
                     for (&hat, weight) in lump.hats.iter().zip(lump.weights) {
                         let column = &mut half[size * hat as usize..][..size];
                         for (sum, displacement) in column.iter_mut().zip(&displacements) {
@@ -123,11 +114,11 @@ impl Patches {
                 masses[hat as usize] += f64::from(weight * lump.nodes);
             }
         }
-        HatInfluence { half: parts, masses }
+        CoarseInfluence { half: parts, masses }
     }
 
-    /// The contact by patches.
-    fn see(&self, hats: &Hats, contact: &NodeSet) -> Contact {
+    /// The contact by aggregates.
+    fn see(&self, basis: &BilinearBasis, contact: &NodeSet) -> Contact {
         let [nx, _] = self.shape;
         let mut inside = vec![0.0; self.counts[0] * self.side * self.shape[1]];
         let mut tallies = vec![[0_usize; 3]; self.counts[0] * self.counts[1]];
@@ -144,7 +135,7 @@ impl Patches {
                 return Lump::default();
             }
             let [ix, iy] = [x, y].map(|sum| (sum + nodes / 2) / nodes);
-            let at = hats.at(ix, iy);
+            let at = basis.at(ix, iy);
             Lump {
                 place: ix + self.stride * iy,
                 nodes: nodes as f32,
@@ -155,13 +146,13 @@ impl Patches {
         Contact { inside, lumps: tallies.iter().map(lump).collect() }
     }
 
-    /// Displacements of up to `LANES` patches under unit pressure on each of the hats.
+    /// Displacements of up to `LANES` aggregates under unit pressure on each of the hat functions.
     #[inline(always)]
-    fn displacements(&self, patches: &[usize], seen: &Contact, sums: &mut [[f32; LANES]]) {
+    fn displacements(&self, aggregates: &[usize], seen: &Contact, sums: &mut [[f32; LANES]]) {
         sums.fill([0.0; LANES]);
         let mut own = [Lump::default(); LANES];
-        for (own, &patch) in own.iter_mut().zip(patches) {
-            *own = seen.lumps[patch];
+        for (own, &aggregate) in own.iter_mut().zip(aggregates) {
+            *own = seen.lumps[aggregate];
         }
         for lump in seen.lumps.iter().filter(|lump| lump.nodes > 0.0) {
             let values: [f32; LANES] = std::array::from_fn(|lane| self.between(&own[lane], lump));
@@ -171,10 +162,10 @@ impl Patches {
                 }
             }
         }
-        for (lane, &patch) in patches.iter().enumerate() {
-            for near in self.around(patch) {
+        for (lane, &aggregate) in aggregates.iter().enumerate() {
+            for near in self.around(aggregate) {
                 let lump = &seen.lumps[near];
-                let exact = self.exact(patch, near, seen) - self.between(&own[lane], lump);
+                let exact = self.exact(aggregate, near, seen) - self.between(&own[lane], lump);
                 for (&hat, weight) in lump.hats.iter().zip(lump.weights) {
                     sums[hat as usize][lane] += weight * exact;
                 }
@@ -182,17 +173,17 @@ impl Patches {
         }
     }
 
-    /// Influence between two patches seen from afar.
+    /// Influence between two aggregates seen from afar.
     #[inline(always)]
     fn between(&self, lump: &Lump, other: &Lump) -> f32 {
         lump.nodes * other.nodes * self.coefficients[self.center() + other.place - lump.place]
     }
 
-    /// Influence between two patches, node by node.
+    /// Influence between two aggregates, node by node.
     #[inline(always)]
-    fn exact(&self, patch: usize, other: usize, seen: &Contact) -> f32 {
+    fn exact(&self, aggregate: usize, other: usize, seen: &Contact) -> f32 {
         let width = self.counts[0] * self.side;
-        let ([columns, rows], [others, other_rows]) = (self.cells(patch), self.cells(other));
+        let ([columns, rows], [others, other_rows]) = (self.cells(aggregate), self.cells(other));
         let mut lanes = [0.0; LANES];
         for iy in rows {
             for ix in columns.clone() {
@@ -222,17 +213,17 @@ impl Patches {
         self.shape[0] - 1 + self.stride * (self.shape[1] - 1)
     }
 
-    /// Indices along x and y of the nodes of a patch.
-    fn cells(&self, patch: usize) -> [Range<usize>; 2] {
-        let at = [patch % self.counts[0], patch / self.counts[0]];
+    /// Indices along x and y of the nodes of an aggregate.
+    fn cells(&self, aggregate: usize) -> [Range<usize>; 2] {
+        let at = [aggregate % self.counts[0], aggregate / self.counts[0]];
         [0, 1].map(|axis| {
             let first = at[axis] * self.side;
             first..(first + self.side).min(self.shape[axis])
         })
     }
 
-    /// A patch and those adjacent to it.
-    fn around(&self, patch: usize) -> Vec<usize> {
+    /// An aggregate and those adjacent to it.
+    fn around(&self, aggregate: usize) -> Vec<usize> {
         let near = |at: usize, count: usize| {
             let mut near: Vec<usize> = if self.wraps {
                 [at + count - 1, at, at + 1].map(|i| i % count).to_vec()
@@ -243,8 +234,8 @@ impl Patches {
             near.dedup();
             near
         };
-        let columns = near(patch % self.counts[0], self.counts[0]);
-        let rows = near(patch / self.counts[0], self.counts[1]);
+        let columns = near(aggregate % self.counts[0], self.counts[0]);
+        let rows = near(aggregate / self.counts[0], self.counts[1]);
         let of_row = |row| columns.iter().map(move |column| column + self.counts[0] * row);
         rows.into_iter().flat_map(of_row).collect()
     }
