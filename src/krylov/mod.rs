@@ -9,6 +9,7 @@ mod node_set;
 mod operator;
 mod pcg;
 mod preconditioner;
+pub(crate) mod single;
 mod sparse_inverse;
 mod tuning;
 mod vector;

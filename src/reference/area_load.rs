@@ -3,21 +3,25 @@
 use std::f64::consts::PI;
 
 use super::positive_part;
-use crate::Error;
 
-/// Laws of contact area against load for a randomly rough surface of large nominal area.
-///
-/// With the root-mean-square gradient $`h' = \sqrt{\langle |\nabla h|^2 \rangle}`$ of the surface (Sdq; of both
-/// directions together, $`\sqrt2`$ times that of a profile) every one of them is a function of
-/// $`\bar p / (E^\ast h')`$ alone, and at light load a straight line of slope `κ`:
-/// ```math
-/// \frac{A}{A_0} = \kappa \frac{\bar p}{E^\ast h'}
-/// ```
-/// The theories are for surfaces without an edge, Gaussian and isotropic.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AreaLoadLaw {
-    rms_gradient: f64,
-    e_star: f64,
+closed_form! {
+    /// Laws of contact area against load for a randomly rough surface of large nominal area.
+    ///
+    /// With the root-mean-square gradient $`h' = \sqrt{\langle |\nabla h|^2 \rangle}`$ of the surface (Sdq; of both
+    /// directions together, $`\sqrt2`$ times that of a profile) every one of them is a function of
+    /// $`\bar p / (E^\ast h')`$ alone, and at light load a straight line of slope `κ`:
+    /// ```math
+    /// \frac{A}{A_0} = \kappa \frac{\bar p}{E^\ast h'}
+    /// ```
+    /// The theories are for surfaces without an edge, Gaussian and isotropic.
+    AreaLoadLaw;
+
+    /// The laws for a surface of root-mean-square gradient `rms_gradient` on a half-space of modulus
+    /// `e_star` \[Pa\].
+    new;
+
+    /// Root-mean-square gradient.
+    rms_gradient: "root-mean-square gradient"
 }
 
 impl AreaLoadLaw {
@@ -30,31 +34,6 @@ impl AreaLoadLaw {
     /// `κ = 2`: finite-element results of Hyun, Pei, Molinari & Robbins, Phys. Rev. E 70 (2004)
     /// 026117, rounded as in Zhang, Zhang & Jin, Friction 8 (2020) 970.
     pub const HYUN: f64 = 2.0;
-
-    /// The laws for a surface of root-mean-square gradient `rms_gradient` on a half-space of modulus
-    /// `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for either.
-    pub fn new(rms_gradient: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            rms_gradient: Error::require_positive("root-mean-square gradient", rms_gradient)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Root-mean-square gradient.
-    #[must_use]
-    pub fn rms_gradient(&self) -> f64 {
-        self.rms_gradient
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
 
     /// p̄/E*h′, not negative.
     fn reduced(&self, mean_pressure: f64) -> f64 {
@@ -117,6 +96,7 @@ impl AreaLoadLaw {
 mod tests {
     use super::super::quadrature::integrate;
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     fn law() -> Result<AreaLoadLaw, Error> {

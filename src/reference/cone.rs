@@ -1,46 +1,25 @@
 //! Cone on a half-space.
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::PI;
 
-/// Contact of a cone of slope `t`, `g(r) = t r`.
-///
-/// The contact grows in proportion to the approach, and the mean pressure never changes.
-///
-/// Love, Q. J. Math. 10 (1939) 161; Johnson, *Contact Mechanics*, §5.2.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cone {
-    slope: f64,
-    e_star: f64,
+closed_form! {
+    /// Contact of a cone of slope `t`, `g(r) = t r`.
+    ///
+    /// The contact grows in proportion to the approach, and the mean pressure never changes.
+    ///
+    /// Love, Q. J. Math. 10 (1939) 161; Johnson, *Contact Mechanics*, §5.2.
+    Cone;
+
+    /// A cone whose flanks rise by `slope` (the tangent of their angle with the surface) on a
+    /// half-space of modulus `e_star` \[Pa\].
+    new;
+
+    /// Slope of the flanks.
+    slope: "slope"
 }
 
 impl Cone {
-    /// A cone whose flanks rise by `slope` (the tangent of their angle with the surface) on a
-    /// half-space of modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for either.
-    pub fn new(slope: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            slope: Error::require_positive("slope", slope)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Slope of the flanks.
-    #[must_use]
-    pub fn slope(&self) -> f64 {
-        self.slope
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Contact radius $`a = 2\delta/(\pi t)`$ \[m\].
     #[must_use]
     pub fn contact_radius(&self, approach: f64) -> f64 {
@@ -117,6 +96,7 @@ impl Cone {
 mod tests {
     use super::super::quadrature::{derivative, integrate, ring_displacement};
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     const APPROACHES: [f64; 3] = [1e-9, 2.3e-6, 1e-3];

@@ -1,56 +1,29 @@
 //! A wave in two directions on a half-space (Johnson, Greenwood & Higginson).
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Contact of the surface $`g(x,y) = D (1 - \cos\frac{2\pi x}{\lambda} \cos\frac{2\pi y}{\lambda})`$.
-///
-/// Two crests and two valleys lie in each square `λ²`. Between its two limits this problem has no
-/// closed form; the methods name the limit they hold in. `P = p̄/p*`.
-///
-/// Johnson, Greenwood & Higginson, Int. J. Mech. Sci. 27 (1985) 383; Johnson, *Contact Mechanics*,
-/// §13.2.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DoubleWave {
-    amplitude: f64,
-    wavelength: f64,
-    e_star: f64,
+closed_form! {
+    /// Contact of the surface $`g(x,y) = D (1 - \cos\frac{2\pi x}{\lambda} \cos\frac{2\pi y}{\lambda})`$.
+    ///
+    /// Two crests and two valleys lie in each square `λ²`. Between its two limits this problem has no
+    /// closed form; the methods name the limit they hold in. `P = p̄/p*`.
+    ///
+    /// Johnson, Greenwood & Higginson, Int. J. Mech. Sci. 27 (1985) 383; Johnson, *Contact Mechanics*,
+    /// §13.2.
+    DoubleWave;
+
+    /// A wave of amplitude `amplitude` \[m\] and wavelength `wavelength` \[m\], the same along x and y,
+    /// on a half-space of modulus `e_star` \[Pa\].
+    new;
+
+    /// Amplitude `D` \[m\].
+    amplitude: "amplitude",
+    /// Wavelength `λ` \[m\].
+    wavelength: "wavelength"
 }
 
 impl DoubleWave {
-    /// A wave of amplitude `amplitude` \[m\] and wavelength `wavelength` \[m\], the same along x and y,
-    /// on a half-space of modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for any of the three.
-    pub fn new(amplitude: f64, wavelength: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength: Error::require_positive("wavelength", wavelength)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Amplitude `D` \[m\].
-    #[must_use]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    /// Wavelength `λ` \[m\].
-    #[must_use]
-    pub fn wavelength(&self) -> f64 {
-        self.wavelength
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Mean pressure of complete contact, $`p^\ast = \sqrt2 \pi E^\ast D/\lambda`$ \[Pa\].
     #[must_use]
     pub fn full_contact_pressure(&self) -> f64 {
@@ -88,6 +61,7 @@ mod tests {
     use super::super::HertzSphere;
     use super::super::quadrature::integrate;
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     fn wave() -> Result<DoubleWave, Error> {

@@ -1,46 +1,25 @@
 //! Cylinder on a half-space (Hertz).
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::PI;
 
-/// Hertz contact of a cylinder of radius `R`, that is of the trough $`g(x) = x^2/(2R)`$, in plane strain.
-///
-/// A line contact has no approach of its own: the displacement of a half-space under a line load
-/// grows like a logarithm without end. All is therefore given by the load per length, `F/L` \[N/m\].
-///
-/// Eq. (20) of Zhang, Zhang & Jin, Friction 8 (2020) 970; Johnson, *Contact Mechanics*, §4.2(c).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HertzLine {
-    radius: f64,
-    e_star: f64,
+closed_form! {
+    /// Hertz contact of a cylinder of radius `R`, that is of the trough $`g(x) = x^2/(2R)`$, in plane strain.
+    ///
+    /// A line contact has no approach of its own: the displacement of a half-space under a line load
+    /// grows like a logarithm without end. All is therefore given by the load per length, `F/L` \[N/m\].
+    ///
+    /// Eq. (20) of Zhang, Zhang & Jin, Friction 8 (2020) 970; Johnson, *Contact Mechanics*, §4.2(c).
+    HertzLine;
+
+    /// A cylinder of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
+    new;
+
+    /// Radius of curvature \[m\].
+    radius: "radius"
 }
 
 impl HertzLine {
-    /// A cylinder of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for either.
-    pub fn new(radius: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Radius of curvature \[m\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Half the width of the contact, $`a = \sqrt{4FR/(\pi L E^\ast)}`$ \[m\].
     #[must_use]
     pub fn half_width(&self, load_per_length: f64) -> f64 {
@@ -81,6 +60,7 @@ impl HertzLine {
 mod tests {
     use super::super::quadrature::integrate;
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     const LOADS: [f64; 3] = [1e-3, 250.0, 4e6];

@@ -1,43 +1,22 @@
 //! Sphere on a half-space (Hertz).
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::PI;
 
-/// Hertz contact of a sphere of radius `R`, that is of the paraboloid $`g(r) = r^2/(2R)`$.
-///
-/// Johnson, *Contact Mechanics*, §3.4 and §4.2.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HertzSphere {
-    radius: f64,
-    e_star: f64,
+closed_form! {
+    /// Hertz contact of a sphere of radius `R`, that is of the paraboloid $`g(r) = r^2/(2R)`$.
+    ///
+    /// Johnson, *Contact Mechanics*, §3.4 and §4.2.
+    HertzSphere;
+
+    /// A sphere of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
+    new;
+
+    /// Radius of curvature \[m\].
+    radius: "radius"
 }
 
 impl HertzSphere {
-    /// A sphere of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for either.
-    pub fn new(radius: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Radius of curvature \[m\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Contact radius $`a = \sqrt{R\delta}`$ \[m\].
     #[must_use]
     pub fn contact_radius(&self, approach: f64) -> f64 {
@@ -137,6 +116,7 @@ fn outside(s: f64) -> f64 {
 mod tests {
     use super::super::quadrature::{derivative, integrate, ring_displacement};
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     const APPROACHES: [f64; 3] = [1e-9, 3.7e-6, 1e-3];

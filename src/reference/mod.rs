@@ -20,6 +20,50 @@
 //! | area of rough contacts, and its pressures | [`AreaLoadLaw`] |
 //! | electrical and thermal contact conductance | [`contact_conductance`] |
 
+/// A closed form of positive parameters, of which the plane-strain modulus is the last.
+macro_rules! closed_form {
+    (
+        $(#[$type_doc:meta])* $name:ident;
+        $(#[$new_doc:meta])* new;
+        $($(#[$doc:meta])* $parameter:ident: $quantity:literal),+
+    ) => {
+        $(#[$type_doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name {
+            $($parameter: f64,)+
+            e_star: f64,
+        }
+
+        impl $name {
+            $(#[$new_doc])*
+            ///
+            /// # Errors
+            ///
+            /// [`Error::NotPositive`](crate::Error::NotPositive) for any of them.
+            pub fn new($($parameter: f64,)+ e_star: f64) -> Result<Self, crate::Error> {
+                Ok(Self {
+                    $($parameter: crate::Error::require_positive($quantity, $parameter)?,)+
+                    e_star: crate::Error::require_positive("plane-strain modulus", e_star)?,
+                })
+            }
+
+            $(
+                $(#[$doc])*
+                #[must_use]
+                pub fn $parameter(&self) -> f64 {
+                    self.$parameter
+                }
+            )+
+
+            /// Plane-strain modulus \[Pa\].
+            #[must_use]
+            pub fn e_star(&self) -> f64 {
+                self.e_star
+            }
+        }
+    };
+}
+
 mod area_load;
 mod conductance;
 mod cone;

@@ -1,7 +1,6 @@
 //! Flat punches on a half-space.
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::PI;
 
 /// Contact stiffness of a rigid square punch of side `L`, divided by `E* L`.
@@ -13,42 +12,22 @@ use std::f64::consts::PI;
 /// area ends when contact is complete.
 pub const SQUARE_PUNCH_STIFFNESS: f64 = PI * 0.366_787_4;
 
-/// Contact of a rigid cylinder's flat end of radius `a`.
-///
-/// The contact is complete from first touch on, and everything is proportional to the approach.
-///
-/// Johnson, *Contact Mechanics*, §3.6 and §5.1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CircularPunch {
-    radius: f64,
-    e_star: f64,
+closed_form! {
+    /// Contact of a rigid cylinder's flat end of radius `a`.
+    ///
+    /// The contact is complete from first touch on, and everything is proportional to the approach.
+    ///
+    /// Johnson, *Contact Mechanics*, §3.6 and §5.1.
+    CircularPunch;
+
+    /// A punch of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
+    new;
+
+    /// Radius of the face \[m\].
+    radius: "radius"
 }
 
 impl CircularPunch {
-    /// A punch of radius `radius` \[m\] on a half-space of modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for either.
-    pub fn new(radius: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Radius of the face \[m\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Contact area `πa²` \[m²\].
     #[must_use]
     pub fn contact_area(&self) -> f64 {
@@ -114,6 +93,7 @@ mod tests {
     use super::super::HertzSphere;
     use super::super::quadrature::{integrate, ring_displacement};
     use super::*;
+    use crate::Error;
     use approx::assert_relative_eq;
 
     fn punch() -> Result<CircularPunch, Error> {

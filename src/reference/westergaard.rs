@@ -1,60 +1,33 @@
 //! A wave in one direction on a half-space (Westergaard).
 
 use super::positive_part;
-use crate::Error;
 use std::f64::consts::PI;
 
-/// Contact of the wavy surface $`g(x) = D (1 - \cos 2\pi x/\lambda)`$, in plane strain.
-///
-/// Crests touch at multiples of the wavelength `λ`. Everything is given by the mean pressure
-/// `p̄` over the nominal area, which is in the ratio
-/// $`P = \bar p / p^\ast = \sin^2(\pi a/\lambda)`$ to that of complete contact; `a` is the half-width
-/// of each contact. Beyond complete contact, `P > 1`, the solution goes on: the gap stays closed
-/// and the pressure rises evenly. Amplitude means `D`, half the height from valley to crest.
-///
-/// Westergaard, J. Appl. Mech. 6 (1939) A49; Johnson, *Contact Mechanics*, §13.2; eq. (21) of Zhang,
-/// Zhang & Jin, Friction 8 (2020) 970, whose `Δ` is this `D` and whose
-/// $`p_0 = p^\ast \sin^2(\pi a/\lambda)`$.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Westergaard {
-    amplitude: f64,
-    wavelength: f64,
-    e_star: f64,
+closed_form! {
+    /// Contact of the wavy surface $`g(x) = D (1 - \cos 2\pi x/\lambda)`$, in plane strain.
+    ///
+    /// Crests touch at multiples of the wavelength `λ`. Everything is given by the mean pressure
+    /// `p̄` over the nominal area, which is in the ratio
+    /// $`P = \bar p / p^\ast = \sin^2(\pi a/\lambda)`$ to that of complete contact; `a` is the half-width
+    /// of each contact. Beyond complete contact, `P > 1`, the solution goes on: the gap stays closed
+    /// and the pressure rises evenly. Amplitude means `D`, half the height from valley to crest.
+    ///
+    /// Westergaard, J. Appl. Mech. 6 (1939) A49; Johnson, *Contact Mechanics*, §13.2; eq. (21) of Zhang,
+    /// Zhang & Jin, Friction 8 (2020) 970, whose `Δ` is this `D` and whose
+    /// $`p_0 = p^\ast \sin^2(\pi a/\lambda)`$.
+    Westergaard;
+
+    /// A wave of amplitude `amplitude` \[m\] and wavelength `wavelength` \[m\] on a half-space of
+    /// modulus `e_star` \[Pa\].
+    new;
+
+    /// Amplitude `D` \[m\].
+    amplitude: "amplitude",
+    /// Wavelength `λ` \[m\].
+    wavelength: "wavelength"
 }
 
 impl Westergaard {
-    /// A wave of amplitude `amplitude` \[m\] and wavelength `wavelength` \[m\] on a half-space of
-    /// modulus `e_star` \[Pa\].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for any of the three.
-    pub fn new(amplitude: f64, wavelength: f64, e_star: f64) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength: Error::require_positive("wavelength", wavelength)?,
-            e_star: Error::require_positive("plane-strain modulus", e_star)?,
-        })
-    }
-
-    /// Amplitude `D` \[m\].
-    #[must_use]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    /// Wavelength `λ` \[m\].
-    #[must_use]
-    pub fn wavelength(&self) -> f64 {
-        self.wavelength
-    }
-
-    /// Plane-strain modulus \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
     /// Mean pressure of complete contact, `p* = π E* D/λ` \[Pa\].
     #[must_use]
     pub fn full_contact_pressure(&self) -> f64 {

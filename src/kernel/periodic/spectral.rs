@@ -1,7 +1,7 @@
 //! The periodic half-space of spectral codes.
 
 use super::even::Even;
-use super::symmetric::{Symmetric, in_long_sides, wave_number};
+use super::symmetric::{self, Symmetric, half_space, in_long_sides, wave_number};
 use crate::kernel::gauge::of_half_space;
 use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
 use crate::{Error, Grid};
@@ -78,66 +78,14 @@ impl Spectral {
         });
         Ok(Self { half_space: Symmetric::new(grid, e_star, &symbol, of_half_space(&cells, None))? })
     }
-
-    /// The same kernel in the gauge `gauge` \[m/Pa\]; a new kernel has the one described above.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] if it is negative or not finite.
-    pub fn with_gauge(mut self, gauge: f64) -> Result<Self, Error> {
-        self.half_space.set_gauge(gauge)?;
-        Ok(self)
-    }
-
-    /// Composite modulus E* \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.half_space.e_star()
-    }
-
-    /// Ĉ(kx, ky) \[m/Pa\] in the zero gauge, Ĉ(0, 0) = 0; periodic and even in both indices.
-    #[must_use]
-    pub fn symbol(&self, kx: isize, ky: isize) -> f64 {
-        self.half_space.symbol(kx, ky)
-    }
-
-    /// The gauge s \[m/Pa\]: the mean of the coefficients.
-    #[must_use]
-    pub fn gauge(&self) -> f64 {
-        self.half_space.gauge()
-    }
-
-    /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix: `None`, except on
-    /// grids of so few nodes that there is one. It takes a Fourier transform.
-    #[must_use]
-    pub fn least_gauge(&self) -> Option<f64> {
-        self.half_space.least_gauge()
-    }
 }
 
-impl InfluenceKernel for Spectral {
-    fn grid(&self) -> Grid {
-        self.half_space.grid()
-    }
-
-    /// [`Boundary::Periodic`].
-    fn boundary(&self) -> Boundary {
-        Boundary::Periodic
-    }
-
+half_space! {
+    Spectral,
     /// Contact was found to grow monotonically for every contact set of small grids (up to 6 × 6 and
     /// 8 × 4, exhaustively) and for the worst that annealing found on grids up to 24²; gaps are not
     /// convex.
     fn contact_growth(&self) -> ContactGrowth {
         ContactGrowth::Monotone
-    }
-
-    /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
-    fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.half_space.coefficient(di, dj)
-    }
-
-    fn origin(&self) -> KernelOrigin {
-        KernelOrigin::Spectral { e_star: self.e_star() }
     }
 }

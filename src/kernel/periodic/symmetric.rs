@@ -7,13 +7,13 @@ use crate::{Error, Grid};
 /// A periodic kernel whose symbol is even along x and along y.
 #[derive(Debug, Clone)]
 pub(super) struct Symmetric {
-    grid: Grid,
-    e_star: f64,
+    pub(super) grid: Grid,
+    pub(super) e_star: f64,
     /// Ĉ(k) \[m/Pa\], zero at k = 0.
-    symbol: Even,
+    pub(super) symbol: Even,
     /// C⁽⁰⁾(r) \[m/Pa\], the inverse transform of the symbol.
-    coefficients: Even,
-    gauge: f64,
+    pub(super) coefficients: Even,
+    pub(super) gauge: f64,
 }
 
 impl Symmetric {
@@ -37,38 +37,81 @@ impl Symmetric {
         Ok(Self { grid, e_star, symbol: unit.map(|value| value * scale), coefficients, gauge })
     }
 
-    pub(super) fn grid(&self) -> Grid {
-        self.grid
-    }
-
-    pub(super) fn e_star(&self) -> f64 {
-        self.e_star
-    }
-
-    pub(super) fn symbol(&self, kx: isize, ky: isize) -> f64 {
-        self.symbol.at(kx, ky)
-    }
-
-    pub(super) fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.coefficients.at(di, dj) + self.gauge
-    }
-
-    pub(super) fn gauge(&self) -> f64 {
-        self.gauge
-    }
-
     pub(super) fn set_gauge(&mut self, gauge: f64) -> Result<(), Error> {
         let is_gauge = gauge >= 0.0 && gauge.is_finite();
         let quantity = "gauge of a periodic kernel";
         self.gauge = Error::require(quantity, gauge, is_gauge, "finite and not negative")?;
         Ok(())
     }
-
-    /// s* of this kernel.
-    pub(super) fn least_gauge(&self) -> Option<f64> {
-        least_gauge(&self.grid, &self.symbol)
-    }
 }
+
+/// The methods of a half-space that is a [`Symmetric`] kernel, given its `contact_growth`.
+macro_rules! half_space {
+    ($kernel:ident, $($contact_growth:tt)*) => {
+        impl $kernel {
+            /// The same kernel in the gauge `gauge` \[m/Pa\]; a new kernel has the one described above.
+            ///
+            /// Where [`least_gauge`](Self::least_gauge) is known, gaps are convex in the approach from there on; far above
+            /// it, digits are lost, one for each power of ten. In the gauge 0 the matrix is singular.
+            ///
+            /// # Errors
+            ///
+            /// [`Error::OutOfRange`] if it is negative or not finite.
+            pub fn with_gauge(mut self, gauge: f64) -> Result<Self, Error> {
+                self.half_space.set_gauge(gauge)?;
+                Ok(self)
+            }
+
+            /// Composite modulus E* \[Pa\].
+            #[must_use]
+            pub fn e_star(&self) -> f64 {
+                self.half_space.e_star
+            }
+
+            /// Ĉ(kx, ky) \[m/Pa\] in the zero gauge, Ĉ(0, 0) = 0; periodic and even in both indices.
+            #[must_use]
+            pub fn symbol(&self, kx: isize, ky: isize) -> f64 {
+                self.half_space.symbol.at(kx, ky)
+            }
+
+            /// The gauge s \[m/Pa\]: the mean of the coefficients.
+            #[must_use]
+            pub fn gauge(&self) -> f64 {
+                self.half_space.gauge
+            }
+
+            /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix; zero on a single node. `None` if there
+            /// is none, or if rounding hides it, on extremely long cells. It takes a Fourier transform.
+            #[must_use]
+            pub fn least_gauge(&self) -> Option<f64> {
+                symmetric::least_gauge(&self.half_space.grid, &self.half_space.symbol)
+            }
+        }
+
+        impl InfluenceKernel for $kernel {
+            fn grid(&self) -> Grid {
+                self.half_space.grid
+            }
+
+            /// [`Boundary::Periodic`].
+            fn boundary(&self) -> Boundary {
+                Boundary::Periodic
+            }
+
+            $($contact_growth)*
+
+            /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
+            fn coefficient(&self, di: isize, dj: isize) -> f64 {
+                self.half_space.coefficients.at(di, dj) + self.half_space.gauge
+            }
+
+            fn origin(&self) -> KernelOrigin {
+                KernelOrigin::$kernel { e_star: self.e_star() }
+            }
+        }
+    };
+}
+pub(super) use half_space;
 
 /// The least gauge s* in which the kernel's matrix is an inverse M-matrix, if there is any.
 ///

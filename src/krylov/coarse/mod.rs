@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
+use crate::krylov::single::product;
 use crate::krylov::tuning::{FEWEST, MOST, RIDGES, ROWS, SPACING, SPARSE, STALE};
 use crate::parallel::{for_each_chunk, vectorized};
 use aggregates::{Aggregates, CoarseInfluence};
@@ -168,22 +169,6 @@ impl CoarseSpace {
         });
         scale * self.unit
     }
-}
-
-/// Σ aᵢ bᵢ in single precision.
-#[inline(always)]
-fn product(a: &[f32], b: &[f32]) -> f32 {
-    const LANES: usize = 16;
-    let mut lanes = [0.0_f32; LANES];
-    let (a, a_rest) = a.as_chunks::<LANES>();
-    let (b, b_rest) = b.as_chunks::<LANES>();
-    for (a, b) in a.iter().zip(b) {
-        for ((lane, a), b) in lanes.iter_mut().zip(a).zip(b) {
-            *lane += a * b;
-        }
-    }
-    let rest: f32 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    lanes.iter().sum::<f32>() + rest
 }
 
 #[cfg(test)]

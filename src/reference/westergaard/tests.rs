@@ -1,6 +1,7 @@
 use super::super::HertzLine;
 use super::super::quadrature::{derivative, integrate};
 use super::*;
+use crate::Error;
 use approx::assert_relative_eq;
 
 const RATIOS: [f64; 5] = [1e-6, 0.03, 0.5, 0.9, 0.999];

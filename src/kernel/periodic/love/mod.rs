@@ -3,7 +3,7 @@
 mod short_range;
 
 use super::even::{Even, cosine_of_turn};
-use super::symmetric::{Symmetric, in_long_sides, least_gauge, wave_number};
+use super::symmetric::{self, Symmetric, half_space, in_long_sides, least_gauge, wave_number};
 use crate::kernel::check_periodic_cells;
 use crate::kernel::gauge::of_half_space;
 use crate::kernel::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin};
@@ -125,56 +125,10 @@ impl PeriodicBoussinesq {
         let gauge = of_half_space(&cells, least_gauge(&cells, &symbol));
         Ok(Self { half_space: Symmetric::new(grid, e_star, &symbol, gauge)? })
     }
-
-    /// The same kernel in the gauge `gauge` \[m/Pa\].
-    ///
-    /// Below [`least_gauge`](Self::least_gauge) gaps are no longer convex in the approach; far above
-    /// it, digits are lost, one for each power of ten. In the gauge 0 the matrix is singular.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] if it is negative or not finite.
-    pub fn with_gauge(mut self, gauge: f64) -> Result<Self, Error> {
-        self.half_space.set_gauge(gauge)?;
-        Ok(self)
-    }
-
-    /// Composite modulus E* \[Pa\].
-    #[must_use]
-    pub fn e_star(&self) -> f64 {
-        self.half_space.e_star()
-    }
-
-    /// Ĉ(kx, ky) \[m/Pa\] in the zero gauge, Ĉ(0, 0) = 0; periodic and even in both indices.
-    #[must_use]
-    pub fn symbol(&self, kx: isize, ky: isize) -> f64 {
-        self.half_space.symbol(kx, ky)
-    }
-
-    /// The gauge s \[m/Pa\]: the mean of the coefficients.
-    #[must_use]
-    pub fn gauge(&self) -> f64 {
-        self.half_space.gauge()
-    }
-
-    /// The least gauge s\* \[m/Pa\] in which the kernel is an inverse M-matrix; `None` if rounding
-    /// hides it, on extremely long cells. Zero on a single node. It takes a Fourier transform.
-    #[must_use]
-    pub fn least_gauge(&self) -> Option<f64> {
-        self.half_space.least_gauge()
-    }
 }
 
-impl InfluenceKernel for PeriodicBoussinesq {
-    fn grid(&self) -> Grid {
-        self.half_space.grid()
-    }
-
-    /// [`Boundary::Periodic`].
-    fn boundary(&self) -> Boundary {
-        Boundary::Periodic
-    }
-
+half_space! {
+    PeriodicBoussinesq,
     /// In a gauge that is large enough, such as the one [`PeriodicBoussinesq::new`] chooses, the
     /// influence matrix is an inverse M-matrix. In a smaller one it is not, but the signs of `y₂` and `r₂`
     /// are the same in every gauge.
@@ -184,15 +138,6 @@ impl InfluenceKernel for PeriodicBoussinesq {
             Some(_) => ContactGrowth::Monotone,
             None => ContactGrowth::Unknown,
         }
-    }
-
-    /// $`C^{(0)} + s`$ \[m/Pa\]; defined at every offset, on the grid or in any of its periods.
-    fn coefficient(&self, di: isize, dj: isize) -> f64 {
-        self.half_space.coefficient(di, dj)
-    }
-
-    fn origin(&self) -> KernelOrigin {
-        KernelOrigin::PeriodicBoussinesq { e_star: self.e_star() }
     }
 }
 
