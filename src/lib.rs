@@ -75,9 +75,9 @@
 
 #![warn(missing_debug_implementations)]
 
+mod cell_response;
 pub mod contact;
 pub mod convolution;
-mod doubt;
 mod elasticity;
 mod error;
 pub mod fixed_load;
@@ -89,12 +89,12 @@ pub mod patches;
 mod problem;
 pub mod record;
 pub mod reference;
-mod scale;
 #[cfg(test)]
 mod send_and_sync;
 #[cfg(test)]
 mod test_chain;
 pub mod updater;
+mod warning;
 
 pub(crate) use asperity_surfaces::parallel;
 pub use asperity_surfaces::{
@@ -102,7 +102,6 @@ pub use asperity_surfaces::{
 };
 
 pub use contact::{Certificate, ContactState, ContactTarget};
-pub use doubt::Doubt;
 pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{Error, KernelError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
@@ -113,6 +112,7 @@ pub use kernel::{
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;
 pub use updater::{LinearUpdater, RecursiveCholesky};
+pub use warning::Warning;
 
 /// Compiles and runs the code of the README.
 #[cfg(doctest)]

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
+use crate::cell_response::CellResponse;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
-use crate::scale::Scale;
 use crate::surface::HeightMap;
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
@@ -60,11 +60,11 @@ impl Problem {
         let heights = HeightMap::sample(surface, &table.grid())?;
         let highest = heights.max_height();
         let greatest_gap = highest - heights.min_height();
-        let scale = Scale::of(&table)?;
+        let cell = CellResponse::of(&table)?;
         if greatest_gap != 0.0 {
-            scale.check(greatest_gap)?;
+            cell.check(greatest_gap)?;
         }
-        let negligible = scale.negligible_gap();
+        let negligible = cell.negligible_gap();
         let gap = heights.matrix().iter().map(|height| highest - height);
         let gap = gap.map(|gap| if gap < negligible { 0.0 } else { gap });
         Ok(Self {

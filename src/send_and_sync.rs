@@ -22,7 +22,7 @@ use crate::surface::{HeightMap, SelfAffine, Topography};
 use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
-use crate::{Doubt, Error, FileError, Grid, KernelError, Problem, UpdaterError};
+use crate::{Error, FileError, Grid, KernelError, Problem, UpdaterError, Warning};
 
 /// Compiles for types that can be sent and shared.
 const fn asserted<T: Send + Sync>() {}
@@ -31,7 +31,7 @@ macro_rules! send_and_sync {
     ($($t:ty),+ $(,)?) => { const _: () = { $(asserted::<$t>();)+ }; };
 }
 
-send_and_sync!(Grid, Problem, Doubt, Error, FileError, KernelError, UpdaterError);
+send_and_sync!(Grid, Problem, Warning, Error, FileError, KernelError, UpdaterError);
 send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
 send_and_sync!(
     FixedLoadSolution,

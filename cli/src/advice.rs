@@ -1,11 +1,11 @@
 //! Options of the command line that do what the library advises.
 
-use asperity::{Doubt, surface};
+use asperity::{Warning, surface};
 
 /// What looks wrong, with the option that changes it if there is one.
-pub(crate) fn told(doubt: &Doubt) -> String {
-    match doubt {
-        Doubt::Surface(surface::Doubt::Tilted { .. }) => format!("{doubt} (`--level plane`)"),
-        _ => doubt.to_string(),
+pub(crate) fn told(warning: &Warning) -> String {
+    match warning {
+        Warning::Surface(surface::Warning::Tilted { .. }) => format!("{warning} (`--level plane`)"),
+        _ => warning.to_string(),
     }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
-use asperity::{Doubt, FixedLoadSolver, Grid, InfluenceKernel};
+use asperity::{FixedLoadSolver, Grid, InfluenceKernel, Warning};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure, Outcome};
@@ -92,9 +92,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
     eprintln!("bodies     {bodies}");
-    let doubts = Doubt::of_surface(&surface).into_iter();
-    for doubt in doubts.chain(Doubt::of_modulus(bodies.e_star)) {
-        eprintln!("warning: {}", advice::told(&doubt));
+    let warnings = Warning::of_surface(&surface).into_iter();
+    for warning in warnings.chain(Warning::of_modulus(bodies.e_star)) {
+        eprintln!("warning: {}", advice::told(&warning));
     }
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();
@@ -264,9 +264,9 @@ fn print_words(
         "  {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more for the stiffness",
         solution.effort.convolutions, solution.effort.coarse_convolutions,
     );
-    let high = Doubt::of_pressure(greatest, e_star);
-    for doubt in resolution.doubt().into_iter().chain(high) {
-        eprintln!("warning: {doubt}");
+    let high = Warning::of_pressure(greatest, e_star);
+    for warning in resolution.warning().into_iter().chain(high) {
+        eprintln!("warning: {warning}");
     }
     if state.contact_area_fraction == 1.0 {
         eprintln!("note: the contact is full; beyond full contact only the pressure changes");

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use asperity::patches::{Connectivity, ContactEdge, Patches};
-use asperity::{Boundary, Doubt, Error, Grid};
+use asperity::{Boundary, Error, Grid, Warning};
 use asperity_cli::number::area;
 use nalgebra::DMatrix;
 
@@ -32,8 +32,8 @@ impl Resolution {
         })
     }
 
-    pub(crate) fn doubt(&self) -> Option<Doubt> {
-        Doubt::of_patches(self.patches, self.contact_nodes)
+    pub(crate) fn warning(&self) -> Option<Warning> {
+        Warning::of_patches(self.patches, self.contact_nodes)
     }
 }
 

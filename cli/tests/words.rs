@@ -1,4 +1,4 @@
-//! What the program says: assumptions, doubts, and figures of the mesh.
+//! What the program says: assumptions, warnings, and figures of the mesh.
 #![allow(clippy::float_cmp)]
 
 mod common;

@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 
 use super::budget::MemoryBudget;
 use super::iterate::Iterate;
+use crate::cell_response::CellResponse;
 use crate::contact::ErrorLength;
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::{Operator, Preconditioner, sum};
-use crate::scale::Scale;
 use crate::{Error, Grid};
 
 /// What is prescribed on one grid.
@@ -80,9 +80,9 @@ impl Level {
         }
     }
 
-    /// What turns lengths into pressures and loads of a single cell.
-    pub(super) fn unit(&self) -> Scale {
-        Scale::new(self.self_influence, self.grid.cell_area())
+    /// How a single cell answers its own pressure.
+    pub(super) fn cell_response(&self) -> CellResponse {
+        CellResponse::new(self.self_influence, self.grid.cell_area())
     }
 
     /// Whether all nodes in contact are among those that touch first.

@@ -75,9 +75,9 @@ impl<'a> Stepper<'a> {
     /// Contact under the load `load` \[N\].
     pub(super) fn step_to_load(&mut self, load: f64) -> Result<FixedLoadSolution, Error> {
         let load = Error::require_positive("load", load)?;
-        let scale = self.finest().unit();
+        let cell = self.finest().cell_response();
         let sum = load / self.finest().grid.cell_area();
-        scale.check(scale.displacement(sum))?;
+        cell.check(cell.displacement(sum))?;
         self.to(Prescribed::Sum(sum), sum, Some(load))
     }
 
@@ -85,7 +85,7 @@ impl<'a> Stepper<'a> {
     pub(super) fn step_to_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
         let approach = Error::require_positive("approach", approach)?;
         let finest = self.finest();
-        finest.unit().check(approach)?;
+        finest.cell_response().check(approach)?;
         if finest.gauge.is_some() {
             let mean_gap = finest.mean_initial_gap();
             if approach >= mean_gap {

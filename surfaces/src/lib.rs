@@ -25,7 +25,7 @@
 //! | heights, slopes, spectra, a fit of a self-affine one | [`HeightMap`], [`surface::Topography`] |
 //! | generated surfaces and shapes | [`SelfAffine`], [`surface`] |
 //! | my own surface | the trait [`Surface`] |
-//! | what looks wrong with a surface | [`Doubt`] |
+//! | what looks wrong with a surface | [`Warning`] |
 //!
 //! Contact of such surfaces is computed by the crate `asperity`, which exports all of this one.
 //!
@@ -48,7 +48,7 @@ pub use nalgebra;
 
 pub use error::{Error, FileError};
 pub use grid::Grid;
-pub use surface::{Doubt, HeightMap, SelfAffine, Surface};
+pub use surface::{HeightMap, SelfAffine, Surface, Warning};
 
 /// Compiles and runs the code of the README.
 #[cfg(all(doctest, feature = "io"))]

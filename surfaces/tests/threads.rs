@@ -5,12 +5,12 @@ use asperity_surfaces::surface::{
     FlatPunch, Interpolation, Paraboloid, RadialBins, SelfAffineFit, SpectralBin, SpectralMoments,
     Spectrum, Sum, Topography, Trend, Wave, Window,
 };
-use asperity_surfaces::{Doubt, Error, FileError, Grid, HeightMap, SelfAffine};
+use asperity_surfaces::{Error, FileError, Grid, HeightMap, SelfAffine, Warning};
 
 const fn shared<T: Send + Sync + std::fmt::Debug>() {}
 
 const _: () = {
-    shared::<(Error, FileError, Grid, Doubt, HeightMap, Topography)>();
+    shared::<(Error, FileError, Grid, Warning, HeightMap, Topography)>();
     shared::<(SelfAffine, Amplitude, Spectrum, Axis, Wave, BiWave)>();
     shared::<(Paraboloid, EllipticParaboloid, Cylinder, Cone, FlatPunch)>();
     shared::<Sum<Wave, FlatPunch>>();

@@ -7,7 +7,7 @@ mod summary;
 
 use std::path::PathBuf;
 
-use asperity::Doubt;
+use asperity::Warning;
 use asperity::io::MeasuredSurface;
 use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
 use asperity_cli::number::quantity;
@@ -74,12 +74,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// What looks wrong; without a size there are no slopes.
-fn doubts(whole: &Whole) -> Vec<String> {
-    let doubts = Doubt::of_surface(&whole.surface).into_iter();
-    let known = doubts.filter(|doubt| {
-        whole.has_size || !matches!(doubt, Doubt::Surface(surface::Doubt::Steep { .. }))
+fn warnings(whole: &Whole) -> Vec<String> {
+    let warnings = Warning::of_surface(&whole.surface).into_iter();
+    let known = warnings.filter(|warning| {
+        whole.has_size || !matches!(warning, Warning::Surface(surface::Warning::Steep { .. }))
     });
-    known.map(|doubt| advice::told(&doubt)).collect()
+    known.map(|warning| advice::told(&warning)).collect()
 }
 
 /// One object for programs.
@@ -103,7 +103,7 @@ fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
         "sz": map.peak_to_valley(),
         "rms_gradient": whole.rms_gradient(),
         "notes": measured.notes,
-        "warnings": doubts(whole),
+        "warnings": warnings(whole),
     })
 }
 
@@ -164,8 +164,8 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
             "no gradients and no spectrum: the file does not contain the size of the surface; give it with --side"
         );
     }
-    for doubt in doubts(whole) {
-        say!("warning       {doubt}");
+    for warning in warnings(whole) {
+        say!("warning       {warning}");
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use asperity::kernel::KernelOrigin;
 use asperity::patches::{Connectivity, constriction};
 use asperity::record::LoadingRecord;
 use asperity::surface::{Axis, Topography};
-use asperity::{Boundary, Doubt, Error, LoadingState};
+use asperity::{Boundary, Error, LoadingState, Warning};
 use asperity_cli::number::{area, quantity};
 use asperity_cli::say;
 
@@ -86,17 +86,18 @@ pub(super) fn print_channels(
     }
     let resolution = Resolution::of(&moment.contact_map, &grid, boundary)?;
     say!("mesh: {resolution}");
-    let mut doubts = Doubt::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
-    doubts.extend(resolution.doubt());
+    let mut warnings =
+        Warning::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
+    warnings.extend(resolution.warning());
     if let KernelOrigin::Boussinesq { e_star }
     | KernelOrigin::PeriodicBoussinesq { e_star }
     | KernelOrigin::Spectral { e_star } = record.kernel().origin
     {
-        doubts.extend(Doubt::of_modulus(e_star));
-        doubts.extend(Doubt::of_pressure(moment.pressure.max(), e_star));
+        warnings.extend(Warning::of_modulus(e_star));
+        warnings.extend(Warning::of_pressure(moment.pressure.max(), e_star));
     }
-    for doubt in doubts {
-        say!("warning: {doubt}");
+    for warning in warnings {
+        say!("warning: {warning}");
     }
     Ok(())
 }

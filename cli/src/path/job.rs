@@ -9,7 +9,8 @@ use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
 use asperity::surface::{HeightMap, Topography};
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Doubt, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    Warning,
 };
 use serde_json::{Value, json};
 
@@ -207,10 +208,10 @@ impl Job {
     }
 
     /// What looks wrong before anything is computed.
-    pub(super) fn doubts(&self) -> Vec<Doubt> {
-        let mut doubts = Doubt::of_surface(&self.surface);
-        doubts.extend(Doubt::of_modulus(self.e_star()));
-        doubts
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Warning::of_surface(&self.surface);
+        warnings.extend(Warning::of_modulus(self.e_star()));
+        warnings
     }
 
     pub(super) fn rule(&self) -> ContactRule {

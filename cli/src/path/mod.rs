@@ -91,8 +91,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let job = Job::new(options)?;
     eprint!("{job}");
-    for doubt in job.doubts() {
-        eprintln!("warning: {}", crate::advice::told(&doubt));
+    for warning in job.warnings() {
+        eprintln!("warning: {}", crate::advice::told(&warning));
     }
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)

@@ -2,7 +2,7 @@
 
 use asperity::loading::{History, LoadingEnd};
 use asperity::patches::ContactEdge;
-use asperity::{Certificate, ContactRule, Doubt, Error, LoadingState};
+use asperity::{Certificate, ContactRule, Error, LoadingState, Warning};
 
 use super::Solver;
 use super::job::Job;
@@ -49,11 +49,11 @@ pub(super) fn print(
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
         .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;
     say!("mesh: at the last state {resolution}");
-    if let Some(doubt) = resolution.doubt() {
-        say!("warning: {doubt}");
+    if let Some(warning) = resolution.warning() {
+        say!("warning: {warning}");
     }
-    for doubt in doubts(job, solver)? {
-        say!("warning: {doubt}");
+    for warning in warnings(job, solver)? {
+        say!("warning: {warning}");
     }
     let certificate = solver
         .certificate()
@@ -144,21 +144,21 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 }
 
 /// What looks wrong with the end of the path.
-fn doubts(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
+fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let pressure = solver
         .max_pressure()
         .map_err(|error| Failure::new("cannot compute the pressure of the last state", error))?;
-    let high = Doubt::of_pressure(pressure, job.e_star());
-    let mut doubts: Vec<String> = high.iter().map(Doubt::to_string).collect();
+    let high = Warning::of_pressure(pressure, job.e_star());
+    let mut warnings: Vec<String> = high.iter().map(Warning::to_string).collect();
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
     {
-        doubts.push(format!(
+        warnings.push(format!(
             "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",
             scientific(job.e_star(), 3)
         ));
     }
-    Ok(doubts)
+    Ok(warnings)
 }
 
 /// States at given loads: exactly there on an exact path, the next event on the paper's, which is

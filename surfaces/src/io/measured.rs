@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::DMatrix;
 
 use super::format::Format;
-use crate::surface::{Doubt, Topography, fill_missing};
+use crate::surface::{Topography, Warning, fill_missing};
 use crate::{Error, FileError, Grid};
 
 /// Heights as they were measured: some may be missing, and the file may not know the size of the surface.
@@ -59,15 +59,15 @@ impl MeasuredSurface {
     }
 
     /// The heights on their grid, for preparation, statistics and contact. What looks wrong with them
-    /// ([`Doubt::of_surface`]) goes to the crate `log` as a warning.
+    /// ([`Warning::of_surface`]) goes to the crate `log` as a warning.
     ///
     /// # Errors
     ///
     /// [`FileError::NoSide`](crate::FileError::NoSide), and [`Error::HeightNotFinite`] as long as nodes are missing.
     pub fn topography(self) -> Result<Topography, Error> {
         let surface = Topography::new(self.grid()?, self.heights)?;
-        for doubt in Doubt::of_surface(&surface) {
-            log::warn!("{doubt}");
+        for warning in Warning::of_surface(&surface) {
+            log::warn!("{warning}");
         }
         Ok(surface)
     }

@@ -7,12 +7,11 @@
 //! * [`Topography`]: heights with their lengths, which can be levelled, cropped, filtered, resampled
 //!   and described by statistics; [`fill_missing`] comes before it.
 //! * [`Sum`]: the composite roughness of two surfaces.
-//! * [`Doubt`]: what looks wrong with a surface.
+//! * [`Warning`]: what looks wrong with a surface.
 //!
 //! Only differences of height matter for contact. Heights are positive towards the half-space: the
 //! highest node touches first.
 
-mod doubt;
 mod fourier;
 mod height_map;
 mod missing;
@@ -23,9 +22,9 @@ mod statistics;
 mod sum;
 mod topography;
 mod turns;
+mod warning;
 mod waves;
 
-pub use doubt::Doubt;
 pub use height_map::HeightMap;
 pub use missing::{count_missing, fill_missing};
 pub use placement::Axis;
@@ -34,6 +33,7 @@ pub use shapes::{Cone, Cylinder, EllipticParaboloid, FlatPunch, Paraboloid};
 pub use statistics::{Estimate, RadialBins, SelfAffineFit, SpectralBin, SpectralMoments};
 pub use sum::Sum;
 pub use topography::{Filter, FittedTrend, Interpolation, Topography, Trend, Window};
+pub use warning::Warning;
 pub use waves::{BiWave, Wave};
 
 use std::sync::Arc;

@@ -11,15 +11,15 @@ const RANGE: &str = "between 1e-140 and 1e140 in the units of the input";
 const GREATEST_PRODUCT: f64 = 1e280;
 const PRODUCT_RANGE: &str = "between 1e-280 and 1e280 in the units of the input";
 
-/// What turns lengths into pressures, loads and energies of a single cell.
+/// How a single cell answers its own pressure: what turns lengths into pressures, loads and energies of it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scale {
+pub(crate) struct CellResponse {
     /// C(0, 0).
     own: f64,
     cell_area: f64,
 }
 
-impl Scale {
+impl CellResponse {
     /// For the displacement of a cell of some area under its own unit pressure.
     pub(crate) fn new(own: f64, cell_area: f64) -> Self {
         Self { own, cell_area }

@@ -7,7 +7,7 @@ use super::{Filter, Topography, Trend, Window};
 /// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Doubt {
+pub enum Warning {
     /// A surface with slopes above 45°, for which the theory of small slopes does not hold, and that no machining makes.
     Steep {
         /// Root mean square gradient.
@@ -32,11 +32,11 @@ pub enum Doubt {
     },
 }
 
-/// Root mean square gradient above which a surface is doubted.
+/// Root mean square gradient above which a warning is given.
 const STEEP: f64 = 1.0;
 /// How many times the roughness a tilt may be.
 const TILT: f64 = 3.0;
-/// Root mean square height below which a surface is doubted \[m\]: a tenth of an atom.
+/// Root mean square height below which a warning is given \[m\]: a tenth of an atom.
 const SMOOTH: f64 = 1e-11;
 /// Cells of the shortest wave that counts as resolved, and the share that shorter waves may have.
 const CELLS: f64 = 4.0;
@@ -44,32 +44,32 @@ const UNRESOLVED: f64 = 0.1;
 /// Nodes a side of the piece in which waves are looked at: more of them tell nothing new, and take memory.
 const MIDDLE: std::ops::RangeInclusive<usize> = 16..=512;
 
-impl Doubt {
+impl Warning {
     /// What looks wrong with a surface.
     #[must_use]
     pub fn of_surface(surface: &Topography) -> Vec<Self> {
-        let mut doubts = Vec::new();
+        let mut warnings = Vec::new();
         let gradient = surface.map().rms_gradient(surface.grid());
         if let Some(rms_gradient) = gradient.ok().filter(|gradient| *gradient > STEEP) {
-            doubts.push(Self::Steep { rms_gradient });
+            warnings.push(Self::Steep { rms_gradient });
         }
         let rms_height = surface.map().rms_height();
         // A mean may round: all heights are the same where they do not differ.
         if rms_height < SMOOTH && surface.map().peak_to_valley() > 0.0 {
-            doubts.push(Self::Smooth { rms_height });
+            warnings.push(Self::Smooth { rms_height });
         }
         if let Some(share) = short_waves(surface).filter(|share| *share > UNRESOLVED) {
-            doubts.push(Self::Unresolved { share });
+            warnings.push(Self::Unresolved { share });
         }
         if let Ok(levelled) = surface.level(Trend::Plane) {
             let left = levelled.map().rms_height();
             let plane = surface.map().rms_height().powi(2) - left * left;
             let plane = plane.max(0.0).sqrt();
             if plane > TILT * left && left > 0.0 {
-                doubts.push(Self::Tilted { plane, left });
+                warnings.push(Self::Tilted { plane, left });
             }
         }
-        doubts
+        warnings
     }
 }
 
@@ -97,7 +97,7 @@ fn short_waves(surface: &Topography) -> Option<f64> {
     share.is_finite().then_some(share)
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Steep { rms_gradient } => {
@@ -145,22 +145,22 @@ mod tests {
     use super::*;
     use crate::{Error, Grid};
 
-    fn doubts(cell: f64, height: impl Fn(f64, f64) -> f64) -> Result<Vec<Doubt>, Error> {
+    fn warnings(cell: f64, height: impl Fn(f64, f64) -> f64) -> Result<Vec<Warning>, Error> {
         let heights = DMatrix::from_fn(16, 16, |ix, iy| height(ix as f64, iy as f64));
         let surface = Topography::new(Grid::new(16, 16, cell, cell)?, heights)?;
-        Ok(Doubt::of_surface(&surface))
+        Ok(Warning::of_surface(&surface))
     }
 
     #[test]
     fn units_that_are_mixed_up_are_noticed() -> Result<(), Error> {
         let rough = |x: f64, y: f64| 1e-6 * (x.sin() + (0.9 * y).sin());
-        assert_eq!(doubts(1e-5, rough)?, []);
+        assert_eq!(warnings(1e-5, rough)?, []);
         // Heights in nm that are taken for µm.
-        let found = doubts(1e-5, |x, y| 1e3 * rough(x, y))?;
-        assert!(matches!(found[..], [Doubt::Steep { .. }]), "{found:?}");
+        let found = warnings(1e-5, |x, y| 1e3 * rough(x, y))?;
+        assert!(matches!(found[..], [Warning::Steep { .. }]), "{found:?}");
         assert!(found[0].to_string().contains("a thousand times smaller"));
         // No unit makes a surface of this one.
-        let hopeless = Doubt::Steep { rms_gradient: 1e10 }.to_string();
+        let hopeless = Warning::Steep { rms_gradient: 1e10 }.to_string();
         assert!(!hopeless.contains("times smaller"), "{hopeless}");
         assert!(hopeless.ends_with("are the units of heights and sides right?"));
         Ok(())
@@ -170,15 +170,15 @@ mod tests {
     fn a_tilt_that_hides_the_roughness_is_noticed() -> Result<(), Error> {
         let tilted =
             |slope: f64| move |x: f64, y: f64| 1e-9 * (x.sin() + (0.9 * y).sin()) + slope * x;
-        assert_eq!(doubts(1e-5, tilted(1e-10))?, []);
-        let found = doubts(1e-5, tilted(1e-8))?;
-        let [doubt @ Doubt::Tilted { plane, left }] = found[..] else {
+        assert_eq!(warnings(1e-5, tilted(1e-10))?, []);
+        let found = warnings(1e-5, tilted(1e-8))?;
+        let [warning @ Warning::Tilted { plane, left }] = found[..] else {
             return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         // 16 columns at 1e-8 m each: an rms height of 1e-8 √((16² − 1)/12), and two waves of rms 0.7e-9.
         assert!((plane / 4.61e-8 - 1.0).abs() < 0.01, "{plane}");
         assert!((left / 1e-9 - 1.0).abs() < 0.1, "{left}");
-        let text = doubt.to_string();
+        let text = warning.to_string();
         assert!(text.contains(&format!("{plane:.3e} m of its rms height")), "{text}");
         assert!(text.contains(&format!("{left:.3e} m is roughness")), "{text}");
         Ok(())
@@ -188,8 +188,11 @@ mod tests {
     #[test]
     fn heights_that_overflow_are_not_tilted() -> Result<(), Error> {
         let sign = |k: f64| if k < 8.0 { 1.0 } else { -1.0 };
-        let found = doubts(1.0, |x, y| f64::MAX * sign(x) * sign(y))?;
-        assert!(!found.iter().any(|doubt| matches!(doubt, Doubt::Tilted { .. })), "{found:?}");
+        let found = warnings(1.0, |x, y| f64::MAX * sign(x) * sign(y))?;
+        assert!(
+            !found.iter().any(|warning| matches!(warning, Warning::Tilted { .. })),
+            "{found:?}"
+        );
         Ok(())
     }
 
@@ -203,37 +206,37 @@ mod tests {
         }
     }
 
-    /// Wherever its text ends too early, a doubt that does not fit says so.
+    /// Wherever its text ends too early, a warning that does not fit says so.
     #[test]
-    fn a_doubt_that_does_not_fit_is_an_error() {
+    fn a_warning_that_does_not_fit_is_an_error() {
         use fmt::Write;
         let (plane, left) = (1e-6, 1e-9);
         let rms_height = 1e-13;
-        for doubt in [
-            Doubt::Steep { rms_gradient: 40.0 },
-            Doubt::Steep { rms_gradient: 1e10 },
-            Doubt::Tilted { plane, left },
-            Doubt::Smooth { rms_height },
-            Doubt::Unresolved { share: 0.3 },
+        for warning in [
+            Warning::Steep { rms_gradient: 40.0 },
+            Warning::Steep { rms_gradient: 1e10 },
+            Warning::Tilted { plane, left },
+            Warning::Smooth { rms_height },
+            Warning::Unresolved { share: 0.3 },
         ] {
-            let length = doubt.to_string().len();
+            let length = warning.to_string().len();
             for room in 0..length {
-                assert!(write!(Room(room), "{doubt}").is_err(), "{room} of {length}");
+                assert!(write!(Room(room), "{warning}").is_err(), "{room} of {length}");
             }
-            assert!(write!(Room(length), "{doubt}").is_ok());
+            assert!(write!(Room(length), "{warning}").is_ok());
         }
     }
 
     #[test]
     fn heights_smaller_than_atoms_are_noticed() -> Result<(), Error> {
-        let found = doubts(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
-        let [doubt @ Doubt::Smooth { rms_height }] = found[..] else {
+        let found = warnings(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
+        let [warning @ Warning::Smooth { rms_height }] = found[..] else {
             return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         assert!((rms_height / 5e-13 - 1.0).abs() < 0.1, "{rms_height}");
-        assert!(doubt.to_string().contains("less than a tenth of an atom"));
+        assert!(warning.to_string().contains("less than a tenth of an atom"));
         // Nothing is wrong with a plane.
-        assert_eq!(doubts(1e-5, |_, _| 1e-6)?, []);
+        assert_eq!(warnings(1e-5, |_, _| 1e-6)?, []);
         Ok(())
     }
 
@@ -241,13 +244,13 @@ mod tests {
     #[test]
     fn waves_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
         let wave = |waves: f64, x: f64| (std::f64::consts::TAU * waves * x / 16.0).sin() / waves;
-        let found = doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
-        let [doubt @ Doubt::Unresolved { share }] = found[..] else {
+        let found = warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
+        let [warning @ Warning::Unresolved { share }] = found[..] else {
             return Err(Error::TooFewWaves { found: 0, needed: 1 });
         };
         assert!((share - 0.5).abs() < 0.1, "{share}");
-        assert!(doubt.to_string().contains("% of the mean square gradient"));
-        assert_eq!(doubts(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
+        assert!(warning.to_string().contains("% of the mean square gradient"));
+        assert_eq!(warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
         Ok(())
     }
 }

@@ -7,9 +7,9 @@ use crate::surface::{self, Topography};
 /// Something that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Doubt {
+pub enum Warning {
     /// Something about a surface.
-    Surface(surface::Doubt),
+    Surface(surface::Warning),
     /// Contact of patches that the grid does not resolve.
     SmallPatches {
         /// Number of patches.
@@ -38,12 +38,12 @@ const HIGH: f64 = 0.02;
 /// Moduli of solids lie between that of soft rubber and that of diamond \[Pa\].
 const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
 
-impl Doubt {
+impl Warning {
     /// What looks wrong with a surface.
     #[must_use]
     pub fn of_surface(surface: &Topography) -> Vec<Self> {
-        let doubts = surface::Doubt::of_surface(surface);
-        doubts.into_iter().map(Self::Surface).collect()
+        let warnings = surface::Warning::of_surface(surface);
+        warnings.into_iter().map(Self::Surface).collect()
     }
 
     /// What looks wrong with the patches of a contact.
@@ -66,10 +66,10 @@ impl Doubt {
     }
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Surface(doubt) => doubt.fmt(f),
+            Self::Surface(warning) => warning.fmt(f),
             Self::SmallPatches { patches, contact_nodes } => write!(
                 f,
                 "patches of contact have {:.1} nodes on average. Those of fewer than some ten nodes are not resolved: \
@@ -145,38 +145,38 @@ mod tests {
         }
     }
 
-    /// Wherever its text ends too early, a doubt that does not fit says so.
+    /// Wherever its text ends too early, a warning that does not fit says so.
     #[test]
-    fn a_doubt_that_does_not_fit_is_an_error() {
+    fn a_warning_that_does_not_fit_is_an_error() {
         use fmt::Write;
         let (pressure, e_star) = (60.0, 115.0);
-        for doubt in [
-            Doubt::Surface(surface::Doubt::Smooth { rms_height: 1e-13 }),
-            Doubt::SmallPatches { patches: 3, contact_nodes: 7 },
-            Doubt::Modulus { e_star },
-            Doubt::Modulus { e_star: 1e-9 },
-            Doubt::Modulus { e_star: 1e13 },
-            Doubt::HighPressure { pressure, e_star },
+        for warning in [
+            Warning::Surface(surface::Warning::Smooth { rms_height: 1e-13 }),
+            Warning::SmallPatches { patches: 3, contact_nodes: 7 },
+            Warning::Modulus { e_star },
+            Warning::Modulus { e_star: 1e-9 },
+            Warning::Modulus { e_star: 1e13 },
+            Warning::HighPressure { pressure, e_star },
         ] {
-            let length = doubt.to_string().len();
+            let length = warning.to_string().len();
             for room in 0..length {
-                assert!(write!(Room(room), "{doubt}").is_err(), "{room} of {length}");
+                assert!(write!(Room(room), "{warning}").is_err(), "{room} of {length}");
             }
-            assert!(write!(Room(length), "{doubt}").is_ok());
+            assert!(write!(Room(length), "{warning}").is_ok());
         }
     }
 
     #[test]
     fn pressures_that_metals_do_not_bear_are_noticed() {
-        assert_eq!(Doubt::of_pressure(2e9, 115e9), None);
-        let high = Doubt::of_pressure(2.5e9, 115e9).map(|doubt| doubt.to_string());
+        assert_eq!(Warning::of_pressure(2e9, 115e9), None);
+        let high = Warning::of_pressure(2.5e9, 115e9).map(|warning| warning.to_string());
         assert!(high.is_some_and(|text| text.contains("2.500 GPa, 0.022 of E*")));
     }
 
     #[test]
     fn moduli_in_other_units_are_noticed() {
         for e_star in [2.3e6, 115e9, 1.2e12] {
-            assert_eq!(Doubt::of_modulus(e_star), None);
+            assert_eq!(Warning::of_modulus(e_star), None);
         }
         for (e_star, said) in [
             (230.8, "in GPa, it is 230.8 GPa"),
@@ -184,16 +184,16 @@ mod tests {
             (1e-9, "is the modulus in Pa?"),
             (2.3e13, "above that of diamond"),
         ] {
-            let found = Doubt::of_modulus(e_star).map(|doubt| doubt.to_string());
+            let found = Warning::of_modulus(e_star).map(|warning| warning.to_string());
             assert!(found.as_ref().is_some_and(|text| text.contains(said)), "{found:?}");
         }
     }
 
     #[test]
     fn patches_of_few_nodes_are_noticed() {
-        assert_eq!(Doubt::of_patches(0, 0), None);
-        assert_eq!(Doubt::of_patches(3, 30), None);
-        let few = Doubt::of_patches(3, 29).map(|doubt| doubt.to_string());
+        assert_eq!(Warning::of_patches(0, 0), None);
+        assert_eq!(Warning::of_patches(3, 30), None);
+        let few = Warning::of_patches(3, 29).map(|warning| warning.to_string());
         assert!(few.is_some_and(|text| text.contains("have 9.7 nodes on average")));
     }
 }
