@@ -22,7 +22,6 @@ pub(crate) fn draw(
         100.0 * state.contact_area_fraction,
         quantity(state.load, "N", 4)
     );
-    // Below zero are pressures that only the paper's rule gives.
     let greatest = pressure.iter().copied().fold(0.0, f64::max);
     let in_contact = |pressure: f64, is_in| if is_in { pressure } else { f64::NAN };
     FieldMap {

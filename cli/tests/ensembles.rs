@@ -42,7 +42,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
             "--max-area-fraction 0.1 --material 70e9,0.33",
             &["bodies", "[[70000000000.0,0.33]]", "[[210000000000.0,0.3]]"],
         ),
-        ("--max-area-fraction 0.1 --rule smallest-gap", &["rule"]),
+        ("--max-area-fraction 0.1 --rule approximate-order", &["rule"]),
         ("--max-area-fraction 0.1 --updater iterative", &["updater"]),
         ("--max-area-fraction 0.1 --nodes 16", &["grid.nodes", "[16,16]", "[32,32]"]),
     ] {

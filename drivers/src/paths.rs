@@ -72,7 +72,7 @@ impl<'a> Trial<'a> {
         }
         let context = || format!("{variant:?} behind {from} states");
         let windows = self.circumstances.growth != ContactGrowth::Unknown;
-        tally += if variant.is_exact() || !windows || variant.rule == ContactRule::SmallestGap {
+        tally += if variant.is_exact() || !windows {
             self.follow(&variant, earlier, draw).map_err(|violation| violation.during(context()))?.0
         } else {
             self.follow_by_iterations(&variant, earlier, &expected)
@@ -86,11 +86,6 @@ impl<'a> Trial<'a> {
         Circumstances {
             budget: matches!(variant.solver, Solver::Handover(Some(_))),
             tolerance: (!variant.is_exact()).then_some(ITERATED),
-            // Without signs there is no end of what the paper's rule may do.
-            error: match variant.rule {
-                ContactRule::SmallestGap => f64::INFINITY,
-                _ => self.circumstances.error,
-            },
             ..self.circumstances
         }
     }
@@ -102,11 +97,8 @@ impl<'a> Trial<'a> {
         earlier: &[LoadingState],
         draw: &mut Draw<'_>,
     ) -> Result<(Tally, Vec<LoadingState>), Violation> {
-        let demands = Demands {
-            residual: if variant.is_exact() { 0.0 } else { ITERATED },
-            signs: variant.rule != ContactRule::SmallestGap,
-            ..Demands::EXACT
-        };
+        let demands =
+            Demands { residual: if variant.is_exact() { 0.0 } else { ITERATED }, ..Demands::EXACT };
         let parts = [draw.unit(), draw.unit()];
         let run = variant.run(self.sample, earlier, |path, states| {
             self.read(path, variant, [earlier, states], demands, parts)
@@ -120,7 +112,7 @@ impl<'a> Trial<'a> {
         let mut walk = Walk::new(&self.dense, self.grid, demands);
         walk.skip(earlier)?;
         walk.follow(&states)?;
-        if end == Some(LoadingEnd::NoMoreEvents) && demands.signs {
+        if end == Some(LoadingEnd::NoMoreEvents) {
             walk.check_no_more_events()?;
         }
         let mut tally = walk.tally();
@@ -193,7 +185,7 @@ impl<'a> Trial<'a> {
         let mut tally = Tally::default();
         let all: Vec<LoadingState> = earlier.iter().chain(states).copied().collect();
         let history = History::from_iter(all.iter().copied());
-        let (Some(last), true) = (all.last(), demands.signs) else {
+        let Some(last) = all.last() else {
             return Ok(tally);
         };
         for part in parts {

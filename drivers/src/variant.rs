@@ -60,8 +60,6 @@ impl Variant {
         };
         let rule = match draw.whole(0, 4) {
             0 => ContactRule::ApproximateOrder,
-            // It sums up Schur complements, of which iterations give no more than estimates.
-            1 if !iterations => ContactRule::SmallestGap,
             _ => ContactRule::FirstContact,
         };
         Self {

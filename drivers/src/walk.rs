@@ -21,15 +21,13 @@ const TIE: f64 = 1e-13;
 pub(crate) struct Demands {
     /// Gaps in contact that a solution may leave, relative to the approach.
     pub(crate) residual: f64,
-    /// Whether pressures and gaps must not be negative: not with the paper's rule.
-    pub(crate) signs: bool,
     /// Error relative to the pressures from which on a matrix is too ill-conditioned to say anything.
     pub(crate) hopeless: f64,
 }
 
 impl Demands {
     /// Exact to rounding.
-    pub(crate) const EXACT: Self = Self { residual: 0.0, signs: true, hopeless: 1e-3 };
+    pub(crate) const EXACT: Self = Self { residual: 0.0, hopeless: 1e-3 };
 }
 
 /// Where a walk stands.
@@ -39,8 +37,6 @@ pub(crate) struct Walk<'a> {
     demands: Demands,
     contact: Vec<usize>,
     last: Option<LoadingState>,
-    /// The sum of what the energies of all states so far may be off: it is a sum of works, which need not all be positive.
-    energy_error: f64,
     /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before, whose
     /// errors add up to no more than that, since their ways add up to the approach.
     gap_error: f64,
@@ -57,7 +53,6 @@ impl<'a> Walk<'a> {
             demands,
             contact: Vec::new(),
             last: None,
-            energy_error: 0.0,
             gap_error: 0.0,
             tally: Tally::default(),
             blind: false,
@@ -192,11 +187,9 @@ impl<'a> Walk<'a> {
             }
             let allowed = set.sum_error(instant.gap_error);
             let change = found.sum - self.dense.own_sum(last.contact.load);
-            if self.demands.signs {
-                self.tally.not_negative("growth of the load", change, allowed)?;
-                let change = found.own_approach - self.dense.of(&last).own_approach;
-                self.tally.not_negative("growth of the approach", change, instant.gap_error)?;
-            }
+            self.tally.not_negative("growth of the load", change, allowed)?;
+            let change = found.own_approach - self.dense.of(&last).own_approach;
+            self.tally.not_negative("growth of the approach", change, instant.gap_error)?;
         } else if last.is_none() {
             let first =
                 (state.step, state.contact.approach, state.contact.load, state.contact.energy);
@@ -263,12 +256,7 @@ impl<'a> Walk<'a> {
         self.gap_error = self.gap_error.max(instant.gap_error);
         let allowed = self.gap_error + instant.gap_error;
         tally.close("mean gap", found.mean_gap, gap, allowed)?;
-        let (energy, error) = set.energy(instant);
-        self.energy_error += error;
-        let allowed = match self.demands.signs {
-            true => error,
-            false => self.energy_error,
-        };
+        let (energy, allowed) = set.energy(instant);
         tally.close("energy", found.energy, energy, allowed)
     }
 
@@ -305,9 +293,6 @@ impl<'a> Walk<'a> {
     }
 
     fn check_signs(&mut self, set: &ContactSet<'_>, instant: &Instant) -> Result<(), Violation> {
-        if !self.demands.signs {
-            return Ok(());
-        }
         let (inside, outside): (Vec<usize>, Vec<usize>) =
             (0..self.dense.nodes()).partition(|&node| set.contains(node));
         let least = |nodes: &[usize], field: &DVector<f64>| {

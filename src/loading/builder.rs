@@ -6,7 +6,6 @@ use std::fmt;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
-use super::paper::Paper;
 use super::phase::Phase;
 use super::refined::Refined;
 use super::releases::Releases;
@@ -227,11 +226,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;
         let growth = problem.growth();
-        let procedure = match (self.rule, growth) {
-            (ContactRule::SmallestGap, _) => Procedure::Paper(Paper::default()),
-            (_, ContactGrowth::Unknown) => Procedure::Stepwise(Stepwise::default()),
-            (rule, _) => {
-                let settles = rule == ContactRule::FirstContact;
+        let procedure = match growth {
+            ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
+            _ => {
+                let settles = self.rule == ContactRule::FirstContact;
                 let refined = Refined::new(self.window_size, settles);
                 Procedure::Windows(Windowed::new(growth, self.window_size), refined)
             }

@@ -82,8 +82,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         self.check_reached(state)?;
         let snapshot = Snapshot::of(&self.run, &mut self.phase, state)?;
-        let keeps_conditions = self.keeps_conditions();
-        snapshot.recognise(&mut self.run, &self.phase, state, keeps_conditions)?;
+        snapshot.recognise(&mut self.run, &self.phase, state)?;
         Ok(snapshot.pressure)
     }
 
@@ -181,7 +180,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
 
     /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and
     /// gaps are right to 10⁻⁶, and to 10⁻⁴ where the approach of its event is an estimate. An exact path is right to some 10⁻¹²,
-    /// so that what is refused is no rounding; the smallest-gap rule promises closed gaps only.
+    /// so that what is refused is no rounding.
     ///
     /// # Errors
     ///
@@ -190,11 +189,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let Some(state) = self.state else {
             return Ok(());
         };
-        let keeps_conditions = self.keeps_conditions();
         let certificate = self.certificate()?;
         let snapshot = Snapshot::of(&self.run, &mut self.phase, &state)?;
-        snapshot.recognise(&mut self.run, &self.phase, &state, keeps_conditions)?;
-        snapshot.check_gaps(&self.run, &state, &certificate, keeps_conditions)
+        snapshot.recognise(&mut self.run, &self.phase, &state)?;
+        snapshot.check_gaps(&self.run, &state, &certificate)
     }
 }
 

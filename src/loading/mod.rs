@@ -61,7 +61,6 @@ mod fields;
 mod gap_field;
 mod history;
 mod limits;
-mod paper;
 mod phase;
 mod ranking;
 mod refined;

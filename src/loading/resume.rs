@@ -34,7 +34,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let Some(last) = self.state else {
             return Ok(());
         };
-        let keeps_conditions = self.keeps_conditions();
         let (run, phase) = (&mut self.run, &mut self.phase);
         let order = run.contact.order().to_vec();
         if phase.restore(run, &order)? {
@@ -43,7 +42,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);
         let snapshot = Snapshot::of(run, phase, &last)?;
-        snapshot.recognise(run, phase, &last, keeps_conditions)
+        snapshot.recognise(run, phase, &last)
     }
 }
 

@@ -12,8 +12,4 @@ pub enum ContactRule {
     /// set of nodes in contact there; between them some thousandths of the nodes change places with a
     /// neighbour, whose approach is within some hundredths of the mean spacing of events.
     ApproximateOrder,
-    /// The node with the smallest gap at present: the paper's rule (its step 4). It is not exact: it gives
-    /// negative pressures, overlaps, and an approach that goes backwards. It is here so that the paper can be
-    /// reproduced, and implies a window of one node.
-    SmallestGap,
 }

@@ -48,7 +48,7 @@ impl PathScalars {
         self.approach
     }
 
-    /// Advances to an approach up to the next event, or, under the paper's rule, back to one.
+    /// Advances to an approach up to the next event.
     pub(super) fn advance(&mut self, approach: f64) {
         let change = approach - self.approach;
         let load = self.load + self.grid.cell_area() * self.unit_stiffness * change;
@@ -115,7 +115,7 @@ impl PathScalars {
         self.closing = 0.0;
     }
 
-    /// A mean gap below nothing is rounding, unless the paper's rule lets surfaces overlap.
+    /// A mean gap below nothing is rounding.
     pub(super) fn clamp_mean_gap(&mut self) {
         self.mean_gap = self.mean_gap.max(0.0);
     }
@@ -221,7 +221,7 @@ mod tests {
         assert_eq!((state.load, state.energy, state.mean_gap), (1.5, 2.25, -0.25));
         scalars.clamp_mean_gap();
         assert_eq!(scalars.state(1).mean_gap, 0.0);
-        // Back again, as under the paper's rule.
+        // And back again.
         scalars.advance(2.0);
         assert_eq!((scalars.approach(), scalars.state(1).energy), (2.0, 1.0));
         // Full contact by identity; before it by arithmetic.

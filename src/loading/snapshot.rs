@@ -68,13 +68,12 @@ impl Snapshot {
     }
 
     /// `Ok` if the solution with the nodes and the approach of a state has its load, and pressures and gaps that
-    /// a state has; the latter only if the path keeps the conditions of contact.
+    /// a state has.
     pub(super) fn recognise<U: LinearUpdater>(
         &self,
         run: &mut LoadingRun,
         phase: &Phase<U>,
         state: &LoadingState,
-        keeps_conditions: bool,
     ) -> Result<(), Error> {
         let refused =
             |quantity, value, expected| Err(not_on_path(state, quantity, value, expected));
@@ -88,9 +87,6 @@ impl Snapshot {
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
         if !same_load || !state.contact.approach.is_finite() {
             return refused("load", load, "the load of the state");
-        }
-        if !keeps_conditions {
-            return Ok(());
         }
         let least = self.nodes.iter().map(|&node| self.pressure[node]);
         let least = least.fold(f64::INFINITY, f64::min);
@@ -107,21 +103,19 @@ impl Snapshot {
         Ok(())
     }
 
-    /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere if the path
-    /// keeps the conditions of contact: [`recognise`](Self::recognise) looks at the node that touches next alone.
+    /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere: [`recognise`](Self::recognise) looks at the node that touches next alone.
     pub(super) fn check_gaps(
         &self,
         run: &LoadingRun,
         state: &LoadingState,
         certificate: &Certificate,
-        keeps_conditions: bool,
     ) -> Result<(), Error> {
         let allowed = self.allowed_gap(run, state);
         let [left, least] = [certificate.greatest_contact_gap, certificate.least_gap]
             .map(|gap| gap * certificate.length);
         // NaN is refused as well.
         let is_closed = left <= allowed;
-        let is_clear = !keeps_conditions || least >= -allowed;
+        let is_clear = least >= -allowed;
         if !is_closed {
             let quantity = "greatest gap in contact";
             return Err(not_on_path(state, quantity, left, "no gap"));
@@ -229,7 +223,7 @@ mod tests {
                 ContactState::new(&grid, self.pressures.len(), self.approach, self.load, 0.0);
             let mut state = LoadingState::new(self.step, ContactEvent::Touch, (0, 0), contact);
             state.approach_error = self.error;
-            match snapshot.recognise(&mut run, &Phase::new(updater), &state, true) {
+            match snapshot.recognise(&mut run, &Phase::new(updater), &state) {
                 Err(Error::NotOnPath { quantity, .. }) => Ok(Some(quantity)),
                 done => done.map(|()| None),
             }

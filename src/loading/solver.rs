@@ -3,7 +3,6 @@
 use std::iter::FusedIterator;
 
 use super::limits::{Limits, LoadingEnd};
-use super::paper::Paper;
 use super::phase::Phase;
 use super::refined::Refined;
 use super::rule::ContactRule;
@@ -64,7 +63,6 @@ pub(super) enum Procedure {
     /// In windows: exact ones while there is a factor, and refined ones with iterations.
     Windows(Windowed, Refined),
     Stepwise(Stepwise),
-    Paper(Paper),
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -88,11 +86,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.limits = limits;
         self.end = None;
         Ok(())
-    }
-
-    /// Whether states keep the conditions of contact: the paper's rule only closes gaps.
-    pub(super) fn keeps_conditions(&self) -> bool {
-        !matches!(self.procedure, Procedure::Paper(_))
     }
 
     /// The next state, `None` at the end of the path.
@@ -141,7 +134,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
             _ if is_enough => Ok(()),
-            (Procedure::Paper(paper), phase) => paper.produce(run, phase),
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
                 refined.produce(run, &mut **iterations, most_nodes)
             }

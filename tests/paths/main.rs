@@ -24,7 +24,6 @@ mod records_on_disk;
 mod reference_paths;
 mod releases;
 mod small_without_factor;
-mod smallest_gap;
 mod strips;
 mod ties;
 mod undisturbed;

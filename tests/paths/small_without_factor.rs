@@ -1,6 +1,6 @@
 //! What iterations say of small contacts, beside the factor.
 
-use asperity::loading::{ContactRule, LoadingState};
+use asperity::loading::LoadingState;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, LinearUpdater, RecursiveCholesky};
 use asperity::{
@@ -13,10 +13,8 @@ fn states<U: LinearUpdater>(
     updater: U,
     map: &HeightMap,
     kernel: &dyn InfluenceKernel,
-    rule: ContactRule,
 ) -> Vec<LoadingState> {
     LoadingSolver::builder(map, kernel)
-        .rule(rule)
         .updater(updater)
         .build()
         .unwrap()
@@ -44,9 +42,8 @@ fn nodes_of_the_same_height_are_told_apart() {
     let mut heights = DMatrix::zeros(2, 3);
     heights[(1, 0)] = 1e-6;
     let map = HeightMap::new(heights).unwrap();
-    let rule = ContactRule::FirstContact;
-    let exact = states(RecursiveCholesky::new(), &map, &kernel, rule);
-    let found = states(ConjugateGradient::new(), &map, &kernel, rule);
+    let exact = states(RecursiveCholesky::new(), &map, &kernel);
+    let found = states(ConjugateGradient::new(), &map, &kernel);
     assert!(
         exact[3].contact.approach - exact[2].contact.approach > 5e-6 * exact[2].contact.approach
     );
@@ -58,21 +55,22 @@ fn nodes_of_the_same_height_are_told_apart() {
     }
 }
 
-/// The estimate of an approach covers what it is off by, also where each event is found by a solution of its own: by the
-/// paper's rule, and on a body that promises nothing.
+/// The estimate of an approach covers what it is off by, also where each event is found by a solution of its own: on bodies that
+/// promise nothing, an elastic half-space among them.
 #[test]
 fn single_events_say_what_they_are_off_by() {
     let grid = Grid::new(6, 7, 1.0, 1.0).unwrap();
     let map = rough(grid);
     let free = Boussinesq::new(grid, 1.0).unwrap();
-    let unknown = |di: isize, dj: isize| (-((di * di + dj * dj) as f64).sqrt() / 3.0).exp();
-    let table =
-        KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, unknown).unwrap();
-    let cases: [(&dyn InfluenceKernel, ContactRule); 2] =
-        [(&free, ContactRule::SmallestGap), (&table, ContactRule::FirstContact)];
-    for (kernel, rule) in cases {
-        let exact = states(RecursiveCholesky::new(), &map, kernel, rule);
-        let found = states(ConjugateGradient::new(), &map, kernel, rule);
+    let half_space = |di: isize, dj: isize| free.coefficient(di, dj);
+    let decaying = |di: isize, dj: isize| (-((di * di + dj * dj) as f64).sqrt() / 3.0).exp();
+    let unknown = ContactGrowth::Unknown;
+    for kernel in [
+        KernelTable::from_fn(grid, Boundary::Free, unknown, half_space).unwrap(),
+        KernelTable::from_fn(grid, Boundary::Free, unknown, decaying).unwrap(),
+    ] {
+        let exact = states(RecursiveCholesky::new(), &map, &kernel);
+        let found = states(ConjugateGradient::new(), &map, &kernel);
         assert_eq!(found.len(), exact.len());
         for (found, exact) in found.iter().zip(&exact) {
             assert_eq!((found.node, found.event), (exact.node, exact.event));

@@ -131,12 +131,12 @@ proptest! {
         (dx, dy) in cell(),
         e_star in positive(),
         heights in prop::collection::vec(anything(), 16),
-        paper in any::<bool>(),
+        approximate in any::<bool>(),
         window in prop_oneof![Just(None), (1_usize..5).prop_map(Some)],
     ) {
         let Ok(grid) = Grid::new(nx, ny, dx, dy) else { return Ok(()) };
         let heights = DMatrix::from_fn(nx, ny, |ix, iy| heights[ix + 4 * iy]);
-        let rule = if paper { ContactRule::SmallestGap } else { ContactRule::FirstContact };
+        let rule = if approximate { ContactRule::ApproximateOrder } else { ContactRule::FirstContact };
         if let Ok(states) = run(grid, e_star, &heights, rule, window) {
             prop_assert_eq!(states.len(), grid.nodes());
             for state in &states {

@@ -1,8 +1,8 @@
 //! One state of a path, with its fields.
 
+use asperity::LoadingState;
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
 use asperity::record::LoadingRecord;
-use asperity::{ContactRule, LoadingState};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
@@ -24,14 +24,7 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
         ))
     };
     if let Some(load) = options.at_load {
-        let found = match record.settings().rule {
-            // Which is not a function of load.
-            ContactRule::SmallestGap => {
-                record.states().iter().find(|s| s.contact.load >= load).copied()
-            }
-            _ => history.at_load(load),
-        };
-        return found.ok_or_else(|| missed(quantity(load, "N", 6)));
+        return history.at_load(load).ok_or_else(|| missed(quantity(load, "N", 6)));
     }
     if let Some(fraction) = options.at_area_fraction {
         let found = history.at_area_fraction(fraction);

@@ -214,10 +214,6 @@ impl Job {
         warnings
     }
 
-    pub(super) fn rule(&self) -> ContactRule {
-        self.rule
-    }
-
     /// How far a state is on the way to the nearest target: load grows about in proportion to nodes.
     pub(super) fn progress(&self, state: &LoadingState) -> Progress {
         let shares = self.targets.iter().map(|target| match *target {
@@ -341,7 +337,6 @@ fn in_words(rule: ContactRule) -> &'static str {
     match rule {
         ContactRule::FirstContact => "nodes in the exact order in which they touch",
         ContactRule::ApproximateOrder => "nodes nearly in the order in which they touch",
-        ContactRule::SmallestGap => "smallest gap next, as in Zhang et al. (2020), not exact",
     }
 }
 

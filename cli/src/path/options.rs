@@ -198,8 +198,6 @@ pub(super) enum Rule {
     FirstContact,
     /// The same, but faster without a factor: nodes that touch almost together may be in the wrong order
     ApproximateOrder,
-    /// The node with the smallest gap, as in Zhang et al. (2020): not exact
-    SmallestGap,
 }
 
 impl From<Rule> for ContactRule {
@@ -207,7 +205,6 @@ impl From<Rule> for ContactRule {
         match rule {
             Rule::FirstContact => Self::FirstContact,
             Rule::ApproximateOrder => Self::ApproximateOrder,
-            Rule::SmallestGap => Self::SmallestGap,
         }
     }
 }

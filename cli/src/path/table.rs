@@ -2,7 +2,7 @@
 
 use asperity::loading::{History, LoadingEnd};
 use asperity::patches::ContactEdge;
-use asperity::{Certificate, ContactRule, Error, LoadingState, Warning};
+use asperity::{Certificate, Error, LoadingState, Warning};
 
 use super::Solver;
 use super::job::Job;
@@ -32,7 +32,7 @@ pub(super) fn print(
     say!();
     let corrected = corrected_areas(job, states)
         .map_err(|error| Failure::new("cannot compute the corrected contact area", error))?;
-    let rows = rows(job.rule(), states, last);
+    let rows = rows(states, last);
     let mut failed = Ok(());
     let mut greatest = Vec::new();
     for state in &rows {
@@ -161,17 +161,12 @@ fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     Ok(warnings)
 }
 
-/// States at given loads: exactly there on an exact path, the next event on the paper's, which is
-/// not a function of load.
-fn rows(rule: ContactRule, states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
+/// States at given loads.
+fn rows(states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
     let history: History = states.iter().copied().collect();
     let mut rows: Vec<LoadingState> = Vec::new();
     for load in LOADS.map(|fraction| fraction * last.contact.load) {
-        let state = match rule {
-            ContactRule::FirstContact | ContactRule::ApproximateOrder => history.at_load(load),
-            ContactRule::SmallestGap => states.iter().find(|s| s.contact.load >= load).copied(),
-        };
-        rows.extend(state.filter(|state| rows.last() != Some(state)));
+        rows.extend(history.at_load(load).filter(|state| rows.last() != Some(state)));
     }
     rows
 }

@@ -11,9 +11,10 @@ use std::time::Instant;
 use asperity::loading::LoadingBuilder;
 use asperity::surface::Paraboloid;
 use asperity::updater::RecursiveCholesky;
-use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver};
+use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, LoadingState};
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
+use asperity_studies::smallest_gap::SmallestGap;
 use clap::Parser;
 use faer::{Accum, Mat, Par};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -51,29 +52,35 @@ impl Sphere {
             .updater(RecursiveCholesky::new())
             .max_area_fraction(PI / 16.0)
     }
+
+    /// The same by the paper's procedure.
+    fn paper(&self) -> Result<SmallestGap, asperity::Error> {
+        let most_nodes = self.kernel.grid().nodes_in(PI / 16.0)?;
+        SmallestGap::new(&self.surface, &self.kernel, most_nodes)
+    }
 }
 
 /// A path that was run to its end.
-struct Run {
-    solver: LoadingSolver<RecursiveCholesky>,
+struct Run<P> {
+    path: P,
     nodes: usize,
     seconds: f64,
 }
 
-fn run(
+fn run<P: Iterator<Item = Result<LoadingState, asperity::Error>>>(
     name: &'static str,
     grid_nodes: usize,
-    builder: LoadingBuilder<'_, RecursiveCholesky>,
-) -> Result<Run, asperity::Error> {
+    build: impl FnOnce() -> Result<P, asperity::Error>,
+) -> Result<Run<P>, asperity::Error> {
     let expected = (grid_nodes * grid_nodes) as f64 * PI / 16.0;
     let style = ProgressStyle::with_template("{msg:>24} {wide_bar} {pos}/{len} nodes {elapsed}");
     let bar = ProgressBar::new(expected as u64)
         .with_message(name)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let start = Instant::now();
-    let mut solver = builder.build()?;
+    let mut path = build()?;
     let mut nodes = 0;
-    for state in solver.by_ref() {
+    for state in path.by_ref() {
         nodes = state?.contact.contact_nodes;
         if nodes % 64 == 0 {
             bar.set_position(nodes as u64);
@@ -81,7 +88,7 @@ fn run(
     }
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    Ok(Run { solver, nodes, seconds })
+    Ok(Run { path, nodes, seconds })
 }
 
 /// Floating-point operations per second of a plain product of square matrices, on all threads.
@@ -105,7 +112,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
 
     let sphere = Sphere::new(options.nodes)?;
-    let exact = run("path", options.nodes, sphere.path())?;
+    let exact = run("path", options.nodes, || sphere.path().build())?;
     let peak = peak_memory().unwrap_or(f64::NAN);
     let n = exact.nodes as f64;
     let flops = n.powi(3) / 3.0;
@@ -117,15 +124,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         exact.seconds,
         rayon::current_num_threads()
     );
-    let updater = exact.solver.updater().ok_or("the factor is gone")?;
-    phases::print(exact.solver.timings(), updater.timings());
+    let updater = exact.path.updater().ok_or("the factor is gone")?;
+    phases::print(exact.path.timings(), updater.timings());
     println!(
         "  {:.1} GFLOP/s as n^3/3 a second; peak memory {:.0} MB, factor 4n^2 = {:.0} MB",
         flops / exact.seconds / 1e9,
         peak / 1e6,
         factor_bytes / 1e6
     );
-    drop(exact.solver);
+    drop(exact.path);
 
     let gemm = gemm_rate();
     let gemm_seconds = flops / gemm;
@@ -140,10 +147,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ours = if options.paper_full {
         exact.seconds
     } else {
-        run("path, smaller case", side, sphere.path())?.seconds
+        run("path, smaller case", side, || sphere.path().build())?.seconds
     };
-    let literal = sphere.path().rule(ContactRule::SmallestGap).window_size(1);
-    let paper = run("the paper's procedure", side, literal)?;
+    let paper = run("the paper's procedure", side, || sphere.paper())?;
     let speedup = paper.seconds / ours;
     println!(
         "the paper's procedure, {side} x {side} nodes: {} nodes in {:.1} s, ours in {ours:.2} s: \

@@ -11,7 +11,8 @@ use std::error::Error;
 
 use asperity::convolution::Convolution;
 use asperity::surface::{Amplitude, HeightMap};
-use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver, Problem, SelfAffine};
+use asperity::{Boussinesq, Grid, LoadingSolver, Problem, SelfAffine};
+use asperity_studies::smallest_gap::{LoadingPath, SmallestGap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 const SIDE: f64 = 1e-2;
@@ -53,13 +54,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for nodes in [32, 64] {
         for seed in 1..=SEEDS {
-            for rule in [ContactRule::FirstContact, ContactRule::SmallestGap] {
+            for rule in ["FirstContact", "SmallestGap"] {
                 let found = examine(nodes, seed, rule)?;
                 println!(
                     "{:>5} {:>5} {:14} {:>6} {:>10.1} {:>10} {:>11.1e} {:>9} {:>10} {:>11.1e}",
                     nodes,
                     seed,
-                    format!("{rule:?}"),
+                    rule,
                     found.steps,
                     100.0 * found.other_node as f64 / found.steps as f64,
                     found.negative_steps,
@@ -75,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Follows one path by one rule.
-fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<dyn Error>> {
+fn examine(nodes: usize, seed: u64, rule: &str) -> Result<Findings, Box<dyn Error>> {
     let grid = Grid::square(nodes, SIDE)?;
     let surface = SelfAffine::new(
         0.8,
@@ -86,13 +87,13 @@ fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<d
     )?;
     let heights = HeightMap::sample(&surface, &grid)?;
     let half_space = Boussinesq::new(grid, 1.0)?;
-    let mut path = LoadingSolver::builder(&heights, &half_space)
-        .rule(rule)
-        .max_area_fraction(FRACTION)
-        .build()?;
+    let most_nodes = grid.nodes_in(FRACTION)?;
+    let mut path: Box<dyn LoadingPath> = match rule {
+        "SmallestGap" => Box::new(SmallestGap::new(&heights, &half_space, most_nodes)?),
+        _ => Box::new(LoadingSolver::builder(&heights, &half_space).max_nodes(most_nodes).build()?),
+    };
 
     let mut rates = Rates::new(path.problem());
-    let sq = path.problem().rms_height();
     let mut found = Findings::default();
     let mut first_to_touch = None;
     let mut previous = 0.0;
@@ -105,12 +106,11 @@ fn examine(nodes: usize, seed: u64, rule: ContactRule) -> Result<Findings, Box<d
         found.backward_steps += usize::from(state.contact.approach < previous);
         previous = state.contact.approach;
 
-        let certificate = path.certificate()?;
-        let least_gap = certificate.least_gap * certificate.length / sq;
-        found.negative_steps += usize::from(certificate.least_pressure < -ROUNDING);
-        found.overlap_steps += usize::from(least_gap < -ROUNDING);
-        found.least_pressure = found.least_pressure.min(certificate.least_pressure);
-        found.least_gap = found.least_gap.min(least_gap);
+        let extremes = path.extremes()?;
+        found.negative_steps += usize::from(extremes.pressure < -ROUNDING);
+        found.overlap_steps += usize::from(extremes.gap < -ROUNDING);
+        found.least_pressure = found.least_pressure.min(extremes.pressure);
+        found.least_gap = found.least_gap.min(extremes.gap);
 
         rates.join(path.problem(), state.node)?;
         first_to_touch = rates.first_to_touch(&path.gap()?, &path.contact_map())?;

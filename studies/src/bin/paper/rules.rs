@@ -1,7 +1,7 @@
 //! The two rules for the next contact on the surface of Table 1.
 
-use asperity::surface::HeightMap;
-use asperity::{Boussinesq, ContactRule, Grid, LoadingSolver, LoadingState};
+use asperity::{Boussinesq, LoadingSolver, LoadingState};
+use asperity_studies::smallest_gap::{LoadingPath, SmallestGap};
 
 use crate::surfaces::{E_STAR, Rough, grid};
 use asperity_cli::outcome::Failure;
@@ -53,9 +53,11 @@ impl Rules {
         let heights = Rough::Table1.heights(&grid, 1).map_err(failed)?;
         let steps = NODES.min(grid.nodes() / 5);
         eprintln!("rules: {steps} nodes of {nodes} x {nodes} by each");
-        let follow = |rule| examine(&heights, grid, rule, steps).map_err(failed);
-        let exact = follow(ContactRule::FirstContact)?;
-        let smallest_gap = follow(ContactRule::SmallestGap)?;
+        let half_space = Boussinesq::new(grid, E_STAR).map_err(failed)?;
+        let exact = LoadingSolver::builder(&heights, &half_space).max_nodes(steps).build();
+        let exact = exact.and_then(examine).map_err(failed)?;
+        let smallest_gap = SmallestGap::new(&heights, &half_space, steps);
+        let smallest_gap = smallest_gap.and_then(examine).map_err(failed)?;
         let sq = heights.rms_height();
         let pairs = || exact.states.iter().zip(&smallest_gap.states);
         let load = pairs().skip(100).map(|(a, b)| (b.contact.load / a.contact.load - 1.0).abs());
@@ -75,16 +77,7 @@ impl Rules {
     }
 }
 
-fn examine(
-    heights: &HeightMap,
-    grid: Grid,
-    rule: ContactRule,
-    steps: usize,
-) -> Result<Findings, asperity::Error> {
-    let half_space = Boussinesq::new(grid, E_STAR)?;
-    let mut path =
-        LoadingSolver::builder(heights, &half_space).rule(rule).max_nodes(steps).build()?;
-    let sq = path.problem().rms_height();
+fn examine(mut path: impl LoadingPath) -> Result<Findings, asperity::Error> {
     let mut found = Findings::default();
     while let Some(state) = path.next() {
         let state = state?;
@@ -92,13 +85,12 @@ fn examine(
         found.backward += usize::from(state.contact.approach < previous);
         found.states.push(state);
         if state.step % EVERY == 0 {
-            let certificate = path.certificate()?;
-            let least_gap = certificate.least_gap * certificate.length / sq;
+            let extremes = path.extremes()?;
             found.examined += 1;
-            found.negative += usize::from(certificate.least_pressure < -ROUNDING);
-            found.overlapping += usize::from(least_gap < -ROUNDING);
-            found.least_pressure = found.least_pressure.min(certificate.least_pressure);
-            found.least_gap = found.least_gap.min(least_gap);
+            found.negative += usize::from(extremes.pressure < -ROUNDING);
+            found.overlapping += usize::from(extremes.gap < -ROUNDING);
+            found.least_pressure = found.least_pressure.min(extremes.pressure);
+            found.least_gap = found.least_gap.min(extremes.gap);
         }
     }
     found.order = path.contact_order();

@@ -1,10 +1,15 @@
 //! The paper's rule, "the node with the smallest gap touches next": reproduced, and shown not to be
 //! exact.
+#![allow(clippy::unwrap_used, missing_docs)]
 
 use asperity::kernel::KernelTable;
 use asperity::loading::LoadingSolver;
 use asperity::surface::{Amplitude, HeightMap, SelfAffine};
-use asperity::{Boundary, Boussinesq, ContactGrowth, ContactRule, Error, Grid, InfluenceKernel};
+use asperity::updater::ConjugateGradient;
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq,
+};
+use asperity_studies::smallest_gap::{Extremes, LoadingPath, SmallestGap};
 use nalgebra::{DMatrix, DVector};
 
 fn rough(n: usize, seed: u64) -> (Grid, HeightMap) {
@@ -72,10 +77,7 @@ fn the_papers_procedure_is_reproduced_step_by_step() {
         let (grid, heights) = rough(14, seed);
         let kernel = Boussinesq::new(grid, 3e9).unwrap();
         let mut paper = Paper::new(&kernel, &heights);
-        let mut path = LoadingSolver::builder(&heights, &kernel)
-            .rule(ContactRule::SmallestGap)
-            .build()
-            .unwrap();
+        let mut path = SmallestGap::new(&heights, &kernel, grid.nodes()).unwrap();
         let length = heights.max_height() - heights.min_height();
         let mut first_load = 0.0;
         loop {
@@ -126,18 +128,13 @@ struct Faults {
     backward: usize,
 }
 
-fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
-    let kernel = Boussinesq::new(grid, 1.0).unwrap();
-    let mut path =
-        LoadingSolver::builder(heights, &kernel).rule(rule).max_area_fraction(0.3).build().unwrap();
+fn faults(mut path: impl LoadingPath) -> Faults {
     let mut faults = Faults::default();
     let mut approach = 0.0;
     while let Some(state) = path.next() {
         let state = state.unwrap();
-        let certificate = path.certificate().unwrap();
         // Far above rounding, 1e-14, and far below what the paper's rule does.
-        let p = certificate.least_pressure;
-        let g = certificate.least_gap * certificate.length / heights.rms_height();
+        let Extremes { pressure: p, gap: g } = path.extremes().unwrap();
         faults.negative_pressure += usize::from(p < -1e-9);
         faults.worst_pressure = faults.worst_pressure.min(p);
         faults.overlap += usize::from(g < -1e-9);
@@ -152,7 +149,9 @@ fn faults(grid: Grid, heights: &HeightMap, rule: ContactRule) -> Faults {
 fn the_papers_rule_gives_negative_pressures() {
     for seed in [1, 2, 3] {
         let (grid, heights) = rough(32, seed);
-        let paper = faults(grid, &heights, ContactRule::SmallestGap);
+        let kernel = Boussinesq::new(grid, 1.0).unwrap();
+        let most_nodes = grid.nodes_in(0.3).unwrap();
+        let paper = faults(SmallestGap::new(&heights, &kernel, most_nodes).unwrap());
         println!("seed {seed}, of 307 states: {paper:?}");
         // Of 307 states. Measured with prototypes on such surfaces: 35-114 of 260-400 states with
         // negative pressure, at worst 64 % of the mean, and overlaps up to 0.15 Sq.
@@ -162,7 +161,8 @@ fn the_papers_rule_gives_negative_pressures() {
         assert!(paper.worst_gap < -0.01, "{paper:?}");
         assert!(paper.backward > 10, "{paper:?}");
 
-        let exact = faults(grid, &heights, ContactRule::FirstContact);
+        let exact = LoadingSolver::builder(&heights, &kernel).max_nodes(most_nodes).build();
+        let exact = faults(exact.unwrap());
         assert_eq!((exact.negative_pressure, exact.overlap, exact.backward), (0, 0, 0));
         // The promise of the crate.
         assert!(exact.worst_pressure >= -1e-12 && exact.worst_gap >= -1e-12, "{exact:?}");
@@ -177,12 +177,38 @@ fn a_gap_that_does_not_close_is_no_number() {
     let coefficient = |di: isize, _| [1.0, 1.0, 0.5][di.unsigned_abs()];
     let kernel = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, coefficient);
     let heights = HeightMap::new(DMatrix::from_row_slice(3, 1, &[0.0, -0.1, -5.0])).unwrap();
-    let mut path = LoadingSolver::builder(&heights, &kernel.unwrap())
-        .rule(ContactRule::SmallestGap)
-        .build()
-        .unwrap();
+    let mut path = SmallestGap::new(&heights, &kernel.unwrap(), 3).unwrap();
     assert_eq!(path.next().unwrap().unwrap().node, (0, 0));
     let failed = path.next().unwrap();
     assert!(matches!(failed, Err(Error::NotFinite { step: 2 })), "{failed:?}");
     assert!(path.next().is_none());
+}
+
+/// Iterations follow the same path as the factor, to what their solutions leave open.
+#[test]
+fn iterations_find_the_same_states() {
+    let (grid, heights) = rough(8, 1);
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let exact = SmallestGap::new(&heights, &kernel, grid.nodes()).unwrap();
+    let updater = ConjugateGradient::new();
+    let found = SmallestGap::with_updater(&heights, &kernel, grid.nodes(), updater).unwrap();
+    let mut states = 0;
+    for (found, exact) in found.zip(exact) {
+        let (found, exact) = (found.unwrap(), exact.unwrap());
+        assert_eq!((found.node, found.event), (exact.node, exact.event));
+        // The tolerance of the solutions is 1e-10 of the approach.
+        let off = (found.contact.approach - exact.contact.approach).abs();
+        let enough = 1e-6 * exact.contact.approach.max(1e-3 * heights.rms_height());
+        assert!(off <= enough, "{off:e} of {enough:e} at {exact:?}");
+        states += 1;
+    }
+    assert_eq!(states, grid.nodes());
+}
+
+#[test]
+fn periodic_half_spaces_are_refused() {
+    let (grid, heights) = rough(8, 1);
+    let kernel = PeriodicBoussinesq::new(grid, 1.0).unwrap();
+    let refused = SmallestGap::new(&heights, &kernel, 1).err();
+    assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
 }
