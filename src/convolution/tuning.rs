@@ -1,4 +1,4 @@
-//! The tuned numbers of convolutions: only time depends on them.
+//! The tuned numbers of convolutions: only time depends on them, as bench `convolution` measures it.
 
 // Threads
 

@@ -4,7 +4,7 @@ use super::descent::Descent;
 use super::iterate::{Criteria, Errors, Iterate, Progress};
 use super::level::{Level, Prescribed};
 use super::tuning::{
-    DEAD_BAND, INNER, LEAST_INNER, PATIENCE, STRICTER, STRICTEST, TIGHTENING, UNCONFIRMED,
+    DEAD_BAND, INNER, INNER_TO_THE_EDGE, PATIENCE, STRICTER, STRICTEST, UNCONFIRMED,
 };
 use crate::Error;
 use crate::krylov::{dot, greatest, sum, sum_over};
@@ -50,19 +50,14 @@ impl<'a> ActiveSet<'a> {
     pub(super) fn solve(mut self, prediction: bool) -> Result<usize, Error> {
         let criteria = self.criteria;
         self.begin(prediction)?;
-        let (mut inner, mut previous) = (INNER, f64::INFINITY);
         let mut unconfirmed = 0;
         let mut working = criteria;
         loop {
             self.progress.rounds += 1;
-            let errors = self.round(working, inner)?;
-            if errors.in_set() > 0.5 * previous {
-                inner = LEAST_INNER.max(TIGHTENING * inner);
-            }
-            previous = errors.in_set();
+            let errors = self.round(working)?;
             self.stalled += 1;
-            if previous < self.least {
-                (self.least, self.stalled) = (previous, 0);
+            if errors.in_set() < self.least {
+                (self.least, self.stalled) = (errors.in_set(), 0);
             }
             let worst = self.relative(&errors);
             if worst.is_nan() || !self.level.iterate.approach.is_finite() {
@@ -147,7 +142,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// One contact set: conjugate gradients on it, then release of nodes with tension.
-    fn round(&mut self, criteria: Criteria, inner: f64) -> Result<Errors, Error> {
+    fn round(&mut self, criteria: Criteria) -> Result<Errors, Error> {
         let approach = self.level.iterate.approach;
         let deepest = approach - DEAD_BAND * criteria.tolerance * criteria.scale(approach);
         if self.stalled >= PATIENCE {
@@ -157,7 +152,7 @@ impl<'a> ActiveSet<'a> {
         self.level.choose_contact(|node, pressure, total_gap| {
             pressure[node] != 0.0 || total_gap[node] < deepest
         })?;
-        self.descend(criteria, |descent, progress| descent.run(inner, progress))
+        self.descend(criteria, |descent, progress| descent.run(INNER, progress))
     }
 
     /// A round of the primal active-set method: the node that overlaps most joins the solution on a set, and pressures go
@@ -176,7 +171,7 @@ impl<'a> ActiveSet<'a> {
         self.level
             .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
         let errors = self.descend(criteria, |descent, progress| {
-            descent.run_to_the_edge(LEAST_INNER, progress)
+            descent.run_to_the_edge(INNER_TO_THE_EDGE, progress)
         })?;
         self.is_solved = errors.residual < f64::INFINITY;
         Ok(errors)
@@ -296,8 +291,7 @@ mod tests {
                 max_iterations: 100,
                 verify: true,
             };
-            ActiveSet::new(&mut level, Prescribed::Approach(approach), criteria)
-                .round(criteria, INNER)?;
+            ActiveSet::new(&mut level, Prescribed::Approach(approach), criteria).round(criteria)?;
             assert_eq!(level.iterate.contact.len(), left);
             let is_in = level.iterate.contact.places()[widest] != NodeSet::NONE;
             assert_eq!(is_in, left == 30);

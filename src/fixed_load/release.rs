@@ -1,7 +1,7 @@
 //! Nodes with tension are set free, their neighbours corrected without a convolution.
 
 use super::level::Prescribed;
-use super::tuning::{ACCURACY, PASSES, STEPS};
+use super::tuning::{ACCURACY, STEPS};
 use crate::krylov::{SparseInverse, add_scaled, dot, sum};
 
 /// Makes the pressures `x` of the contact set of the preconditioner M non-negative.
@@ -15,21 +15,14 @@ pub(super) fn release(
     weights: &[f64],
     prescribed: Prescribed,
 ) {
-    let mut free = vec![false; x.len()];
-    for _ in 0..PASSES {
-        let mut any = false;
-        for (free, x) in free.iter_mut().zip(x.iter()) {
-            any |= *x < 0.0;
-            *free |= *x < 0.0;
-        }
-        if !any {
-            break;
-        }
+    let free: Vec<bool> = x.iter().map(|x| *x < 0.0).collect();
+    if free.contains(&true) {
         let change = correction(inverse, &free, x);
         for ((x, free), change) in x.iter_mut().zip(&free).zip(&change) {
             *x = if *free { 0.0 } else { *x - change };
         }
     }
+    // The correction pulls few nodes more into tension.
     for x in x.iter_mut() {
         *x = x.max(0.0);
     }
