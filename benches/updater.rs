@@ -4,6 +4,7 @@
 //! substitution: k n², Schur complement: k² n) and in bytes of the factor where memory is
 //! (solution, join). `cargo bench --bench updater -- solution/4000` runs some of them.
 
+use std::cell::RefCell;
 use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -14,6 +15,7 @@ use asperity::updater::{
     CholeskyTimings, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor,
 };
 use asperity::{Boussinesq, Grid, LoadingSolver, Problem};
+use asperity_testing::{Altered, Call};
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, SamplingMode, Throughput};
 
@@ -24,7 +26,6 @@ const NEW: usize = 256;
 const NUMBER: usize = size_of::<f64>();
 
 /// What a path asked of its updater in one window.
-#[derive(Clone)]
 struct Window {
     /// The updater before it.
     updater: RecursiveCholesky,
@@ -36,80 +37,43 @@ struct Window {
     grown: ContactSequence,
 }
 
-/// An updater that keeps the first window with at least `at` nodes in contact.
-struct Capture {
-    inner: RecursiveCholesky,
-    at: usize,
-    window: Option<Window>,
-    complete: bool,
-}
-
-impl LinearUpdater for Capture {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), asperity::Error> {
-        if contact.len() >= self.at && self.window.is_none() {
-            self.window = Some(Window {
-                updater: self.inner.clone(),
-                contact: contact.clone(),
-                watched: nodes.to_vec(),
-                touched: WindowFactor::default(),
-                grown: contact.clone(),
-            });
-        }
-        self.inner.watch(problem, contact, nodes, schur)
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), asperity::Error> {
-        if let Some(window) = self.window.as_mut().filter(|_| !self.complete) {
-            window.touched = touched.clone();
-            window.grown = contact.clone();
-            self.complete = true;
-        }
-        self.inner.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), asperity::Error> {
-        self.inner.solve(problem, contact, count, approach, solution)
-    }
-
-    fn bytes(&self, contact: usize, watched: usize) -> usize {
-        self.inner.bytes(contact, watched)
-    }
-}
-
 /// A sphere on 128 × 128 nodes.
 fn sphere() -> Result<(Paraboloid, Boussinesq), asperity::Error> {
     let half_space = Boussinesq::new(Grid::square(128, 1e-2)?, 1.0)?;
     Ok((Paraboloid::new(1.0)?, half_space))
 }
 
-/// A window of the path of the sphere.
+/// The first window of the path of the sphere with at least `at` nodes in contact.
 fn window(at: usize) -> Result<Window, Box<dyn Error>> {
-    let capture = Capture { inner: RecursiveCholesky::new(), at, window: None, complete: false };
+    let (begun, complete) = (RefCell::new(None), RefCell::new(None));
+    let capture = Altered::new(RecursiveCholesky::new()).on_call(|inner, call| {
+        match call {
+            Call::Watch { contact, nodes, .. } if contact.len() >= at => {
+                begun.borrow_mut().get_or_insert_with(|| Window {
+                    updater: inner.clone(),
+                    contact: contact.clone(),
+                    watched: nodes.to_vec(),
+                    touched: WindowFactor::default(),
+                    grown: contact.clone(),
+                });
+            }
+            Call::Join { contact, factor, .. } if complete.borrow().is_none() => {
+                if let Some(window) = begun.borrow_mut().take() {
+                    let (touched, grown) = (factor.clone(), contact.clone());
+                    *complete.borrow_mut() = Some(Window { touched, grown, ..window });
+                }
+            }
+            _ => {}
+        }
+        call.ask(inner)
+    });
     let (surface, kernel) = sphere()?;
     let mut path = LoadingSolver::builder(&surface, &kernel).updater(capture).build()?;
-    while !path.updater().is_some_and(|capture| capture.complete) {
+    while complete.borrow().is_none() {
         path.next().ok_or("the path is too short")??;
     }
-    let capture = path.updater().ok_or("no factor")?;
-    Ok(capture.window.clone().ok_or("no window")?)
+    drop(path);
+    Ok(complete.into_inner().ok_or("no window")?)
 }
 
 /// The time that `part` of the updater's timings grows by in `count` calls of `work`.

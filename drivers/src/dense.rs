@@ -12,6 +12,7 @@
 //! the very set.
 
 use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
+use asperity_testing::dense::{influence_matrix, initial_gap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Roundings of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
@@ -54,25 +55,17 @@ impl Dense {
     pub(crate) fn new(kernel: &dyn InfluenceKernel, heights: &DMatrix<f64>) -> Self {
         let grid = kernel.grid();
         let compliance = near(kernel.coefficient(0, 0));
-        let highest = heights.max();
-        let greatest = highest - heights.min();
+        let greatest = heights.max() - heights.min();
         // Of a flat surface no length is given.
         let length = near(if greatest > 0.0 { greatest } else { grid.dx() });
-        let influence = DMatrix::from_fn(grid.nodes(), grid.nodes(), |i, j| {
-            let (a, b) = (grid.coordinates(i), grid.coordinates(j));
-            let (di, dj) = (a.0 as isize - b.0 as isize, a.1 as isize - b.1 as isize);
-            kernel.coefficient(di, dj) / compliance
-        });
+        let influence = influence_matrix(kernel) / compliance;
         let arbitrary = kernel.boundary() == Boundary::Periodic
             && kernel.mean_displacement() == MeanDisplacement::Arbitrary;
         let gauge = arbitrary.then(|| influence.column(0).mean());
         Self {
             gauge,
             given_gauge: gauge.unwrap_or(0.0).abs(),
-            gap: DVector::from_iterator(
-                grid.nodes(),
-                heights.iter().map(|height| (highest - height) / length),
-            ),
+            gap: DVector::from_vec(initial_gap(heights)) / length,
             influence,
             cell_area: grid.cell_area(),
             length,

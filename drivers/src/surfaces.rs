@@ -1,5 +1,6 @@
 //! Heights of every sort that makes a path hard: ties, plateaus, peaks, pits.
 
+use asperity_testing::surfaces::smooth;
 use nalgebra::DMatrix;
 
 use crate::draw::Draw;
@@ -101,15 +102,4 @@ pub(crate) fn heights(draw: &mut Draw<'_>, (nx, ny): (usize, usize)) -> DMatrix<
 /// 0 and 1 by turns.
 fn chessboard(ix: usize, iy: usize) -> f64 {
     ((ix + iy) % 2) as f64
-}
-
-/// Means over the 3 × 3 neighbours that there are, and a little of the height itself.
-fn smooth(heights: &DMatrix<f64>) -> DMatrix<f64> {
-    let (nx, ny) = heights.shape();
-    DMatrix::from_fn(nx, ny, |ix, iy| {
-        let (left, right) = (ix.saturating_sub(1), (ix + 1).min(nx - 1));
-        let (low, high) = (iy.saturating_sub(1), (iy + 1).min(ny - 1));
-        let part = heights.view((left, low), (right - left + 1, high - low + 1));
-        0.9 * part.mean() + 0.1 * heights[(ix, iy)]
-    })
 }

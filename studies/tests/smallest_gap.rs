@@ -10,6 +10,7 @@ use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, PeriodicBoussinesq,
 };
 use asperity_studies::smallest_gap::{Extremes, LoadingPath, SmallestGap};
+use asperity_testing::dense::influence_matrix;
 use nalgebra::{DMatrix, DVector};
 
 fn rough(n: usize, seed: u64) -> (Grid, HeightMap) {
@@ -36,13 +37,8 @@ struct PaperState {
 
 impl Paper {
     fn new(kernel: &Boussinesq, heights: &HeightMap) -> Self {
-        let grid = kernel.grid();
-        let influence = DMatrix::from_fn(grid.nodes(), grid.nodes(), |a, b| {
-            let ((ax, ay), (bx, by)) = (grid.coordinates(a), grid.coordinates(b));
-            kernel.coefficient(ax as isize - bx as isize, ay as isize - by as isize)
-        });
         let z = DVector::from_column_slice(heights.matrix().as_slice());
-        Self { influence, contact: vec![z.imax()], z }
+        Self { influence: influence_matrix(kernel), contact: vec![z.imax()], z }
     }
 
     /// The newest node of the contact carries no pressure.

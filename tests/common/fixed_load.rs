@@ -1,11 +1,7 @@
 //! What every fixed-load solution has to fulfil.
 
 use asperity::{FixedLoadSolution, FixedLoadSolver};
-
-/// How far a number is from the one expected.
-pub fn relative(found: f64, expected: f64) -> f64 {
-    ((found - expected) / expected).abs()
-}
+use asperity_testing::close::relative;
 
 /// Checks the conditions of contact against the solution's own fields, its certificate against the
 /// tolerance, and its scalars against the fields.

@@ -1,9 +1,10 @@
-//! Random rough surfaces for property tests, and dense solutions that share no code with the crate.
+//! Random rough surfaces for property tests.
 #![allow(clippy::unwrap_used, dead_code, unreachable_pub, missing_docs)]
 
 use asperity::surface::{Amplitude, SelfAffine};
-use asperity::{Grid, InfluenceKernel, Surface};
-use nalgebra::{DMatrix, DVector};
+use asperity::{Grid, Surface};
+use asperity_testing::surfaces::smooth;
+use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 /// How the heights of a random surface are made.
@@ -20,11 +21,17 @@ pub enum Roughness {
 /// One random problem.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
+    /// Along x and y.
     pub nodes: (usize, usize),
+    /// Sides of a cell \[m\].
     pub cell: (f64, f64),
+    /// Composite modulus \[Pa\].
     pub e_star: f64,
+    /// What heights are in proportion to \[m\].
     pub height: f64,
+    /// How heights are made.
     pub roughness: Roughness,
+    /// Of their random numbers.
     pub seed: u64,
     /// Nodes to watch, automatic if there are none.
     pub window: Option<usize>,
@@ -44,11 +51,15 @@ impl Random {
 }
 
 impl Case {
+    /// Its grid.
+    #[must_use]
     pub fn grid(&self) -> Grid {
         let (nx, ny) = self.nodes;
         Grid::new(nx, ny, self.cell.0, self.cell.1).unwrap()
     }
 
+    /// Its heights \[m\].
+    #[must_use]
     pub fn heights(&self) -> DMatrix<f64> {
         let (nx, ny) = self.nodes;
         let mut random = Random(self.seed);
@@ -71,22 +82,7 @@ impl Case {
     }
 }
 
-/// Nine parts of the average over the 3 x 3 neighbours that exist and one of the height itself, so
-/// that heights stay different on grids of less than three nodes a side.
-fn smooth(heights: &DMatrix<f64>) -> DMatrix<f64> {
-    let (nx, ny) = heights.shape();
-    DMatrix::from_fn(nx, ny, |ix, iy| {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for jx in ix.saturating_sub(1)..=(ix + 1).min(nx - 1) {
-            for jy in iy.saturating_sub(1)..=(iy + 1).min(ny - 1) {
-                sum += heights[(jx, jy)];
-                count += 1.0;
-            }
-        }
-        0.9 * sum / count + 0.1 * heights[(ix, iy)]
-    })
-}
-
+/// Every roughness.
 pub fn roughness() -> impl Strategy<Value = Roughness> {
     prop_oneof![
         Just(Roughness::White),
@@ -134,38 +130,8 @@ pub fn case(
     )
 }
 
-/// Influence coefficients between nodes given by their indices, straight from the kernel.
-pub fn influence<K: InfluenceKernel>(
-    kernel: &K,
-    rows: &[usize],
-    columns: &[usize],
-) -> DMatrix<f64> {
-    let grid = kernel.grid();
-    DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
-        let (a, b) = (grid.coordinates(rows[i]), grid.coordinates(columns[j]));
-        kernel.coefficient(a.0 as isize - b.0 as isize, a.1 as isize - b.1 as isize)
-    })
-}
-
-/// Pressures that press the `contact` nodes into the plane of `approach`: C p = approach - gap, by LU.
-pub fn dense_pressure<K: InfluenceKernel>(
-    kernel: &K,
-    contact: &[usize],
-    gap: &[f64],
-    approach: f64,
-) -> DVector<f64> {
-    let rhs =
-        DVector::from_iterator(contact.len(), contact.iter().map(|&node| approach - gap[node]));
-    influence(kernel, contact, contact).lu().solve(&rhs).unwrap()
-}
-
-/// Initial gaps by node index.
-pub fn initial_gap(heights: &DMatrix<f64>) -> Vec<f64> {
-    let highest = heights.max();
-    heights.iter().map(|height| highest - height).collect()
-}
-
 /// Rms height.
+#[must_use]
 pub fn rms(heights: &DMatrix<f64>) -> f64 {
     let mean = heights.mean();
     (heights.map(|h| (h - mean) * (h - mean)).sum() / heights.len() as f64).sqrt()

@@ -6,8 +6,10 @@ use asperity::surface::HeightMap;
 use asperity::{ContactTarget, FixedLoadSolver, Grid, LoadingSolver};
 
 use crate::closed_forms::{initial_gap, pseudo_inverse};
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 /// A path to its end, with its states.
 fn path(map: &HeightMap, kernel: &Kernel) -> (LoadingSolver, History) {

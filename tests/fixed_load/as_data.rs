@@ -3,7 +3,8 @@
 use asperity::{Error, FixedLoadSolution, FixedLoadSolver, Grid};
 use serde_json::Value;
 
-use crate::problems::{Kernel, rough, solver};
+use crate::problems::{Kernel, solver};
+use asperity_testing::surfaces::rough;
 
 fn written(solution: &FixedLoadSolution) -> String {
     serde_json::to_string(solution).unwrap()

@@ -4,8 +4,10 @@ use asperity::surface::{FlatPunch, HeightMap, Paraboloid};
 use asperity::{ContactTarget, Error, FixedLoadSolver, Grid, Surface};
 use nalgebra::DMatrix;
 
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 /// C⁺ g by the sum over all waves.
 pub(crate) fn pseudo_inverse(kernel: &Kernel, values: &DMatrix<f64>) -> DMatrix<f64> {

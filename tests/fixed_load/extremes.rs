@@ -8,8 +8,10 @@ use asperity::{
 };
 use nalgebra::DMatrix;
 
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 #[test]
 fn single_node_to_far_beyond_full_contact() {

@@ -1,6 +1,6 @@
 //! The half-spaces and surfaces of these tests.
 
-use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::surface::HeightMap;
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, FixedLoadSolver, Grid, InfluenceKernel,
     PeriodicBoussinesq, Spectral,
@@ -108,16 +108,6 @@ impl InfluenceKernel for Plain {
     fn coefficient(&self, di: isize, dj: isize) -> f64 {
         self.0.coefficient(di, dj)
     }
-}
-
-/// A self-affine surface whose rms height is a hundredth of the longer side.
-pub(crate) fn rough(grid: &Grid, seed: u64) -> HeightMap {
-    let (lx, ly) = grid.sides();
-    let long = lx.max(ly);
-    let short = 4.0 * grid.dx().max(grid.dy());
-    let height = Amplitude::RmsHeight(1e-2 * long);
-    let surface = SelfAffine::new(0.8, long / 2.0, short, height, seed).unwrap();
-    HeightMap::sample(&surface, grid).unwrap()
 }
 
 /// A solver with this tolerance.

@@ -2,9 +2,10 @@
 
 use asperity::Grid;
 
-use crate::common::fixed_load::{check, relative};
+use crate::common::fixed_load::check;
 use crate::common::surface;
 use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
 
 /// Contact nodes and greatest pressure on a free half-space from aspher 0.1.3 at a tolerance of 1e-13.
 #[test]

@@ -6,7 +6,8 @@ use asperity::{
 };
 
 use crate::common::fixed_load::check;
-use crate::problems::{Kernel, rough, solver};
+use crate::problems::{Kernel, solver};
+use asperity_testing::surfaces::rough;
 
 #[test]
 fn settings_and_loads() {

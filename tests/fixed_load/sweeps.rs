@@ -2,8 +2,10 @@
 
 use asperity::{ContactTarget, Error, FixedLoadSolver, Grid};
 
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 #[test]
 fn a_sweep_is_its_loads() {

@@ -7,8 +7,10 @@ use asperity::nalgebra::DMatrix;
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::{ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid, SurfaceError};
 
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 /// Areas, in a sweep up and down with small steps and large ones, and alone.
 #[test]

@@ -3,8 +3,10 @@
 use asperity::kernel::MeanDisplacement;
 use asperity::{Boussinesq, ContactGrowth, ContactState, FixedLoadSolver, Grid, KernelTable};
 
-use crate::common::fixed_load::{check, relative};
-use crate::problems::{Kernel, Plain, rough, solver};
+use crate::common::fixed_load::check;
+use crate::problems::{Kernel, Plain, solver};
+use asperity_testing::close::relative;
+use asperity_testing::surfaces::rough;
 
 /// The gauge of the kernel, zero included, is of no influence.
 #[test]

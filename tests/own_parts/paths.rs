@@ -1,16 +1,15 @@
 //! Paths of one's own surface, kernel and updater.
 
-use crate::parts::{Bordering, Facets, Grains};
-use asperity::contact::ContactSequence;
+use crate::parts::{Facets, Grains};
 use asperity::kernel::{self, KernelTable};
 use asperity::loading::History;
-use asperity::updater::{
-    self, Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor,
-};
+use asperity::updater::{self, Dense, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, InfluenceKernel, KernelError, LoadingSolver,
     LoadingState, Problem, UpdaterError,
 };
+use asperity_testing::bordering::Bordering;
+use asperity_testing::{Altered, Call};
 use nalgebra::{DMatrix, DVector};
 
 /// What [`own_kernel_is_an_inverse_m_matrix`] shows of it is not said yet.
@@ -127,47 +126,18 @@ fn the_checks_can_fail() {
         "{error}"
     );
     let problem = Problem::new(&Facets::new(), &grains(grid)).unwrap();
-    let error = updater::check(&mut Forgetful(Bordering::default()), &problem).unwrap_err();
-    assert!(matches!(error, Error::Updater(UpdaterError::UpdaterWrong { .. })), "{error}");
-}
-
-/// An updater that forgets about the row sums of the contact.
-struct Forgetful(Bordering);
-
-impl LinearUpdater for Forgetful {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        self.0.watch(problem, contact, nodes, schur)?;
-        for (sum, &node) in schur.row_sums_mut().iter_mut().zip(nodes) {
-            *sum = problem.row_sums()[node];
+    // One that forgets about the row sums of the contact.
+    let mut forgetful = Altered::new(Bordering::default()).on_call(|inner, call| {
+        call.ask(inner)?;
+        if let Call::Watch { problem, nodes, schur, .. } = call {
+            for (sum, &node) in schur.row_sums_mut().iter_mut().zip(*nodes) {
+                *sum = problem.row_sums()[node];
+            }
         }
         Ok(())
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.0.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.0.solve(problem, contact, count, approach, solution)
-    }
+    });
+    let error = updater::check(&mut forgetful, &problem).unwrap_err();
+    assert!(matches!(error, Error::Updater(UpdaterError::UpdaterWrong { .. })), "{error}");
 }
 
 #[test]

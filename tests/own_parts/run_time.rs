@@ -1,12 +1,13 @@
 //! Surface, boundary, kernel and updater chosen at run time, as a program with options does.
 
-use crate::parts::{Bordering, Facets, Grains};
+use crate::parts::{Facets, Grains};
 use asperity::surface::{Amplitude, FlatPunch, Paraboloid};
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel,
     LoadingSolver, LoadingState, PeriodicBoussinesq, SelfAffine, Spectral, Surface,
 };
+use asperity_testing::bordering::Bordering;
 
 fn rough() -> Result<SelfAffine, asperity::SurfaceError> {
     SelfAffine::new(0.8, 1.2e-3, 4.5e-4, Amplitude::RmsHeight(1e-6), 3)

@@ -1,9 +1,10 @@
 //! A path that goes on beyond its limit is the path that was never interrupted.
 
-use crate::problems::{assert_close, grid, kernels, rough, states};
+use crate::problems::{grid, kernels, rough, states};
 use asperity::loading::{ContactEvent, LoadingEnd};
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{ContactTarget, Error, LoadingSolver, LoadingState};
+use asperity_testing::close::assert_close;
 
 /// The events of a path that stops at every target, without the states at the limits.
 fn interrupted<U: LinearUpdater>(

@@ -1,9 +1,10 @@
 //! The last state of a path lies exactly at its limit, and is the one that a longer path reads there.
 
 use crate::common::half_way;
-use crate::problems::{assert_close, grid, kernels, rough, states};
+use crate::problems::{grid, kernels, rough, states};
 use asperity::loading::{ContactEvent, History, LoadingEnd};
 use asperity::{ContactTarget, LoadingSolver, LoadingState};
+use asperity_testing::close::assert_close;
 
 /// The state at a target, by the longer path and by the limited one.
 type Read = fn(&History, f64) -> Option<LoadingState>;

@@ -1,12 +1,13 @@
 //! What holds at every event of every path, on random rough surfaces.
 
 use crate::common::with_window;
-use crate::rough::{Case, Roughness, case, dense_pressure, initial_gap, noise, rms, roughness};
+use crate::rough::{Case, Roughness, case, noise, rms, roughness};
 use asperity::convolution::Convolution;
 use asperity::loading::{History, LoadingSolver};
 use asperity::surface::{FlatPunch, HeightMap};
 use asperity::updater::Dense;
 use asperity::{Boussinesq, LoadingState};
+use asperity_testing::dense::{self, initial_gap};
 use proptest::prelude::*;
 
 /// What the crate promises of pressures and gaps. The solves lose the condition number, below 1e3
@@ -171,7 +172,7 @@ proptest! {
             let mut loads = [0.0; 2];
             for (load, part) in loads.iter_mut().zip([0.25, 0.75]) {
                 let approach = state.contact.approach + part * width;
-                let expected = dense_pressure(&kernel, contact, &gap, approach);
+                let expected = dense::pressure(&kernel, contact, &gap, approach);
                 let inside = history.at_approach(approach).unwrap();
                 let pressure = path.pressure_at(&inside).unwrap();
                 // Scale: the pressure that the whole approach would cause on one cell.

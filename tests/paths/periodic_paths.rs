@@ -2,11 +2,11 @@
 //! columns that do not depend on the gauge.
 
 use crate::common::{surface, with_window};
-use asperity::surface::{Amplitude, HeightMap, SelfAffine};
 use asperity::updater::ConjugateGradient;
 use asperity::{
     ContactGrowth, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
 };
+use asperity_testing::surfaces::rough;
 
 /// Same node at every event to full contact, every column within 1e-9: both sides come from
 /// triangular solves with a condition number of some 10³, and the last mean gaps lose five digits
@@ -97,16 +97,6 @@ fn love_in_a_smaller_gauge() {
     for window in [None, Some(7)] {
         compare(&kernel, "love", window);
     }
-}
-
-/// A self-affine surface whose rms height is a hundredth of the longer side.
-fn rough(grid: &Grid, seed: u64) -> HeightMap {
-    let (lx, ly) = grid.sides();
-    let long = lx.max(ly);
-    let short = 4.0 * grid.dx().max(grid.dy());
-    let height = Amplitude::RmsHeight(1e-2 * long);
-    let surface = SelfAffine::new(0.8, long / 2.0, short, height, seed).unwrap();
-    HeightMap::sample(&surface, grid).unwrap()
 }
 
 /// The updater without a factor gives the same periodic path, and its preconditioner the same

@@ -1,8 +1,9 @@
 //! A periodic body whose mean displacement is a property of it: a layer on a rigid base.
 
 use crate::common::half_way;
-use crate::problems::{COMPLIANCE, assert_close, grid, layer, rough};
+use crate::problems::{COMPLIANCE, grid, layer, rough};
 use asperity::{ContactGrowth, FixedLoadSolver, Grid, KernelTable, LoadingSolver};
+use asperity_testing::close::assert_close;
 
 /// The mean displacement under a load.
 fn mean_displacement(load: f64, grid: &Grid) -> f64 {

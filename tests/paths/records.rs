@@ -1,6 +1,6 @@
 //! Records of paths: read, replayed, and gone on from.
 
-use crate::problems::{assert_close, grid, kernels, rough};
+use crate::problems::{grid, kernels, rough};
 use asperity::loading::{ContactEvent, History};
 use asperity::record::LoadingRecord;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
@@ -8,6 +8,7 @@ use asperity::{
     Boussinesq, ContactRule, ContactTarget, Error, FixedLoadSolver, InfluenceKernel, LoadingSolver,
     LoadingState, PeriodicBoussinesq, Spectral,
 };
+use asperity_testing::close::assert_close;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -3,11 +3,12 @@
 use std::collections::{HashMap, HashSet};
 
 use asperity::loading::{ContactRule, LoadingEnd};
-use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boussinesq, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
 };
+use asperity_testing::surfaces::self_affine;
 use nalgebra::DMatrix;
 
 /// Events closer than this, relative to the approach, are ties, which come in the order of their nodes.
@@ -108,14 +109,6 @@ pub(crate) fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel
     ]
 }
 
-pub(crate) fn rough(grid: &Grid, hurst: f64, seed: u64) -> HeightMap {
-    let (lx, ly) = grid.sides();
-    let cutoff = 4.0 * grid.dx().max(grid.dy());
-    let height = Amplitude::RmsHeight(5e-3);
-    let surface = SelfAffine::new(hurst, 0.5 * lx.max(ly), cutoff, height, seed).unwrap();
-    HeightMap::sample(&surface, grid).unwrap()
-}
-
 /// Full contact from first touch, and the rate at which errors exceed their estimate.
 #[test]
 fn rough_surfaces_have_the_events_of_the_factor() {
@@ -123,7 +116,7 @@ fn rough_surfaces_have_the_events_of_the_factor() {
     let mut exceeded = 0;
     for (shape, hurst, seed) in [((32, 32), 0.8, 1), ((32, 20), 0.3, 2), ((24, 36), 0.9, 3)] {
         let grid = Grid::new(shape.0, shape.1, 1.0 / 32.0, 1.0 / 32.0).unwrap();
-        let surface = rough(&grid, hurst, seed);
+        let surface = self_affine(&grid, hurst, 5e-3, seed);
         for (name, kernel) in half_spaces(grid) {
             let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
             let found = states(&surface, &kernel, ConjugateGradient::new(), None);
@@ -139,7 +132,7 @@ fn rough_surfaces_have_the_events_of_the_factor() {
 #[test]
 fn any_window_has_the_same_events() {
     let grid = Grid::new(20, 18, 0.05, 0.05).unwrap();
-    let surface = rough(&grid, 0.8, 4);
+    let surface = self_affine(&grid, 0.8, 5e-3, 4);
     for (name, kernel) in half_spaces(grid) {
         let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
         for window in [1, 2, 7, 40, 1000] {
@@ -190,7 +183,7 @@ fn hard_shapes_have_the_events_of_the_factor() {
 #[test]
 fn every_state_can_be_asked_for_its_pressure() {
     let grid = Grid::square(28, 1.0).unwrap();
-    let surface = rough(&grid, 0.8, 5);
+    let surface = self_affine(&grid, 0.8, 5e-3, 5);
     for (name, kernel) in half_spaces(grid) {
         let build = |limit: f64| {
             LoadingSolver::builder(&surface, &kernel)
@@ -228,7 +221,7 @@ fn every_state_can_be_asked_for_its_pressure() {
 #[test]
 fn the_default_hands_over_at_the_same_events() {
     let grid = Grid::square(40, 1.0).unwrap();
-    let surface = rough(&grid, 0.7, 6);
+    let surface = self_affine(&grid, 0.7, 5e-3, 6);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
     let fixed = LoadingSolver::new(&surface, &kernel).unwrap().bytes();
@@ -247,7 +240,7 @@ fn the_default_hands_over_at_the_same_events() {
 #[test]
 fn the_approximate_order_is_nearly_right() {
     let grid = Grid::square(40, 1.0).unwrap();
-    let surface = rough(&grid, 0.8, 8);
+    let surface = self_affine(&grid, 0.8, 5e-3, 8);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let exact = states(&surface, &kernel, RecursiveCholesky::new(), None);
     let mut path = LoadingSolver::builder(&surface, &kernel)
@@ -275,7 +268,7 @@ fn the_approximate_order_is_nearly_right() {
 #[test]
 fn threads_do_not_matter() {
     let grid = Grid::square(72, 1.0).unwrap();
-    let surface = rough(&grid, 0.8, 9);
+    let surface = self_affine(&grid, 0.8, 5e-3, 9);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -294,7 +287,7 @@ fn threads_do_not_matter() {
 #[test]
 fn full_contact_is_full() {
     let grid = Grid::square(16, 1.0).unwrap();
-    let surface = rough(&grid, 0.8, 10);
+    let surface = self_affine(&grid, 0.8, 5e-3, 10);
     let kernel = Boussinesq::new(grid, 1.0).unwrap();
     for updater in
         [Box::new(ConjugateGradient::new()) as Box<dyn LinearUpdater>, Box::new(Handover::new())]

@@ -1,13 +1,13 @@
 //! Bad input: a typed error that names what is wrong, never a panic.
 
-use asperity::contact::ContactSequence;
 use asperity::loading::{LoadingEnd, LoadingSolver};
 use asperity::surface::{Amplitude, FlatPunch, HeightMap, SelfAffine};
-use asperity::updater::{LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor};
+use asperity::updater::RecursiveCholesky;
 use asperity::{
-    Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Problem, Surface,
-    SurfaceError, UpdaterError,
+    Boundary, Boussinesq, Error, Grid, InfluenceKernel, KernelError, Surface, SurfaceError,
+    UpdaterError,
 };
+use asperity_testing::{Altered, Call};
 use nalgebra::DMatrix;
 
 const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -135,61 +135,22 @@ fn heights() {
     assert!(matches!(error, Error::Surface(SurfaceError::CutoffBelowGrid { .. })), "{error}");
 }
 
-/// An updater that returns something malformed.
-struct Malformed {
-    inner: RecursiveCholesky,
-    what: &'static str,
-}
-
-impl LinearUpdater for Malformed {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        self.inner.watch(problem, contact, nodes, schur)?;
-        match self.what {
-            "size" => schur.resize(nodes.len() + 1)?,
-            "nan" => schur.matrix_mut().fill(f64::NAN),
-            _ => (),
-        }
-        Ok(())
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.inner.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, count, approach, solution)?;
-        match self.what {
-            "pressure" => solution.pressure.push(0.0),
-            "rate" => solution.rate.clear(),
-            "nan rate" => solution.rate.fill(f64::NAN),
-            _ => (),
-        }
-        Ok(())
-    }
-}
-
 #[test]
 fn malformed_updaters() {
     for what in ["size", "pressure", "rate", "nan", "nan rate"] {
-        let updater = Malformed { inner: RecursiveCholesky::new(), what };
+        // What is made of an answer.
+        let updater = Altered::new(RecursiveCholesky::new()).on_call(|inner, call| {
+            call.ask(inner)?;
+            match (what, call) {
+                ("size", Call::Watch { nodes, schur, .. }) => schur.resize(nodes.len() + 1)?,
+                ("nan", Call::Watch { schur, .. }) => schur.matrix_mut().fill(f64::NAN),
+                ("pressure", Call::Solve { solution, .. }) => solution.pressure.push(0.0),
+                ("rate", Call::Solve { solution, .. }) => solution.rate.clear(),
+                ("nan rate", Call::Solve { solution, .. }) => solution.rate.fill(f64::NAN),
+                _ => (),
+            }
+            Ok(())
+        });
         let (punch, kernel) = (FlatPunch::default(), half_space(4));
         let builder = LoadingSolver::builder(&punch, &kernel);
         let mut path = builder.updater(updater).window_size(3).build().unwrap();

@@ -1,144 +1,87 @@
 //! Updaters that skip calls, or answer them for another contact: an error or nonsense, and never a panic.
 
-use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
-use asperity::updater::{
-    ConjugateGradient, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowCost, WindowFactor,
-};
-use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Problem, Spectral};
+use asperity::updater::{ConjugateGradient, LinearUpdater, Method, RecursiveCholesky};
+use asperity::{Boussinesq, Grid, InfluenceKernel, LoadingSolver, Spectral};
+use asperity_testing::{Altered, Call};
 use nalgebra::DMatrix;
 
 /// An updater that skips every n-th call of a kind, or answers it for another contact.
-struct Lying {
-    inner: Box<dyn LinearUpdater>,
-    what: &'static str,
-    calls: usize,
-    turn: usize,
-}
-
-impl Lying {
-    fn lies(&mut self, what: &str) -> bool {
-        if self.what != what {
-            return false;
-        }
-        self.calls += 1;
-        self.calls.is_multiple_of(self.turn)
-    }
-}
-
-impl LinearUpdater for Lying {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), asperity::Error> {
-        if self.lies("watch others") {
-            let all = 0..problem.grid().nodes();
-            let others: Vec<usize> = all.rev().take(nodes.len()).collect();
-            return self.inner.watch(problem, contact, &others, schur);
-        }
-        if self.lies("watch nothing") {
-            return schur.resize(nodes.len());
-        }
-        self.inner.watch(problem, contact, nodes, schur)?;
-        if self.lies("huge complement") {
-            schur.matrix_mut().fill(f64::MAX);
-        }
-        if self.lies("negative complement") {
-            schur.matrix_mut().fill(-1.0);
-        }
-        if self.lies("infinite sums") {
-            schur.row_sums_mut().fill(f64::INFINITY);
-        }
-        Ok(())
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), asperity::Error> {
-        if self.lies("join nothing") {
-            return Ok(());
-        }
-        self.inner.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), asperity::Error> {
-        self.inner.solve(problem, contact, count, approach, solution)?;
-        for (what, value) in [
-            ("NaN pressure", f64::NAN),
-            ("infinite pressure", f64::INFINITY),
-            ("no pressure", 0.0),
-            ("negative pressure", -1.0),
-        ] {
-            if self.lies(what) {
-                solution.pressure.fill(value);
+fn lying(inner: Box<dyn LinearUpdater>, what: &'static str, turn: usize) -> impl LinearUpdater {
+    let mut calls = 0_usize;
+    let mut lies = move |lie: &str| {
+        calls += usize::from(what == lie);
+        what == lie && calls.is_multiple_of(turn)
+    };
+    Altered::new(inner)
+        .on_call(move |inner, call| {
+            match call {
+                Call::Watch { problem, contact, nodes, schur } if lies("watch others") => {
+                    let all = 0..problem.grid().nodes();
+                    let others: Vec<usize> = all.rev().take(nodes.len()).collect();
+                    return inner.watch(problem, contact, &others, schur);
+                }
+                Call::Watch { nodes, schur, .. } if lies("watch nothing") => {
+                    return schur.resize(nodes.len());
+                }
+                Call::Join { .. } if lies("join nothing") => return Ok(()),
+                Call::Truncate { .. } if lies("truncate nothing") => return Ok(()),
+                Call::Release { .. } if lies("release nothing") => return Ok(()),
+                _ => call.ask(inner)?,
             }
-        }
-        for (what, value) in [
-            ("NaN rate", f64::NAN),
-            ("infinite rate", f64::INFINITY),
-            ("no rate", 0.0),
-            ("negative rate", -1.0),
-        ] {
-            if self.lies(what) {
-                solution.rate.fill(value);
+            match call {
+                Call::Watch { schur, .. } => {
+                    if lies("huge complement") {
+                        schur.matrix_mut().fill(f64::MAX);
+                    }
+                    if lies("negative complement") {
+                        schur.matrix_mut().fill(-1.0);
+                    }
+                    if lies("infinite sums") {
+                        schur.row_sums_mut().fill(f64::INFINITY);
+                    }
+                }
+                Call::Solve { solution, .. } => {
+                    for (what, value) in [
+                        ("NaN pressure", f64::NAN),
+                        ("infinite pressure", f64::INFINITY),
+                        ("no pressure", 0.0),
+                        ("negative pressure", -1.0),
+                    ] {
+                        if lies(what) {
+                            solution.pressure.fill(value);
+                        }
+                    }
+                    for (what, value) in [
+                        ("NaN rate", f64::NAN),
+                        ("infinite rate", f64::INFINITY),
+                        ("no rate", 0.0),
+                        ("negative rate", -1.0),
+                    ] {
+                        if lies(what) {
+                            solution.rate.fill(value);
+                        }
+                    }
+                }
+                _ => {}
             }
-        }
-        Ok(())
-    }
-
-    fn truncate(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-    ) -> Result<(), asperity::Error> {
-        if self.lies("truncate nothing") {
-            return Ok(());
-        }
-        self.inner.truncate(problem, contact)
-    }
-
-    fn release(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        node: usize,
-        position: usize,
-    ) -> Result<(), asperity::Error> {
-        if self.lies("release nothing") {
-            return Ok(());
-        }
-        self.inner.release(problem, contact, node, position)
-    }
-
-    fn window_cost(&self) -> WindowCost {
-        let mut cost = self.inner.window_cost();
-        match self.what {
-            "multiple" => cost.multiple = usize::MAX,
-            "NaN cost" => cost.solve = f64::NAN,
-            _ => (),
-        }
-        cost
-    }
-
-    fn bytes(&self, contact: usize, watched: usize) -> usize {
-        match self.what {
+            Ok(())
+        })
+        .on_window_cost(move |inner| {
+            let mut cost = inner.window_cost();
+            match what {
+                "multiple" => cost.multiple = usize::MAX,
+                "NaN cost" => cost.solve = f64::NAN,
+                _ => (),
+            }
+            cost
+        })
+        .on_bytes(move |inner, (contact, watched)| match what {
             "all memory" => usize::MAX,
-            _ => self.inner.bytes(contact, watched),
-        }
-    }
+            _ => inner.bytes(contact, watched),
+        })
+        // Iterations are asked as an updater is: only so do their calls come by here.
+        .on_method(|_| Method::Factor)
 }
 
 const LIES: [&str; 19] = [
@@ -180,8 +123,8 @@ fn lying_updaters() {
                     } else {
                         Box::new(ConjugateGradient::new())
                     };
-                    let updater = Lying { inner, what, calls: 0, turn };
-                    let builder = LoadingSolver::builder(&rough, kernel).updater(updater);
+                    let builder = LoadingSolver::builder(&rough, kernel);
+                    let builder = builder.updater(lying(inner, what, turn));
                     let Ok(mut path) = builder.window_size(4).build() else {
                         continue;
                     };

@@ -1,74 +1,24 @@
 //! Small surfaces on which many nodes touch at once: every updater goes the whole path, and each of its
 //! states is that of a dense solution.
 
-use asperity::contact::ContactSequence;
 use asperity::surface::HeightMap;
-use asperity::updater::{
-    ConjugateGradient, Dense, Handover, LinearUpdater, Method, RecursiveCholesky, Schur, Solution,
-    WindowFactor,
-};
+use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    PeriodicBoussinesq, Problem, Spectral,
+    Boundary, Boussinesq, Grid, InfluenceKernel, LoadingSolver, LoadingState, PeriodicBoussinesq,
+    Problem, Spectral,
 };
+use asperity_testing::Altered;
 use nalgebra::{DMatrix, DVector};
 
 /// The default updater, made to give up its factor at a number of nodes in contact.
-struct Seam {
-    inner: Handover,
-    at: usize,
-}
-
-impl LinearUpdater for Seam {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        self.inner.watch(problem, contact, nodes, schur)
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.inner.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, count, approach, solution)
-    }
-
-    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        self.inner.truncate(problem, contact)
-    }
-
-    /// More than there is for so many nodes and the least window that has to follow them.
-    fn bytes(&self, contact: usize, watched: usize) -> usize {
+fn seam(at: usize) -> impl LinearUpdater {
+    // More than there is for so many nodes and the least window that has to follow them.
+    Altered::new(Handover::new()).on_bytes(move |inner, (contact, watched)| {
         match contact.checked_sub(64) {
-            Some(contact) if contact >= self.at => usize::MAX,
-            _ => self.inner.bytes(contact, watched),
+            Some(contact) if contact >= at => usize::MAX,
+            _ => inner.bytes(contact, watched),
         }
-    }
-
-    fn method(&self) -> Method {
-        self.inner.method()
-    }
-
-    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        self.inner.make_room(problem, bytes)
-    }
+    })
 }
 
 /// Heights of many symmetries on one grid.
@@ -212,7 +162,6 @@ fn catalogue(grids: &[(usize, usize, f64, f64)]) {
         for (shape, heights) in shapes(nx, ny) {
             let map = HeightMap::new(heights).unwrap();
             for (name, kernel) in kernels(grid) {
-                let seam = |at: usize| Seam { inner: Handover::new(), at };
                 let kernel = &*kernel;
                 let mut results = vec![
                     ("dense", whole_path(&map, kernel, Dense, None, exact)),

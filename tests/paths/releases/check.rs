@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::complementary::{complementary, from_first_touch};
 use super::table::Table;
 use crate::common::loaded;
 use asperity::loading::{ContactEvent, History};
 use asperity::updater::LinearUpdater;
 use asperity::{LoadingSolver, LoadingState};
+use asperity_testing::dense::{complementary, from_first_touch};
 use nalgebra::{DMatrix, DVector};
 
 /// Both sides solve with matrices of condition 1e3 at most, which loses three digits of sixteen.

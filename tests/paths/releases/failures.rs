@@ -1,12 +1,13 @@
 //! Updaters that cannot let nodes go, or fail: what came before stays.
 
 use super::check::EXACT;
-use super::complementary::{complementary, from_first_touch};
 use super::table::{Table, case};
-use asperity::contact::ContactSequence;
 use asperity::loading::ContactEvent;
-use asperity::updater::{Dense, LinearUpdater, RecursiveCholesky, Schur, Solution, WindowFactor};
-use asperity::{Error, LoadingState, Problem, UpdaterError};
+use asperity::updater::RecursiveCholesky;
+use asperity::{Error, LoadingState, UpdaterError};
+use asperity_testing::bordering::Bordering;
+use asperity_testing::dense::{complementary, from_first_touch};
+use asperity_testing::{Altered, Call};
 use nalgebra::DVector;
 
 fn has_releases((kernel, gaps): &(Table, Vec<f64>)) -> bool {
@@ -14,47 +15,12 @@ fn has_releases((kernel, gaps): &(Table, Vec<f64>)) -> bool {
     states.any(|state| state.event == ContactEvent::Release)
 }
 
-/// An updater that knows the three verbs that every path needs, and not how to let a node leave.
-#[derive(Default)]
-struct GrowsOnly(Dense);
-
-impl LinearUpdater for GrowsOnly {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        self.0.watch(problem, contact, nodes, schur)
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.0.join(problem, contact, touched)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.0.solve(problem, contact, count, approach, solution)
-    }
-}
-
+/// One that knows the three verbs that every path needs, and not how to let a node leave.
 #[test]
 fn an_updater_that_cannot_let_nodes_leave_says_so() {
     let (kernel, gaps) = (0..).map(case).find(has_releases).unwrap();
     let mut complete = kernel.path(&gaps);
-    let mut path = kernel.path_with(&gaps, GrowsOnly::default());
+    let mut path = kernel.path_with(&gaps, Bordering::default());
     loop {
         let expected = complete.next().unwrap().unwrap();
         match path.next().unwrap() {
@@ -74,60 +40,6 @@ fn an_updater_that_cannot_let_nodes_leave_says_so() {
     assert!(path.certificate().unwrap().least_pressure > -1e-11);
 }
 
-/// An updater one of whose solutions is not a number.
-struct Spoiled {
-    inner: RecursiveCholesky,
-    solutions: usize,
-    spoiled: usize,
-}
-
-impl LinearUpdater for Spoiled {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        self.inner.watch(problem, contact, nodes, schur)
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.inner.join(problem, contact, touched)
-    }
-
-    fn release(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        node: usize,
-        position: usize,
-    ) -> Result<(), Error> {
-        self.inner.release(problem, contact, node, position)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.inner.solve(problem, contact, count, approach, solution)?;
-        self.solutions += 1;
-        if self.solutions == self.spoiled {
-            solution.pressure.fill(f64::NAN);
-        }
-        Ok(())
-    }
-}
-
 /// An event whose state fails is not yielded, whether a node touched or left; what came before stays.
 #[test]
 fn states_before_a_failure_stay() {
@@ -135,7 +47,17 @@ fn states_before_a_failure_stay() {
     let expected: Vec<LoadingState> = kernel.path(&gaps).map(Result::unwrap).collect();
     // One solution before first touch, one at every event.
     for good in 0..expected.len() {
-        let updater = Spoiled { inner: RecursiveCholesky::new(), solutions: 0, spoiled: good + 2 };
+        let mut solutions = 0;
+        let updater = Altered::new(RecursiveCholesky::new()).on_call(move |inner, call| {
+            call.ask(inner)?;
+            if let Call::Solve { solution, .. } = call {
+                solutions += 1;
+                if solutions == good + 2 {
+                    solution.pressure.fill(f64::NAN);
+                }
+            }
+            Ok(())
+        });
         let mut path = kernel.path_with(&gaps, updater);
         for expected in &expected[..good] {
             assert_eq!(path.next().unwrap().unwrap(), *expected);

@@ -1,11 +1,11 @@
 //! Surfaces made so that a node leaves.
 
-use super::complementary::restrict;
 use super::table::Table;
 use asperity::kernel::KernelTable;
 use asperity::loading::{ContactEvent, LoadingEnd};
 use asperity::surface::HeightMap;
 use asperity::{Boundary, ContactGrowth, Grid, LoadingSolver};
+use asperity_testing::dense::restrict;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand::rngs::StdRng;

@@ -2,7 +2,6 @@
 //! complementarity problem, at and between events.
 
 mod check;
-mod complementary;
 mod failures;
 mod made;
 mod resumed;

@@ -3,6 +3,8 @@
 use asperity::surface::HeightMap;
 use asperity::updater::{LinearUpdater, RecursiveCholesky};
 use asperity::{Boundary, ContactGrowth, Grid, InfluenceKernel, LoadingSolver, LoadingState};
+use asperity_testing::dense::influence_matrix;
+use asperity_testing::surfaces::with_gaps;
 use nalgebra::DMatrix;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -76,18 +78,12 @@ impl Table {
 
     /// The influence matrix of all nodes.
     pub(super) fn matrix(&self) -> DMatrix<f64> {
-        let n = self.grid.nodes();
-        DMatrix::from_fn(n, n, |i, j| {
-            let ((ix, iy), (jx, jy)) = (self.grid.coordinates(i), self.grid.coordinates(j));
-            let offset = |a: usize, b: usize| a as isize - b as isize;
-            self.coefficient(offset(ix, jx), offset(iy, jy))
-        })
+        influence_matrix(self)
     }
 
     /// A surface with these initial gaps.
     pub(super) fn heights(&self, gaps: &[f64]) -> HeightMap {
-        let (nx, ny) = self.grid.shape();
-        HeightMap::new(DMatrix::from_fn(nx, ny, |ix, iy| -gaps[ix + nx * iy])).unwrap()
+        with_gaps(&self.grid, gaps)
     }
 
     /// The approach for which gap = g + C p − δ with the coefficients as they are.

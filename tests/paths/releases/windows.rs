@@ -1,11 +1,11 @@
 //! Windows of kernels that break what windows rest on.
 
-use super::complementary::restrict;
 use super::table::Table;
 use crate::common::with_window;
 use crate::problems::{grid, layer, rough};
 use asperity::loading::ContactEvent;
 use asperity::{Boundary, ContactGrowth, LoadingSolver, LoadingState};
+use asperity_testing::dense::restrict;
 use nalgebra::DVector;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};

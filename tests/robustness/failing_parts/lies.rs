@@ -5,10 +5,10 @@
 //! displacements is believed altogether; `updater::check` is what finds those.
 
 use asperity::Problem;
-use asperity::updater::{self, LinearUpdater};
+use asperity::updater;
 
 use super::problems::{MAKERS, Maker, Small};
-use super::updater::{Failing, Fault, Part};
+use super::updater::{Fault, Part, failing};
 
 const NUMBERS: [fn(f64) -> f64; 3] = [|value| -value, |_| 0.0, |value| 3.0 * value];
 const NO_NUMBERS: [fn(f64) -> f64; 3] = [|_| f64::NAN, |_| f64::INFINITY, |_| f64::NEG_INFINITY];
@@ -34,7 +34,7 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
         let (mut count, mut failure) = (0, None);
         while let Some(item) = path.next() {
             match item {
-                Ok(state) if path.updater().unwrap().struck.get().is_none() => {
+                Ok(state) if path.updater().unwrap().state.struck.get().is_none() => {
                     assert!(state == expected[count], "{context}: {state:?}");
                     count += 1;
                 }
@@ -50,9 +50,9 @@ fn follow(small: &Small, maker: Maker, fault: Fault) -> (usize, usize) {
                 }
             }
         }
-        match path.updater().unwrap().struck.get() {
+        match path.updater().unwrap().state.struck.get() {
             Some(_) => struck += 1,
-            None if at >= path.updater().unwrap().calls() => return (struck, refused),
+            None if at >= path.updater().unwrap().state.calls() => return (struck, refused),
             None => assert!(count == expected.len() && failure.is_none(), "{context}"),
         }
         refused += usize::from(failure.is_some());
@@ -110,12 +110,11 @@ fn the_checker_finds_every_wrong_number() {
         for maker in [MAKERS[0], MAKERS[1]] {
             for &fault in &lies {
                 for at in 0.. {
-                    let mut failing: Failing<Box<dyn LinearUpdater>> =
-                        Failing::new((maker.1)(), fault, at);
+                    let mut failing = failing((maker.1)(), fault, at);
                     let checked = updater::check(&mut failing, &problem);
-                    if failing.struck.get().is_none() {
+                    if failing.state.struck.get().is_none() {
                         assert!(checked.is_ok());
-                        if at >= failing.calls() {
+                        if at >= failing.state.calls() {
                             break;
                         }
                         continue;

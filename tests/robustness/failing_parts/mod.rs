@@ -4,8 +4,6 @@
 //! The oracle of what was yielded before is the same path without a fault, bit for bit. What is yielded after a wrong
 //! answer is compared with a solver of the linear complementarity problem that knows nothing of paths.
 
-#[path = "../../paths/releases/complementary.rs"]
-mod complementary;
 mod kernels;
 mod lies;
 mod panics;

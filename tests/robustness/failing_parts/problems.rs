@@ -8,10 +8,11 @@ use asperity::{
     Boundary, Boussinesq, ContactGrowth, Grid, InfluenceKernel, LoadingSolver, LoadingState,
     PeriodicBoussinesq, Problem,
 };
+use asperity_testing::dense::{complementary, from_first_touch, influence_matrix};
+use asperity_testing::surfaces::with_gaps;
 use nalgebra::{DMatrix, DVector};
 
-use super::complementary::{complementary, from_first_touch};
-use super::updater::{Failing, Fault};
+use super::updater::{Failing, Fault, failing};
 
 /// Errors of solutions by a factor, relative to approach and greatest gap: the condition numbers of these matrices are below
 /// 10³, which loses three digits of sixteen.
@@ -48,21 +49,12 @@ impl Small {
         gaps: &[f64],
         window: usize,
     ) -> Self {
-        let kernel = KernelTable::new(kernel).unwrap();
-        let grid = kernel.grid();
-        let (nx, ny) = grid.shape();
-        let heights = DMatrix::from_fn(nx, ny, |ix, iy| -gaps[ix + nx * iy]);
-        let matrix = DMatrix::from_fn(grid.nodes(), grid.nodes(), |i, j| {
-            let ((ix, iy), (jx, jy)) = (grid.coordinates(i), grid.coordinates(j));
-            let offset = |a: usize, b: usize| a as isize - b as isize;
-            kernel.coefficient(offset(ix, jx), offset(iy, jy)).unwrap()
-        });
         Self {
             name,
-            heights: HeightMap::new(heights).unwrap(),
+            heights: with_gaps(&kernel.grid(), gaps),
             gaps: from_first_touch(gaps),
-            matrix,
-            kernel,
+            matrix: influence_matrix(kernel),
+            kernel: KernelTable::new(kernel).unwrap(),
             window,
         }
     }
@@ -113,7 +105,7 @@ impl Small {
         fault: Fault,
         at: usize,
     ) -> Result<Path, asperity::Error> {
-        let updater = Failing::new(make(), fault, at);
+        let updater = failing(make(), fault, at);
         self.builder().updater(updater).build()
     }
 

@@ -19,7 +19,7 @@ fn questions_that_fail_do_not_disturb_the_path() {
                     while let Some(state) = path.next() {
                         states.push(state.unwrap());
                         let earlier = states[states.len() / 2];
-                        path.updater().unwrap().arm(ahead);
+                        path.updater().unwrap().state.arm(ahead);
                         let asked = catch_unwind(AssertUnwindSafe(|| {
                             path.pressure()?;
                             path.pressure_at(&earlier)?;
@@ -33,7 +33,7 @@ fn questions_that_fail_do_not_disturb_the_path() {
                             }
                             Err(_) => 1,
                         };
-                        path.updater().unwrap().arm(usize::MAX / 2);
+                        path.updater().unwrap().state.arm(usize::MAX / 2);
                     }
                     assert!(states == expected, "{context}");
                 }

@@ -54,7 +54,7 @@ fn an_error_at_any_call_is_the_last_item() {
             let calls = {
                 let mut path = small.path(maker, Fault::Refuse, usize::MAX).unwrap();
                 path.by_ref().for_each(drop);
-                path.updater().unwrap().calls()
+                path.updater().unwrap().state.calls()
             };
             for at in 0..calls {
                 let context = format!("{}, {}, call {at}", small.name, maker.0);
@@ -78,7 +78,7 @@ fn an_error_at_any_call_is_the_last_item() {
                     }
                 }
                 assert!(states == expected[..states.len()], "{context}");
-                let Some(method) = path.updater().unwrap().struck.get() else {
+                let Some(method) = path.updater().unwrap().state.struck.get() else {
                     // A question that cannot fail.
                     assert!(failure.is_none() && states.len() == expected.len());
                     continue;

@@ -2,10 +2,11 @@
 
 use std::cell::Cell;
 use std::panic::resume_unwind;
+use std::rc::Rc;
 
-use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowCost, WindowFactor};
-use asperity::{Error, Problem};
+use asperity::Error;
+use asperity::updater::{LinearUpdater, Method, Schur, Solution};
+use asperity_testing::{Altered, Call};
 
 /// What happens at the call.
 #[derive(Debug, Clone, Copy)]
@@ -42,10 +43,30 @@ pub(super) fn is_refusal(error: &Error) -> bool {
     matches!(error, Error::FactorizationFailed { nodes: 123_456_789 })
 }
 
+/// An updater that spoils one call.
+pub(super) type Failing<U> = Altered<'static, U, Rc<Strike>>;
+
+/// Passes on all calls to an updater but one, number `at` from 0.
+pub(super) fn failing<U: LinearUpdater + 'static>(inner: U, fault: Fault, at: usize) -> Failing<U> {
+    let strike =
+        Rc::new(Strike { fault, at: Cell::new(at), calls: Cell::new(0), struck: Cell::new(None) });
+    let [calls, bytes, cost] = [(); 3].map(|()| Rc::clone(&strike));
+    Altered::with_state(inner, strike)
+        .on_call(move |inner, call| calls.call(inner, call))
+        .on_bytes(move |inner, (contact, watched)| {
+            bytes.ask("bytes", || inner.bytes(contact, watched))
+        })
+        .on_window_cost(move |inner| cost.ask("window_cost", || inner.window_cost()))
+        // Iterations are asked as an updater is: only so do their calls come by here.
+        .on_method(|inner| match inner.method() {
+            Method::Iterations(_) => Method::Factor,
+            method => method,
+        })
+}
+
 /// Counts all calls and spoils one.
 #[derive(Debug)]
-pub(super) struct Failing<U> {
-    inner: U,
+pub(super) struct Strike {
     fault: Fault,
     /// Which call it is, from 0.
     at: Cell<usize>,
@@ -54,11 +75,7 @@ pub(super) struct Failing<U> {
     pub(super) struck: Cell<Option<&'static str>>,
 }
 
-impl<U> Failing<U> {
-    pub(super) fn new(inner: U, fault: Fault, at: usize) -> Self {
-        Self { inner, fault, at: Cell::new(at), calls: Cell::new(0), struck: Cell::new(None) }
-    }
-
+impl Strike {
     /// How many calls there were.
     pub(super) fn calls(&self) -> usize {
         self.calls.get()
@@ -93,34 +110,40 @@ impl<U> Failing<U> {
         strikes
     }
 
-    /// A call that may fail: `work` is what the updater does. The fault, if its answer is to be spoilt.
-    fn call(
-        &mut self,
-        method: &'static str,
-        work: impl FnOnce(&mut U) -> Result<(), Error>,
-    ) -> Result<Option<Fault>, Error> {
-        if !self.strikes(method) {
-            return work(&mut self.inner).map(|()| None);
+    /// A call that may fail.
+    fn call<U: LinearUpdater>(&self, inner: &mut U, call: &mut Call<'_>) -> Result<(), Error> {
+        if !self.strikes(call.method()) {
+            return call.ask(inner);
         }
         match self.fault {
-            Fault::Refuse => Err(REFUSED),
-            Fault::Forget => Ok(None),
+            Fault::Refuse => return Err(REFUSED),
+            Fault::Forget => return Ok(()),
             // Without the hook that prints a message.
             Fault::PanicBefore => resume_unwind(Box::new(())),
             Fault::PanicAfter => {
-                let _ = work(&mut self.inner);
+                let _ = call.ask(inner);
                 resume_unwind(Box::new(()))
             }
-            fault => work(&mut self.inner).map(|()| Some(fault)),
+            _ => call.ask(inner)?,
         }
+        match call {
+            Call::Watch { schur, .. } => spoil_schur(self.fault, schur),
+            // An empty answer has nothing to spoil.
+            Call::Solve { count: 0, .. } if !matches!(self.fault, Fault::Length(1..)) => {
+                self.struck.set(None);
+            }
+            Call::Solve { solution, .. } => spoil_solution(self.fault, solution),
+            _ => {}
+        }
+        Ok(())
     }
 
     /// A question that cannot fail.
-    fn ask<T>(&self, method: &'static str, answer: impl FnOnce(&U) -> T) -> T {
+    fn ask<T>(&self, method: &'static str, answer: impl FnOnce() -> T) -> T {
         if self.strikes(method) {
             resume_unwind(Box::new(()));
         }
-        answer(&self.inner)
+        answer()
     }
 }
 
@@ -170,85 +193,5 @@ fn spoil_solution(fault: Fault, solution: &mut Solution) {
             change(fault, &mut solution.rate);
         }
         _ => change(fault, &mut solution.pressure),
-    }
-}
-
-impl<U: LinearUpdater> LinearUpdater for Failing<U> {
-    fn watch(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<(), Error> {
-        let spoilt = self.call("watch", |inner| inner.watch(problem, contact, nodes, schur))?;
-        if let Some(fault) = spoilt {
-            spoil_schur(fault, schur);
-        }
-        Ok(())
-    }
-
-    fn join(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        touched: &WindowFactor,
-    ) -> Result<(), Error> {
-        self.call("join", |inner| inner.join(problem, contact, touched)).map(drop)
-    }
-
-    fn solve(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        let spoilt =
-            self.call("solve", |inner| inner.solve(problem, contact, count, approach, solution))?;
-        match spoilt {
-            // An empty answer has nothing to spoil.
-            Some(fault) if count == 0 && !matches!(fault, Fault::Length(1..)) => {
-                self.struck.set(None);
-            }
-            Some(fault) => spoil_solution(fault, solution),
-            None => {}
-        }
-        Ok(())
-    }
-
-    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        self.call("truncate", |inner| inner.truncate(problem, contact)).map(drop)
-    }
-
-    fn release(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        node: usize,
-        position: usize,
-    ) -> Result<(), Error> {
-        self.call("release", |inner| inner.release(problem, contact, node, position)).map(drop)
-    }
-
-    fn window_cost(&self) -> WindowCost {
-        self.ask("window_cost", U::window_cost)
-    }
-
-    fn bytes(&self, contact: usize, watched: usize) -> usize {
-        self.ask("bytes", |inner| inner.bytes(contact, watched))
-    }
-
-    /// Iterations are asked as an updater is: only so do their calls come by here.
-    fn method(&self) -> Method {
-        match self.inner.method() {
-            Method::Iterations(_) => Method::Factor,
-            method => method,
-        }
-    }
-
-    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
-        self.call("make_room", |inner| inner.make_room(problem, bytes)).map(drop)
     }
 }

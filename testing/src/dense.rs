@@ -1,20 +1,66 @@
-//! An independent solver of the linear complementarity problem.
+//! Influence matrices, and dense solutions that share nothing with the library but the influence coefficients.
 
+use asperity::InfluenceKernel;
 use nalgebra::{DMatrix, DVector};
 
+/// Influence coefficients between nodes given by their indices, straight from the kernel.
+#[must_use]
+pub fn influence(
+    kernel: &(impl InfluenceKernel + ?Sized),
+    rows: &[usize],
+    columns: &[usize],
+) -> DMatrix<f64> {
+    let grid = kernel.grid();
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+        let (a, b) = (grid.coordinates(rows[i]), grid.coordinates(columns[j]));
+        kernel.coefficient(a.0 as isize - b.0 as isize, a.1 as isize - b.1 as isize)
+    })
+}
+
+/// Influence coefficients between all nodes.
+#[must_use]
+pub fn influence_matrix(kernel: &(impl InfluenceKernel + ?Sized)) -> DMatrix<f64> {
+    let nodes: Vec<usize> = (0..kernel.grid().nodes()).collect();
+    influence(kernel, &nodes, &nodes)
+}
+
+/// Initial gaps by node index.
+#[must_use]
+pub fn initial_gap(heights: &DMatrix<f64>) -> Vec<f64> {
+    let highest = heights.max();
+    heights.iter().map(|height| highest - height).collect()
+}
+
+/// Pressures that press the `contact` nodes into the plane of `approach`: C p = approach - gap, by LU.
+#[must_use]
+pub fn pressure(
+    kernel: &(impl InfluenceKernel + ?Sized),
+    contact: &[usize],
+    gap: &[f64],
+    approach: f64,
+) -> DVector<f64> {
+    let rhs =
+        DVector::from_iterator(contact.len(), contact.iter().map(|&node| approach - gap[node]));
+    influence(kernel, contact, contact).lu().solve(&rhs).unwrap()
+}
+
 /// Gaps whose least is zero, as a path measures them.
-pub(super) fn from_first_touch(gaps: &[f64]) -> Vec<f64> {
+#[must_use]
+pub fn from_first_touch(gaps: &[f64]) -> Vec<f64> {
     let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
     gaps.iter().map(|gap| gap - least).collect()
 }
 
-pub(super) fn restrict(matrix: &DMatrix<f64>, nodes: &[usize]) -> DMatrix<f64> {
+/// The part of a matrix that belongs to some nodes.
+#[must_use]
+pub fn restrict(matrix: &DMatrix<f64>, nodes: &[usize]) -> DMatrix<f64> {
     DMatrix::from_fn(nodes.len(), nodes.len(), |i, j| matrix[(nodes[i], nodes[j])])
 }
 
 /// p ≥ 0, g + C p − δ ≥ 0, one of them zero at each node: least squares with bounds after Lawson and
 /// Hanson (1974), which grows the set of free nodes one at a time from nothing, at this δ alone.
-pub(super) fn complementary(matrix: &DMatrix<f64>, gaps: &[f64], approach: f64) -> DVector<f64> {
+#[must_use]
+pub fn complementary(matrix: &DMatrix<f64>, gaps: &[f64], approach: f64) -> DVector<f64> {
     let n = gaps.len();
     let rhs = DVector::from_iterator(n, gaps.iter().map(|gap| approach - gap));
     let mut p = DVector::zeros(n);

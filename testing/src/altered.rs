@@ -1,0 +1,223 @@
+//! An updater some of whose answers are changed on their way.
+
+use std::fmt;
+
+use asperity::contact::ContactSequence;
+use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowCost, WindowFactor};
+use asperity::{Error, Problem};
+
+/// A call of a [`LinearUpdater`] that can fail, with the place of its answer.
+#[derive(Debug)]
+#[allow(missing_docs)] // as in the trait
+pub enum Call<'a> {
+    Watch {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        nodes: &'a [usize],
+        schur: &'a mut Schur,
+    },
+    Join {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        factor: &'a WindowFactor,
+    },
+    Solve {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &'a mut Solution,
+    },
+    Truncate {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+    },
+    Release {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        node: usize,
+        position: usize,
+    },
+    MakeRoom {
+        problem: &'a Problem,
+        bytes: usize,
+    },
+}
+
+impl Call<'_> {
+    /// Name of the method.
+    #[must_use]
+    pub fn method(&self) -> &'static str {
+        match self {
+            Self::Watch { .. } => "watch",
+            Self::Join { .. } => "join",
+            Self::Solve { .. } => "solve",
+            Self::Truncate { .. } => "truncate",
+            Self::Release { .. } => "release",
+            Self::MakeRoom { .. } => "make_room",
+        }
+    }
+
+    /// Asks an updater; its answer can be changed afterwards.
+    ///
+    /// # Errors
+    ///
+    /// Those of the updater.
+    pub fn ask<U: LinearUpdater + ?Sized>(&mut self, updater: &mut U) -> Result<(), Error> {
+        match self {
+            Self::Watch { problem, contact, nodes, schur } => {
+                updater.watch(problem, contact, nodes, schur)
+            }
+            Self::Join { problem, contact, factor } => updater.join(problem, contact, factor),
+            Self::Solve { problem, contact, count, approach, solution } => {
+                updater.solve(problem, contact, *count, *approach, solution)
+            }
+            Self::Truncate { problem, contact } => updater.truncate(problem, contact),
+            Self::Release { problem, contact, node, position } => {
+                updater.release(problem, contact, *node, *position)
+            }
+            Self::MakeRoom { problem, bytes } => updater.make_room(problem, *bytes),
+        }
+    }
+}
+
+type OnCall<'a, U> = Box<dyn FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + 'a>;
+type OnQuestion<'a, U, A, T> = Box<dyn Fn(&U, A) -> T + 'a>;
+
+/// An updater that passes on all that it is asked, unless a closure does something else.
+///
+/// What the closures have seen can be told through `state`, of which they then hold a part: an `Rc` of cells, for example.
+pub struct Altered<'a, U, S = ()> {
+    /// What is to be looked at while a path holds the updater.
+    pub state: S,
+    inner: U,
+    on_call: OnCall<'a, U>,
+    on_bytes: OnQuestion<'a, U, (usize, usize), usize>,
+    on_window_cost: OnQuestion<'a, U, (), WindowCost>,
+    on_method: OnQuestion<'a, U, (), Method>,
+}
+
+impl<'a, U: LinearUpdater + 'a> Altered<'a, U> {
+    /// As `inner` is.
+    pub fn new(inner: U) -> Self {
+        Self::with_state(inner, ())
+    }
+}
+
+impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
+    /// As `inner` is, with something to look at.
+    pub fn with_state(inner: U, state: S) -> Self {
+        Self {
+            state,
+            inner,
+            on_call: Box::new(|inner, call| call.ask(inner)),
+            on_bytes: Box::new(|inner, (contact, watched)| inner.bytes(contact, watched)),
+            on_window_cost: Box::new(|inner, ()| inner.window_cost()),
+            on_method: Box::new(|inner, ()| inner.method()),
+        }
+    }
+
+    /// Does this at every call that can fail.
+    #[must_use]
+    pub fn on_call(
+        mut self,
+        on_call: impl FnMut(&mut U, &mut Call<'_>) -> Result<(), Error> + 'a,
+    ) -> Self {
+        self.on_call = Box::new(on_call);
+        self
+    }
+
+    /// Answers so to [`LinearUpdater::bytes`] of contact and watched nodes.
+    #[must_use]
+    pub fn on_bytes(mut self, on_bytes: impl Fn(&U, (usize, usize)) -> usize + 'a) -> Self {
+        self.on_bytes = Box::new(on_bytes);
+        self
+    }
+
+    /// Answers so to `LinearUpdater::window_cost`.
+    #[must_use]
+    pub fn on_window_cost(mut self, on_window_cost: impl Fn(&U) -> WindowCost + 'a) -> Self {
+        self.on_window_cost = Box::new(move |inner, ()| on_window_cost(inner));
+        self
+    }
+
+    /// Answers so to `LinearUpdater::method`.
+    #[must_use]
+    pub fn on_method(mut self, on_method: impl Fn(&U) -> Method + 'a) -> Self {
+        self.on_method = Box::new(move |inner, ()| on_method(inner));
+        self
+    }
+
+    fn call(&mut self, mut call: Call<'_>) -> Result<(), Error> {
+        (self.on_call)(&mut self.inner, &mut call)
+    }
+}
+
+impl<U: fmt::Debug, S: fmt::Debug> fmt::Debug for Altered<'_, U, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("Altered");
+        shown.field("inner", &self.inner).field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl<'a, U: LinearUpdater + 'a, S> LinearUpdater for Altered<'a, U, S> {
+    fn watch(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.call(Call::Watch { problem, contact, nodes, schur })
+    }
+
+    fn join(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        factor: &WindowFactor,
+    ) -> Result<(), Error> {
+        self.call(Call::Join { problem, contact, factor })
+    }
+
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        count: usize,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        self.call(Call::Solve { problem, contact, count, approach, solution })
+    }
+
+    fn truncate(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
+        self.call(Call::Truncate { problem, contact })
+    }
+
+    fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        node: usize,
+        position: usize,
+    ) -> Result<(), Error> {
+        self.call(Call::Release { problem, contact, node, position })
+    }
+
+    fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {
+        self.call(Call::MakeRoom { problem, bytes })
+    }
+
+    fn bytes(&self, contact: usize, watched: usize) -> usize {
+        (self.on_bytes)(&self.inner, (contact, watched))
+    }
+
+    fn window_cost(&self) -> WindowCost {
+        (self.on_window_cost)(&self.inner, ())
+    }
+
+    fn method(&self) -> Method {
+        (self.on_method)(&self.inner, ())
+    }
+}

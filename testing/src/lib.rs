@@ -1,0 +1,20 @@
+//! What tests, drivers and benches of this repository have in common. It uses the public interface of the library alone.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`altered`] | an updater some of whose answers are changed by closures |
+//! | [`bordering`] | an updater with the three verbs that every path needs |
+//! | [`dense`] | influence matrices, and dense solutions that share no code with the library |
+//! | [`surfaces`] | heights of rough surfaces |
+//! | [`close`] | differences of numbers and of states |
+
+// A test that cannot go on has failed.
+#![allow(clippy::unwrap_used)]
+
+pub mod altered;
+pub mod bordering;
+pub mod close;
+pub mod dense;
+pub mod surfaces;
+
+pub use altered::{Altered, Call};
