@@ -8,7 +8,7 @@
 
 use super::bytes::{Bytes, latin1, reserved, shape};
 use super::fault::Fault;
-use super::number::Number;
+use super::number::{Number, parsed};
 use super::raw::{Channel, Parsed};
 
 const MAGIC: &[u8] = b"AliconaImaging\0\r\n";
@@ -23,19 +23,16 @@ const TOLERANCE: f64 = 2.0 * f32::EPSILON as f64;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let tags = Tags::read(file)?;
-    let (nx, ny) = shape(tags.number("Cols")?, tags.number("Rows")?)?;
+    let (nx, ny) = shape(tags.number::<u64>("Cols")?, tags.number::<u64>("Rows")?)?;
     let cell = (tags.number("PixelSizeXMeter")?, tags.number("PixelSizeYMeter")?);
     let offset: u64 = tags.number("DepthImageOffset")?;
-    if offset == 0 {
-        return Err(Fault::malformed("there is no depth image in it: DepthImageOffset is 0"));
-    }
-    let missing: Option<f64> = match tags.find("InvalidPixelValue") {
-        Some(_) => Some(tags.number("InvalidPixelValue")?),
-        None => None,
+    ensure!(offset != 0, "there is no depth image in it: DepthImageOffset is 0");
+    let missing = match tags.find("InvalidPixelValue") {
+        Some(_) => tags.number("InvalidPixelValue")?,
+        None => f64::NAN,
     };
 
-    let mut bytes = Bytes::new(file);
-    bytes.seek(usize::try_from(offset).unwrap_or(usize::MAX))?;
+    let mut bytes = Bytes::from(file, usize::try_from(offset).unwrap_or(usize::MAX))?;
     let row = nx * Number::F32.size();
     let stride = row.next_multiple_of(8);
     // The padding of the last row may be absent.
@@ -43,11 +40,9 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut values = reserved(nx * ny)?;
     for row in data.chunks(stride).flat_map(|padded| padded.get(..row)) {
         values.extend(row.chunks_exact(Number::F32.size()).map(|value| {
-            let value = Number::F32.decode(value);
-            match missing {
-                Some(missing) if (value - missing).abs() <= TOLERANCE * missing.abs() => f64::NAN,
-                _ => value,
-            }
+            let value = Number::F32.decode(value.iter().rev());
+            let is_missing = (value - missing).abs() <= TOLERANCE * missing.abs();
+            if is_missing { f64::NAN } else { value }
         }));
     }
     Ok(vec![Channel::in_metres((nx, ny), values, Some(cell))])
@@ -59,24 +54,19 @@ struct Tags<'a>(&'a [u8]);
 impl<'a> Tags<'a> {
     fn read(file: &'a [u8]) -> Result<Self, Fault> {
         let mut bytes = Bytes::new(file);
-        if bytes.take(MAGIC.len())? != MAGIC {
-            return Err(Fault::at(
-                0,
-                "the file does not begin with 'AliconaImaging', a zero and CR LF",
-            ));
-        }
+        ensure!(
+            bytes.take(MAGIC.len())? == MAGIC,
+            at(0),
+            "the file does not begin with 'AliconaImaging', a zero and CR LF"
+        );
         // The version, and the number of tags after these two.
         let first = Self(bytes.elements(2, TAG)?);
         let count = first.number("TagCount")?;
         let start = bytes.offset();
         let tags = Self(bytes.elements(count, TAG)?);
-        for (k, tag) in tags.0.chunks_exact(TAG).enumerate() {
-            if !tag.ends_with(b"\r\n") {
-                return Err(Fault::at(
-                    start + (k + 1) * TAG - 2,
-                    format!("expected CR LF at the end of tag {}", k + 1),
-                ));
-            }
+        for (k, tag) in (1..).zip(tags.0.chunks_exact(TAG)) {
+            let end = start + k * TAG - 2;
+            ensure!(tag.ends_with(b"\r\n"), at(end), "expected CR LF at the end of tag {k}");
         }
         Ok(tags)
     }
@@ -90,11 +80,8 @@ impl<'a> Tags<'a> {
     }
 
     fn number<T: std::str::FromStr>(&self, key: &str) -> Result<T, Fault> {
-        let value =
-            self.find(key).ok_or_else(|| Fault::malformed(format!("there is no tag {key}")))?;
-        value.parse().map_err(|_| {
-            Fault::malformed(format!("tag {key} is '{value}', but a number was expected"))
-        })
+        let value = self.find(key).ok_or_else(|| fault!("there is no tag {key}"))?;
+        parsed(&format!("tag {key}"), &value, None)
     }
 }
 

@@ -21,14 +21,13 @@ const LARGE: usize = u32::MAX as usize / 2;
 
 /// What is wrong with a zip file, for people who do not know how one is made.
 pub(super) fn incomplete(error: ZipError) -> Fault {
-    Fault::malformed(match error {
-        ZipError::InvalidArchive(_) | ZipError::Io(_) => {
+    match error {
+        ZipError::InvalidArchive(_) | ZipError::Io(_) => fault!(
             "it is no complete zip archive, which this format is; was it cut off, or is it of another kind?"
-                .to_string()
-        }
-        ZipError::FileNotFound => "it is not there".to_string(),
-        other => other.to_string(),
-    })
+        ),
+        ZipError::FileNotFound => fault!("it is not there"),
+        other => fault!("{other}"),
+    }
 }
 
 /// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
@@ -55,14 +54,23 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         self.zip.write_all(&header_of(descr, shape))
     }
 
+    /// An array of elements of some type, all of whose bytes these are.
+    fn array(
+        &mut self,
+        name: &str,
+        descr: &str,
+        shape: &[usize],
+        bytes: Vec<u8>,
+    ) -> std::io::Result<()> {
+        self.begin(name, descr, shape, bytes.len())?;
+        self.zip.write_all(&bytes)
+    }
+
     /// An array of no dimension that holds a text.
     pub fn text(&mut self, name: &str, text: &str) -> std::io::Result<()> {
-        let length = text.chars().count();
-        self.begin(name, &format!("<U{length}"), &[], 4 * length)?;
-        for letter in text.chars() {
-            self.zip.write_all(&u32::from(letter).to_le_bytes())?;
-        }
-        Ok(())
+        let bytes: Vec<u8> =
+            text.chars().flat_map(|letter| u32::from(letter).to_le_bytes()).collect();
+        self.array(name, &format!("<U{}", bytes.len() / 4), &[], bytes)
     }
 
     /// An array of one dimension.
@@ -72,9 +80,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         length: usize,
         values: impl Iterator<Item = f64>,
     ) -> std::io::Result<()> {
-        self.begin(name, "<f8", &[length], 8 * length)?;
-        let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-        self.zip.write_all(&bytes)
+        self.array(name, "<f8", &[length], values.flat_map(f64::to_le_bytes).collect())
     }
 
     /// The same of whole numbers.
@@ -84,9 +90,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         length: usize,
         values: impl Iterator<Item = i64>,
     ) -> std::io::Result<()> {
-        self.begin(name, "<i8", &[length], 8 * length)?;
-        let bytes: Vec<u8> = values.flat_map(i64::to_le_bytes).collect();
-        self.zip.write_all(&bytes)
+        self.array(name, "<i8", &[length], values.flat_map(i64::to_le_bytes).collect())
     }
 
     /// An array `[ix, iy]`.
@@ -115,26 +119,20 @@ pub struct Archive {
 
 impl Archive {
     pub fn open(path: &Path, format: &'static str) -> Result<Self, Error> {
-        let bytes = read_file(path)
-            .and_then(|bytes| {
-                let opened = ZipArchive::new(Cursor::new(&bytes[..])).map(drop);
-                opened.map_err(incomplete)?;
-                Ok(bytes)
-            })
-            .map_err(|fault| fault.in_file(path, format))?;
+        let read = || {
+            let bytes = read_file(path)?;
+            ZipArchive::new(Cursor::new(&bytes[..])).map_err(incomplete)?;
+            Ok(bytes)
+        };
+        let bytes = read().map_err(|fault: Fault| fault.in_file(path, format))?;
         Ok(Self { path: path.to_path_buf(), format, bytes })
     }
 
     /// What `parse` makes of a member.
     fn member<T>(&self, name: &str, parse: impl Fn(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
         let parsed = self.bytes_of(name).and_then(|bytes| parse(&bytes));
-        let in_member = |fault| match fault {
-            Fault::Malformed { offset, reason } => {
-                Fault::Malformed { offset, reason: format!("member '{name}': {reason}") }
-            }
-            other => other,
-        };
-        parsed.map_err(|fault| in_member(fault).in_file(&self.path, self.format))
+        let prefix = format!("member '{name}': ");
+        parsed.map_err(|fault| fault.prefixed(&prefix).in_file(&self.path, self.format))
     }
 
     fn bytes_of(&self, name: &str) -> Result<Vec<u8>, Fault> {
@@ -142,15 +140,9 @@ impl Archive {
         let member = zip.by_name(&format!("{name}.npy")).map_err(incomplete)?;
         let most = self.bytes.len().saturating_mul(MOST);
         let mut bytes = Vec::new();
-        member
-            .take(most as u64 + 1)
-            .read_to_end(&mut bytes)
-            .map_err(|error| Fault::malformed(error.to_string()))?;
-        if bytes.len() > most {
-            return Err(Fault::malformed(format!(
-                "it is more than {MOST} times as large as the file"
-            )));
-        }
+        let read = member.take(most as u64 + 1).read_to_end(&mut bytes);
+        read.map_err(|error| fault!("{error}"))?;
+        ensure!(bytes.len() <= most, "it is more than {MOST} times as large as the file");
         Ok(bytes)
     }
 
@@ -163,13 +155,9 @@ impl Archive {
     pub fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, Error> {
         self.member(name, |bytes| {
             let values = npy::vector(bytes)?;
-            match length {
-                Some(length) if length != values.len() => Err(Fault::malformed(format!(
-                    "it has {} numbers, but there are {length} states",
-                    values.len()
-                ))),
-                _ => Ok(values),
-            }
+            let (found, states) = (values.len(), length.unwrap_or(values.len()));
+            ensure!(found == states, "it has {found} numbers, but there are {states} states");
+            Ok(values)
         })
     }
 

@@ -10,9 +10,7 @@ use crate::Grid;
 
 /// All bytes of a regular file: opening a pipe would wait for somebody to write into it.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Fault> {
-    if !fs::metadata(path)?.is_file() {
-        return Err(Fault::malformed("it is not a regular file"));
-    }
+    ensure!(fs::metadata(path)?.is_file(), "it is not a regular file");
     let mut file = File::open(path)?;
     let length = usize::try_from(file.metadata()?.len())
         .map_err(|_| std::io::Error::from(ErrorKind::OutOfMemory))?;
@@ -57,6 +55,13 @@ impl<'a> Bytes<'a> {
         Self { all, at: 0 }
     }
 
+    /// The bytes from a place in the file on.
+    pub(super) fn from(all: &'a [u8], offset: usize) -> Result<Self, Fault> {
+        let mut bytes = Self::new(all);
+        bytes.seek(offset)?;
+        Ok(bytes)
+    }
+
     /// Bytes from the start of the file to here.
     pub(super) fn offset(&self) -> usize {
         self.at
@@ -69,12 +74,12 @@ impl<'a> Bytes<'a> {
 
     /// Goes to a place given from the start of the file.
     pub(super) fn seek(&mut self, offset: usize) -> Result<(), Fault> {
-        if offset > self.all.len() {
-            return Err(Fault::at(
-                self.at,
-                format!("byte {offset} is referred to, but the file has {} bytes", self.all.len()),
-            ));
-        }
+        let length = self.all.len();
+        ensure!(
+            offset <= length,
+            at(self.at),
+            "byte {offset} is referred to, but the file has {length} bytes"
+        );
         self.at = offset;
         Ok(())
     }
@@ -82,14 +87,14 @@ impl<'a> Bytes<'a> {
     /// The next `count` bytes.
     pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let rest = &self.all[self.at..];
-        let taken = rest.get(..count).ok_or_else(|| {
-            Fault::at(
-                self.at,
-                format!("expected {count} more bytes, but the file ends after {}", rest.len()),
-            )
-        })?;
+        let left = rest.len();
+        ensure!(
+            count <= left,
+            at(self.at),
+            "expected {count} more bytes, but the file ends after {left}"
+        );
         self.at += count;
-        Ok(taken)
+        Ok(&rest[..count])
     }
 
     /// The next `count` elements of `size` bytes each, checked against the file before anything is made of them.
@@ -100,38 +105,36 @@ impl<'a> Bytes<'a> {
     /// The bytes up to the next `end`, which is skipped.
     pub(super) fn until(&mut self, end: u8) -> Result<&'a [u8], Fault> {
         let rest = &self.all[self.at..];
-        let length = rest.iter().position(|byte| *byte == end).ok_or_else(|| {
-            Fault::at(self.at, format!("expected a byte {end:#04x}, but the file ends"))
-        })?;
+        let length = rest.iter().position(|byte| *byte == end);
+        let length = length
+            .ok_or_else(|| fault!(at(self.at), "expected a byte {end:#04x}, but the file ends"))?;
         self.at += length + 1;
         Ok(&rest[..length])
     }
 
     /// `Ok` if nothing follows the contents, whose name the error says.
     pub(super) fn end(&self, contents: fmt::Arguments<'_>) -> Result<(), Fault> {
-        match self.left() {
-            0 => Ok(()),
-            left => {
-                let reason = format!("{contents} end here, but {left} bytes follow");
-                Err(Fault::at(self.at, reason))
-            }
-        }
+        let left = self.left();
+        ensure!(left == 0, at(self.at), "{contents} end here, but {left} bytes follow");
+        Ok(())
     }
 
     /// The next `N` bytes.
     pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
         let at = self.at;
-        self.take(N)?.try_into().map_err(|_| Fault::at(at, "the file ends"))
+        self.take(N)?.try_into().map_err(|_| fault!(at(at), "the file ends"))
     }
 
     numbers!(u8: u8, u16: u16, u32: u32, i32: i32, f32: f32, f64: f64);
 }
 
 /// A shape that a grid can have.
-pub(super) fn shape(nx: u64, ny: u64) -> Result<(usize, usize), Fault> {
-    let side = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
-    let (nx, ny) = (side(nx), side(ny));
-    Grid::check_nodes(nx, ny).map_err(Fault::Refused)?;
+pub(super) fn shape(
+    nx: impl TryInto<usize>,
+    ny: impl TryInto<usize>,
+) -> Result<(usize, usize), Fault> {
+    let (nx, ny) = (nx.try_into().unwrap_or(usize::MAX), ny.try_into().unwrap_or(usize::MAX));
+    Grid::check_nodes(nx, ny)?;
     Ok((nx, ny))
 }
 

@@ -5,12 +5,39 @@ use std::path::Path;
 
 use crate::{Error, FileError};
 
+/// A defect of the file as a whole, `fault!("{nx} maps")`, or at a place in it, `fault!(at(12), "{nx} maps")`.
+macro_rules! fault {
+    (at($offset:expr), $($reason:tt)+) => {
+        $crate::io::fault::Fault::Malformed { offset: Some($offset), reason: format!($($reason)+) }
+    };
+    ($($reason:tt)+) => {
+        $crate::io::fault::Fault::Malformed { offset: None, reason: format!($($reason)+) }
+    };
+}
+
+/// Returns a [`fault!`].
+macro_rules! bail {
+    ($($fault:tt)+) => { return Err(fault!($($fault)+)) };
+}
+
+/// Returns a [`fault!`] unless something holds.
+macro_rules! ensure {
+    ($holds:expr, $($fault:tt)+) => {
+        let holds: bool = $holds;
+        if !holds {
+            bail!($($fault)+);
+        }
+    };
+}
+
 /// Why bytes could not be read as a map of heights.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub(super) enum Fault {
     /// Reading failed.
-    Io(io::Error),
+    #[error(transparent)]
+    Io(#[from] io::Error),
     /// The bytes are not what the format asks for.
+    #[error("{reason}")]
     Malformed {
         /// Where, in bytes from the start of the file (of the member, in an archive).
         offset: Option<usize>,
@@ -18,35 +45,29 @@ pub(super) enum Fault {
         reason: String,
     },
     /// What no file can be blamed for alone: a shape that no grid can have, a unit that is missing.
-    Refused(Error),
+    #[error(transparent)]
+    Refused(#[from] Error),
 }
 
 impl Fault {
-    /// A defect of the file as a whole.
-    pub(super) fn malformed(reason: impl Into<String>) -> Self {
-        Self::Malformed { offset: None, reason: reason.into() }
-    }
-
-    /// A defect at a place in the file.
-    pub(super) fn at(offset: usize, reason: impl Into<String>) -> Self {
-        Self::Malformed { offset: Some(offset), reason: reason.into() }
+    /// The same defect, of some part of the file or with some remark.
+    #[cfg(feature = "io")]
+    pub(super) fn prefixed(mut self, prefix: &str) -> Self {
+        if let Self::Malformed { reason, .. } = &mut self {
+            reason.insert_str(0, prefix);
+        }
+        self
     }
 
     /// The error of the whole operation, which says which file it is about.
     pub(super) fn in_file(self, path: &Path, format: &'static str) -> Error {
         let path = path.to_path_buf();
-        match self {
-            Self::Io(source) => Error::File(FileError::Io { path, source }),
+        Error::File(match self {
+            Self::Io(source) => FileError::Io { path, source },
             Self::Malformed { offset, reason } => {
-                Error::File(FileError::BadFile { path, format, offset, reason })
+                FileError::BadFile { path, format, offset, reason }
             }
-            Self::Refused(error) => error,
-        }
-    }
-}
-
-impl From<io::Error> for Fault {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
+            Self::Refused(error) => return error,
+        })
     }
 }

@@ -30,63 +30,59 @@ pub enum Format {
     Text,
 }
 
+/// Finds all maps in a file; its name decides only what its bytes leave open.
+type Parse = fn(&[u8], &Path) -> Parsed;
+
 impl Format {
+    const ALL: [Self; 9] = [
+        Self::Npy,
+        Self::GwyddionSimpleField,
+        Self::Gwyddion,
+        Self::Sdf,
+        Self::X3p,
+        Self::DigitalSurf,
+        Self::Alicona,
+        Self::Keyence,
+        Self::Text,
+    ];
+
+    /// Name, how its files begin, and reader.
+    fn known(self) -> (&'static str, &'static [&'static [u8]], Parse) {
+        match self {
+            Self::Npy => ("NumPy", &[b"\x93NUMPY"], |file, _| npy::parse(file)),
+            Self::GwyddionSimpleField => {
+                ("Gwyddion Simple Field", &[b"Gwyddion Simple Field 1.0\n"], |file, _| {
+                    gsf::parse(file)
+                })
+            }
+            Self::Gwyddion => ("Gwyddion", &[b"GWYP"], |file, _| gwy::parse(file)),
+            Self::Sdf => ("SDF", sdf::BEGINS, |file, _| sdf::parse(file)),
+            Self::X3p => ("X3P", &[b"PK\x03\x04"], |file, _| x3p::parse(file)),
+            Self::DigitalSurf => {
+                ("Digital Surf", &[b"DIGITAL SURF", b"DSCOMPRESSED"], |file, _| sur::parse(file))
+            }
+            Self::Alicona => ("Alicona", &[b"AliconaImaging\0"], |file, _| al3d::parse(file)),
+            Self::Keyence => ("Keyence VK4", &[b"VK4_"], |file, _| vk4::parse(file)),
+            Self::Text => ("text", &[], text::parse),
+        }
+    }
+
     /// The format of a file with these bytes: by how it begins, and text if nothing else.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], Format); 16] = [
-            (b"\x93NUMPY", Format::Npy),
-            (b"Gwyddion Simple Field 1.0\n", Format::GwyddionSimpleField),
-            (b"GWYP", Format::Gwyddion),
-            (b"aISO-1.0", Format::Sdf),
-            (b"bISO-1.0", Format::Sdf),
-            (b"aISO-2.0", Format::Sdf),
-            (b"bISO-2.0", Format::Sdf),
-            (b"aBCR-", Format::Sdf),
-            (b"bBCR-", Format::Sdf),
-            (b"ABCR-", Format::Sdf),
-            (b"BBCR-", Format::Sdf),
-            (b"PK\x03\x04", Format::X3p),
-            (b"DIGITAL SURF", Format::DigitalSurf),
-            (b"DSCOMPRESSED", Format::DigitalSurf),
-            (b"AliconaImaging\0", Format::Alicona),
-            (b"VK4_", Format::Keyence),
-        ];
-        MAGIC
-            .iter()
-            .find(|(magic, _)| bytes.starts_with(magic))
-            .map(|(_, format)| *format)
-            .or_else(|| text::looks_like(bytes).then_some(Self::Text))
+        let is_it = |format: &Self| format.known().1.iter().any(|begin| bytes.starts_with(begin));
+        let text = || text::looks_like(bytes).then_some(Self::Text);
+        Self::ALL.into_iter().find(is_it).or_else(text)
     }
 
     /// All maps in a file of this format; its name decides only what its bytes leave open.
     pub(super) fn parse(self, bytes: &[u8], path: &Path) -> Parsed {
-        match self {
-            Self::Npy => npy::parse(bytes).map(|channel| vec![channel]),
-            Self::GwyddionSimpleField => gsf::parse(bytes),
-            Self::Gwyddion => gwy::parse(bytes),
-            Self::Sdf => sdf::parse(bytes),
-            Self::X3p => x3p::parse(bytes),
-            Self::DigitalSurf => sur::parse(bytes),
-            Self::Alicona => al3d::parse(bytes),
-            Self::Keyence => vk4::parse(bytes),
-            Self::Text => text::parse(bytes, path),
-        }
+        self.known().2(bytes, path)
     }
 
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Npy => "NumPy",
-            Self::GwyddionSimpleField => "Gwyddion Simple Field",
-            Self::Gwyddion => "Gwyddion",
-            Self::Sdf => "SDF",
-            Self::X3p => "X3P",
-            Self::DigitalSurf => "Digital Surf",
-            Self::Alicona => "Alicona",
-            Self::Keyence => "Keyence VK4",
-            Self::Text => "text",
-        }
+        self.known().0
     }
 }
 

@@ -8,8 +8,8 @@ use std::path::Path;
 use nalgebra::DMatrix;
 
 use super::bytes::{Bytes, shape};
-use super::fault::Fault;
-use super::raw::{Channel, Parsed, decode};
+use super::number::{Number, parsed};
+use super::raw::{Channel, Parsed};
 use super::whole_file::write_whole;
 use crate::{Error, Grid};
 
@@ -20,62 +20,31 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     bytes.take(MAGIC.len())?;
     let at = bytes.offset();
     let text = std::str::from_utf8(bytes.until(0)?)
-        .map_err(|error| Fault::at(at + error.valid_up_to(), "expected UTF-8"))?;
-    let header = Header { text, at };
-    let (nx, ny) = shape(header.count("XRes")?, header.count("YRes")?)?;
-    let data = bytes.offset().next_multiple_of(4);
-    bytes.seek(data)?;
-    let values = decode(bytes.elements(nx * ny, 4)?, 4, |b| {
-        b.try_into().map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(b)))
-    })?;
-    bytes.end(format_args!("{nx} x {ny} heights"))?;
-    // Sides default to 1 in the format, which is no size of any surface.
-    let side = |name| header.length(name);
-    let cell = match (side("XReal")?, side("YReal")?) {
-        (Some(x), Some(y)) => Some((x / nx as f64, y / ny as f64)),
-        _ => None,
+        .map_err(|error| fault!(at(at + error.valid_up_to()), "expected UTF-8"))?;
+    // Lines `name = value`.
+    let value = |name: &str| {
+        let mut lines = text.lines().filter_map(|line| line.split_once('='));
+        lines.find(|(key, _)| key.trim() == name).map(|(_, value)| value.trim())
     };
-    let unit = |name| header.value(name).filter(|unit| !unit.is_empty()).map(str::to_string);
+    let count = |name: &str| {
+        let value = value(name).ok_or_else(|| fault!(at(at), "expected a line '{name} = '"))?;
+        parsed::<u64>(name, value, at)
+    };
+    let (nx, ny) = shape(count("XRes")?, count("YRes")?)?;
+    bytes.seek(bytes.offset().next_multiple_of(4))?;
+    let values = Number::F32.decode_all(bytes.elements(nx * ny, 4)?, |value| value)?;
+    bytes.end(format_args!("{nx} x {ny} heights"))?;
+    let length = |name| value(name).map(|value| parsed::<f64>(name, value, at)).transpose();
+    // Sides default to 1 in the format, which is no size of any surface.
+    let sides = length("XReal")?.zip(length("YReal")?);
+    let cell = sides.map(|(x, y)| (x / nx as f64, y / ny as f64));
+    let unit = |name| value(name).filter(|unit| !unit.is_empty()).map(str::to_string);
     Ok(vec![Channel {
-        name: header.value("Title").unwrap_or_default().to_string(),
+        name: value("Title").unwrap_or_default().to_string(),
         height_unit: unit("ZUnits"),
         lateral_unit: unit("XYUnits"),
         ..Channel::in_metres((nx, ny), values, cell)
     }])
-}
-
-/// The lines `name = value` of the header.
-struct Header<'a> {
-    text: &'a str,
-    at: usize,
-}
-
-impl<'a> Header<'a> {
-    fn value(&self, name: &str) -> Option<&'a str> {
-        self.text
-            .lines()
-            .filter_map(|line| line.split_once('='))
-            .find(|(key, _)| key.trim() == name)
-            .map(|(_, value)| value.trim())
-    }
-
-    fn count(&self, name: &str) -> Result<u64, Fault> {
-        let value = self
-            .value(name)
-            .ok_or_else(|| Fault::at(self.at, format!("expected a line '{name} = '")))?;
-        value.parse().map_err(|_| {
-            Fault::at(self.at, format!("{name} is '{value}', but a number of nodes was expected"))
-        })
-    }
-
-    fn length(&self, name: &str) -> Result<Option<f64>, Fault> {
-        let parse = |value: &str| {
-            value.parse().map_err(|_| {
-                Fault::at(self.at, format!("{name} is '{value}', but a length was expected"))
-            })
-        };
-        self.value(name).map(parse).transpose()
-    }
 }
 
 /// Writes a field on its grid as a Gwyddion Simple Field, which holds seven digits of each value; NaN stays NaN. The unit

@@ -50,8 +50,9 @@
 //! Sizes are compared with the length of the file before memory is taken. A member of an archive (X3P) may be at most 256
 //! times as long as the archive, and a list of points needs a sixteenth of the nodes of its grid.
 
-mod bytes;
+#[macro_use]
 mod fault;
+mod bytes;
 mod npy;
 mod number;
 mod vti;
@@ -70,6 +71,8 @@ mod full_disk;
 mod gsf;
 #[cfg(feature = "io")]
 mod gwy;
+#[cfg(feature = "io")]
+mod lines;
 #[cfg(feature = "io")]
 mod measured;
 #[cfg(feature = "io")]

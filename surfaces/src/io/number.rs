@@ -1,6 +1,11 @@
 //! How numbers lie in a file.
 
-/// A type of number, little-endian.
+#[cfg(feature = "io")]
+use super::bytes::reserved;
+#[cfg(feature = "io")]
+use super::fault::Fault;
+
+/// A type of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Number {
     F64,
@@ -26,14 +31,9 @@ impl Number {
         }
     }
 
-    /// The value of [`Number::size`] bytes, NaN for another number of bytes. Integers beyond 2⁵³ are rounded.
-    pub(super) fn decode(self, bytes: &[u8]) -> f64 {
-        let mut little = [0; 8];
-        let Some(raw) = little.get_mut(..bytes.len()) else {
-            return f64::NAN;
-        };
-        raw.copy_from_slice(bytes);
-        let bits = u64::from_le_bytes(little);
+    /// The value of [`Number::size`] bytes, the most significant first. Integers beyond 2⁵³ are rounded.
+    pub(super) fn decode<'a>(self, bytes: impl Iterator<Item = &'a u8>) -> f64 {
+        let bits = bytes.fold(0_u64, |bits, byte| bits << 8 | u64::from(*byte));
         match self {
             Self::F64 => f64::from_bits(bits),
             Self::F32 => f64::from(f32::from_bits(bits as u32)),
@@ -44,4 +44,39 @@ impl Number {
             Self::U8 | Self::U16 | Self::U32 | Self::U64 => bits as f64,
         }
     }
+
+    /// What `map` makes of each of the numbers, little-endian, in `bytes`, with memory asked for once.
+    #[cfg(feature = "io")]
+    pub(super) fn decode_all(
+        self,
+        bytes: &[u8],
+        map: impl Fn(f64) -> f64,
+    ) -> Result<Vec<f64>, Fault> {
+        let mut values = reserved(bytes.len() / self.size())?;
+        let numbers = bytes.chunks_exact(self.size());
+        values.extend(numbers.map(|number| map(self.decode(number.iter().rev()))));
+        Ok(values)
+    }
+}
+
+/// The number that a text is, the defect of the field of this name, and place if it has one, otherwise.
+#[cfg(feature = "io")]
+pub(super) fn parsed<T: std::str::FromStr>(
+    name: &str,
+    text: &str,
+    at: impl Into<Option<usize>>,
+) -> Result<T, Fault> {
+    text.parse().map_err(|_| {
+        let shown: String = text.chars().take(40).collect();
+        let reason = format!("{name} is '{shown}', but a number was expected");
+        Fault::Malformed { offset: at.into(), reason }
+    })
+}
+
+/// `Ok(value)` if it is positive and finite, the defect of the file at this place otherwise.
+#[cfg(feature = "io")]
+pub(super) fn positive(name: &str, value: f64, at: usize) -> Result<f64, Fault> {
+    let is_positive = value > 0.0 && value.is_finite();
+    ensure!(is_positive, at(at), "{name} is {value}, but a positive number was expected");
+    Ok(value)
 }

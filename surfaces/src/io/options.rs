@@ -6,7 +6,6 @@ use std::path::Path;
 use nalgebra::DMatrix;
 
 use super::bytes::{read_all, read_file};
-use super::fault::Fault;
 use super::format::Format;
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
@@ -42,8 +41,8 @@ pub fn read_surface(path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
 /// As [`ReadOptions::read`], but for units, which are not looked at.
 pub fn channels(path: impl AsRef<Path>) -> Result<Vec<String>, Error> {
     let path = path.as_ref();
-    let (_, channels) = parse(&named(path, read_file(path))?, path)?;
-    Ok(names(&channels))
+    let bytes = read_file(path).map_err(|fault| fault.in_file(path, UNREAD))?;
+    Ok(names(&parse(&bytes, path)?.1))
 }
 
 /// What to read from a file, and what it does not say of itself.
@@ -60,6 +59,7 @@ pub fn channels(path: impl AsRef<Path>) -> Result<Vec<String>, Error> {
 /// # }
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
+#[must_use]
 pub struct ReadOptions {
     channel: Option<String>,
     side: Option<f64>,
@@ -71,13 +71,11 @@ pub struct ReadOptions {
 
 impl ReadOptions {
     /// Everything as the file says.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
     /// The map of this name, in a file with several.
-    #[must_use]
     pub fn channel(mut self, name: impl Into<String>) -> Self {
         self.channel = Some(name.into());
         self
@@ -85,35 +83,30 @@ impl ReadOptions {
 
     /// The side along x \[m\], in place of what the file says. Cells are square unless
     /// [`side_y`](Self::side_y) is given.
-    #[must_use]
     pub fn side(mut self, metres: f64) -> Self {
         self.side = Some(metres);
         self
     }
 
     /// The side along y \[m\], in place of what the file says.
-    #[must_use]
     pub fn side_y(mut self, metres: f64) -> Self {
         self.side_y = Some(metres);
         self
     }
 
     /// The unit of the numbers in the file, in place of the one that it names.
-    #[must_use]
     pub fn height_unit(mut self, unit: LengthUnit) -> Self {
         self.height_unit = Some(unit);
         self
     }
 
     /// The unit of lengths along x and y in the file, in place of the one that it names.
-    #[must_use]
     pub fn lateral_unit(mut self, unit: LengthUnit) -> Self {
         self.lateral_unit = Some(unit);
         self
     }
 
     /// Keeps the heights of nodes that are marked in the file; otherwise they are missing.
-    #[must_use]
     pub fn ignore_mask(mut self) -> Self {
         self.ignore_mask = true;
         self
@@ -131,7 +124,7 @@ impl ReadOptions {
     /// [`Error::NotPositive`] for a side that is not.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
         let path = path.as_ref();
-        self.of(&named(path, read_file(path))?, path)
+        self.of(&read_file(path).map_err(|fault| fault.in_file(path, UNREAD))?, path)
     }
 
     /// Reads the bytes of a file that is not on disk: one of an archive, of a database, from a network.
@@ -173,7 +166,7 @@ impl ReadOptions {
         name: impl AsRef<Path>,
     ) -> Result<MeasuredSurface, Error> {
         let name = name.as_ref();
-        self.of(&named(name, read_all(source))?, name)
+        self.of(&read_all(source).map_err(|fault| fault.in_file(name, UNREAD))?, name)
     }
 
     /// The surface in the bytes of a file.
@@ -181,27 +174,37 @@ impl ReadOptions {
         let (format, channels) = parse(bytes, path)?;
         let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
-        let height = self.height_factor(&channel, path)?;
-        let cell = self.cell(&channel, path)?;
-        let mut notes = std::mem::take(&mut channel.notes);
-        self.apply_mask(&mut channel, &mut notes);
-        notes.extend(self.assumed(format, cell, channel.shape));
-        let mut missing = 0;
+        let unit = channel.height_unit.take();
+        let height = metres(self.height_unit, unit).map_err(|found| {
+            let (path, option) = (path.to_path_buf(), "`ReadOptions::height_unit`");
+            FileError::NoUnit { path, quantity: "heights", found, option }
+        })?;
+        let cell = self.cell(&mut channel, path)?;
+        let mut notes = channel.notes;
+        if let Some(mask) = channel.mask.filter(|_| !self.ignore_mask) {
+            let nodes = channel.values.iter_mut().zip(&mask).filter(|(_, marked)| **marked);
+            let marked = nodes.map(|(value, _)| *value = f64::NAN).count();
+            if marked > 0 {
+                notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
+            }
+        }
+        // What neither the file nor the options say, in words.
+        if format == Format::Npy && self.height_unit.is_none() {
+            notes.push("a NumPy array has no unit: its heights are assumed to be in m".to_string());
+        }
+        let (nx, ny) = channel.shape;
+        if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {
+            let side = ny as f64 * dy;
+            notes.push(format!("cells are assumed to be square: the side along y is {side:e} m"));
+        }
         for value in &mut channel.values {
             // Infinite values mark missing nodes as well, in files of several makers.
             *value = if value.is_finite() { *value * height } else { f64::NAN };
-            missing += usize::from(value.is_nan());
         }
-        let (nx, ny) = channel.shape;
-        Ok(MeasuredSurface {
-            heights: DMatrix::from_vec(nx, ny, channel.values),
-            missing,
-            cell,
-            title: channel.name,
-            channels: names,
-            format,
-            notes,
-        })
+        let missing = channel.values.iter().filter(|value| value.is_nan()).count();
+        let heights = DMatrix::from_vec(nx, ny, channel.values);
+        let title = channel.name;
+        Ok(MeasuredSurface { heights, missing, cell, title, channels: names, format, notes })
     }
 
     /// The map that was asked for; without a name, the only one, or the only one that is a length.
@@ -209,34 +212,18 @@ impl ReadOptions {
         let several = channels.len() > 1;
         let fits = |channel: &Channel| match &self.channel {
             Some(wanted) => channel.name == *wanted,
-            None => !several || is_length(channel.height_unit.as_deref()),
+            None => !several || metres(None, channel.height_unit.clone()).is_ok(),
         };
         let mut chosen = (0..channels.len()).filter(|k| fits(&channels[*k]));
         if let (Some(only), None) = (chosen.next(), chosen.next()) {
             return Ok(channels.swap_remove(only));
         }
-        Err(Error::File(FileError::WhichChannel {
-            path: path.to_path_buf(),
-            wanted: self.channel.clone(),
-            channels: names(&channels),
-        }))
-    }
-
-    /// Metres for the numbers of the file.
-    fn height_factor(&self, channel: &Channel, path: &Path) -> Result<f64, Error> {
-        let unit = channel.height_unit.as_deref();
-        factor(self.height_unit, unit).ok_or_else(|| {
-            Error::File(FileError::NoUnit {
-                path: path.to_path_buf(),
-                quantity: "heights",
-                found: unit.map(str::to_string),
-                option: "`ReadOptions::height_unit`",
-            })
-        })
+        let (path, channels) = (path.to_path_buf(), names(&channels));
+        Err(FileError::WhichChannel { path, wanted: self.channel.clone(), channels }.into())
     }
 
     /// The cell in metres, `None` if neither the file nor the options give it.
-    fn cell(&self, channel: &Channel, path: &Path) -> Result<Option<(f64, f64)>, Error> {
+    fn cell(&self, channel: &mut Channel, path: &Path) -> Result<Option<(f64, f64)>, Error> {
         let (nx, ny) = channel.shape;
         let given = |side: Option<f64>, n: usize, name| {
             side.map(|side| {
@@ -248,59 +235,21 @@ impl ReadOptions {
         };
         let dx = given(self.side, nx, "side along x")?;
         let dy = given(self.side_y, ny, "side along y")?;
-        if let (Some(dx), dy) = (dx, dy) {
+        if let Some(dx) = dx {
             return Ok(Some((dx, dy.unwrap_or(dx))));
         }
         let Some(cell) = channel.cell else {
             return Ok(None);
         };
-        let unit = channel.lateral_unit.as_deref();
-        let metres = factor(self.lateral_unit, unit).ok_or_else(|| {
-            Error::File(FileError::NoUnit {
-                path: path.to_path_buf(),
-                quantity: "lengths along x and y",
-                found: unit.map(str::to_string),
-                option: "`ReadOptions::lateral_unit` or `ReadOptions::side`",
-            })
+        let unit = channel.lateral_unit.take();
+        let metres = metres(self.lateral_unit, unit).map_err(|found| {
+            let option = "`ReadOptions::lateral_unit` or `ReadOptions::side`";
+            let path = path.to_path_buf();
+            FileError::NoUnit { path, quantity: "lengths along x and y", found, option }
         })?;
         let dx = Error::require_positive("cell along x in the file", cell.0 * metres)?;
         let dy_of_file = Error::require_positive("cell along y in the file", cell.1 * metres)?;
         Ok(Some((dx, dy.unwrap_or(dy_of_file))))
-    }
-
-    /// What neither the file nor the options say, in words.
-    fn assumed(
-        &self,
-        format: Format,
-        cell: Option<(f64, f64)>,
-        (_, ny): (usize, usize),
-    ) -> Vec<String> {
-        let mut assumed = Vec::new();
-        if format == Format::Npy && self.height_unit.is_none() {
-            assumed
-                .push("a NumPy array has no unit: its heights are assumed to be in m".to_string());
-        }
-        if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {
-            assumed.push(format!(
-                "cells are assumed to be square: the side along y is {:e} m",
-                ny as f64 * dy
-            ));
-        }
-        assumed
-    }
-
-    fn apply_mask(&self, channel: &mut Channel, notes: &mut Vec<String>) {
-        let Some(mask) = channel.mask.as_ref().filter(|_| !self.ignore_mask) else {
-            return;
-        };
-        let mut marked = 0;
-        for (value, _) in channel.values.iter_mut().zip(mask).filter(|(_, marked)| **marked) {
-            *value = f64::NAN;
-            marked += 1;
-        }
-        if marked > 0 {
-            notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
-        }
     }
 }
 
@@ -308,39 +257,24 @@ fn names(channels: &[Channel]) -> Vec<String> {
     channels.iter().map(|channel| channel.name.clone()).collect()
 }
 
-/// Metres for a unit: the one given, otherwise that of the file.
-fn factor(given: Option<LengthUnit>, found: Option<&str>) -> Option<f64> {
-    let unit = match given {
-        Some(unit) => unit,
-        None => found?.parse().ok()?,
-    };
-    Some(unit.metres())
+/// Metres for a unit: the one given, otherwise that of the file, which is told if it is no length.
+fn metres(given: Option<LengthUnit>, found: Option<String>) -> Result<f64, Option<String>> {
+    let of_file = || found.as_deref()?.parse().ok();
+    given.or_else(of_file).map(LengthUnit::metres).ok_or(found)
 }
 
-fn is_length(unit: Option<&str>) -> bool {
-    unit.is_some_and(|unit| unit.parse::<LengthUnit>().is_ok())
-}
-
-/// What was read, or the error that names the file.
-fn named<T>(path: &Path, read: Result<T, Fault>) -> Result<T, Error> {
-    read.map_err(|fault| fault.in_file(path, "surface"))
-}
+/// What errors call a file before its format is known.
+const UNREAD: &str = "surface";
 
 /// The format of a file, and all maps in it.
 fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Vec<Channel>), Error> {
-    let format = Format::of(bytes).ok_or_else(|| {
-        Error::File(FileError::UnknownFormat {
-            path: path.to_path_buf(),
-            begins: bytes.iter().take(8).copied().collect(),
-        })
+    let format = Format::of(bytes).ok_or_else(|| FileError::UnknownFormat {
+        path: path.to_path_buf(),
+        begins: bytes.iter().take(8).copied().collect(),
     })?;
-    format
-        .parse(bytes, path)
-        .and_then(|channels| {
-            if channels.is_empty() {
-                return Err(Fault::malformed("there is no map in it"));
-            }
-            Ok((format, channels))
-        })
-        .map_err(|fault| fault.in_file(path, format.name()))
+    let channels = format.parse(bytes, path).and_then(|channels| {
+        ensure!(!channels.is_empty(), "there is no map in it");
+        Ok(channels)
+    });
+    Ok((format, channels.map_err(|fault| fault.in_file(path, format.name()))?))
 }

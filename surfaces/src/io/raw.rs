@@ -1,6 +1,5 @@
 //! What a reader finds in a file, before units and options are applied.
 
-use super::bytes::reserved;
 use super::fault::Fault;
 
 /// One map of a file, in the file's own units.
@@ -46,22 +45,3 @@ impl Channel {
 
 /// What a reader makes of the bytes of a file: all maps in it.
 pub(super) type Parsed = Result<Vec<Channel>, Fault>;
-
-/// `Ok(value)` if it is positive and finite, the defect of the file at this place otherwise.
-pub(super) fn positive(name: &str, value: f64, offset: usize) -> Result<f64, Fault> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(Fault::at(offset, format!("{name} is {value}, but a positive number was expected")))
-}
-
-/// Values decoded from elements of a fixed size, with memory asked for once.
-pub(super) fn decode(
-    bytes: &[u8],
-    size: usize,
-    decode: impl Fn(&[u8]) -> f64,
-) -> Result<Vec<f64>, Fault> {
-    let mut values = reserved(bytes.len() / size)?;
-    values.extend(bytes.chunks_exact(size).map(decode));
-    Ok(values)
-}

@@ -18,8 +18,8 @@ use flate2::read::ZlibDecoder;
 
 use super::bytes::{Bytes, latin1, shape};
 use super::fault::Fault;
-use super::number::Number;
-use super::raw::{Channel, Parsed, decode, positive};
+use super::number::{Number, positive};
+use super::raw::{Channel, Parsed};
 use super::unit::LengthUnit;
 
 /// Bytes of the header.
@@ -32,18 +32,16 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut bytes = Bytes::new(file);
     let compressed = bytes.take(HEADER)?.starts_with(b"DSCOMPRESSED");
     let header = Header::read(file)?;
-    bytes.seek(HEADER)?;
     bytes.take(header.comments)?;
-    let length = (header.shape.0 * header.shape.1).saturating_mul(header.number.size());
+    let (nx, ny) = header.shape;
+    let length = (nx * ny).saturating_mul(header.number.size());
     let data = if compressed {
         Cow::Owned(inflate(&mut bytes, length)?)
     } else {
         Cow::Borrowed(bytes.take(length)?)
     };
-    let (nx, ny) = header.shape;
     bytes.end(format_args!("{nx} x {ny} heights"))?;
-    let number = header.number;
-    let values = decode(&data, number.size(), |value| header.height(number.decode(value)))?;
+    let values = header.number.decode_all(&data, |value| header.height(value))?;
     let (cell, lateral_unit) = header.cell();
     Ok(vec![Channel {
         name: header.name,
@@ -73,68 +71,51 @@ struct Header {
 
 impl Header {
     fn read(file: &[u8]) -> Result<Self, Fault> {
-        let field = |offset| {
-            let mut bytes = Bytes::new(file);
-            bytes.seek(offset).map(|()| bytes)
-        };
-        if field(12)?.u16()? == 257 {
-            return Err(Fault::at(
-                12,
-                "the format is 257, big-endian, but only files in little-endian order are read",
-            ));
-        }
+        let field = |offset| Bytes::from(file, offset);
+        let count = |offset| field(offset)?.u16();
+        let length = |offset| field(offset)?.f32().map(f64::from);
+        let text = |offset| Ok::<_, Fault>(latin1(field(offset)?.take(16)?));
+        let unit = |offset| Ok::<_, Fault>(Some(text(offset)?).filter(|text| !text.is_empty()));
+        ensure!(
+            count(12)? != 257,
+            at(12),
+            "the format is 257, big-endian, but only files in little-endian order are read"
+        );
         let (nx, ny) = (field(108)?.u32()?, field(112)?.u32()?);
-        require_surface(field(18)?.u16()?, ny)?;
-        let objects = field(14)?.u16()?;
-        if objects > 1 {
-            return Err(Fault::at(
-                14,
-                format!(
-                    "there are {objects} objects in the file, but only files with one are read"
-                ),
-            ));
-        }
-        let bits = field(98)?.u16()?;
-        let number = match bits {
+        require_surface(count(18)?, ny)?;
+        let objects = count(14)?;
+        ensure!(
+            objects <= 1,
+            at(14),
+            "there are {objects} objects in the file, but only files with one are read"
+        );
+        let number = match count(98)? {
             16 => Number::I16,
             32 => Number::I32,
-            _ => {
-                return Err(Fault::at(
-                    98,
-                    format!("the heights have {bits} bits each, but 16 or 32 were expected"),
-                ));
-            }
+            bits => bail!(at(98), "the heights have {bits} bits each, but 16 or 32 were expected"),
         };
         let nodes = u64::from(field(116)?.u32()?);
-        if nodes != u64::from(nx) * u64::from(ny) {
-            return Err(Fault::at(
-                116,
-                format!("there are {nodes} points in the file, but {nx} x {ny} in a map"),
-            ));
-        }
-        let special_points = field(86)?.u16()? == 1;
+        ensure!(
+            nodes == u64::from(nx) * u64::from(ny),
+            at(116),
+            "there are {nodes} points in the file, but {nx} x {ny} in a map"
+        );
+        let special_points = count(86)? == 1;
         let least = f64::from(field(100)?.i32()?);
-        let spacing = |offset| field(offset)?.f32().map(f64::from);
-        let unit = |offset| {
-            let text = latin1(field(offset)?.take(16)?);
-            Ok::<_, Fault>(Some(text).filter(|text| !text.is_empty()))
-        };
-        let offset = spacing(474)?;
-        if !offset.is_finite() {
-            return Err(Fault::at(
-                474,
-                format!("the offset of the heights is {offset}, which is not finite"),
-            ));
-        }
-        let step = positive("the spacing along z", spacing(128)?, 128)?;
-        let zone = |offset| field(offset)?.u16().map(usize::from);
+        let offset = length(474)?;
+        ensure!(
+            offset.is_finite(),
+            at(474),
+            "the offset of the heights is {offset}, which is not finite"
+        );
+        let step = positive("the spacing along z", length(128)?, 128)?;
         Ok(Self {
-            name: latin1(field(164)?.take(16)?),
-            shape: shape(u64::from(nx), u64::from(ny))?,
+            name: text(164)?,
+            shape: shape(nx, ny)?,
             number,
-            comments: zone(334)? + zone(336)?,
+            comments: usize::from(count(334)?) + usize::from(count(336)?),
             missing: special_points.then_some(least - 2.0),
-            spacing: (spacing(120)?, spacing(124)?, step),
+            spacing: (length(120)?, length(124)?, step),
             offset,
             units: (unit(180)?, unit(196)?, unit(212)?),
         })
@@ -196,10 +177,7 @@ fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
         return Ok(());
     }
     let name = TYPES.get(usize::from(kind)).unwrap_or(&TYPES[0]);
-    Err(Fault::at(
-        18,
-        format!("it holds {name} (type {kind}), but a surface (type 2) was expected"),
-    ))
+    bail!(at(18), "it holds {name} (type {kind}), but a surface (type 2) was expected")
 }
 
 /// The heights of a compressed file: a number of streams, the length of each before and after compression, and the
@@ -207,48 +185,36 @@ fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
 fn inflate(bytes: &mut Bytes, length: usize) -> Result<Vec<u8>, Fault> {
     let at = bytes.offset();
     let streams = bytes.u32()? as usize;
-    let directory = Bytes::new(bytes.elements(streams, 8)?);
-    let mut lengths = directory.clone();
-    let mut claimed = 0_u64;
-    while lengths.left() > 0 {
-        claimed = claimed.saturating_add(u64::from(lengths.u32()?));
-        let _compressed = lengths.u32()?;
+    let mut directory = Bytes::new(bytes.elements(streams, 8)?);
+    let mut lengths = Vec::new();
+    while directory.left() > 0 {
+        lengths.push((u64::from(directory.u32()?), directory.u32()?));
     }
-    if claimed != length as u64 {
-        return Err(Fault::at(
-            at,
-            format!(
-                "{streams} compressed streams hold {claimed} bytes, but the heights take {length}"
-            ),
-        ));
-    }
+    let claimed: u64 = lengths.iter().map(|(length, _)| length).sum();
+    ensure!(
+        claimed == length as u64,
+        at(at),
+        "{streams} compressed streams hold {claimed} bytes, but the heights take {length}"
+    );
     let mut data = Vec::new();
-    let mut lengths = directory;
-    while lengths.left() > 0 {
-        let length = u64::from(lengths.u32()?);
-        let compressed = lengths.u32()?;
+    for (length, compressed) in lengths {
         let at = bytes.offset();
         let stream = bytes.take(compressed as usize)?;
-        if length > MAX_EXPANSION * u64::from(compressed) {
-            return Err(Fault::at(
-                at,
-                format!("no {compressed} compressed bytes can hold {length}, as these claim"),
-            ));
-        }
+        ensure!(
+            length <= MAX_EXPANSION * u64::from(compressed),
+            at(at),
+            "no {compressed} compressed bytes can hold {length}, as these claim"
+        );
         // Nothing is reserved for what is only claimed, and one byte more than that shows a stream that is too long.
+        let found = ZlibDecoder::new(stream).take(length + 1).read_to_end(&mut data);
         let found =
-            ZlibDecoder::new(stream).take(length + 1).read_to_end(&mut data).map_err(|error| {
-                Fault::at(at, format!("the compressed heights are damaged: {error}"))
-            })?;
-        if found as u64 != length {
-            let more = if found as u64 > length { "more" } else { "less" };
-            return Err(Fault::at(
-                at,
-                format!(
-                    "this compressed stream holds {more} than the {length} bytes that it claims"
-                ),
-            ));
-        }
+            found.map_err(|error| fault!(at(at), "the compressed heights are damaged: {error}"))?;
+        let more = if found as u64 > length { "more" } else { "less" };
+        ensure!(
+            found as u64 == length,
+            at(at),
+            "this compressed stream holds {more} than the {length} bytes that it claims"
+        );
     }
     Ok(data)
 }

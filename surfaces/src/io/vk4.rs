@@ -14,8 +14,8 @@
 
 use super::bytes::{Bytes, shape};
 use super::fault::Fault;
-use super::number::Number;
-use super::raw::{Channel, Parsed, decode, positive};
+use super::number::{Number, positive};
+use super::raw::{Channel, Parsed};
 
 const MAGIC: &[u8] = b"VK4_";
 
@@ -35,9 +35,7 @@ const PICOMETRE: f64 = 1e-12;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut bytes = Bytes::new(file);
-    if bytes.take(MAGIC.len())? != MAGIC {
-        return Err(Fault::at(0, "the file does not begin with 'VK4_'"));
-    }
+    ensure!(bytes.take(MAGIC.len())? == MAGIC, at(0), "the file does not begin with 'VK4_'");
     bytes.seek(TABLE)?;
     let conditions = bytes.u32()? as usize;
     bytes.seek(HEIGHT)?;
@@ -48,53 +46,43 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let cell = (length()?, length()?);
     let step = positive("the step in height", length()?, conditions + STEP)?;
 
-    let mut channels = Vec::new();
-    for (k, place) in places.into_iter().enumerate().filter(|(_, place)| *place > 0) {
-        bytes.seek(place as usize)?;
-        let mut channel = image(&mut bytes, step)?;
-        channel.name = format!("Height {}", k + 1);
-        channel.cell = Some(cell);
-        channels.push(channel);
-    }
-    Ok(channels)
+    let images = places.into_iter().enumerate().filter(|(_, place)| *place > 0);
+    images
+        .map(|(k, place)| {
+            bytes.seek(place as usize)?;
+            let name = format!("Height {}", k + 1);
+            Ok(Channel { name, cell: Some(cell), ..image(&mut bytes, step)? })
+        })
+        .collect()
 }
 
 /// The image that begins here.
 fn image(bytes: &mut Bytes, step: f64) -> Result<Channel, Fault> {
     let at = bytes.offset();
-    let (nx, ny) = shape(u64::from(bytes.u32()?), u64::from(bytes.u32()?))?;
+    let (nx, ny) = shape(bytes.u32()?, bytes.u32()?)?;
     let bits = bytes.u32()?;
     let number = match bits {
         8 => Number::U8,
         16 => Number::U16,
         32 => Number::U32,
-        _ => {
-            return Err(Fault::at(
-                at + 8,
-                format!("the heights have {bits} bits each, but 8, 16 or 32 were expected"),
-            ));
-        }
+        _ => bail!(at(at + 8), "the heights have {bits} bits each, but 8, 16 or 32 were expected"),
     };
     let compression = bytes.u32()?;
     let length = bytes.u32()? as usize;
-    if length != (nx * ny).saturating_mul(number.size()) {
-        return Err(Fault::at(
-            at + 16,
-            format!(
-                "{nx} x {ny} heights of {bits} bits are said to take {length} bytes (compression {compression})"
-            ),
-        ));
-    }
+    ensure!(
+        length == (nx * ny).saturating_mul(number.size()),
+        at(at + 16),
+        "{nx} x {ny} heights of {bits} bits are said to take {length} bytes (compression {compression})"
+    );
     let _range = (bytes.u32()?, bytes.u32()?);
     bytes.take(PALETTE)?;
-    let values = decode(bytes.take(length)?, number.size(), |value| number.decode(value) * step)?;
+    let values = number.decode_all(bytes.take(length)?, |value| value * step)?;
     let zeros = values.iter().filter(|value| **value == 0.0).count();
     let mut channel = Channel::in_metres((nx, ny), values, None);
     if zeros > 0 {
         channel.mask = Some(channel.values.iter().map(|value| *value == 0.0).collect());
-        channel
-            .notes
-            .push(format!("{zeros} nodes hold 0, and are marked: they may not have been measured"));
+        channel.notes =
+            vec![format!("{zeros} nodes hold 0, and are marked: they may not have been measured")];
     }
     Ok(channel)
 }

@@ -8,25 +8,24 @@
 
 mod tree;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use self::tree::{Object, Value};
 use super::bytes::{Bytes, shape};
 use super::fault::Fault;
-use super::raw::{Channel, Parsed, decode};
+use super::number::Number;
+use super::raw::{Channel, Parsed};
 
 const MAGIC: &[u8] = b"GWYP";
+
+const FIELD: &str = "GwyDataField";
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut bytes = Bytes::new(file);
     bytes.take(MAGIC.len())?;
     let root = Object::read(file, &mut bytes)?;
-    if !root.is("GwyContainer") {
-        return Err(Fault::at(
-            MAGIC.len(),
-            format!("expected a GwyContainer, but found '{}'", root.name()),
-        ));
-    }
+    let name = String::from_utf8_lossy(root.name);
+    ensure!(name == "GwyContainer", at(MAGIC.len()), "expected a GwyContainer, but found '{name}'");
     // A container has no order: maps are put into that of their numbers, as Gwyddion lists them.
     let mut maps: BTreeMap<u64, Map> = BTreeMap::new();
     for component in root.components()? {
@@ -35,25 +34,27 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
             continue;
         };
         match (what, value) {
-            ("data", Value::Object(field)) if field.is(FIELD) => {
+            ("data", Value::Object(field)) if field.name == FIELD.as_bytes() => {
                 maps.entry(number).or_default().field = Some(field);
             }
-            ("mask", Value::Object(field)) if field.is(FIELD) => {
+            ("mask", Value::Object(field)) if field.name == FIELD.as_bytes() => {
                 maps.entry(number).or_default().mask = Some(field);
             }
             ("data/title", Value::Text(title)) => maps.entry(number).or_default().title = title,
             _ => {}
         }
     }
+    maps.retain(|_, map| map.field.is_some());
+    let titles: Vec<String> = maps.iter().map(|(number, map)| map.title(*number)).collect();
+    let mut times: BTreeMap<&str, usize> = BTreeMap::new();
+    titles.iter().for_each(|title| *times.entry(title).or_default() += 1);
     let mut channels = Vec::new();
-    let mut numbers = Vec::new();
-    for (number, map) in maps {
-        if let Some(field) = map.field {
-            channels.push(map.channel(number, &field)?);
-            numbers.push(number);
-        }
+    for ((number, map), title) in maps.iter().zip(&titles) {
+        // Names that occur more than once are told apart, so that each can be chosen.
+        let is_only = times[title.as_str()] == 1;
+        let name = if is_only { title.clone() } else { format!("{title} [{number}]") };
+        channels.extend(map.channel(name)?);
     }
-    tell_apart(&mut channels, &numbers);
     Ok(channels)
 }
 
@@ -64,21 +65,6 @@ fn numbered(key: &[u8]) -> Option<(u64, &str)> {
     Some((number.parse().ok()?, what))
 }
 
-/// Adds their number to names that occur more than once, so that each can be chosen.
-fn tell_apart(channels: &mut [Channel], numbers: &[u64]) {
-    let mut times: HashMap<String, usize> = HashMap::new();
-    for channel in &*channels {
-        *times.entry(channel.name.clone()).or_default() += 1;
-    }
-    for (channel, number) in channels.iter_mut().zip(numbers) {
-        if times.get(&channel.name).is_some_and(|times| *times > 1) {
-            channel.name = format!("{} [{number}]", channel.name);
-        }
-    }
-}
-
-const FIELD: &str = "GwyDataField";
-
 /// What belongs to one number.
 #[derive(Debug, Default)]
 struct Map<'a> {
@@ -88,14 +74,30 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    fn channel(&self, number: u64, field: &Object) -> Result<Channel, Fault> {
-        let title = String::from_utf8_lossy(self.title);
+    fn title(&self, number: u64) -> String {
+        match String::from_utf8_lossy(self.title).trim() {
+            "" => format!("/{number}/data"),
+            title => title.to_string(),
+        }
+    }
+
+    fn channel(&self, name: String) -> Result<Option<Channel>, Fault> {
+        let Some(field) = &self.field else {
+            return Ok(None);
+        };
+        let ((nx, ny), heights) = values(field)?;
+        // Sides default to 1 in the format, which is no size of any surface.
+        let cell = match (field.find("xreal")?, field.find("yreal")?) {
+            (Some(Value::Double(x)), Some(Value::Double(y))) => {
+                Some((x / nx as f64, y / ny as f64))
+            }
+            _ => None,
+        };
         let mut channel = Channel {
-            name: match title.trim() {
-                "" => format!("/{number}/data"),
-                title => title.to_string(),
-            },
-            ..channel(field)?
+            name,
+            height_unit: unit(field, "si_unit_z")?,
+            lateral_unit: unit(field, "si_unit_xy")?,
+            ..Channel::in_metres((nx, ny), heights, cell)
         };
         if let Some(mask) = &self.mask {
             let (shape, marks) = values(mask)?;
@@ -103,57 +105,31 @@ impl Map<'_> {
                 channel.mask = Some(marks.iter().map(|mark| *mark > 0.5).collect());
             } else {
                 channel.notes.push(format!(
-                    "the mask has {} x {} nodes, the map {} x {}: it is not used",
-                    shape.0, shape.1, channel.shape.0, channel.shape.1
+                    "the mask has {} x {} nodes, the map {nx} x {ny}: it is not used",
+                    shape.0, shape.1
                 ));
             }
         }
-        Ok(channel)
+        Ok(Some(channel))
     }
-}
-
-/// A field without a name.
-fn channel(field: &Object) -> Result<Channel, Fault> {
-    let ((nx, ny), values) = values(field)?;
-    // Sides default to 1 in the format, which is no size of any surface.
-    let cell = match (field.find("xreal")?, field.find("yreal")?) {
-        (Some(Value::Double(x)), Some(Value::Double(y))) => Some((x / nx as f64, y / ny as f64)),
-        _ => None,
-    };
-    Ok(Channel {
-        height_unit: unit(field, "si_unit_z")?,
-        lateral_unit: unit(field, "si_unit_xy")?,
-        ..Channel::in_metres((nx, ny), values, cell)
-    })
 }
 
 /// Shape and values of a field.
 fn values(field: &Object) -> Result<((usize, usize), Vec<f64>), Fault> {
+    let at = field.begin;
+    let lacks = |name: &str| fault!(at(at), "the GwyDataField has no '{name}' of the right type");
     let count = |name: &str| match field.find(name)? {
-        Some(Value::Int(count)) => u64::try_from(count).map_err(|_| {
-            Fault::at(
-                field.begin(),
-                format!("{name} is {count}, but a number of nodes was expected"),
-            )
-        }),
-        _ => Err(lacks(field, name)),
+        Some(Value::Int(count)) => u64::try_from(count)
+            .map_err(|_| fault!(at(at), "{name} is {count}, but a number of nodes was expected")),
+        _ => Err(lacks(name)),
     };
     let (nx, ny) = shape(count("xres")?, count("yres")?)?;
     let Some(Value::Doubles(data)) = field.find("data")? else {
-        return Err(lacks(field, "data"));
+        return Err(lacks("data"));
     };
-    if data.len() / 8 != nx * ny {
-        return Err(Fault::at(
-            field.begin(),
-            format!("a field of {nx} x {ny} nodes has {} values", data.len() / 8),
-        ));
-    }
-    let values = decode(data, 8, |b| b.try_into().map_or(f64::NAN, f64::from_le_bytes))?;
-    Ok(((nx, ny), values))
-}
-
-fn lacks(field: &Object, name: &str) -> Fault {
-    Fault::at(field.begin(), format!("the GwyDataField has no '{name}' of the right type"))
+    let found = data.len() / 8;
+    ensure!(found == nx * ny, at(at), "a field of {nx} x {ny} nodes has {found} values");
+    Ok(((nx, ny), Number::F64.decode_all(data, |value| value)?))
 }
 
 /// What a unit is called; `None` if there is no name, or an empty one: the numbers are counts then.

@@ -10,10 +10,11 @@ use crate::io::fault::Fault;
 /// An object somewhere in a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Object<'a> {
-    name: &'a [u8],
+    pub(super) name: &'a [u8],
     /// The file up to the end of the object, so that places in it are places in the file.
     within: &'a [u8],
-    begin: usize,
+    /// Where its components begin in the file.
+    pub(super) begin: usize,
 }
 
 /// The value of a component, as far as maps need it.
@@ -32,30 +33,14 @@ impl<'a> Object<'a> {
     /// The object that begins at a place in `within`.
     pub(super) fn read(within: &'a [u8], bytes: &mut Bytes<'a>) -> Result<Self, Fault> {
         let name = bytes.until(0)?;
-        let size = bytes.u32()?;
+        let size = bytes.u32()? as usize;
         let begin = bytes.offset();
-        bytes.elements(usize::try_from(size).unwrap_or(usize::MAX), 1)?;
+        bytes.take(size)?;
         Ok(Self { name, within: within.get(..bytes.offset()).unwrap_or(within), begin })
     }
 
-    /// Where its components begin in the file.
-    pub(super) fn begin(&self) -> usize {
-        self.begin
-    }
-
-    pub(super) fn is(&self, name: &str) -> bool {
-        self.name == name.as_bytes()
-    }
-
-    /// Its name, for messages.
-    pub(super) fn name(&self) -> String {
-        String::from_utf8_lossy(self.name).into_owned()
-    }
-
     pub(super) fn components(&self) -> Result<Components<'a>, Fault> {
-        let mut bytes = Bytes::new(self.within);
-        bytes.seek(self.begin)?;
-        Ok(Components { bytes, within: self.within })
+        Ok(Components { bytes: Bytes::from(self.within, self.begin)?, within: self.within })
     }
 
     /// The value of the first component of this name.
@@ -87,57 +72,36 @@ impl<'a> Iterator for Components<'a> {
 
 impl<'a> Components<'a> {
     fn component(&mut self) -> Result<(&'a [u8], Value<'a>), Fault> {
-        let at = self.bytes.offset();
-        let name = self.bytes.until(0)?;
-        let kind = self.bytes.u8()?;
+        let bytes = &mut self.bytes;
+        let at = bytes.offset();
+        let name = bytes.until(0)?;
+        let kind = bytes.u8()?;
+        // Capital letters are arrays of what small ones are.
+        let count = if kind.is_ascii_uppercase() { bytes.u32()? as usize } else { 1 };
         let value = match kind {
-            b'i' => Value::Int(self.bytes.i32()?),
-            b'd' => Value::Double(self.bytes.f64()?),
-            b's' => Value::Text(self.bytes.until(0)?),
-            b'o' => Value::Object(Object::read(self.within, &mut self.bytes)?),
-            b'D' => Value::Doubles(self.array(8)?),
-            b'b' | b'c' => self.skip(1)?,
-            b'q' => self.skip(8)?,
-            b'C' => self.array(1).map(|_| Value::Other)?,
-            b'I' => self.array(4).map(|_| Value::Other)?,
-            b'Q' => self.array(8).map(|_| Value::Other)?,
-            b'S' => self.each(|bytes, _| bytes.until(0).map(|_| ()))?,
-            b'O' => self.each(|bytes, within| Object::read(within, bytes).map(|_| ()))?,
-            _ => {
-                return Err(Fault::at(
-                    at,
-                    format!(
-                        "the component '{}' has the type {kind:#04x}, which is none of bciqdsoCIQDSO",
-                        String::from_utf8_lossy(name)
-                    ),
-                ));
-            }
+            b'i' => Value::Int(bytes.i32()?),
+            b'd' => Value::Double(bytes.f64()?),
+            b's' => Value::Text(bytes.until(0)?),
+            b'o' => Value::Object(Object::read(self.within, bytes)?),
+            b'D' => Value::Doubles(bytes.elements(count, 8)?),
+            b'b' | b'c' | b'C' => skipped(bytes.elements(count, 1)?),
+            b'I' => skipped(bytes.elements(count, 4)?),
+            b'q' | b'Q' => skipped(bytes.elements(count, 8)?),
+            // Elements that say themselves how long they are.
+            b'S' => (0..count).try_for_each(|_| bytes.until(0).map(drop)).map(skipped)?,
+            b'O' => (0..count)
+                .try_for_each(|_| Object::read(self.within, bytes).map(drop))
+                .map(skipped)?,
+            _ => bail!(
+                at(at),
+                "the component '{}' has the type {kind:#04x}, which is none of bciqdsoCIQDSO",
+                String::from_utf8_lossy(name)
+            ),
         };
         Ok((name, value))
     }
+}
 
-    fn skip(&mut self, count: usize) -> Result<Value<'a>, Fault> {
-        self.bytes.take(count).map(|_| Value::Other)
-    }
-
-    fn count(&mut self) -> Result<usize, Fault> {
-        let count = self.bytes.u32()?;
-        Ok(usize::try_from(count).unwrap_or(usize::MAX))
-    }
-
-    fn array(&mut self, size: usize) -> Result<&'a [u8], Fault> {
-        let count = self.count()?;
-        self.bytes.elements(count, size)
-    }
-
-    /// Skips an array whose elements say themselves how long they are.
-    fn each(
-        &mut self,
-        skip: impl Fn(&mut Bytes<'a>, &'a [u8]) -> Result<(), Fault>,
-    ) -> Result<Value<'a>, Fault> {
-        for _ in 0..self.count()? {
-            skip(&mut self.bytes, self.within)?;
-        }
-        Ok(Value::Other)
-    }
+fn skipped<'a, T>(_: T) -> Value<'a> {
+    Value::Other
 }

@@ -13,13 +13,12 @@ const MAX_TEXT: usize = 1 << 16;
 /// Type of the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Element {
-    number: Number,
+    pub(super) number: Number,
     big_endian: bool,
 }
 
 impl Element {
     pub(super) fn from_descr(descr: &str) -> Result<Self, Fault> {
-        let big_endian = descr.starts_with('>');
         let number = match descr.trim_start_matches(['<', '>', '|', '=']) {
             "f8" => Number::F64,
             "f4" => Number::F32,
@@ -31,32 +30,20 @@ impl Element {
             "u2" => Number::U16,
             "u4" => Number::U32,
             "u8" => Number::U64,
-            _ => {
-                return Err(Fault::malformed(format!(
-                    "the elements are of type '{descr}', but only float64, float32 and integers are read"
-                )));
-            }
+            _ => bail!(
+                "the elements are of type '{descr}', but only float64, float32 and integers are read"
+            ),
         };
-        Ok(Self { number, big_endian })
+        Ok(Self { number, big_endian: descr.starts_with('>') })
     }
 
-    /// Bytes an element takes.
-    pub(super) fn size(self) -> usize {
-        self.number.size()
-    }
-
-    /// The value of [`Element::size`] bytes, NaN for another number of bytes.
+    /// The value of an element.
     pub(super) fn decode(self, bytes: &[u8]) -> f64 {
-        if !self.big_endian {
-            return self.number.decode(bytes);
+        if self.big_endian {
+            self.number.decode(bytes.iter())
+        } else {
+            self.number.decode(bytes.iter().rev())
         }
-        let mut little = [0; 8];
-        let Some(raw) = little.get_mut(..bytes.len()) else {
-            return f64::NAN;
-        };
-        raw.copy_from_slice(bytes);
-        raw.reverse();
-        self.number.decode(raw)
     }
 }
 
@@ -100,135 +87,120 @@ impl Header {
     /// Reads the header, up to the first element.
     pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
         let preamble: [u8; 8] = bytes.array()?;
-        if preamble[..6] != PREAMBLE[..6] {
-            return Err(Fault::at(0, "the file does not begin like a .npy file"));
-        }
+        let begins = preamble[..6] == PREAMBLE[..6];
+        ensure!(begins, at(0), "the file does not begin like a .npy file");
         let size = match preamble[6] {
             1 => usize::from(bytes.u16()?),
             2 | 3 => bytes.u32()? as usize,
-            major => {
-                return Err(Fault::at(6, format!("version {major} of the format is unknown")));
-            }
+            major => bail!(at(6), "version {major} of the format is unknown"),
         };
-        if size > MAX_TEXT {
-            return Err(Fault::at(
-                8,
-                format!("a header of {size} bytes is longer than that of any matrix"),
-            ));
-        }
-        let text = std::str::from_utf8(bytes.take(size)?)
-            .map_err(|_| Fault::malformed("the header is not text"))?;
-        Self::parse(text)
+        let is_short = size <= MAX_TEXT;
+        ensure!(is_short, at(8), "a header of {size} bytes is longer than that of any matrix");
+        let text = std::str::from_utf8(bytes.take(size)?);
+        Self::parse(text.map_err(|_| fault!("the header is not text"))?)
+    }
+
+    /// The header of an array of `N` dimensions, and its sides.
+    pub(super) fn of_dimensions<const N: usize>(
+        bytes: &mut Bytes,
+    ) -> Result<(Self, [usize; N]), Fault> {
+        let header = Self::read(bytes)?;
+        let found = header.shape.len();
+        let sides = header.shape[..].try_into();
+        let sides =
+            sides.map_err(|_| fault!("the array has {found} dimensions, but {N} were expected"))?;
+        Ok((header, sides))
     }
 
     fn parse(text: &str) -> Result<Self, Fault> {
-        let mut text = Cursor(text);
-        let (mut descr, mut order, mut shape) = (None, None, None);
-        text.expect('{')?;
-        while !text.take('}') {
-            let key = text.string()?;
-            text.expect(':')?;
-            match key {
-                "descr" if text.at('[') => {
-                    return Err(Fault::malformed("the elements are records"));
-                }
-                "descr" => descr = Some(text.string()?),
-                "fortran_order" => order = Some(text.boolean()?),
-                "shape" => shape = Some(text.sides()?),
-                other => {
-                    return Err(Fault::malformed(format!(
-                        "the header has an unknown key '{other}'"
-                    )));
-                }
-            }
-            if !text.take(',') && !text.at('}') {
-                return Err(text.unexpected());
-            }
-        }
-        text.end()?;
-        let missing = |key| Fault::malformed(format!("the header lacks the key '{key}'"));
+        let mut rest = Cursor(text);
+        let entries = rest.dictionary().ok_or_else(|| {
+            let shown: String = rest.0.chars().take(20).collect();
+            fault!("the header cannot be read from '{shown}' on")
+        });
+        let (descr, order, shape) = entries?;
+        let lacks = |key| fault!("the header lacks the key '{key}'");
         Ok(Self {
-            descr: descr.ok_or_else(|| missing("descr"))?.to_string(),
-            fortran_order: order.ok_or_else(|| missing("fortran_order"))?,
-            shape: shape.ok_or_else(|| missing("shape"))?,
+            descr: descr.ok_or_else(|| lacks("descr"))?.to_string(),
+            fortran_order: order.ok_or_else(|| lacks("fortran_order"))?,
+            shape: shape.ok_or_else(|| lacks("shape"))?,
         })
     }
 }
 
-/// What is left of a header's text.
+/// The values of the keys `descr`, `fortran_order` and `shape`.
+type Entries<'a> = (Option<&'a str>, Option<bool>, Option<Vec<usize>>);
+
+/// What is left of a header's text. Where it is not what it should be, methods return `None` and stay there.
 struct Cursor<'a>(&'a str);
 
 impl<'a> Cursor<'a> {
-    fn unexpected(&self) -> Fault {
-        let rest: String = self.0.chars().take(20).collect();
-        Fault::malformed(format!("the header cannot be read from '{rest}' on"))
-    }
-
-    fn at(&mut self, symbol: char) -> bool {
-        self.0 = self.0.trim_start();
-        self.0.starts_with(symbol)
-    }
-
-    fn take(&mut self, symbol: char) -> bool {
-        let found = self.at(symbol);
-        if found {
-            self.0 = &self.0[symbol.len_utf8()..];
+    fn dictionary(&mut self) -> Option<Entries<'a>> {
+        let mut entries = Entries::default();
+        self.expect('{')?;
+        while !self.take('}') {
+            let key = self.string()?;
+            self.expect(':')?;
+            match key {
+                "descr" => entries.0 = Some(self.string()?),
+                "fortran_order" => entries.1 = Some(self.boolean()?),
+                "shape" => entries.2 = Some(self.sides()?),
+                _ => return None,
+            }
+            self.comma('}')?;
         }
-        found
+        self.0.trim().is_empty().then_some(entries)
     }
 
-    fn expect(&mut self, symbol: char) -> Result<(), Fault> {
-        if self.take(symbol) { Ok(()) } else { Err(self.unexpected()) }
+    /// Whether this sign comes next; it is skipped then.
+    fn take(&mut self, sign: char) -> bool {
+        let rest = self.0.trim_start().strip_prefix(sign);
+        self.0 = rest.unwrap_or(self.0);
+        rest.is_some()
     }
 
-    fn end(&self) -> Result<(), Fault> {
-        if self.0.trim().is_empty() { Ok(()) } else { Err(self.unexpected()) }
+    fn expect(&mut self, sign: char) -> Option<()> {
+        self.take(sign).then_some(())
+    }
+
+    /// A comma, which may lack before the sign that ends a list.
+    fn comma(&mut self, end: char) -> Option<()> {
+        (self.take(',') || self.0.trim_start().starts_with(end)).then_some(())
     }
 
     /// A quoted string without escapes.
-    fn string(&mut self) -> Result<&'a str, Fault> {
-        let quote = if self.at('"') { '"' } else { '\'' };
-        self.expect(quote)?;
-        let (string, rest) = self.0.split_once(quote).ok_or_else(|| self.unexpected())?;
+    fn string(&mut self) -> Option<&'a str> {
+        let text = self.0.trim_start();
+        let quote = text.chars().next().filter(|sign| matches!(sign, '"' | '\''))?;
+        let (string, rest) = text[1..].split_once(quote)?;
         self.0 = rest;
-        Ok(string)
+        Some(string)
     }
 
-    fn boolean(&mut self) -> Result<bool, Fault> {
+    fn boolean(&mut self) -> Option<bool> {
         let text = self.0.trim_start();
-        for (word, value) in [("True", true), ("False", false)] {
-            if let Some(rest) = text.strip_prefix(word) {
-                self.0 = rest;
-                return Ok(value);
-            }
-        }
-        Err(self.unexpected())
+        let words = [("True", true), ("False", false)];
+        let (rest, value) =
+            words.iter().find_map(|(word, value)| Some((text.strip_prefix(word)?, *value)))?;
+        self.0 = rest;
+        Some(value)
     }
 
     /// A tuple of integers; numbers too large for the computer become the largest.
-    fn sides(&mut self) -> Result<Vec<usize>, Fault> {
+    fn sides(&mut self) -> Option<Vec<usize>> {
         self.expect('(')?;
         let mut sides = Vec::new();
         while !self.take(')') {
-            sides.push(self.integer()?);
-            if !self.take(',') && !self.at(')') {
-                return Err(self.unexpected());
-            }
+            let text = self.0.trim_start();
+            let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+            let (number, rest) = (digits > 0).then(|| text.split_at(digits))?;
+            // Python 2 ended long integers with an L.
+            self.0 = rest.strip_prefix('L').unwrap_or(rest);
+            // Only digits: the one error left is a number that is too large.
+            sides.push(number.parse().unwrap_or(usize::MAX));
+            self.comma(')')?;
         }
-        Ok(sides)
-    }
-
-    fn integer(&mut self) -> Result<usize, Fault> {
-        let text = self.0.trim_start();
-        let digits = text.bytes().take_while(u8::is_ascii_digit).count();
-        if digits == 0 {
-            return Err(self.unexpected());
-        }
-        let (number, rest) = text.split_at(digits);
-        // Python 2 ended long integers with an L.
-        self.0 = rest.strip_prefix('L').unwrap_or(rest);
-        // Only digits: the one error left is a number that is too large.
-        Ok(number.parse().unwrap_or(usize::MAX))
+        Some(sides)
     }
 }
 

@@ -12,7 +12,7 @@ use self::header::{Element, Header};
 use super::bytes::{Bytes, read_all, read_file, reserved, shape};
 use super::fault::Fault;
 #[cfg(feature = "io")]
-use super::raw::{Channel, decode};
+use super::raw::{Channel, Parsed};
 use super::whole_file::write_whole;
 use crate::Error;
 
@@ -69,31 +69,26 @@ const NAME: &str = "NumPy";
 
 /// The map in a file, in metres, without a size.
 #[cfg(feature = "io")]
-pub(super) fn parse(file: &[u8]) -> Result<Channel, Fault> {
+pub(super) fn parse(file: &[u8]) -> Parsed {
     let matrix = matrix(file)?;
-    let shape = matrix.shape();
-    Ok(Channel::in_metres(shape, matrix.data.into(), None))
+    Ok(vec![Channel::in_metres(matrix.shape(), matrix.data.into(), None)])
 }
 
 /// An array of two dimensions.
 pub(super) fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
     let mut input = Bytes::new(file);
-    let header = Header::read(&mut input)?;
-    let (nx, ny) = match header.shape[..] {
-        [nx, ny] => shape(nx as u64, ny as u64)?,
-        _ => return Err(dimensions(&header, 2)),
-    };
+    let (header, [nx, ny]) = Header::of_dimensions(&mut input)?;
+    let (nx, ny) = shape(nx, ny)?;
     let element = Element::from_descr(&header.descr)?;
-    let elements = rest(input, nx * ny, element.size())?;
+    let elements = rest(input, nx * ny, element.number.size())?;
     let mut values = reserved(nx * ny)?;
     values.resize(nx * ny, 0.0);
     // The file holds runs of the faster index; (slow, fast) is (ix, iy) in C order.
     let run = if header.fortran_order { nx } else { ny };
-    for (slow, bytes) in elements.chunks_exact(run * element.size()).enumerate() {
-        for (fast, value) in bytes.chunks_exact(element.size()).enumerate() {
-            let node = if header.fortran_order { fast + nx * slow } else { slow + nx * fast };
-            values[node] = element.decode(value);
-        }
+    for (k, bytes) in elements.chunks_exact(element.number.size()).enumerate() {
+        let (slow, fast) = (k / run, k % run);
+        let node = if header.fortran_order { k } else { slow + nx * fast };
+        values[node] = element.decode(bytes);
     }
     Ok(DMatrix::from_vec(nx, ny, values))
 }
@@ -102,33 +97,26 @@ pub(super) fn matrix(file: &[u8]) -> Result<DMatrix<f64>, Fault> {
 #[cfg(feature = "io")]
 pub(super) fn vector(file: &[u8]) -> Result<Vec<f64>, Fault> {
     let mut input = Bytes::new(file);
-    let header = Header::read(&mut input)?;
-    let [length] = header.shape[..] else {
-        return Err(dimensions(&header, 1));
-    };
+    let (header, [length]) = Header::of_dimensions(&mut input)?;
     let element = Element::from_descr(&header.descr)?;
-    let elements = rest(input, length, element.size())?;
-    decode(elements, element.size(), |bytes| element.decode(bytes))
+    let elements = rest(input, length, element.number.size())?;
+    let mut values = reserved(length)?;
+    values.extend(elements.chunks_exact(element.number.size()).map(|bytes| element.decode(bytes)));
+    Ok(values)
 }
 
 /// An array without dimensions that holds a text.
 #[cfg(feature = "io")]
 pub(super) fn text(file: &[u8]) -> Result<String, Fault> {
     let mut input = Bytes::new(file);
-    let header = Header::read(&mut input)?;
-    if !header.shape.is_empty() {
-        return Err(dimensions(&header, 0));
-    }
-    let length = header.descr.strip_prefix("<U");
-    let length: Option<usize> = length.and_then(|length| length.parse().ok());
-    let length = length.ok_or_else(|| {
-        Fault::malformed(format!("the element is of type '{}', not a text", header.descr))
-    })?;
-    let letters = rest(input, length, 4)?.chunks_exact(4);
-    letters
-        .map(|bytes| {
-            let code = bytes.try_into().map_or(u32::MAX, u32::from_le_bytes);
-            char::from_u32(code).ok_or_else(|| Fault::malformed(format!("{code:#x} is no letter")))
+    let (Header { descr, .. }, []) = Header::of_dimensions(&mut input)?;
+    let length = descr.strip_prefix("<U").and_then(|length| length.parse().ok());
+    let length = length.ok_or_else(|| fault!("the element is of type '{descr}', not a text"))?;
+    let mut letters = Bytes::new(rest(input, length, 4)?);
+    (0..length)
+        .map(|_| {
+            let code = letters.u32()?;
+            char::from_u32(code).ok_or_else(|| fault!("{code:#x} is no letter"))
         })
         .collect()
 }
@@ -138,11 +126,6 @@ fn rest<'a>(mut input: Bytes<'a>, count: usize, size: usize) -> Result<&'a [u8],
     let elements = input.elements(count, size)?;
     input.end(format_args!("{count} elements"))?;
     Ok(elements)
-}
-
-fn dimensions(header: &Header, expected: usize) -> Fault {
-    let found = header.shape.len();
-    Fault::malformed(format!("the array has {found} dimensions, but {expected} were expected"))
 }
 
 pub(super) fn write(mut output: impl Write, matrix: &DMatrix<f64>) -> std::io::Result<()> {

@@ -5,38 +5,46 @@
 use super::{Header, MAGIC, Revision, number, require_none};
 use crate::io::bytes::{latin1, reserved, shape};
 use crate::io::fault::Fault;
-use crate::io::raw::{Channel, positive};
+use crate::io::lines::Lines;
+use crate::io::number::{parsed, positive};
+use crate::io::raw::Channel;
 
 pub(super) fn parse(file: &[u8], revision: Revision) -> Result<Channel, Fault> {
-    let mut text = Text { bytes: file, at: MAGIC };
+    let mut lines = Lines::new(file, MAGIC);
     // What stands behind the name of the format is a comment, or nothing.
-    text.line();
-    let fields = Fields(text.clone());
-    skip_fields(&mut text)?;
-
-    if let Some((code, at)) = fields.code("Compression", &COMPRESSIONS)? {
+    lines.next();
+    let fields = Fields(lines.clone());
+    let is_end = |line: &[u8]| without_comment(line).trim_ascii() == b"*";
+    ensure!(
+        lines.any(|line| is_end(line.bytes)),
+        at(file.len()),
+        "the file ends, but a line '*' after the header was expected"
+    );
+    if let Some((code, at)) = fields.code("Compression", &[("NULL", 0), ("NONE", 0), ("RLL", 1)])? {
         require_none("Compression", code, at)?;
     }
-    if let Some((code, at)) = fields.code("CheckType", &CHECK_TYPES)? {
+    let checks = [("NULL", 0), ("NONE", 0), ("UINTTRACE", 1)];
+    if let Some((code, at)) = fields.code("CheckType", &checks)? {
         require_none("CheckType", code, at)?;
     }
     let (data_type, at) =
-        fields.code("DataType", &DATA_TYPES)?.ok_or_else(|| fields.missing("DataType"))?;
+        fields.code("DataType", &DATA_TYPES)?.ok_or_else(|| fields.lacks("DataType"))?;
     let (scale, at_scale) = fields.number("Zscale")?;
+    let counts: (u64, u64) = (fields.number("NumPoints")?.0, fields.number("NumProfiles")?.0);
     let header = Header {
         revision,
-        shape: shape(fields.number("NumPoints")?.0, fields.number("NumProfiles")?.0)?,
+        shape: shape(counts.0, counts.1)?,
         number: number(data_type, at)?,
         spacing: (fields.number("Xscale")?.0, fields.number("Yscale")?.0),
         scale: positive("Zscale", scale, at_scale)?,
     };
-    let (heights, note) = heights(&header, &mut text)?;
-    Ok(header.channel(heights, note))
+    let (heights, is_ended) = heights(&header, file.len(), lines)?;
+    let is_cut = !is_ended && file.last().is_some_and(|end| !end.is_ascii_whitespace());
+    let note = "the file ends with its last height, which may be cut short";
+    Ok(header.channel(heights, is_cut.then(|| note.to_string())))
 }
 
 /// The names that BCR allows in place of codes.
-const COMPRESSIONS: [(&str, u64); 3] = [("NULL", 0), ("NONE", 0), ("RLL", 1)];
-const CHECK_TYPES: [(&str, u64); 3] = [("NULL", 0), ("NONE", 0), ("UINTTRACE", 1)];
 const DATA_TYPES: [(&str, u64); 8] = [
     ("UCHAR", 0),
     ("UINTEGER", 1),
@@ -48,178 +56,95 @@ const DATA_TYPES: [(&str, u64); 8] = [
     ("DOUBLE", 7),
 ];
 
-/// Goes behind the line `*` that ends the header.
-fn skip_fields(text: &mut Text) -> Result<(), Fault> {
-    while let Some((_, line)) = text.line() {
-        if line == b"*" {
-            return Ok(());
-        }
-    }
-    Err(Fault::at(text.at, "the file ends, but a line '*' after the header was expected"))
-}
-
-/// The heights, and what is to be told of their end.
-fn heights(header: &Header, text: &mut Text) -> Result<(Vec<f64>, Option<String>), Fault> {
+/// The heights, and whether a `*` ends them.
+fn heights(header: &Header, end: usize, lines: Lines) -> Result<(Vec<f64>, bool), Fault> {
     let (nx, ny) = header.shape;
-    let nodes = header.nodes();
-    let start = text.at;
+    let (nodes, left) = (nx * ny, lines.rest().len());
     // A digit for each, and what separates two of them.
-    if text.left() < 2 * nodes - 1 {
-        return Err(Fault::at(
-            start,
-            format!(
-                "{nx} x {ny} heights do not fit into the {} bytes from here to the end",
-                text.left()
-            ),
-        ));
-    }
+    ensure!(
+        left >= 2 * nodes - 1,
+        at(end - left),
+        "{nx} x {ny} heights do not fit into the {left} bytes from here to the end"
+    );
     let mut heights = reserved(nodes)?;
-    let mut ended = false;
-    while let Some((at, word)) = text.word() {
-        if word == b"*" {
-            ended = true;
-            break;
+    let mut is_ended = false;
+    'lines: for line in lines {
+        let mut at = line.offset;
+        for word in without_comment(line.bytes).split(u8::is_ascii_whitespace) {
+            is_ended = word == b"*";
+            if is_ended {
+                break 'lines;
+            }
+            if !word.is_empty() {
+                let found = || latin1(&word[..word.len().min(40)]);
+                ensure!(
+                    heights.len() < nodes,
+                    at(at),
+                    "expected '*' after {nx} x {ny} heights, but found '{}'",
+                    found()
+                );
+                let value = value(word).ok_or_else(|| {
+                    fault!(at(at), "expected a height, BAD or '*', but found '{}'", found())
+                })?;
+                heights.push(header.height(value));
+            }
+            at += word.len() + 1;
         }
-        if heights.len() == nodes {
-            return Err(Fault::at(
-                at,
-                format!("expected '*' after {nx} x {ny} heights, but found '{}'", shown(word)),
-            ));
-        }
-        heights.push(header.height(value(word, at)?));
     }
-    if heights.len() < nodes {
-        return Err(Fault::at(
-            text.at,
-            format!("expected {nx} x {ny} heights, but only {} are there", heights.len()),
-        ));
-    }
-    let cut = !ended && text.bytes.last().is_some_and(|end| !end.is_ascii_whitespace());
-    let note =
-        cut.then(|| "the file ends with its last height, which may be cut short".to_string());
-    Ok((heights, note))
+    let found = heights.len();
+    ensure!(found == nodes, at(end), "expected {nx} x {ny} heights, but only {found} are there");
+    Ok((heights, is_ended))
 }
 
 /// A number, or `BAD` for none.
-fn value(word: &[u8], at: usize) -> Result<f64, Fault> {
-    if word.eq_ignore_ascii_case(b"BAD") {
-        return Ok(f64::NAN);
-    }
-    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
-        Fault::at(at, format!("expected a height, BAD or '*', but found '{}'", shown(word)))
-    })
+fn value(word: &[u8]) -> Option<f64> {
+    let is_bad = word.eq_ignore_ascii_case(b"BAD");
+    if is_bad { Some(f64::NAN) } else { std::str::from_utf8(word).ok()?.parse().ok() }
 }
 
-/// The header: lines `key = value`, in any order.
-struct Fields<'a>(Text<'a>);
+fn without_comment(line: &[u8]) -> &[u8] {
+    line.split(|byte| *byte == b';').next().unwrap_or_default()
+}
 
-impl<'a> Fields<'a> {
+/// The header: lines `key = value`, in any order, up to a line `*`.
+struct Fields<'a>(Lines<'a>);
+
+impl Fields<'_> {
     /// The value of a key, and where its line is.
-    fn find(&self, name: &str) -> Option<(usize, &'a [u8])> {
-        let mut text = self.0.clone();
-        while let Some((at, line)) = text.line().filter(|(_, line)| *line != b"*") {
-            let end = line
-                .iter()
-                .position(|byte| *byte == b'=' || byte.is_ascii_whitespace())
-                .unwrap_or(line.len());
-            let (key, value) = line.split_at(end);
+    fn find(&self, name: &str) -> Option<(String, usize)> {
+        for line in self.0.clone() {
+            let text = without_comment(line.bytes).trim_ascii();
+            if text == b"*" {
+                break;
+            }
+            let end = text.iter().position(|byte| *byte == b'=' || byte.is_ascii_whitespace());
+            let (key, value) = text.split_at(end.unwrap_or(text.len()));
             if key.eq_ignore_ascii_case(name.as_bytes()) {
-                let value = value.trim_ascii_start();
-                return Some((at, value.strip_prefix(b"=").unwrap_or(value).trim_ascii()));
+                let value = latin1(value);
+                let value = value.strip_prefix('=').unwrap_or(&value).trim();
+                return Some((value.to_string(), line.offset));
             }
         }
         None
     }
 
-    fn missing(&self, name: &str) -> Fault {
-        Fault::at(self.0.at, format!("the header lacks {name}"))
+    fn lacks(&self, name: &str) -> Fault {
+        fault!(at(MAGIC), "the header lacks {name}")
     }
 
     /// The number that is the value of a key, and where its line is.
     fn number<T: std::str::FromStr>(&self, name: &str) -> Result<(T, usize), Fault> {
-        let (at, value) = self.find(name).ok_or_else(|| self.missing(name))?;
-        let number = parsed(value).ok_or_else(|| not_a_number(name, value, at))?;
-        Ok((number, at))
+        let (value, at) = self.find(name).ok_or_else(|| self.lacks(name))?;
+        Ok((parsed(name, &value, at)?, at))
     }
 
     /// The value of a key that is a code or the name of one, and where its line is.
     fn code(&self, name: &str, names: &[(&str, u64)]) -> Result<Option<(u64, usize)>, Fault> {
-        let Some((at, value)) = self.find(name) else {
+        let Some((value, at)) = self.find(name) else {
             return Ok(None);
         };
-        names
-            .iter()
-            .find(|(name, _)| value.eq_ignore_ascii_case(name.as_bytes()))
-            .map(|(_, code)| *code)
-            .or_else(|| parsed(value))
-            .map(|code| Some((code, at)))
-            .ok_or_else(|| not_a_number(name, value, at))
+        let named = names.iter().find(|(name, _)| value.eq_ignore_ascii_case(name));
+        let code = named.map_or_else(|| parsed(name, &value, at), |(_, code)| Ok(*code))?;
+        Ok(Some((code, at)))
     }
-}
-
-fn parsed<T: std::str::FromStr>(value: &[u8]) -> Option<T> {
-    std::str::from_utf8(value).ok()?.parse().ok()
-}
-
-fn not_a_number(name: &str, value: &[u8], at: usize) -> Fault {
-    Fault::at(at, format!("{name} is '{}', but a number was expected", shown(value)))
-}
-
-/// The beginning of a text, for an error.
-fn shown(text: &[u8]) -> String {
-    latin1(&text[..text.len().min(40)])
-}
-
-/// A place in the file.
-#[derive(Debug, Clone)]
-struct Text<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl<'a> Text<'a> {
-    fn left(&self) -> usize {
-        self.bytes.len() - self.at
-    }
-
-    /// Bytes from here to the first of which this is true, or to the end.
-    fn until(&mut self, end: impl Fn(u8) -> bool) -> &'a [u8] {
-        let rest = &self.bytes[self.at..];
-        let length = rest.iter().position(|byte| end(*byte)).unwrap_or(rest.len());
-        self.at += length;
-        &rest[..length]
-    }
-
-    /// The rest of this line without blanks around it and comments, and where it begins; none at the end of the file.
-    fn line(&mut self) -> Option<(usize, &'a [u8])> {
-        if self.left() == 0 {
-            return None;
-        }
-        let at = self.at;
-        let line = self.until(ends_line);
-        // CR LF makes a line without anything, which is no harm.
-        self.at = self.bytes.len().min(self.at + 1);
-        let comment = line.iter().position(|byte| *byte == b';');
-        Some((at, line[..comment.unwrap_or(line.len())].trim_ascii()))
-    }
-
-    /// The next word that is in no comment, and where it begins.
-    fn word(&mut self) -> Option<(usize, &'a [u8])> {
-        loop {
-            self.until(|byte| !byte.is_ascii_whitespace());
-            let at = self.at;
-            let word = self.until(|byte| byte.is_ascii_whitespace() || byte == b';');
-            if !word.is_empty() {
-                return Some((at, word));
-            }
-            if self.left() == 0 {
-                return None;
-            }
-            self.until(ends_line);
-        }
-    }
-}
-
-fn ends_line(byte: u8) -> bool {
-    byte == b'\n' || byte == b'\r'
 }

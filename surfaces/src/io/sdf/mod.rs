@@ -18,8 +18,12 @@ use super::fault::Fault;
 use super::number::Number;
 use super::raw::{Channel, Parsed};
 
-/// `bISO-1.0` and the like.
+/// Bytes of `bISO-1.0` and the like.
 const MAGIC: usize = 8;
+
+/// How files begin, `a` for text and `b` for binary.
+pub(super) const BEGINS: &[&[u8]] =
+    &[b"aISO-1.0", b"bISO-1.0", b"aISO-2.0", b"bISO-2.0", b"aBCR-", b"bBCR-", b"ABCR-", b"BBCR-"];
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let magic: [u8; MAGIC] = Bytes::new(file).array()?;
@@ -27,16 +31,11 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
         b"ISO-1.0" => Revision::Iso1,
         b"ISO-2.0" => Revision::Iso2,
         [b'B', b'C', b'R', b'-', ..] => Revision::Bcr,
-        _ => {
-            return Err(Fault::at(1, "the file is neither of ISO-1.0, nor of ISO-2.0, nor of BCR"));
-        }
+        _ => bail!(at(1), "the file is neither of ISO-1.0, nor of ISO-2.0, nor of BCR"),
     };
-    let channel = if magic[0].eq_ignore_ascii_case(&b'a') {
-        ascii::parse(file, revision)?
-    } else {
-        binary::parse(file, revision)?
-    };
-    Ok(vec![channel])
+    let is_text = magic[0].eq_ignore_ascii_case(&b'a');
+    let parse = if is_text { ascii::parse } else { binary::parse };
+    Ok(vec![parse(file, revision)?])
 }
 
 /// What the format has been through.
@@ -62,11 +61,6 @@ struct Header {
 }
 
 impl Header {
-    /// Number of nodes.
-    fn nodes(&self) -> usize {
-        self.shape.0 * self.shape.1
-    }
-
     /// The height of a node \[m\], NaN if its value says that it is missing.
     fn height(&self, value: f64) -> f64 {
         let missing = match self.number {
@@ -121,28 +115,23 @@ impl Header {
 
 /// The type of numbers that a code names, BCR's types and ISO's alike.
 fn number(code: u64, at: usize) -> Result<Number, Fault> {
-    const TYPES: [Number; 8] = [
-        Number::U8,
-        Number::U16,
-        Number::U32,
-        Number::F32,
-        Number::I8,
-        Number::I16,
-        Number::I32,
-        Number::F64,
-    ];
-    usize::try_from(code)
-        .ok()
-        .and_then(|code| TYPES.get(code).copied())
-        .ok_or_else(|| Fault::at(at, format!("DataType is {code}, but it has to be 0 to 7")))
+    Ok(match code {
+        0 => Number::U8,
+        1 => Number::U16,
+        2 => Number::U32,
+        3 => Number::F32,
+        4 => Number::I8,
+        5 => Number::I16,
+        6 => Number::I32,
+        7 => Number::F64,
+        _ => bail!(at(at), "DataType is {code}, but it has to be 0 to 7"),
+    })
 }
 
 /// Compressed heights, and check sums among them, are in no file that anybody has shown.
 fn require_none(name: &str, code: u64, at: usize) -> Result<(), Fault> {
-    if code == 0 {
-        return Ok(());
-    }
-    Err(Fault::at(at, format!("{name} is {code}, but only files without it (0) are read")))
+    ensure!(code == 0, at(at), "{name} is {code}, but only files without it (0) are read");
+    Ok(())
 }
 
 #[cfg(test)]

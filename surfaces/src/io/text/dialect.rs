@@ -2,7 +2,7 @@
 
 use std::str;
 
-use super::lines::Lines;
+use crate::io::lines::Lines;
 
 /// What is between the cells of a row, and within numbers.
 ///

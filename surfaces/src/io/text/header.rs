@@ -31,36 +31,13 @@ struct Length {
 }
 
 // What Gwyddion writes above a matrix, in the languages that it speaks, in small letters.
-const TITLE: &[&str] =
-    &["channel", "kanál", "kanal", "canal", "canale", "チャネル", "채널", "канал"];
-const WIDTH: &[&str] = &[
-    "width",
-    "šířka",
-    "breite",
-    "anchura",
-    "largeur",
-    "larghezza",
-    "幅",
-    "폭",
-    "largura",
-    "ширина",
-];
-const HEIGHT: &[&str] =
-    &["height", "výška", "höhe", "altura", "hauteur", "altezza", "高さ", "높이", "высота"];
-const VALUE_UNIT: &[&str] = &[
-    "value units",
-    "jednotky hodnot",
-    "einheiten",
-    "werteinheiten",
-    "unités",
-    "unità valore",
-    "値の単位",
-    "값 단위",
-    "unidades de valor",
-    "единицы измерения",
-    // Of another program.
-    "data unit",
-];
+const TITLE: &str = "channel|kanál|kanal|canal|canale|チャネル|채널|канал";
+const WIDTH: &str = "width|šířka|breite|anchura|largeur|larghezza|幅|폭|largura|ширина";
+const HEIGHT: &str = "height|výška|höhe|altura|hauteur|altezza|高さ|높이|высота";
+const VALUE_UNIT: &str = "value units|jednotky hodnot|einheiten|werteinheiten|unités|unità valore|値の単位|값 단위|\
+    unidades de valor|единицы измерения";
+/// What another program calls it.
+const DATA_UNIT: &str = "data unit";
 
 impl Header {
     /// Takes in a line. Returns whether it says anything that is known.
@@ -72,18 +49,18 @@ impl Header {
         };
         let key = key.trim().to_lowercase();
         let value = value.trim();
-        let is = |names: &[&str]| names.contains(&key.as_str());
+        let is = |names: &str| names.split('|').any(|name| name == key);
         if is(TITLE) {
             self.title = value.to_string();
         } else if is(WIDTH) {
             self.width = Length::parse(value);
         } else if is(HEIGHT) {
             self.height = Length::parse(value);
-        } else if is(VALUE_UNIT) {
+        } else if is(VALUE_UNIT) || is(DATA_UNIT) {
             self.value_unit = some(value);
-        } else if is(&["lateral units"]) {
+        } else if is("lateral units") {
             self.lateral_unit = some(value);
-        } else if is(&["pixel size"]) {
+        } else if is("pixel size") {
             self.pixel = Length::parse(value);
         } else if let Some(unit) = key.strip_prefix("height conversion factor (->") {
             self.factor = number(value);
@@ -98,12 +75,15 @@ impl Header {
     fn add_words(&mut self, line: &str) -> bool {
         let mut words = line.split_whitespace();
         // The header of a grid of geographers.
-        match (words.next(), words.next(), words.next()) {
-            (Some(key), Some(value), None) if key.eq_ignore_ascii_case("nodata_value") => {
+        let (Some(key), Some(value), None) = (words.next(), words.next(), words.next()) else {
+            return self.add_columns(line);
+        };
+        match key.to_ascii_lowercase().as_str() {
+            "nodata_value" => {
                 self.missing = number(value);
                 self.missing.is_some()
             }
-            (Some(key), Some(value), None) if key.eq_ignore_ascii_case("cellsize") => {
+            "cellsize" => {
                 self.pixel = Length::parse(value);
                 self.pixel.is_some()
             }
@@ -157,12 +137,16 @@ impl Header {
         let (Some(width), Some(height)) = (&self.width, &self.height) else {
             return Ok((None, None));
         };
-        let ratio = ratio(height, width).ok_or_else(|| {
-            Fault::malformed(format!(
-                "the header gives the width in '{}', but the height in '{}'",
-                width.unit.as_deref().unwrap_or_default(),
-                height.unit.as_deref().unwrap_or_default()
-            ))
+        // Units of the height in one of the width, if they can be compared.
+        let ratio = if width.unit == height.unit {
+            Some(1.0)
+        } else {
+            height.metres().zip(width.metres()).map(|(height, width)| height / width)
+        };
+        let ratio = ratio.ok_or_else(|| {
+            let [width, height] =
+                [width, height].map(|side| side.unit.as_deref().unwrap_or_default());
+            fault!("the header gives the width in '{width}', but the height in '{height}'")
         })?;
         let cell = (width.value / nx as f64, height.value * ratio / ny as f64);
         Ok((Some(cell), width.unit.clone()))
@@ -172,18 +156,6 @@ impl Header {
 /// A cell in some unit, if both are known.
 type Cell = (Option<(f64, f64)>, Option<String>);
 
-/// Units of `b` in one of `a`, if they can be compared.
-fn ratio(a: &Length, b: &Length) -> Option<f64> {
-    if a.unit == b.unit {
-        return Some(1.0);
-    }
-    let metres = |length: &Length| -> Option<f64> {
-        let unit: LengthUnit = length.unit.as_deref()?.parse().ok()?;
-        Some(unit.metres())
-    };
-    Some(metres(a)? / metres(b)?)
-}
-
 impl Length {
     /// A number, and the unit behind it.
     fn parse(text: &str) -> Option<Self> {
@@ -192,6 +164,11 @@ impl Length {
             .unwrap_or(text.len());
         let (value, unit) = text.split_at(end);
         Some(Self { value: number(value)?, unit: some(unit) })
+    }
+
+    /// Metres in its unit.
+    fn metres(&self) -> Option<f64> {
+        Some(self.unit.as_deref()?.parse::<LengthUnit>().ok()?.metres())
     }
 }
 

@@ -12,15 +12,13 @@
 
 mod dialect;
 mod header;
-mod lines;
 mod matrix;
 mod points;
 mod table;
 
 use std::path::Path;
 
-use self::lines::Lines;
-use super::fault::Fault;
+use super::lines::Lines;
 use super::raw::Parsed;
 
 /// Most rows of a matrix with fewer than four columns that nothing but its looks says to be one.
@@ -42,9 +40,7 @@ fn is_utf16(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn parse(file: &[u8], path: &Path) -> Parsed {
-    if is_utf16(file) {
-        return Err(Fault::malformed("it is encoded as UTF-16: save it as UTF-8"));
-    }
+    ensure!(!is_utf16(file), "it is encoded as UTF-16: save it as UTF-8");
     let mark = "\u{feff}".as_bytes();
     let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
     let (header, table) = table::read(Lines::new(file, skipped))?;
@@ -58,31 +54,21 @@ pub(super) fn parse(file: &[u8], path: &Path) -> Parsed {
     } else if table.columns > 3 || table.rows() <= FEW_ROWS {
         matrix::channel(header, table)
     } else if table.columns == 3 {
-        points::channel(header, &table).map_err(undeclared)
+        points::channel(header, &table).map_err(|fault| fault.prefixed(UNDECLARED))
     } else {
-        Err(Fault::malformed(format!(
+        bail!(
             "{} rows of {} numbers are a profile; a surface is a matrix of at least four columns, or a list of points \
              x, y, z; lines '# Width: 1 mm' and '# Height: 1 mm' make it a matrix",
             table.rows(),
             table.columns
-        )))
+        )
     };
     channel.map(|channel| vec![channel])
 }
 
-/// What is wrong with three columns of which nothing says that they are points.
-fn undeclared(fault: Fault) -> Fault {
-    match fault {
-        Fault::Malformed { offset, reason } => Fault::Malformed {
-            offset,
-            reason: format!(
-                "three columns are taken for points x, y, z unless lines '# Width: 1 mm' and '# Height: 1 mm' say that \
-                 they are a matrix: {reason}"
-            ),
-        },
-        other => other,
-    }
-}
+/// What is said of three columns with a defect, of which nothing says that they are points.
+const UNDECLARED: &str = "three columns are taken for points x, y, z unless lines '# Width: 1 mm' and \
+    '# Height: 1 mm' say that they are a matrix: ";
 
 #[cfg(test)]
 mod tests;

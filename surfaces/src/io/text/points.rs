@@ -26,26 +26,21 @@ const MAX_COLUMNS: usize = 2;
 
 /// The map of which a table gives the points.
 pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
-    if table.columns < 3 {
-        return Err(Fault::malformed(format!(
-            "a list of points x, y, z has three columns, but there are {}",
-            table.columns
-        )));
-    }
+    let columns = table.columns;
+    ensure!(columns >= 3, "a list of points x, y, z has three columns, but there are {columns}");
     let (x, y) = (Axis::find("x", table, 0)?, Axis::find("y", table, 1)?);
-    let (nx, ny) = shape(x.nodes as u64, y.nodes as u64)?;
+    let (nx, ny) = shape(x.nodes, y.nodes)?;
     let count = table.rows();
-    if nx * ny > count.saturating_mul(MAX_NODES) {
-        return Err(Fault::malformed(format!(
-            "a grid of {nx} x {ny} nodes would be needed for the {count} points of the list: more than \
-             {MAX_NODES} nodes a point; they do not lie on a regular grid, or are only a few of it"
-        )));
-    }
+    ensure!(
+        nx * ny <= count.saturating_mul(MAX_NODES),
+        "a grid of {nx} x {ny} nodes would be needed for the {count} points of the list: more than \
+         {MAX_NODES} nodes a point; they do not lie on a regular grid, or are only a few of it"
+    );
     let mut values = reserved(nx * ny)?;
     values.resize(nx * ny, f64::NAN);
     let mut filled = vec![false; nx * ny];
     let mut worst = 0.0_f64;
-    for (k, point) in table.values.chunks_exact(table.columns).enumerate() {
+    for (k, point) in (1..).zip(table.values.chunks_exact(columns)) {
         let &[px, py, z, ..] = point else { continue };
         let (ix, off_x) = x.node(k, px)?;
         let (iy, off_y) = y.node(k, py)?;
@@ -54,14 +49,12 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
         let (Some(value), Some(filled)) = (values.get_mut(node), filled.get_mut(node)) else {
             continue;
         };
-        if std::mem::replace(filled, true) {
-            return Err(Fault::malformed(format!(
-                "point {} at x = {px}, y = {py} is not the first at its node: spacings are {:e} and {:e}",
-                k + 1,
-                x.spacing,
-                y.spacing
-            )));
-        }
+        ensure!(
+            !std::mem::replace(filled, true),
+            "point {k} at x = {px}, y = {py} is not the first at its node: spacings are {:e} and {:e}",
+            x.spacing,
+            y.spacing
+        );
         *value = z;
     }
     finish(&header, &mut values);
@@ -72,8 +65,8 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
              those of the nodes"
         ));
     }
-    if table.columns > 3 {
-        notes.push(format!("of {} columns the first three are read, as x, y, z", table.columns));
+    if columns > 3 {
+        notes.push(format!("of {columns} columns the first three are read, as x, y, z"));
     }
     Ok(Channel {
         name: header.title,
@@ -97,11 +90,9 @@ impl Axis {
     /// The nodes on which a column of coordinates lies.
     fn find(name: &'static str, table: &Table, column: usize) -> Result<Self, Fault> {
         let mut sorted = reserved(table.rows())?;
-        for (k, point) in table.values.chunks_exact(table.columns).enumerate() {
+        for (k, point) in (1..).zip(table.values.chunks_exact(table.columns)) {
             let coordinate = point.get(column).copied().unwrap_or(f64::NAN);
-            if !coordinate.is_finite() {
-                return Err(Fault::malformed(format!("point {} has no {name}", k + 1)));
-            }
+            ensure!(coordinate.is_finite(), "point {k} has no {name}");
             sorted.push(coordinate);
         }
         sorted.sort_unstable_by(f64::total_cmp);
@@ -110,48 +101,35 @@ impl Axis {
             _ => (0.0, 0.0),
         };
         let extent = end - start;
-        if extent == 0.0 {
-            return Err(Fault::malformed(format!(
-                "all points have {name} = {start}: a profile is no surface"
-            )));
-        }
+        ensure!(extent != 0.0, "all points have {name} = {start}: a profile is no surface");
         let (least, columns) = spacing(sorted, extent).ok_or_else(|| {
-            Fault::malformed(format!(
+            fault!(
                 "{name} has more than {} different values from {start} to {end}: the points do not lie on a grid",
                 Grid::MAX_SIDE
-            ))
+            )
         })?;
         // At most MAX_SIDE - 1, see there.
         let intervals = (extent / least).round();
         let nodes = intervals as usize + 1;
-        if nodes > columns.saturating_mul(MAX_COLUMNS) {
-            return Err(Fault::malformed(format!(
-                "{name} is not evenly spaced: it has {columns} different values from {start} to {end}, some of them \
-                 {least:e} apart, which would make {nodes} columns"
-            )));
-        }
-        Ok(Self {
-            name,
-            start,
-            // That of all nodes together hardly feels how the last of them is rounded.
-            spacing: extent / intervals,
-            nodes,
-        })
+        ensure!(
+            nodes <= columns.saturating_mul(MAX_COLUMNS),
+            "{name} is not evenly spaced: it has {columns} different values from {start} to {end}, some of them \
+             {least:e} apart, which would make {nodes} columns"
+        );
+        // That of all nodes together hardly feels how the last of them is rounded.
+        Ok(Self { name, start, spacing: extent / intervals, nodes })
     }
 
     /// The node at which point `k` lies, and how far off it is, in spacings.
     fn node(&self, k: usize, coordinate: f64) -> Result<(usize, f64), Fault> {
-        let place = (coordinate - self.start) / self.spacing;
+        let Self { name, start, spacing, .. } = self;
+        let place = (coordinate - start) / spacing;
         let off = (place - place.round()).abs();
-        if off > TOLERANCE {
-            return Err(Fault::malformed(format!(
-                "{name} is not evenly spaced: point {} at {name} = {coordinate} is {off:.3} of the spacing {:e} off its \
-                 node, and {TOLERANCE} is allowed",
-                k + 1,
-                self.spacing,
-                name = self.name
-            )));
-        }
+        ensure!(
+            off <= TOLERANCE,
+            "{name} is not evenly spaced: point {k} at {name} = {coordinate} is {off:.3} of the spacing {spacing:e} off \
+             its node, and {TOLERANCE} is allowed"
+        );
         Ok((place.round() as usize, off))
     }
 }

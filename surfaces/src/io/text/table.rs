@@ -4,7 +4,7 @@ use crate::io::fault::Fault;
 
 use super::dialect::{Dialect, is_row};
 use super::header::Header;
-use super::lines::{Line, Lines};
+use crate::io::lines::{Line, Lines};
 
 /// The numbers of a file, row by row; NaN where one is missing.
 #[derive(Debug)]
@@ -24,9 +24,9 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
     let mut header = Header::default();
     loop {
         let ahead = lines.clone();
-        let line = lines.next().ok_or_else(|| {
-            Fault::malformed("there is no line in it that consists of numbers only")
-        })?;
+        let line = lines
+            .next()
+            .ok_or_else(|| fault!("there is no line in it that consists of numbers only"))?;
         if !line.is_comment() && is_row(line.bytes) {
             return Ok((header, body(ahead)?));
         }
@@ -42,7 +42,12 @@ fn body(lines: Lines) -> Result<Table, Fault> {
     let (mut begins_empty, mut ends_empty) = (true, true);
     for line in lines {
         if line.is_comment() {
-            refuse_second_map(&line)?;
+            ensure!(
+                !Header::default().add(&line.text()),
+                at(line.offset),
+                "line {} begins another map: a text has to hold one only",
+                line.number
+            );
             continue;
         }
         if is_blank(&line, dialect, table.columns) {
@@ -60,15 +65,14 @@ fn body(lines: Lines) -> Result<Table, Fault> {
         let columns = table.values.len() - before;
         if table.columns == 0 {
             (table.columns, first) = (columns, line.number);
-        } else if columns != table.columns {
-            return Err(Fault::at(
-                line.offset,
-                format!(
-                    "line {} has {columns} numbers, but line {first} has {}",
-                    line.number, table.columns
-                ),
-            ));
         }
+        ensure!(
+            columns == table.columns,
+            at(line.offset),
+            "line {} has {columns} numbers, but line {first} has {}",
+            line.number,
+            table.columns
+        );
     }
     drop_margins(&mut table, begins_empty, ends_empty);
     Ok(table)
@@ -98,19 +102,13 @@ fn cell(line: &Line, text: &[u8], dialect: Dialect, values: &mut Vec<f64>) -> Re
         if word.is_empty() {
             continue;
         }
-        let number = dialect.number(word).ok_or_else(|| no_number(line, word))?;
-        values.push(number);
+        values.push(dialect.number(word).ok_or_else(|| {
+            let shown = String::from_utf8_lossy(word.get(..40).unwrap_or(word));
+            fault!(at(line.offset), "'{shown}' in line {} is no number", line.number)
+        })?);
         any = true;
     }
     Ok(any)
-}
-
-fn no_number(line: &Line, word: &[u8]) -> Fault {
-    let shown = word.get(..40).unwrap_or(word);
-    Fault::at(
-        line.offset,
-        format!("'{}' in line {} is no number", String::from_utf8_lossy(shown), line.number),
-    )
 }
 
 /// Whether a line has nothing on it. A row of empty cells between tabs has: as many tabs as the others.
@@ -120,16 +118,6 @@ fn is_blank(line: &Line, dialect: Dialect, columns: usize) -> bool {
     }
     let tabs = line.bytes.iter().filter(|byte| **byte == b'\t').count();
     dialect.separator != Some(b'\t') || tabs == 0 || tabs + 1 != columns
-}
-
-fn refuse_second_map(line: &Line) -> Result<(), Fault> {
-    if Header::default().add(&line.text()) {
-        return Err(Fault::at(
-            line.offset,
-            format!("line {} begins another map: a text has to hold one only", line.number),
-        ));
-    }
-    Ok(())
 }
 
 /// Takes away the first and the last column if no row has anything in them.

@@ -43,39 +43,33 @@ impl<'a> Archive<'a> {
             .filter_map(|name| name.strip_suffix(DESCRIPTION).map(str::to_string))
             .filter(|folder| folder.is_empty() || folder.ends_with('/'))
             .min_by_key(|folder| folder.matches('/').count())
-            .ok_or_else(|| Fault::malformed("the archive has no member 'main.xml'"))?;
+            .ok_or_else(|| fault!("the archive has no member '{DESCRIPTION}'"))?;
         Ok(Self { zip, folder, length: file.len() })
     }
 
     /// The description, as it is.
     pub(super) fn description(&mut self) -> Result<Vec<u8>, Fault> {
-        let limit = self.length.saturating_mul(MAX_GROWTH_OF_DESCRIPTION);
+        let length = self.length;
+        let limit = length.saturating_mul(MAX_GROWTH_OF_DESCRIPTION);
         let bytes = self.member(DESCRIPTION, limit)?;
-        if bytes.len() > limit {
-            return Err(Fault::malformed(format!(
-                "'{DESCRIPTION}' is longer than {MAX_GROWTH_OF_DESCRIPTION} times the archive of {} bytes",
-                self.length
-            )));
-        }
+        ensure!(
+            bytes.len() <= limit,
+            "'{DESCRIPTION}' is longer than {MAX_GROWTH_OF_DESCRIPTION} times the archive of {length} bytes"
+        );
         Ok(bytes)
     }
 
     /// The member that a link in the description names, which has to be `expected` bytes long.
     pub(super) fn data(&mut self, link: &str, expected: usize) -> Result<Vec<u8>, Fault> {
-        if expected > self.length.saturating_mul(MAX_GROWTH) {
-            return Err(Fault::malformed(format!(
-                "'{link}' would have {expected} bytes, more than {MAX_GROWTH} times those of the archive, {}",
-                self.length
-            )));
-        }
+        let length = self.length;
+        ensure!(
+            expected <= length.saturating_mul(MAX_GROWTH),
+            "'{link}' would have {expected} bytes, more than {MAX_GROWTH} times those of the archive, {length}"
+        );
         let bytes = self.member(link, expected)?;
-        if bytes.len() != expected {
-            let found =
-                if bytes.len() > expected { "more".to_string() } else { bytes.len().to_string() };
-            return Err(Fault::malformed(format!(
-                "'{link}' has to have {expected} bytes, but it has {found}"
-            )));
-        }
+        let found = bytes.len();
+        ensure!(found <= expected, "'{link}' has to have {expected} bytes, but it has more");
+        ensure!(found == expected, "'{link}' has to have {expected} bytes, but it has {found}");
         Ok(bytes)
     }
 
@@ -93,16 +87,14 @@ impl<'a> Archive<'a> {
         let leaves = path.starts_with('/')
             || path.contains(':')
             || path.split('/').any(|folder| folder == "..");
-        if leaves {
-            return Err(Fault::malformed(format!("the link '{link}' leaves the archive")));
-        }
+        ensure!(!leaves, "the link '{link}' leaves the archive");
         let path = format!("{}{}", self.folder, path.trim_start_matches("./"));
         let index = self
             .zip
             .file_names()
             .position(|name| name.is_ok_and(|name| forward(&name) == path))
-            .ok_or_else(|| Fault::malformed(format!("the archive has no member '{path}'")))?;
-        let failed = |error: std::io::Error| Fault::malformed(format!("'{path}': {error}"));
+            .ok_or_else(|| fault!("the archive has no member '{path}'"))?;
+        let failed = |error: std::io::Error| fault!("'{path}': {error}");
         let member = self.zip.by_index(index).map_err(|e| failed(e.into()))?;
         let claimed = usize::try_from(member.size()).unwrap_or(usize::MAX);
         let mut bytes = reserved(claimed.min(limit))?;

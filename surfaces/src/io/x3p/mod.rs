@@ -16,7 +16,7 @@ mod write;
 use self::archive::{Archive, md5_of};
 use self::record::{Link, Points, Record};
 use super::fault::Fault;
-use super::raw::{Channel, Parsed, decode};
+use super::raw::{Channel, Parsed};
 
 #[cfg(test)]
 pub(super) use self::write::write;
@@ -35,14 +35,15 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     compare(archive::DESCRIPTION, &description, checksum.as_deref(), &mut notes);
     drop(description);
     let values = match &record.points {
-        Points::Listed(values) => {
-            let scale = scale(&record);
-            values.iter().map(|value| scale(*value)).collect()
-        }
+        Points::Listed(values) => values.iter().map(|value| record.height(*value)).collect(),
         Points::Linked(data, valid) => {
-            let mut values = linked(&mut archive, &record, data, &mut notes)?;
+            let (nx, ny) = record.shape;
+            let length = (nx * ny).saturating_mul(record.number.size());
+            let bytes = linked(&mut archive, data, length, &mut notes)?;
+            let mut values = record.number.decode_all(&bytes, |value| record.height(value))?;
             if let Some(valid) = valid {
-                drop_invalid(&mut archive, valid, &mut values, &mut notes)?;
+                let bits = linked(&mut archive, valid, values.len().div_ceil(8), &mut notes)?;
+                drop_invalid(&bits, &mut values);
             }
             values
         }
@@ -53,47 +54,25 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     Ok(vec![Channel { notes, ..Channel::in_metres(record.shape, values, Some(record.cell)) }])
 }
 
-/// Metres for a stored number.
-fn scale(record: &Record) -> impl Fn(f64) -> f64 {
-    let (increment, offset) = (record.increment, record.offset);
-    move |value| {
-        // Without an offset nothing is added: -0 would become 0.
-        if offset == 0.0 { value * increment } else { value * increment + offset }
-    }
-}
-
-/// The heights in a member of the archive.
+/// The bytes of a member of the archive.
 fn linked(
     archive: &mut Archive,
-    record: &Record,
     link: &Link,
+    length: usize,
     notes: &mut Vec<String>,
-) -> Result<Vec<f64>, Fault> {
-    let (nx, ny) = record.shape;
-    let size = record.number.size();
-    let bytes = archive.data(&link.path, (nx * ny).saturating_mul(size))?;
+) -> Result<Vec<u8>, Fault> {
+    let bytes = archive.data(&link.path, length)?;
     compare(&link.path, &bytes, link.md5.as_deref(), notes);
-    let scale = scale(record);
-    decode(&bytes, size, |bytes| scale(record.number.decode(bytes)))
+    Ok(bytes)
 }
 
-/// Takes away the heights of points that are marked as not valid.
-fn drop_invalid(
-    archive: &mut Archive,
-    link: &Link,
-    values: &mut [f64],
-    notes: &mut Vec<String>,
-) -> Result<(), Fault> {
-    let bits = archive.data(&link.path, values.len().div_ceil(8))?;
-    compare(&link.path, &bits, link.md5.as_deref(), notes);
-    for (eight, byte) in values.chunks_mut(8).zip(bits) {
-        for (bit, value) in eight.iter_mut().enumerate() {
-            if byte >> bit & 1 == 0 {
-                *value = f64::NAN;
-            }
+/// Takes away the heights of points whose bit is not set.
+fn drop_invalid(bits: &[u8], values: &mut [f64]) {
+    for (place, value) in values.iter_mut().enumerate() {
+        if bits[place / 8] >> (place % 8) & 1 == 0 {
+            *value = f64::NAN;
         }
     }
-    Ok(())
 }
 
 /// Notes a checksum that does not match; one that is none says nothing.

@@ -7,7 +7,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::archive::DESCRIPTION;
 use crate::io::bytes::{latin1, shape};
 use crate::io::fault::Fault;
-use crate::io::number::Number;
+use crate::io::number::{Number, parsed};
 
 /// Attributes in a description, which needs some five: the time to look names up grows with a power of their number.
 const MAX_ATTRIBUTES: usize = 1024;
@@ -60,41 +60,46 @@ impl Record {
         let elements = text.bytes().filter(|byte| *byte == b'<').count();
         let attributes = text.bytes().filter(|byte| *byte == b'=').count();
         let most = length.max(MIN_ELEMENTS);
-        if elements > most || attributes > MAX_ATTRIBUTES {
-            return Err(Fault::malformed(format!(
-                "'{DESCRIPTION}' has {elements} elements and {attributes} attributes, but at most {most} and \
-                 {MAX_ATTRIBUTES} are allowed in an archive of {length} bytes"
-            )));
-        }
+        ensure!(
+            elements <= most && attributes <= MAX_ATTRIBUTES,
+            "'{DESCRIPTION}' has {elements} elements and {attributes} attributes, but at most {most} and \
+             {MAX_ATTRIBUTES} are allowed in an archive of {length} bytes"
+        );
         let options = ParsingOptions {
             nodes_limit: u32::try_from(most.saturating_mul(2)).unwrap_or(u32::MAX),
             ..ParsingOptions::default()
         };
         let document = Document::parse_with_options(&text, options)
-            .map_err(|error| Fault::malformed(format!("'{DESCRIPTION}': {error}")))?;
-        let root = document.root_element();
-        if root.tag_name().name() != "ISO5436_2" {
-            return Err(bad(
-                root,
-                format!("expected the element ISO5436_2, but found {}", root.tag_name().name()),
-            ));
-        }
-        Self::of(root)
+            .map_err(|error| fault!("'{DESCRIPTION}': {error}"))?;
+        Self::of(document.root_element())
+            .map_err(|fault| fault.prefixed(&format!("'{DESCRIPTION}': ")))
+    }
+
+    /// The height \[m\] of a stored number.
+    pub(super) fn height(&self, number: f64) -> f64 {
+        let height = number * self.increment;
+        // Without an offset nothing is added: -0 would become 0.
+        if self.offset == 0.0 { height } else { height + self.offset }
     }
 
     fn of(root: Node) -> Result<Self, Fault> {
+        let name = root.tag_name().name();
+        ensure!(
+            name == "ISO5436_2",
+            at(place(root)),
+            "expected the element ISO5436_2, but found {name}"
+        );
         let first = descend(root, &["Record1"])?;
         let feature = text(descend(first, &["FeatureType"])?);
-        if feature != "SUR" {
-            return Err(bad(
-                first,
-                format!("the FeatureType is '{feature}': only surfaces, SUR, are read"),
-            ));
-        }
+        ensure!(
+            feature == "SUR",
+            at(place(first)),
+            "the FeatureType is '{feature}': only surfaces, SUR, are read"
+        );
         let axes = descend(first, &["Axes"])?;
         let z = descend(axes, &["CZ"])?;
         let third = descend(root, &["Record3"])?;
-        let shape = matrix(third)?;
+        let shape = matrix(descend(third, &["MatrixDimension"])?)?;
         Ok(Self {
             shape,
             cell: (spacing(axes, "CX")?, spacing(axes, "CY")?),
@@ -109,24 +114,17 @@ impl Record {
 }
 
 /// Nodes along x and y.
-fn matrix(third: Node) -> Result<(usize, usize), Fault> {
-    let dimension = descend(third, &["MatrixDimension"])?;
+fn matrix(dimension: Node) -> Result<(usize, usize), Fault> {
     let count = |name| {
         let node = descend(dimension, &[name])?;
-        text(node).parse::<u64>().map_err(|_| {
-            bad(node, format!("{name} is '{}', but a number of points was expected", text(node)))
-        })
+        parsed::<u64>(name, text(node), place(node))
     };
-    let layers = match child(dimension, "SizeZ") {
-        Some(_) => count("SizeZ")?,
-        None => 1,
-    };
-    if layers != 1 {
-        return Err(bad(
-            dimension,
-            format!("SizeZ is {layers}: only surfaces of a single layer are read"),
-        ));
-    }
+    let layers = if child(dimension, "SizeZ").is_some() { count("SizeZ")? } else { 1 };
+    ensure!(
+        layers == 1,
+        at(place(dimension)),
+        "SizeZ is {layers}: only surfaces of a single layer are read"
+    );
     shape(count("SizeX")?, count("SizeY")?)
 }
 
@@ -135,12 +133,11 @@ fn spacing(axes: Node, name: &str) -> Result<f64, Fault> {
     let axis = descend(axes, &[name])?;
     require(axis, "AxisType", "I", "has a constant spacing")?;
     let spacing = increment(axis)?;
-    if spacing < 0.0 {
-        return Err(bad(
-            axis,
-            format!("{name} has the Increment {spacing:e}, but a spacing was expected"),
-        ));
-    }
+    ensure!(
+        spacing >= 0.0,
+        at(place(axis)),
+        "{name} has the Increment {spacing:e}, but a spacing was expected"
+    );
     Ok(spacing)
 }
 
@@ -148,38 +145,34 @@ fn spacing(axes: Node, name: &str) -> Result<f64, Fault> {
 fn number(z: Node) -> Result<Number, Fault> {
     require(z, "AxisType", "A", "gives each height")?;
     let node = descend(z, &["DataType"])?;
-    match text(node) {
-        "I" => Ok(Number::I16),
-        "L" => Ok(Number::I32),
-        "F" => Ok(Number::F32),
-        "D" => Ok(Number::F64),
+    Ok(match text(node) {
+        "I" => Number::I16,
+        "L" => Number::I32,
+        "F" => Number::F32,
+        "D" => Number::F64,
         other => {
-            Err(bad(node, format!("CZ has the DataType '{other}', but I, L, F or D was expected")))
+            bail!(at(place(node)), "CZ has the DataType '{other}', but I, L, F or D was expected")
         }
-    }
+    })
 }
 
 fn require(axis: Node, name: &str, expected: &str, meaning: &str) -> Result<(), Fault> {
     let node = descend(axis, &[name])?;
-    if text(node) == expected {
-        return Ok(());
-    }
-    Err(bad(
-        node,
-        format!(
-            "{} has the {name} '{}': only one that {meaning}, {expected}, is read",
-            axis.tag_name().name(),
-            text(node)
-        ),
-    ))
+    ensure!(
+        text(node) == expected,
+        at(place(node)),
+        "{} has the {name} '{}': only one that {meaning}, {expected}, is read",
+        axis.tag_name().name(),
+        text(node)
+    );
+    Ok(())
 }
 
 /// What a stored number counts. It may be absent in files of the first edition of the standard: 1 m.
 fn increment(axis: Node) -> Result<f64, Fault> {
     let increment = quantity(axis, "Increment", 1.0)?;
-    if increment == 0.0 {
-        return Err(bad(axis, format!("{} has the Increment 0", axis.tag_name().name())));
-    }
+    let name = axis.tag_name().name();
+    ensure!(increment != 0.0, at(place(axis)), "{name} has the Increment 0");
     Ok(increment)
 }
 
@@ -189,15 +182,10 @@ fn quantity(axis: Node, name: &str, absent: f64) -> Result<f64, Fault> {
     if found.is_empty() {
         return Ok(absent);
     }
-    found.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
-        bad(
-            axis,
-            format!(
-                "{} has the {name} '{found}', but a number was expected",
-                axis.tag_name().name()
-            ),
-        )
-    })
+    let name = format!("the {name} of {}", axis.tag_name().name());
+    let value: f64 = parsed(&name, found, place(axis))?;
+    ensure!(value.is_finite(), at(place(axis)), "{name} is {value}, which is not finite");
+    Ok(value)
 }
 
 /// Whether a matrix of rotation is another than that of no rotation.
@@ -221,52 +209,39 @@ fn points(third: Node, shape: (usize, usize)) -> Result<Points, Fault> {
         })
     };
     let data = member("PointDataLink", "MD5ChecksumPointData")
-        .ok_or_else(|| bad(link, "DataLink names no PointDataLink"))?;
+        .ok_or_else(|| fault!(at(place(link)), "DataLink names no PointDataLink"))?;
     let valid = member("ValidPointsLink", "MD5ChecksumValidPoints");
     Ok(Points::Linked(data, valid))
 }
 
 /// Heights written out in the description: the last number of each point, which is missing if there is none.
 fn listed(list: Node, (nx, ny): (usize, usize)) -> Result<Vec<f64>, Fault> {
-    let mut values = Vec::new();
-    for datum in elements(list, "Datum") {
+    // Whatever their namespace: files differ in which they use.
+    let data = list.children().filter(|child| child.tag_name().name() == "Datum");
+    let heights = data.map(|datum| {
         let height = text(datum).rsplit(';').next().unwrap_or_default().trim();
-        let value = if height.is_empty() {
-            f64::NAN
-        } else {
-            height.parse().map_err(|_| {
-                bad(datum, format!("a Datum is '{height}', but a number was expected"))
-            })?
-        };
-        values.push(value);
-    }
-    if values.len() != nx * ny {
-        return Err(bad(
-            list,
-            format!("{nx} x {ny} points were expected, but the DataList has {}", values.len()),
-        ));
-    }
+        if height.is_empty() { Ok(f64::NAN) } else { parsed("a Datum", height, place(datum)) }
+    });
+    let values: Vec<f64> = heights.collect::<Result<_, _>>()?;
+    let found = values.len();
+    ensure!(
+        found == nx * ny,
+        at(place(list)),
+        "{nx} x {ny} points were expected, but the DataList has {found}"
+    );
     Ok(values)
 }
 
-/// The elements of a name in another, whatever their namespace: files differ in which they use.
-fn elements<'a, 'b: 'a>(
-    node: Node<'a, 'b>,
-    name: &'static str,
-) -> impl Iterator<Item = Node<'a, 'b>> {
-    node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
-}
-
 fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
-    node.children().find(|child| child.is_element() && child.tag_name().name() == name)
+    node.children().find(|child| child.tag_name().name() == name)
 }
 
 /// The element at the end of a path of names.
 fn descend<'a, 'b>(node: Node<'a, 'b>, path: &[&str]) -> Result<Node<'a, 'b>, Fault> {
     path.iter().try_fold(node, |node, name| {
-        child(node, name).ok_or_else(|| {
-            bad(node, format!("expected an element {name} in {}", node.tag_name().name()))
-        })
+        let parent = node.tag_name().name();
+        let lacks = || fault!(at(place(node)), "expected an element {name} in {parent}");
+        child(node, name).ok_or_else(lacks)
     })
 }
 
@@ -274,7 +249,7 @@ fn text<'a>(node: Node<'a, '_>) -> &'a str {
     node.text().unwrap_or_default().trim()
 }
 
-/// A defect at an element of the description.
-fn bad(node: Node, reason: impl std::fmt::Display) -> Fault {
-    Fault::at(node.range().start, format!("'{DESCRIPTION}': {reason}"))
+/// Where an element begins in the description.
+fn place(node: Node) -> usize {
+    node.range().start
 }

@@ -69,8 +69,20 @@ fn stored(height: f64) -> [u8; 8] {
 /// The description of a map whose data have this checksum.
 fn description(grid: &Grid, md5: &str) -> String {
     let (nx, ny) = grid.shape();
-    let (dx, dy) = (grid.dx(), grid.dy());
     let version = env!("CARGO_PKG_VERSION");
+    let axis = |(name, kind, increment)| {
+        format!(
+            r#"      <{name}>
+        <AxisType>{kind}</AxisType>
+        <DataType>D</DataType>
+        <Increment>{increment}</Increment>
+        <Offset>0</Offset>
+      </{name}>
+"#
+        )
+    };
+    let (dx, dy) = (format!("{:e}", grid.dx()), format!("{:e}", grid.dy()));
+    let axes = [("CX", "I", &dx[..]), ("CY", "I", &dy), ("CZ", "A", "1")].map(axis).concat();
     // The standard asks for dates; this one says that none is known, as in files of other programs.
     format!(
         r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -79,25 +91,7 @@ fn description(grid: &Grid, md5: &str) -> String {
     <Revision>ISO5436 - 2000</Revision>
     <FeatureType>SUR</FeatureType>
     <Axes>
-      <CX>
-        <AxisType>I</AxisType>
-        <DataType>D</DataType>
-        <Increment>{dx:e}</Increment>
-        <Offset>0</Offset>
-      </CX>
-      <CY>
-        <AxisType>I</AxisType>
-        <DataType>D</DataType>
-        <Increment>{dy:e}</Increment>
-        <Offset>0</Offset>
-      </CY>
-      <CZ>
-        <AxisType>A</AxisType>
-        <DataType>D</DataType>
-        <Increment>1</Increment>
-        <Offset>0</Offset>
-      </CZ>
-    </Axes>
+{axes}    </Axes>
   </Record1>
   <Record2>
     <Date>1970-01-01T00:00:00</Date>

@@ -1,6 +1,6 @@
 //! The lines of a text, whatever ends them.
 
-use crate::io::bytes::latin1;
+use super::bytes::latin1;
 
 /// The lines of a file from a place on; LF, CR LF and CR end a line.
 #[derive(Debug, Clone)]
