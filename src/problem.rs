@@ -8,7 +8,7 @@ use crate::kernel::KernelTable;
 use crate::surface::HeightMap;
 use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 
-/// What a contact problem consists of: influence coefficients C and initial gap g on a grid. It is
+/// A contact problem: influence coefficients C and initial gap g on a grid. It is
 /// made once, never changes, and all solvers and updaters read it.
 ///
 /// ```
@@ -83,13 +83,13 @@ impl Problem {
         self.table.grid()
     }
 
-    /// What surrounds the grid.
+    /// The surroundings of the grid.
     #[must_use]
     pub fn boundary(&self) -> Boundary {
         self.table.boundary()
     }
 
-    /// What the kernel promises of the growth of contact.
+    /// How the kernel promises contact to grow.
     #[must_use]
     pub fn growth(&self) -> ContactGrowth {
         self.table.contact_growth()
@@ -119,7 +119,7 @@ impl Problem {
         self.gap.iter().sum::<f64>() / self.gap.len() as f64
     }
 
-    /// What errors are compared with as long as there is no approach: a part of the mean gap.
+    /// Least length that errors are relative to, for when the approach is zero: a part of the mean gap.
     pub(crate) fn least_length(&self) -> f64 {
         1e-6 * self.mean_gap()
     }

@@ -1,4 +1,4 @@
-//! What looks wrong, although nothing forbids it.
+//! Warnings: input and results that are allowed and look wrong.
 
 use std::fmt;
 
@@ -39,27 +39,27 @@ const HIGH: f64 = 0.02;
 const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
 
 impl Warning {
-    /// What looks wrong with a surface.
+    /// Warnings about a surface.
     #[must_use]
     pub fn of_surface(surface: &Topography) -> Vec<Self> {
         let warnings = surface::Warning::of_surface(surface);
         warnings.into_iter().map(Self::Surface).collect()
     }
 
-    /// What looks wrong with the patches of a contact.
+    /// Warnings about the patches of a contact.
     #[must_use]
     pub fn of_patches(patches: usize, contact_nodes: usize) -> Option<Self> {
         ((contact_nodes as f64) < PATCH * patches as f64)
             .then_some(Self::SmallPatches { patches, contact_nodes })
     }
 
-    /// What looks wrong with a composite modulus.
+    /// Warnings about a composite modulus.
     #[must_use]
     pub fn of_modulus(e_star: f64) -> Option<Self> {
         (!SOLIDS.contains(&e_star)).then_some(Self::Modulus { e_star })
     }
 
-    /// What looks wrong with the greatest pressure of a contact.
+    /// Warnings about the greatest pressure of a contact.
     #[must_use]
     pub fn of_pressure(pressure: f64, e_star: f64) -> Option<Self> {
         (pressure > HIGH * e_star).then_some(Self::HighPressure { pressure, e_star })

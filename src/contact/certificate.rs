@@ -22,7 +22,7 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Difference between `ΔA Σ p` and the load.
     pub load_error: f64,
-    /// What gaps are relative to \[m\]: the greatest of the rms height Sq, the approach δ and, on a
+    /// The length that gaps are relative to \[m\]: the greatest of the rms height Sq, the approach δ and, on a
     /// periodic half-space of arbitrary mean displacement, `C(0, 0) p̄` with p̄ the mean pressure: far
     /// beyond full contact rounding grows with the pressure while the approach stays what it is. That
     /// `C(0, 0)` is of the size of a node's own displacement, and independent of the kernel's gauge.
@@ -75,7 +75,7 @@ impl ErrorLength {
     }
 }
 
-/// What a certificate needs to know besides the fields.
+/// Input of a certificate besides the fields.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Conditions {
     /// Sum of pressures that belongs to the load.

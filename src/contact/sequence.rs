@@ -103,7 +103,7 @@ impl ContactSequence {
         self.is_in.get(node).copied().unwrap_or(false)
     }
 
-    /// What says whether this is the same sequence as another one, or as it was before.
+    /// A number that changes with every edit: two sequences of the same revision are equal.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision

@@ -1,6 +1,6 @@
-//! What a state of contact is asked to have.
+//! The state of contact to find: by load, approach, mean gap or area.
 
-/// What a state of contact is asked to have.
+/// The state of contact to find: by load, approach, mean gap or area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -12,7 +12,7 @@ use crate::kernel::KernelTable;
 use crate::parallel::{for_each_block, inside};
 use crate::{Boundary, Error, Grid, KernelError};
 
-/// What a Fourier transform of a kernel errs by, relative to the greatest value: a few roundings.
+/// Error of the Fourier transform of a kernel, relative to the greatest value: a few units in the last place.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A convolution whose transforms are done in the precision of T; fields may be of another one, F.
@@ -24,7 +24,7 @@ pub(crate) struct Engine<T: Real> {
     pub(super) spectra: Spectra<T>,
 }
 
-/// What does not depend on the fields.
+/// The plans and the spectrum, the same for all fields.
 struct Filter<T: Real> {
     grid: Grid,
     boundary: Boundary,
@@ -43,7 +43,7 @@ pub(super) struct Spectra<T> {
     pub(super) scratch: Vec<Scratch<T>>,
 }
 
-/// What a thread needs for itself.
+/// The working memory of a thread.
 #[derive(Clone)]
 pub(super) struct Scratch<T> {
     /// A block of rows or of columns, not interleaved.

@@ -7,7 +7,7 @@
 //! is a convolution, which [`Convolution`] does by fast Fourier transform in a time that hardly
 //! grows faster than the number of nodes.
 //!
-//! What lies outside the grid is the kernel's [`Boundary`]:
+//! The kernel's [`Boundary`] says how the grid goes on beyond its edges:
 //!
 //! * With a free boundary the fields are padded with zeros (Hockney's method) to px ≥ 2 nx − 1 by
 //!   py ≥ 2 ny − 1 nodes, so that the transform's own periodicity never reaches the grid, and to
@@ -241,7 +241,7 @@ impl SingleConvolution {
         self.engine.bytes()
     }
 
-    /// What displacements are in units of.
+    /// The unit of displacements \[m\].
     pub(crate) fn unit(&self) -> f64 {
         self.unit
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a kernel itself.
+//! Errors of kernels.
 
 use thiserror::Error;
 
@@ -85,7 +85,7 @@ pub enum KernelError {
     BrokenPromise {
         /// The promise.
         promise: &'static str,
-        /// What has the wrong sign.
+        /// The quantity with the wrong sign.
         quantity: &'static str,
         /// Indices of the nodes in contact, as by [`Grid::coordinates`](crate::Grid::coordinates).
         contact: Vec<usize>,

@@ -121,11 +121,11 @@ pub enum Error {
         load: f64,
         /// Approach of the state.
         approach: f64,
-        /// What contradicts.
+        /// The quantity that contradicts.
         quantity: &'static str,
         /// Its value on this path.
         value: f64,
-        /// What would be a state.
+        /// The value that a state has.
         expected: &'static str,
     },
 
@@ -174,7 +174,7 @@ pub enum Error {
          of node ({ix}, {iy}) is {value}"
     )]
     NotMonotone {
-        /// What has the wrong sign.
+        /// The quantity with the wrong sign.
         quantity: &'static str,
         /// Node index along x.
         ix: usize,

@@ -1,15 +1,15 @@
-//! What can be wrong with an updater.
+//! Errors of updaters.
 
 use thiserror::Error;
 
-/// What is wrong with an updater, one of this crate or of the user's.
+/// An error of an updater, one of this crate or of the user's.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum UpdaterError {
     /// An updater written outside this crate, or inside, returned something malformed.
     #[error("the updater returned {found} values for {quantity}, but {expected} were expected")]
     UpdaterMismatch {
-        /// What was returned.
+        /// The quantity returned.
         quantity: &'static str,
         /// Expected number of values.
         expected: usize,
@@ -23,13 +23,13 @@ pub enum UpdaterError {
          answer by {error}, more than {tolerance}"
     )]
     UpdaterWrong {
-        /// What was compared.
+        /// The quantity compared.
         quantity: &'static str,
         /// Nodes in contact.
         contact_nodes: usize,
         /// Relative difference.
         error: f64,
-        /// What would have been accepted.
+        /// Greatest difference that is accepted.
         tolerance: f64,
     },
 
@@ -46,9 +46,9 @@ pub enum UpdaterError {
         ix: usize,
         /// Node index along y.
         iy: usize,
-        /// What should be zero.
+        /// The value, which should be zero.
         value: f64,
-        /// What would have been taken for rounding.
+        /// Greatest value that counts as rounding.
         tolerance: f64,
     },
 
@@ -74,4 +74,18 @@ pub enum UpdaterError {
         /// Number of nodes that remain in contact.
         nodes: usize,
     },
+}
+
+impl UpdaterError {
+    /// `Ok` if an answer has as many values as were asked for.
+    pub(crate) fn check_length(
+        quantity: &'static str,
+        found: usize,
+        expected: usize,
+    ) -> Result<(), crate::Error> {
+        if found == expected {
+            return Ok(());
+        }
+        Err(crate::Error::Updater(Self::UpdaterMismatch { quantity, expected, found }))
+    }
 }

@@ -90,7 +90,7 @@ impl<'a> ActiveSet<'a> {
         errors.worst() / self.criteria.scale(self.level.iterate.approach)
     }
 
-    /// That no iterate was good enough; if all ended with tension, the last one tells how far it was.
+    /// The error when no iterate was good enough; if all ended with tension, it has the residual of the last one.
     fn no_convergence(&mut self) -> Error {
         if self.best == f64::INFINITY
             && let Ok(errors) = self.verify()

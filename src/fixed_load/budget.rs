@@ -1,4 +1,4 @@
-//! What a solver may hold in memory.
+//! The memory budget of a solver.
 
 use super::tuning::COARSEST;
 use crate::convolution::Convolution;

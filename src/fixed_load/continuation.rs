@@ -5,7 +5,7 @@ use super::tangent::Tangent;
 use super::tuning::GREATEST_STEP;
 use crate::krylov::{add_scaled, sum};
 
-/// What is known of a sequence of states besides the last one, which the level holds.
+/// The states of a sequence before the last one, which the level holds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Continuation {
     pub(super) tangent: Tangent,
@@ -20,7 +20,7 @@ struct Earlier {
     sum: f64,
     pressure: Vec<f64>,
     displacement: Vec<f64>,
-    /// What belongs to the approach in the same combination.
+    /// The approach in the same combination.
     approach: f64,
 }
 

@@ -69,7 +69,7 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    /// What is wrong with the set itself.
+    /// Errors of the set itself.
     pub(super) fn in_set(&self) -> f64 {
         greatest(2, 0.0, |i| [self.overlap, self.tension][i])
     }

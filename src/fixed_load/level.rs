@@ -13,7 +13,7 @@ use crate::kernel::KernelTable;
 use crate::krylov::{Operator, Preconditioner, sum};
 use crate::{Error, Grid};
 
-/// What is prescribed on one grid.
+/// The load or approach prescribed on one grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Prescribed {
     /// The sum of all pressures.

@@ -31,7 +31,7 @@ pub(super) fn solve_target(
     }
 }
 
-/// What is looked for, along the logarithm of the load.
+/// The quantity that is looked for, along the logarithm of the load.
 #[derive(Debug, Clone, Copy)]
 enum Sought {
     /// So many nodes. Area grows in proportion to the load over decades.

@@ -1,4 +1,4 @@
-//! What a solver is asked to do, which never changes while it runs.
+//! The settings of a solver, which never change while it runs.
 
 use crate::Error;
 

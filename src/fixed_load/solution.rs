@@ -34,11 +34,11 @@ pub struct FixedLoadSolution {
     /// How well the conditions of contact are met. Gaps there are relative to
     /// [`Certificate::length`], which is never less than what the tolerance is relative to.
     pub certificate: Certificate,
-    /// What it took.
+    /// The effort.
     pub effort: SolverEffort,
 }
 
-/// What a solution took.
+/// The effort of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -149,7 +149,7 @@ mod parts {
     use crate::Error;
     use crate::contact::{Certificate, ContactState};
 
-    /// What a solution consists of; fields have x fast.
+    /// The parts of a solution; fields have x fast.
     #[derive(Debug, Clone, Serialize, Deserialize)]
     pub(super) struct Parts {
         /// Nodes along x and y.

@@ -1,4 +1,4 @@
-//! What a little more load would change: exact stiffnesses.
+//! Exact stiffnesses: the change with a little more load.
 
 use nalgebra::DMatrix;
 
@@ -18,7 +18,7 @@ pub(super) struct Tangent {
     pub(super) displacement: Vec<f64>,
 }
 
-/// What solving for a tangent took and gave.
+/// The result of solving for a tangent.
 struct Solved {
     iterations: usize,
     /// `eᵀ C_II⁻¹ e`.

@@ -1,6 +1,6 @@
-//! What surrounds the grid.
+//! The surroundings of the grid.
 
-/// What surrounds the grid: nothing, or itself.
+/// The surroundings of the grid: nothing, or its own repetition.
 ///
 /// It belongs to the kernel, which alone knows how far a displacement reaches, and it has no default:
 /// every [`InfluenceKernel`](super::InfluenceKernel) states it.

@@ -1,4 +1,4 @@
-//! What is known of how contact grows.
+//! How contact is known to grow.
 
 /// How the contact changes while the approach grows, as far as it is known of a kernel for *every*
 /// contact set I that can occur.

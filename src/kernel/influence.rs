@@ -1,4 +1,4 @@
-//! What every elastic body of this crate can say about itself.
+//! The trait of elastic bodies.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub trait InfluenceKernel {
     /// The grid on which the coefficients live.
     fn grid(&self) -> Grid;
 
-    /// What surrounds the grid. There is no default, because either choice does harm where the other
+    /// The surroundings of the grid. There is no default, because either choice does harm where the other
     /// is meant.
     fn boundary(&self) -> Boundary;
 
@@ -33,7 +33,7 @@ pub trait InfluenceKernel {
     /// coefficients repeat: `C(di ± nx, dj) = C(di, dj ± ny) = C(di, dj)`.
     fn coefficient(&self, di: isize, dj: isize) -> f64;
 
-    /// What is known of how contact grows with the approach: [`ContactGrowth::Unknown`], which is
+    /// How contact is known to grow with the approach: [`ContactGrowth::Unknown`], which is
     /// always right, unless a kernel says more.
     ///
     /// It decides what a path costs, and not what it finds: of an unknown kernel every event is
@@ -54,7 +54,7 @@ pub trait InfluenceKernel {
         MeanDisplacement::Arbitrary
     }
 
-    /// What the kernel was made from, for a record of a path: [`KernelOrigin::Other`] unless it is one of this crate.
+    /// The parameters of the kernel, for a record of a path: [`KernelOrigin::Other`] unless it is one of this crate.
     fn origin(&self) -> KernelOrigin {
         KernelOrigin::Other
     }

@@ -1,6 +1,6 @@
-//! What a kernel was made from.
+//! The parameters of a kernel.
 
-/// What a kernel was made from, besides its grid: enough to make one of this crate again, in another process.
+/// The parameters of a kernel besides its grid: enough to make one of this crate again, in another process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

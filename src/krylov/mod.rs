@@ -1,4 +1,4 @@
-//! What iterations need: the influence operator on a contact set, a preconditioner of two levels, one
+//! Iterations on a contact set: the influence operator, a preconditioner of two levels, one
 //! of them a sparse approximation of the inverse, and conjugate gradients, all in O(grid) memory.
 
 mod cells;

@@ -62,7 +62,7 @@ impl NodeSet {
         self.nodes.len()
     }
 
-    /// What must happen to become `other`, in the order of the nodes.
+    /// The changes that lead to `other`, in the order of the nodes.
     pub(crate) fn changes(&self, other: &Self) -> Vec<Change> {
         let mut changes = Vec::new();
         for (node, (old, new)) in self.places.iter().zip(&other.places).enumerate() {

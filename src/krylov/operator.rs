@@ -52,7 +52,7 @@ impl Operator {
         self.uniform = uniform;
     }
 
-    /// What [`Self::step`] gives displacements in units of.
+    /// The unit of displacements from [`Self::step`] \[m\].
     pub(crate) fn unit(&self) -> f64 {
         self.single.unit()
     }

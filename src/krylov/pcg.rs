@@ -11,7 +11,7 @@ pub(crate) struct Field {
     pub(crate) pressure: Vec<f64>,
     /// Empty if it is not known.
     pub(crate) displacement: Vec<f64>,
-    /// What changes in single precision may have spoilt of the displacements.
+    /// Error of the displacements by changes in single precision.
     pub(crate) drift: f64,
 }
 

@@ -218,7 +218,7 @@ impl<const K: usize> SparseInverse<K> {
     }
 }
 
-/// What comes of the nodes of a part of the grid: there, from node `first` on, and elsewhere.
+/// Results of the nodes of a part of the grid: inside it, from node `first` on, and outside.
 struct Part<'a> {
     first: usize,
     values: &'a mut [f32],

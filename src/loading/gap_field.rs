@@ -101,6 +101,10 @@ impl GapField {
     ) -> Result<(), Error> {
         self.revision = None;
         iterations.advance(problem, contact, approach, span, &mut self.solved)?;
+        check_solution(&self.solved.solution, contact.len())?;
+        for field in &self.solved.displacement {
+            UpdaterError::check_length("displacements", field.len(), problem.grid().nodes())?;
+        }
         self.belong_to(contact, approach);
         Ok(())
     }
@@ -115,7 +119,7 @@ impl GapField {
         &self.solved.solution
     }
 
-    /// What a solution leaves of the contact conditions at a node in contact: its gap, and the rate of that.
+    /// Residuals of a solution at a node in contact: the gap that it leaves, and the rate of that.
     pub(super) fn left_at(&self, problem: &Problem, node: usize) -> [f64; 2] {
         let [u, rate] = &self.solved.displacement;
         let gap = problem.initial_gap()[node] + u[node] - self.approach;
@@ -190,18 +194,13 @@ pub(super) fn solve<U: LinearUpdater + ?Sized>(
     solution: &mut Solution,
 ) -> Result<(), Error> {
     updater.solve(problem, contact, count, approach, solution)?;
-    for (quantity, values) in
-        [("pressures", &solution.pressure), ("pressures per unit of approach", &solution.rate)]
-    {
-        if values.len() != count {
-            return Err(Error::Updater(UpdaterError::UpdaterMismatch {
-                quantity,
-                expected: count,
-                found: values.len(),
-            }));
-        }
-    }
-    Ok(())
+    check_solution(solution, count)
+}
+
+/// `Ok` if a solution has a value for each of `count` nodes in contact.
+pub(super) fn check_solution(solution: &Solution, count: usize) -> Result<(), Error> {
+    UpdaterError::check_length("pressures", solution.pressure.len(), count)?;
+    UpdaterError::check_length("pressures per unit of approach", solution.rate.len(), count)
 }
 
 #[cfg(test)]

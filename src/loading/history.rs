@@ -64,7 +64,7 @@ impl History {
         }
     }
 
-    /// What a path on a grid would have been, had it been asked to end at these targets: its states up to the first of them,
+    /// The path that a grid would have had with these targets as limits: its states up to the first of them,
     /// with the state there as its last, and why it ends. Of a path that has passed none of them all states, and `None`:
     /// [`LoadingBuilder::resume`](super::LoadingBuilder::resume) goes on from there.
     ///

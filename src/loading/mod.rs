@@ -57,6 +57,8 @@
 
 mod builder;
 mod cost;
+#[cfg(test)]
+mod failing_iterations;
 mod fields;
 mod gap_field;
 mod history;

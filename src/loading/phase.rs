@@ -1,4 +1,4 @@
-//! What solves on the contact: an updater, until iterations are cheaper, and then these.
+//! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
 use super::gap_field;
 use super::run::LoadingRun;
@@ -11,7 +11,7 @@ use crate::updater::{
 };
 use crate::{Error, Problem};
 
-/// What solves on the contact of a path.
+/// The solver of a path.
 #[derive(Debug)]
 pub(super) enum Phase<U> {
     /// An updater; the path gives it up for iterations when these are cheaper, if `may_end`.
@@ -157,7 +157,7 @@ impl<U: LinearUpdater> Phase<U> {
         restored.map(|()| hands_over)
     }
 
-    /// Solves on the contact after `step` events at an approach, and returns it. The path does not notice.
+    /// Solves on the contact after `step` events at an approach, and returns it. The solution that the path goes on with is left as it is.
     pub(super) fn solve_at(
         &mut self,
         run: &LoadingRun,
@@ -182,6 +182,7 @@ impl<U: LinearUpdater> Phase<U> {
             }
             Self::Iterations(iterations) => {
                 iterations.solve_apart(problem, contact, at.0, approach, solution)?;
+                gap_field::check_solution(solution, at.0)?;
             }
         }
         Ok(nodes)

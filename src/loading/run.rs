@@ -43,7 +43,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// What updater and iterations may hold.
+    /// The memory budget of updater and iterations.
     pub(super) fn left(&self) -> usize {
         self.budget.saturating_sub(self.fixed)
     }
@@ -227,13 +227,7 @@ impl LoadingRun {
 
     /// `Ok` if a Schur complement is one of so many nodes, and finite.
     pub(super) fn check_complement(&self, nodes: &[usize], schur: &Schur) -> Result<(), Error> {
-        if schur.size() != nodes.len() {
-            return Err(Error::Updater(UpdaterError::UpdaterMismatch {
-                quantity: "the Schur complement",
-                expected: nodes.len(),
-                found: schur.size(),
-            }));
-        }
+        UpdaterError::check_length("the Schur complement", schur.size(), nodes.len())?;
         let matrix = schur.matrix();
         let lower = (0..nodes.len()).flat_map(|j| (j..nodes.len()).map(move |i| (i, j)));
         let numbers = lower.map(|place| matrix[place]);
@@ -366,7 +360,7 @@ impl LoadingRun {
         rates.copied().fold(0.0, f64::max)
     }
 
-    /// That a quantity of a node has the wrong sign at the present approach.
+    /// The error of a quantity of a node with the wrong sign at the present approach.
     pub(super) fn not_monotone(&self, quantity: &'static str, node: usize, value: f64) -> Error {
         let (ix, iy) = self.problem.grid().coordinates(node);
         Error::NotMonotone { quantity, ix, iy, approach: self.scalars.approach(), value }
@@ -383,7 +377,7 @@ impl LoadingRun {
         }
     }
 
-    /// That the next state would not be finite.
+    /// The error of a next state that would not be finite.
     pub(super) fn not_finite(&self) -> Error {
         Error::NotFinite { step: self.steps() + 1 }
     }

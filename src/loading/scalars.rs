@@ -78,7 +78,7 @@ impl PathScalars {
         self.approach = approach;
     }
 
-    /// What must be added to stiffness and closing rate for them to be those of another front.
+    /// Differences of stiffness and closing rate from those of another front.
     pub(super) fn missing(&self, other: &Self) -> [f64; 2] {
         let closing = (self.closing - other.closing) * self.grid.nodes() as f64;
         [other.unit_stiffness - self.unit_stiffness, closing]
@@ -174,7 +174,7 @@ impl PathScalars {
         self.gauge.approach(state.approach, state.load)
     }
 
-    /// What to take off displacements in the gauge of the kernel.
+    /// The mean displacement in the gauge of the kernel, which displacements are reported without.
     pub(super) fn uniform_displacement(&self, load: f64) -> f64 {
         self.gauge.displacement(load)
     }

@@ -15,7 +15,7 @@ fn allowed(state: &LoadingState) -> f64 {
     if state.approach_error > 0.0 { ESTIMATED } else { RECOGNISED }
 }
 
-/// What a state would be on this path, and is not.
+/// The quantity in which a state differs from the one of this path.
 pub(super) fn not_on_path(
     state: &LoadingState,
     quantity: &'static str,
@@ -127,12 +127,12 @@ impl Snapshot {
         Ok(())
     }
 
-    /// What gaps at a state may be off by.
+    /// Greatest error of gaps at a state.
     fn allowed_gap(&self, run: &LoadingRun, state: &LoadingState) -> f64 {
         allowed(state) * (run.problem.greatest_gap() + self.approach.abs())
     }
 
-    /// What pressures may be off by where gaps in contact are closed to a tolerance τ of the approach only:
+    /// Greatest error of pressures where gaps in contact are closed to a tolerance τ of the approach only:
     /// `|C⁻¹r| ≤ √n τ δ / λ`, with the least eigenvalue λ. On long cells in a large gauge that is far more than τ of the
     /// pressure. 0 with a factor, and where λ is not known.
     fn pressure_error(&self, run: &LoadingRun, tolerance: f64) -> f64 {

@@ -43,7 +43,7 @@ use crate::{Error, Grid, Problem};
 #[derive(Debug)]
 pub struct LoadingSolver<U = Handover> {
     pub(super) run: LoadingRun,
-    /// What solves on the contact.
+    /// The solver of the path.
     pub(super) phase: Phase<U>,
     pub(super) procedure: Procedure,
     /// Nodes in contact when the factor was given up.
@@ -52,7 +52,7 @@ pub struct LoadingSolver<U = Handover> {
     pub(super) limits: Limits,
     /// The state yielded last.
     pub(super) state: Option<LoadingState>,
-    /// What went wrong after the states in the queue.
+    /// The error that follows the states in the queue.
     pub(super) failure: Option<Error>,
     pub(super) end: Option<LoadingEnd>,
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::ContactState;
 
-/// What happens at a state of a path.
+/// The event at a state of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -27,7 +27,7 @@ pub struct LoadingState {
     /// Number of events up to here, 1 for first touch. Where no node ever leaves the contact it is the
     /// number of nodes in contact too.
     pub step: usize,
-    /// What happens.
+    /// The event.
     pub event: ContactEvent,
     /// The node to which it happens, (ix, iy); at a limit the node of the last event.
     pub node: (usize, usize),

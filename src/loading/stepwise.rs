@@ -11,11 +11,11 @@ use super::window::Window;
 use crate::Error;
 use crate::updater::{LinearUpdater, Solution};
 
-/// What happens next if nothing else does.
+/// The next event, unless another one comes first.
 #[derive(Debug, Clone, Copy)]
 struct Upcoming {
     approach: f64,
-    /// What that may be off by.
+    /// Greatest error of its approach.
     error: f64,
     node: usize,
     event: ContactEvent,

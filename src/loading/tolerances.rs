@@ -1,4 +1,4 @@
-//! Lengths below which nothing is told apart.
+//! Lengths below which two events are a tie.
 
 use super::gap_field::GapLine;
 use super::run::LoadingRun;
@@ -19,10 +19,10 @@ pub(super) fn ties_from(approach: f64, line: GapLine) -> f64 {
     }
 }
 
-/// What the lengths in a window are good to, with solutions of a tolerance.
+/// Errors of the lengths in a window, with solutions of a tolerance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WindowTolerances {
-    /// What errors are relative to: the approach at the window's beginning, or a part of the mean gap if that is
+    /// The length that errors are relative to: the approach at the window's beginning, or a part of the mean gap if that is
     /// greater.
     pub(super) length: f64,
     /// Tolerance of the solutions, relative to it; 0 if the updater is exact to rounding.

@@ -1,15 +1,15 @@
 //! Events in windows, of kernels whose contact only grows, with an updater.
 
-use super::tuning::ROUNDINGS;
+use super::tuning::{MULTIPLE, ROUNDINGS};
 use std::time::Instant;
 
-use super::cost::{automatic_window, watched_for};
+use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::ranking::{Ranking, rank};
 use super::run::LoadingRun;
 use super::state::ContactEvent;
 use super::tolerances::ties_until;
 use super::window::Window;
-use crate::updater::{LinearUpdater, WindowCost};
+use crate::updater::LinearUpdater;
 use crate::{ContactGrowth, Error};
 
 /// Finds events in windows: since contact only grows, the approach at which a node would touch if no other
@@ -39,12 +39,11 @@ impl Windowed {
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
         let (count, approach) = (run.contact.len(), run.scalars.approach());
-        let cost = updater.window_cost();
-        let size = run.affordable(updater, self.next_size(run, cost, most_nodes))?;
+        let size = run.affordable(updater, self.next_size(run, most_nodes))?;
         run.renew_field(updater, approach)?;
         let first = rank(run, &mut self.ranking)?;
         let start = Instant::now();
-        let (size, horizon) = self.choose(size, self.multiple(cost), [approach, first]);
+        let (size, horizon) = self.choose(size, self.multiple(), [approach, first]);
         run.timings.choice += start.elapsed();
         let chosen = self.ranking[..size].iter().map(|&(_, node)| node);
         run.watch(updater, &mut self.window, chosen, horizon)?;
@@ -71,20 +70,17 @@ impl Windowed {
     }
 
     /// How many nodes to watch.
-    fn next_size(&self, run: &LoadingRun, cost: WindowCost, most_nodes: usize) -> usize {
+    fn next_size(&self, run: &LoadingRun, most_nodes: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
         let size = self.size.unwrap_or_else(|| {
-            automatic_window(count, nodes, cost).min(watched_for(most_nodes - count))
+            automatic_window(count, nodes, WITH_FACTOR).min(watched_for(most_nodes - count))
         });
         size.min(nodes - count)
     }
 
     /// Nodes that were not watched before come in multiples of this.
-    fn multiple(&self, cost: WindowCost) -> usize {
-        match self.size {
-            Some(_) => 1,
-            None => cost.multiple.max(1),
-        }
+    fn multiple(&self) -> usize {
+        if self.size.is_some() { 1 } else { MULTIPLE }
     }
 
     /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their

@@ -30,7 +30,7 @@ pub struct PatchState {
     pub step: usize,
     /// The node that touches, (ix, iy).
     pub node: (usize, usize),
-    /// What it does to the patches.
+    /// Its effect on the patches.
     pub event: PatchEvent,
     /// Number of patches.
     pub patches: usize,

@@ -26,7 +26,7 @@ pub struct Patch {
     pub wraps: (bool, bool),
 }
 
-/// What a patch carries.
+/// The load on a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PatchLoad {
@@ -136,7 +136,7 @@ impl Patches {
         &self.labels
     }
 
-    /// What each patch carries under a pressure \[Pa\], in the order of [`patches`](Self::patches).
+    /// The load on each patch under a pressure \[Pa\], in the order of [`patches`](Self::patches).
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! What a record remembers of a kernel.
+//! The parameters of a kernel, as a record keeps them.
 
 use crate::kernel::{Boussinesq, KernelOrigin, KernelTable, PeriodicBoussinesq, Spectral};
 use crate::{Boundary, Error, Grid, InfluenceKernel};
@@ -7,13 +7,13 @@ use crate::{Boundary, Error, Grid, InfluenceKernel};
 /// formulas on another machine differ by the last bits of elementary functions.
 const SAME_KERNEL: f64 = 1e-12;
 
-/// What a record remembers of a kernel.
+/// The parameters of a kernel, as a record keeps them.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KernelRecord {
-    /// What it was made from.
+    /// Its parameters.
     pub origin: KernelOrigin,
-    /// What surrounds the grid.
+    /// The surroundings of the grid.
     pub boundary: Boundary,
     /// Some of its coefficients \[m/Pa\], from which it is known again: see [`KernelRecord::OFFSETS`].
     pub coefficients: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What a path leaves behind: to be read, kept, and gone on from.
+//! The record of a path: to read, to keep, and to go on from.
 //!
 //! A [`LoadingRecord`] holds the surface, what kernel it was, the states and why they end: enough to read the path at
 //! any load, approach, mean gap or area ([`history`](LoadingRecord::history)), to compute the fields of any of its states
@@ -65,7 +65,7 @@ pub struct LoadingRecord {
     end: Option<LoadingEnd>,
 }
 
-/// What was asked of a path.
+/// The settings of a path.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Settings {
@@ -136,7 +136,7 @@ impl LoadingRecord {
         &self.heights
     }
 
-    /// What is remembered of the kernel.
+    /// The parameters of the kernel.
     #[must_use]
     pub fn kernel(&self) -> &KernelRecord {
         &self.kernel
@@ -152,7 +152,7 @@ impl LoadingRecord {
         self.kernel.make(self.grid)
     }
 
-    /// What was asked of the path.
+    /// The settings of the path.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings

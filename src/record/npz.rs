@@ -15,12 +15,12 @@ use crate::patches::{Connectivity, PatchHistory, PatchState, activation_map, con
 use crate::surface::HeightMap;
 use crate::{Error, FileError, Grid};
 
-/// What the format is called in errors, and in the file itself.
+/// Name of the format in errors, and in the file itself.
 const NAME: &str = "asperity record";
 /// Grows with every change that older readers would misunderstand.
 const VERSION: u32 = 1;
 
-/// What a record is of, as JSON in the member `parameters`.
+/// The parameters of a record, as JSON in the member `parameters`.
 #[derive(Debug, Serialize, Deserialize)]
 struct Parameters {
     format: String,

@@ -8,7 +8,7 @@ use crate::loading::{LoadingEnd, LoadingState};
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
-/// What a record consists of.
+/// The parts of a record.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Parts {
     grid: Grid,

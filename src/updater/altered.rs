@@ -17,8 +17,8 @@ pub(crate) struct Altered {
     proposal: Alteration<Proposal>,
     solution: Alteration<Solution>,
     tolerance: f64,
-    /// Whether a path takes it for iterations.
-    iterates: bool,
+    /// The iterations for which a path takes it.
+    iterations: Option<Arc<dyn Fn(&Self) -> Box<dyn Iterations> + Send + Sync>>,
     /// Bytes that it asks for before the first node is in contact.
     room: usize,
     /// Displacements of all nodes under the last solution, and under its rate.
@@ -32,7 +32,7 @@ impl Altered {
             proposal: Arc::new(|_| {}),
             solution: Arc::new(|_| {}),
             tolerance,
-            iterates: true,
+            iterations: Some(Arc::new(|own| Box::new(own.clone()))),
             room: 0,
             displacement: [Vec::new(), Vec::new()],
         }
@@ -59,12 +59,19 @@ impl Altered {
 
     /// An updater with other solutions.
     pub(crate) fn solutions(solution: impl Fn(&mut Solution) + Send + Sync + 'static) -> Self {
-        Self { solution: Arc::new(solution), iterates: false, ..Self::inexact(0.0) }
+        Self { solution: Arc::new(solution), iterations: None, ..Self::inexact(0.0) }
     }
 
     /// An updater with other Schur complements.
     pub(crate) fn complements(proposal: impl Fn(&mut Proposal) + Send + Sync + 'static) -> Self {
-        Self { iterates: false, ..Self::estimates(0.0, proposal) }
+        Self { iterations: None, ..Self::estimates(0.0, proposal) }
+    }
+
+    /// An updater in whose place a path takes these iterations.
+    pub(crate) fn iterating(
+        iterations: impl Fn() -> Box<dyn Iterations> + Send + Sync + 'static,
+    ) -> Self {
+        Self { iterations: Some(Arc::new(move |_| iterations())), ..Self::inexact(0.0) }
     }
 
     /// An updater that asks for room.
@@ -224,6 +231,9 @@ impl LinearUpdater for Altered {
     }
 
     fn method(&self) -> Method {
-        if self.iterates { Method::Iterations(Box::new(self.clone())) } else { Method::Factor }
+        match &self.iterations {
+            Some(iterations) => Method::Iterations(iterations(self)),
+            None => Method::Factor,
+        }
     }
 }

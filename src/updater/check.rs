@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-9;
 /// How much more than its gaps the pressures of a solution by iterations may be off, relatively.
 const LOST: f64 = 1e3;
 
-/// What [`check`] found.
+/// The result of [`check`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct UpdaterReport {
@@ -100,7 +100,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         let Self { updater, problem, contact, .. } = self;
         updater.watch(problem, contact, watched, &mut schur)?;
         Dense.watch(problem, contact, watched, &mut expected)?;
-        check_length("the Schur complement", watched.len(), schur.size())?;
+        UpdaterError::check_length("the Schur complement", schur.size(), watched.len())?;
         let tolerance = tolerance(*updater);
         let own = problem.table().self_influence();
         for j in 0..watched.len() {
@@ -140,7 +140,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
             ("pressures", &found.pressure, &expected.pressure),
             ("pressures per unit of approach", &found.rate, &expected.rate),
         ] {
-            check_length(quantity, expected.len(), found.len())?;
+            UpdaterError::check_length(quantity, found.len(), expected.len())?;
             let scale = greatest(expected);
             for (found, expected) in found.iter().zip(expected) {
                 let error = (found - expected).abs() / scale;
@@ -177,7 +177,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
     }
 }
 
-/// What the answers of an updater may be off by.
+/// Greatest errors of the answers of an updater.
 fn tolerance(updater: &(impl LinearUpdater + ?Sized)) -> f64 {
     match updater.method() {
         Method::Iterations(iterations) => TOLERANCE.max(LOST * iterations.tolerance()),
@@ -189,13 +189,6 @@ fn tolerance(updater: &(impl LinearUpdater + ?Sized)) -> f64 {
 fn greatest(values: &[f64]) -> f64 {
     let greatest = values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     if greatest > 0.0 { greatest } else { 1.0 }
-}
-
-fn check_length(quantity: &'static str, expected: usize, found: usize) -> Result<(), Error> {
-    if expected == found {
-        return Ok(());
-    }
-    Err(Error::Updater(UpdaterError::UpdaterMismatch { quantity, expected, found }))
 }
 
 /// NaN is wrong as well.

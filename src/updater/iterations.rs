@@ -1,5 +1,4 @@
-//! What iterations offer a path besides exact answers: approximate Schur complements, and solutions that are as exact as
-//! the path needs them.
+//! Iterations on the contact of a path: approximate Schur complements, and solutions that are as exact as the path needs them.
 
 use std::fmt::Debug;
 
@@ -75,7 +74,7 @@ pub trait Iterations: Debug + Send + Sync {
         error: f64,
     ) -> Result<Vec<f64>, Error>;
 
-    /// Solves on the first `count` nodes as exactly as iterations go. The path does not notice.
+    /// Solves on the first `count` nodes as exactly as iterations go. The solution that the path goes on with is left as it is.
     fn solve_apart(
         &mut self,
         problem: &Problem,

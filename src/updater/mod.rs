@@ -47,35 +47,6 @@ pub use window_factor::WindowFactor;
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
-/// What the work of a window costs with a factor, in nanoseconds: from it the path chooses how many nodes to watch.
-///
-/// They are constants and not measurements, so that the same input gives the same windows, and the same
-/// bits, on every run. States do not depend on them; only time does, and not by much near the best window.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[doc(hidden)]
-pub struct WindowCost {
-    /// A solution on n contact nodes, per n².
-    pub solve: f64,
-    /// A Schur complement of k nodes, per k² n.
-    pub schur: f64,
-    /// Convolutions, per node of the grid.
-    pub convolution: f64,
-    /// Greatest number of watched nodes, as a fraction of the contact nodes: their columns must stay
-    /// small beside the factor.
-    pub most_watched: f64,
-    /// Nodes that were not watched before come in multiples of this if there are more: widths that suit
-    /// the matrix product.
-    pub multiple: usize,
-}
-
-impl Default for WindowCost {
-    /// A factor in double precision: a solution reads its 4n² bytes, a Schur complement runs at the speed
-    /// of a matrix product, and the gaps at a window's end need the displacements of two fields.
-    fn default() -> Self {
-        Self { solve: 0.3, schur: 0.01, convolution: 50.0, most_watched: 0.05, multiple: 96 }
-    }
-}
-
 /// A contact that grows, and rarely shrinks, and the inverse of its influence matrix.
 ///
 /// The path owns the order of contact and passes it along; an updater keeps whatever it needs to answer
@@ -272,12 +243,6 @@ pub trait LinearUpdater {
         Ok(())
     }
 
-    /// What the work of a window costs; by default that of a factor in double precision.
-    #[doc(hidden)]
-    fn window_cost(&self) -> WindowCost {
-        WindowCost::default()
-    }
-
     /// How a path uses the updater; by default for all that it asks.
     #[doc(hidden)]
     fn method(&self) -> Method {
@@ -344,10 +309,6 @@ impl<U: LinearUpdater + ?Sized> LinearUpdater for Box<U> {
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (**self).bytes(contact, watched)
-    }
-
-    fn window_cost(&self) -> WindowCost {
-        (**self).window_cost()
     }
 
     fn method(&self) -> Method {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowCost, WindowFactor};
+use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowFactor};
 use asperity::{Error, Problem};
 
 /// A call of a [`LinearUpdater`] that can fail, with the place of its answer.
@@ -93,7 +93,6 @@ pub struct Altered<'a, U, S = ()> {
     inner: U,
     on_call: OnCall<'a, U>,
     on_bytes: OnQuestion<'a, U, (usize, usize), usize>,
-    on_window_cost: OnQuestion<'a, U, (), WindowCost>,
     on_method: OnQuestion<'a, U, (), Method>,
 }
 
@@ -112,7 +111,6 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
             inner,
             on_call: Box::new(|inner, call| call.ask(inner)),
             on_bytes: Box::new(|inner, (contact, watched)| inner.bytes(contact, watched)),
-            on_window_cost: Box::new(|inner, ()| inner.window_cost()),
             on_method: Box::new(|inner, ()| inner.method()),
         }
     }
@@ -131,13 +129,6 @@ impl<'a, U: LinearUpdater + 'a, S> Altered<'a, U, S> {
     #[must_use]
     pub fn on_bytes(mut self, on_bytes: impl Fn(&U, (usize, usize)) -> usize + 'a) -> Self {
         self.on_bytes = Box::new(on_bytes);
-        self
-    }
-
-    /// Answers so to `LinearUpdater::window_cost`.
-    #[must_use]
-    pub fn on_window_cost(mut self, on_window_cost: impl Fn(&U) -> WindowCost + 'a) -> Self {
-        self.on_window_cost = Box::new(move |inner, ()| on_window_cost(inner));
         self
     }
 
@@ -211,10 +202,6 @@ impl<'a, U: LinearUpdater + 'a, S> LinearUpdater for Altered<'a, U, S> {
 
     fn bytes(&self, contact: usize, watched: usize) -> usize {
         (self.on_bytes)(&self.inner, (contact, watched))
-    }
-
-    fn window_cost(&self) -> WindowCost {
-        (self.on_window_cost)(&self.inner, ())
     }
 
     fn method(&self) -> Method {

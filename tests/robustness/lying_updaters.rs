@@ -67,15 +67,6 @@ fn lying(inner: Box<dyn LinearUpdater>, what: &'static str, turn: usize) -> impl
             }
             Ok(())
         })
-        .on_window_cost(move |inner| {
-            let mut cost = inner.window_cost();
-            match what {
-                "multiple" => cost.multiple = usize::MAX,
-                "NaN cost" => cost.solve = f64::NAN,
-                _ => (),
-            }
-            cost
-        })
         .on_bytes(move |inner, (contact, watched)| match what {
             "all memory" => usize::MAX,
             _ => inner.bytes(contact, watched),
@@ -84,7 +75,7 @@ fn lying(inner: Box<dyn LinearUpdater>, what: &'static str, turn: usize) -> impl
         .on_method(|_| Method::Factor)
 }
 
-const LIES: [&str; 19] = [
+const LIES: [&str; 17] = [
     "watch others",
     "watch nothing",
     "huge complement",
@@ -101,8 +92,6 @@ const LIES: [&str; 19] = [
     "negative rate",
     "truncate nothing",
     "release nothing",
-    "multiple",
-    "NaN cost",
     "all memory",
 ];
 

@@ -24,7 +24,7 @@ pub struct KernelReport {
     /// of the influence matrix on the whole grid; `None` if the boundary is free. The wave of length
     /// zero is left out if the mean displacement is arbitrary.
     pub least_symbol: Option<f64>,
-    /// What the kernel promises.
+    /// The growth that the kernel promises.
     pub promised_growth: ContactGrowth,
     /// The most that no set has contradicted, which may be more than what is promised. It is evidence
     /// and no proof, unless the check was exhaustive.

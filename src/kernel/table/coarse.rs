@@ -168,7 +168,7 @@ impl KernelTable {
         self.on_blocks(grid, values)
     }
 
-    /// What is known of the body does not change with the grid, except for the promise of growth,
+    /// Properties of the body do not change with the grid, except for the promise of growth,
     /// which was made for the nodes of the fine one.
     fn on_blocks(&self, grid: Grid, values: Vec<f64>) -> Self {
         Self {

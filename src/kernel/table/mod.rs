@@ -162,7 +162,7 @@ impl KernelTable {
     /// an even number of nodes have their full weight, and take the mean of both directions in which
     /// they can be said to run.
     ///
-    /// What happens at q = 0 must be said by `mean`. If the mean displacement is
+    /// `mean` says how q = 0 is taken. If the mean displacement is
     /// [physical](MeanDisplacement::Physical), Ĉ(0) is what a uniform pressure does, u = Ĉ(0) p, and
     /// must be finite. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies without a base,
     /// where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge that
@@ -208,7 +208,7 @@ impl KernelTable {
         self.grid
     }
 
-    /// What surrounds the grid.
+    /// The surroundings of the grid.
     #[must_use]
     pub fn boundary(&self) -> Boundary {
         self.boundary

@@ -1,4 +1,4 @@
-//! `Wᵀ C W` of a contact, from aggregates that see distant aggregates as single nodes.
+//! `Wᵀ C W` of a contact, by aggregates of cells: distant ones act as single nodes.
 
 use std::ops::Range;
 
@@ -41,7 +41,7 @@ struct Lump {
     weights: [f32; 4],
 }
 
-/// What aggregates make of the hat functions of a contact, in units of C(0, 0).
+/// Influence between the hat functions of a contact by aggregates, in units of C(0, 0).
 pub(super) struct CoarseInfluence {
     /// Column by column, a matrix of which `Wᵀ C W` is the sum with its transpose.
     pub(super) half: Vec<f64>,

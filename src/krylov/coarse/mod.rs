@@ -1,4 +1,4 @@
-//! Long waves of a contact: what bilinear hat functions can tell of its pressures and displacements.
+//! The bilinear coarse space: long waves of pressures and displacements of a contact.
 
 mod aggregates;
 mod bilinear;

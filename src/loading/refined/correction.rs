@@ -7,7 +7,7 @@ use crate::loading::run::LoadingRun;
 use crate::loading::window::{Course, Window};
 use crate::updater::{Schur, WindowFactor};
 
-/// What the solution at a window's end says of a watched node.
+/// The gap line of a watched node by the solution at a window's end, and its error.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AtEnd {
     /// Pressure and its rate: 0 if the node is out of contact.
@@ -16,7 +16,7 @@ pub(super) struct AtEnd {
     pub(super) gap: [f64; 2],
 }
 
-/// What the present solution, at a window's end, says of the watched nodes.
+/// The gap lines of the watched nodes by the present solution, at a window's end.
 pub(super) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
     let solution = run.field.solution();
     let first = run.contact.len().saturating_sub(window.nodes().len());

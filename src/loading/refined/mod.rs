@@ -20,12 +20,12 @@ use super::ranking::{Ranking, fill};
 use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
-use crate::Error;
 use crate::loading::tuning::{
     CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
     WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
+use crate::{Error, UpdaterError};
 use candidates::{Candidates, cut, with_ties};
 use correction::Correction;
 use near_ties::Settled;
@@ -57,7 +57,7 @@ enum Outcome {
     Overlap { outside: Ranking, time: f64 },
 }
 
-/// What a contact at a window's end contradicts.
+/// The nodes at which a contact contradicts the conditions of contact at a window's end.
 #[derive(Debug, Default)]
 struct Contradictions {
     /// Positions of events whose node is under tension.
@@ -199,6 +199,10 @@ impl Refined {
         run.memory.check(needed, count)?;
         let mut schur = Schur::default();
         let displacements = iterations.propose(problem, contact, &nodes, &mut schur)?;
+        UpdaterError::check_length("watched displacements", displacements.len(), nodes.len())?;
+        if !displacements.as_flattened().iter().copied().all(f64::is_finite) {
+            return Err(run.not_finite());
+        }
         let gap = problem.initial_gap();
         let lines = nodes.iter().zip(displacements).map(|(&node, [u, rate])| {
             let (gap, closing) = (gap[node] + u - approach, 1.0 - rate);

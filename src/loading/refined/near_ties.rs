@@ -7,12 +7,12 @@ use crate::loading::tuning::{
 use std::ops::Range;
 
 use super::correction::Correction;
-use crate::Error;
 use crate::loading::gap_field::GapLine;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::Iterations;
+use crate::{Error, UpdaterError};
 
 /// The events of a window in their final order.
 #[derive(Debug)]
@@ -328,6 +328,8 @@ impl NearTies<'_> {
         let (problem, contact) = (&run.problem, &run.contact);
         let count = self.count + first;
         let displacement = iterations.probe(problem, contact, count, approach, gap_error)?;
+        let nodes = problem.grid().nodes();
+        UpdaterError::check_length("displacements", displacement.len(), nodes)?;
         Ok(move |node: usize| problem.initial_gap()[node] + displacement[node] - approach)
     }
 

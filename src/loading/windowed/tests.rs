@@ -72,18 +72,17 @@ fn the_next_nodes_are_chosen() {
 #[test]
 fn windows_have_no_more_nodes_than_there_are() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0; 100])?;
-    let cost = Dense.window_cost();
-    assert_eq!(windowed(Some(7)).next_size(&run, cost, 100), 7);
-    assert_eq!(windowed(Some(1000)).next_size(&run, cost, 100), 100);
+    assert_eq!(windowed(Some(7)).next_size(&run, 100), 7);
+    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 100);
     // Four to have three of them touch.
-    assert_eq!(windowed(None).next_size(&run, cost, 3), 4);
+    assert_eq!(windowed(None).next_size(&run, 3), 4);
     for node in 0..90 {
         run.contact.push(node)?;
     }
-    assert_eq!(windowed(Some(1000)).next_size(&run, cost, 100), 10);
-    assert_eq!(windowed(None).next_size(&run, cost, 93), 4);
-    assert_eq!(windowed(Some(7)).multiple(cost), 1);
-    assert_eq!(windowed(None).multiple(cost), 96);
+    assert_eq!(windowed(Some(1000)).next_size(&run, 100), 10);
+    assert_eq!(windowed(None).next_size(&run, 93), 4);
+    assert_eq!(windowed(Some(7)).multiple(), 1);
+    assert_eq!(windowed(None).multiple(), 96);
     Ok(())
 }
 

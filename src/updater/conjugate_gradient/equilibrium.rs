@@ -18,7 +18,7 @@ pub(super) struct Equilibrium {
 }
 
 impl Field {
-    /// What the displacements leave of 1 on average: the mean closing rate of the gaps if this is a rate.
+    /// One less the mean displacement: the mean closing rate of the gaps if this is a rate.
     pub(super) fn open(&self) -> f64 {
         let nodes = self.displacement.len().max(1) as f64;
         1.0 - self.displacement.iter().sum::<f64>() / nodes
@@ -73,7 +73,7 @@ impl Equilibrium {
         }
     }
 
-    /// What is left of the equations of a node in contact, for pressure and rate.
+    /// Residuals of the equations of a node in contact, for pressure and rate.
     pub(super) fn left(&self, problem: &Problem, node: usize) -> [f64; 2] {
         let overlap = self.approach - problem.initial_gap()[node];
         let rate = self.rate.displacement.get(node);

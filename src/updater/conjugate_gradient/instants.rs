@@ -1,4 +1,4 @@
-//! What local solutions leave out of the pressure inside a window.
+//! The part of the pressure inside a window that local solutions leave out.
 
 use super::tuning::MOST;
 

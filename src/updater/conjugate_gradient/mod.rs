@@ -91,7 +91,7 @@ impl ConjugateGradient {
         Ok(updater)
     }
 
-    /// What there is for a problem, made at first use.
+    /// Solver and solutions of a problem, made at first use.
     ///
     /// # Errors
     ///

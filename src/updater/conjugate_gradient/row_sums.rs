@@ -1,4 +1,4 @@
-//! What the contact makes of the row sums of the influence matrix, for the rate of the mean gap.
+//! Row sums of the influence matrix with the contact eliminated, for the rate of the mean gap.
 
 use std::mem;
 
@@ -64,7 +64,7 @@ impl RowSums {
         Ok(())
     }
 
-    /// What is left of the row sum of a proposed node: `s_j − C_jI C_II⁻¹ s_I`.
+    /// The row sum of a proposed node with the contact eliminated: `s_j − C_jI C_II⁻¹ s_I`.
     pub(super) fn left_at(&self, problem: &Problem, local: &Local) -> f64 {
         let left = |node: usize| problem.row_sums()[node] - self.field.displacement[node];
         let near = local.contact.iter().zip(&local.weights);

@@ -14,7 +14,7 @@ use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::{Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
 
-/// What depends on the problem and its contact, made at first use.
+/// The parts that depend on the problem and its contact, made at first use.
 #[derive(Debug, Clone)]
 pub(super) struct Solutions {
     solver: Solver,
@@ -172,7 +172,7 @@ impl Solutions {
         Ok(displacement)
     }
 
-    /// Solves exactly with the first `count` nodes in contact. What the path goes on with stays as it is.
+    /// Solves exactly with the first `count` nodes in contact. The solution that the path goes on with is left as it is.
     pub(super) fn solve_apart(
         &mut self,
         criteria: Criteria,

@@ -2,7 +2,7 @@
 
 use super::tuning::{ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_SPAN, RATE_TOLERANCE};
 
-/// What a solution is for.
+/// The purpose of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Aim {
     /// The gaps of proposed nodes, to this error \[m\]. No rate.
@@ -37,7 +37,7 @@ pub(super) struct Criteria {
 pub(super) struct Tolerances {
     pub(super) load: f64,
     pub(super) rate: f64,
-    /// What single precision may have spoilt of the displacements of both: solutions inside the next window begin with
+    /// Greatest error of both displacements by single precision: solutions inside the next window begin with
     /// them, and would all have to compute them afresh.
     pub(super) drift: [f64; 2],
 }

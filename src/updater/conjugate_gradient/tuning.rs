@@ -34,7 +34,7 @@ pub(super) const LEAST_RATE_TOLERANCE: f64 = 1e-11;
 /// The same inside a path: over a window of some fifty events, and with the gaps of watched nodes improved, it
 /// puts a time off by some 10⁻⁵ of their spacing. Half or twice: stiffnesses of the strip change by a factor of two, nothing else does.
 pub(super) const RATE_TOLERANCE: f64 = 1.5e-5;
-/// What gaps may be off by, relative to the span that the approach will go: 10⁻⁴ of the spacing of events. Half: loads of the strip 0.6
+/// Error of gaps, relative to the span that the approach will go: 10⁻⁴ of the spacing of events. Half: loads of the strip 0.6
 /// times as wrong. Twice: 1.3 times.
 pub(super) const OF_SPAN: f64 = 2e-6;
 /// And relative to the approach, on which loads depend: near first touch windows are long beside it. Half: 1.05 times the
@@ -44,7 +44,7 @@ pub(super) const OF_LENGTH: f64 = 1e-8;
 /// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
 /// few per cent. Half: 1.07 times the convolutions. Twice: 0.93 of them, but near ties on tiles go from 2 to 35.
 pub(super) const ADJOINT: f64 = 30.0;
-/// What single precision may spoil of displacements, as a part of the least residual; of those of a rate, over the span of a
+/// Greatest error of displacements by single precision, as a part of the least residual; of those of a rate, over the span of a
 /// window. Half: 1.03 times the convolutions on the strip, 1.01 elsewhere. Twice: 0.985 of them.
 pub(super) const DRIFT: f64 = 0.25;
 

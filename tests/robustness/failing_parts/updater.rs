@@ -50,13 +50,12 @@ pub(super) type Failing<U> = Altered<'static, U, Rc<Strike>>;
 pub(super) fn failing<U: LinearUpdater + 'static>(inner: U, fault: Fault, at: usize) -> Failing<U> {
     let strike =
         Rc::new(Strike { fault, at: Cell::new(at), calls: Cell::new(0), struck: Cell::new(None) });
-    let [calls, bytes, cost] = [(); 3].map(|()| Rc::clone(&strike));
+    let [calls, bytes] = [(); 2].map(|()| Rc::clone(&strike));
     Altered::with_state(inner, strike)
         .on_call(move |inner, call| calls.call(inner, call))
         .on_bytes(move |inner, (contact, watched)| {
             bytes.ask("bytes", || inner.bytes(contact, watched))
         })
-        .on_window_cost(move |inner| cost.ask("window_cost", || inner.window_cost()))
         // Iterations are asked as an updater is: only so do their calls come by here.
         .on_method(|inner| match inner.method() {
             Method::Iterations(_) => Method::Factor,
@@ -92,7 +91,7 @@ impl Strike {
         self.calls.set(call + 1);
         let possible = match (self.fault, method) {
             (Fault::PanicBefore | Fault::PanicAfter, _) => true,
-            (_, "window_cost" | "bytes") => false,
+            (_, "bytes") => false,
             (Fault::Refuse, _) => true,
             (Fault::Forget, _) => method != "solve" && method != "watch",
             (
