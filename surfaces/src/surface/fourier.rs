@@ -64,10 +64,7 @@ impl Waves {
         let along_y = FftPlanner::new().plan_fft_forward(ny);
         let normalisation = 1.0 / grid.nodes() as f64;
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
-            along_y.process_with_scratch(
-                lines,
-                &mut vec![Complex64::ZERO; along_y.get_inplace_scratch_len()],
-            );
+            along_y.process(lines);
             for value in lines {
                 *value *= normalisation;
             }
@@ -112,10 +109,7 @@ impl Waves {
         let (nx, ny) = grid.shape();
         let along_y = FftPlanner::new().plan_fft_inverse(ny);
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
-            along_y.process_with_scratch(
-                lines,
-                &mut vec![Complex64::ZERO; along_y.get_inplace_scratch_len()],
-            );
+            along_y.process(lines);
         });
         let mut rows = coefficients.transpose();
         drop(coefficients);

@@ -14,6 +14,16 @@ pub enum Axis {
     Y,
 }
 
+impl Axis {
+    /// That of two things, one along x and one along y, which belongs to this direction.
+    pub(super) fn of<T>(self, (x, y): (T, T)) -> T {
+        match self {
+            Self::X => x,
+            Self::Y => y,
+        }
+    }
+}
+
 /// The reference point of a shape: the centre of whatever grid it is put on, or a fixed point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Placement(Option<(f64, f64)>);

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use nalgebra::dmatrix;
 use proptest::prelude::*;
 
+use super::matrix as parse;
 use super::*;
-use crate::FileError;
 use crate::surface::HeightMap;
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -17,10 +17,6 @@ fn file(header: &str, data: &[u8]) -> Vec<u8> {
     bytes.extend(header.as_bytes());
     bytes.extend(data);
     bytes
-}
-
-fn parse(bytes: &[u8]) -> Result<DMatrix<f64>, Fault> {
-    matrix(bytes)
 }
 
 /// The error of a file that only exists here.
@@ -103,36 +99,6 @@ fn the_elements_begin_at_a_multiple_of_64() {
         let understood = Header::read(&mut Bytes::new(&header));
         assert!(matches!(understood, Ok(header) if header.shape == [shape.0, shape.1]));
     }
-}
-
-#[test]
-fn errors_name_the_file() -> TestResult {
-    let folder = std::env::temp_dir();
-    let absent = folder.join(format!("asperity-absent-{}.npy", std::process::id()));
-    let error = read_npy(&absent).err().ok_or("a file that is not there")?;
-    assert!(matches!(&error, Error::File(FileError::Io { path, .. }) if *path == absent));
-    assert!(error.to_string().contains("asperity-absent"), "{error}");
-    let error = read_npy(&folder).err().ok_or("a directory")?;
-    assert!(matches!(&error, Error::File(FileError::BadFile { path, .. }) if *path == folder));
-    let unwritable = absent.join("below-a-file-that-is-not-there.npy");
-    let error = write_npy(&unwritable, &dmatrix![1.0]).err().ok_or("no folder")?;
-    assert!(matches!(&error, Error::File(FileError::Io { path, .. }) if *path == unwritable));
-    Ok(())
-}
-
-/// A pipe into which nobody writes: opening it would never return.
-#[cfg(unix)]
-#[test]
-fn a_pipe_is_refused() -> TestResult {
-    let path = std::env::temp_dir().join(format!("asperity-pipe-{}.npy", std::process::id()));
-    let made = std::process::Command::new("mkfifo").arg(&path).status();
-    // Without the program there is nothing to try.
-    if made.is_ok_and(|status| status.success()) {
-        let refused = read_npy(&path);
-        fs::remove_file(&path)?;
-        assert!(matches!(refused, Err(Error::File(FileError::BadFile { .. }))));
-    }
-    Ok(())
 }
 
 #[test]

@@ -41,37 +41,20 @@ pub struct SpectralMoments {
     m04: f64,
 }
 
-impl SpectralMoments {
+getters!(SpectralMoments {
     /// m₂₀ = ⟨h_x²⟩, without unit.
-    #[must_use]
-    pub fn m20(&self) -> f64 {
-        self.m20
-    }
-
+    m20: f64,
     /// m₀₂ = ⟨h_y²⟩, without unit.
-    #[must_use]
-    pub fn m02(&self) -> f64 {
-        self.m02
-    }
-
+    m02: f64,
     /// m₄₀ = ⟨h_xx²⟩ \[1/m²\].
-    #[must_use]
-    pub fn m40(&self) -> f64 {
-        self.m40
-    }
-
+    m40: f64,
     /// m₂₂ = ⟨h_xy²⟩ = ⟨h_xx h_yy⟩ \[1/m²\].
-    #[must_use]
-    pub fn m22(&self) -> f64 {
-        self.m22
-    }
-
+    m22: f64,
     /// m₀₄ = ⟨h_yy²⟩ \[1/m²\].
-    #[must_use]
-    pub fn m04(&self) -> f64 {
-        self.m04
-    }
+    m04: f64,
+});
 
+impl SpectralMoments {
     /// m₀, the mean square height \[m²\].
     #[must_use]
     pub fn m0(&self) -> f64 {

@@ -57,22 +57,6 @@ fn moments_of_a_plane_wave() -> Result<(), Error> {
     Ok(())
 }
 
-/// What the generator promises of its surfaces, the transform of the heights finds.
-#[test]
-fn moments_of_generated_surfaces() -> Result<(), Error> {
-    let surface = SelfAffine::new(0.8, 0.3, 0.06, Amplitude::RmsHeight(1e-6), 8)?;
-    for (nx, ny) in [(64, 81), (75, 70)] {
-        let grid = Grid::with_sides(nx, ny, 1.0, 1.2)?;
-        let (spectrum, map) = (surface.spectrum(&grid)?, Topography::sample(&surface, grid)?);
-        let m = map.spectral_moments();
-        close(m.rms_height(), spectrum.rms_height());
-        close(m.rms_gradient(), spectrum.rms_gradient());
-        close(m.rms_laplacian(), spectrum.rms_laplacian());
-        close(m.nayak_parameter(), spectrum.nayak_parameter());
-    }
-    Ok(())
-}
-
 #[test]
 fn a_flat_map_has_no_breadth() -> Result<(), Error> {
     let flat = Topography::new(Grid::square(4, 1.0)?, DMatrix::from_element(4, 4, 3.0))?;
