@@ -151,13 +151,14 @@ impl Waves {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
     use crate::Error;
 
-    fn noise(node: usize) -> f64 {
+    /// Numbers between 0 and 1 that look random: the fractional parts of multiples of the golden ratio.
+    pub(in crate::surface) fn noise(node: usize) -> f64 {
         (node as f64 * 0.618_033_988_749_894_9).fract()
     }
 

@@ -101,16 +101,12 @@ mod tests {
         ) {
             let grid = Grid::new(nodes, 1, cell, 1.0).map_err(|e| TestCaseError::fail(e.to_string()))?;
             let side = grid.sides().0;
-            let center = relative * side;
-            for (i, x) in offsets(nodes, cell, Some(center)).into_iter().enumerate() {
-                let expected = grid.position(i, 0).0 - center;
-                // Both sides round quantities of at most 3 sides a handful of times.
-                prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
-            }
-            for (i, x) in offsets(nodes, cell, None).into_iter().enumerate() {
-                let expected = grid.position(i, 0).0 - grid.center().0;
-                // As above.
-                prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
+            for center in [Some(relative * side), None] {
+                for (i, x) in offsets(nodes, cell, center).into_iter().enumerate() {
+                    let expected = grid.position(i, 0).0 - center.unwrap_or(grid.center().0);
+                    // Both sides round quantities of at most 3 sides a handful of times.
+                    prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
+                }
             }
         }
 

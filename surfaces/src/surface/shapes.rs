@@ -60,10 +60,8 @@ impl Paraboloid {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            placement: Placement::default(),
-        })
+        let radius = Error::require_positive("radius", radius)?;
+        Ok(Self { radius, placement: Placement::default() })
     }
 }
 
@@ -92,11 +90,9 @@ impl EllipticParaboloid {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius_x: Error::require_positive("radius along x", radius_x)?,
-            radius_y: Error::require_positive("radius along y", radius_y)?,
-            placement: Placement::default(),
-        })
+        let radius_x = Error::require_positive("radius along x", radius_x)?;
+        let radius_y = Error::require_positive("radius along y", radius_y)?;
+        Ok(Self { radius_x, radius_y, placement: Placement::default() })
     }
 
     /// Radii of curvature R_x and R_y \[m\].
@@ -141,11 +137,8 @@ impl Cylinder {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius: f64, axis: Axis) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            axis,
-            placement: Placement::default(),
-        })
+        let radius = Error::require_positive("radius", radius)?;
+        Ok(Self { radius, axis, placement: Placement::default() })
     }
 }
 
@@ -181,10 +174,8 @@ impl Cone {
     ///
     /// [`Error::NotPositive`] for a slope that is not positive and finite.
     pub fn new(slope: f64) -> Result<Self, Error> {
-        Ok(Self {
-            slope: Error::require_positive("slope", slope)?,
-            placement: Placement::default(),
-        })
+        let slope = Error::require_positive("slope", slope)?;
+        Ok(Self { slope, placement: Placement::default() })
     }
 }
 
@@ -310,13 +301,15 @@ pub(super) mod tests {
     #[test]
     fn bad_parameters_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let not_positive =
-                |e: Option<Error>| assert!(matches!(e, Some(Error::NotPositive { .. })));
-            not_positive(Paraboloid::new(bad).err());
-            not_positive(EllipticParaboloid::new(bad, 1.0).err());
-            not_positive(EllipticParaboloid::new(1.0, bad).err());
-            not_positive(Cylinder::new(bad, Axis::X).err());
-            not_positive(Cone::new(bad).err());
+            for error in [
+                Paraboloid::new(bad).err(),
+                EllipticParaboloid::new(bad, 1.0).err(),
+                EllipticParaboloid::new(1.0, bad).err(),
+                Cylinder::new(bad, Axis::X).err(),
+                Cone::new(bad).err(),
+            ] {
+                assert!(matches!(error, Some(Error::NotPositive { .. })));
+            }
         }
         assert!(matches!(FlatPunch::new(f64::NAN), Err(Error::OutOfRange { .. })));
     }

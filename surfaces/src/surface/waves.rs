@@ -45,12 +45,9 @@ impl Wave {
     ///
     /// [`Error::NotPositive`] for a parameter that is not positive and finite.
     pub fn new(amplitude: f64, wavelength: f64, direction: Axis) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength: Error::require_positive("wavelength", wavelength)?,
-            direction,
-            placement: Placement::default(),
-        })
+        let amplitude = Error::require_positive("amplitude", amplitude)?;
+        let wavelength = Error::require_positive("wavelength", wavelength)?;
+        Ok(Self { amplitude, wavelength, direction, placement: Placement::default() })
     }
 }
 
@@ -88,12 +85,10 @@ impl BiWave {
     ///
     /// [`Error::NotPositive`] for a parameter that is not positive and finite.
     pub fn new(amplitude: f64, wavelength_x: f64, wavelength_y: f64) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength_x: Error::require_positive("wavelength along x", wavelength_x)?,
-            wavelength_y: Error::require_positive("wavelength along y", wavelength_y)?,
-            placement: Placement::default(),
-        })
+        let amplitude = Error::require_positive("amplitude", amplitude)?;
+        let wavelength_x = Error::require_positive("wavelength along x", wavelength_x)?;
+        let wavelength_y = Error::require_positive("wavelength along y", wavelength_y)?;
+        Ok(Self { amplitude, wavelength_x, wavelength_y, placement: Placement::default() })
     }
 
     /// Wavelengths λ_x and λ_y \[m\].

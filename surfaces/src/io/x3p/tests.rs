@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use super::*;
 use crate::io::ReadOptions;
 use crate::io::testing::{TestResult, assert_refused, assert_whole, only};
-use crate::{Error, FileError, Grid};
+use crate::{Error, Grid};
 
 /// A compressed archive.
 fn archive(members: &[(&str, &[u8])]) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
@@ -44,8 +44,7 @@ fn what_is_written_is_read_back_to_the_last_bit() -> TestResult {
         f64::MIN_POSITIVE / 3.0, -1e300, f64::INFINITY
     ];
     let grid = Grid::new(2, 3, 1e-6 / 3.0, 0.1)?;
-    let folder = std::env::temp_dir();
-    let path = folder.join(format!("asperity-x3p-{}.x3p", std::process::id()));
+    let path = std::env::temp_dir().join(format!("asperity-x3p-{}.x3p", std::process::id()));
     write_x3p(&path, &grid, &heights)?;
     let first = std::fs::read(&path)?;
     write_x3p(&path, &grid, &heights)?;
@@ -62,8 +61,6 @@ fn what_is_written_is_read_back_to_the_last_bit() -> TestResult {
     }
     let other = Grid::square(2, 1.0)?;
     assert!(matches!(write_x3p(&path, &other, &heights), Err(Error::GridMismatch { .. })));
-    let nowhere = folder.join("no such folder").join("file.x3p");
-    assert!(matches!(write_x3p(&nowhere, &grid, &heights), Err(Error::File(FileError::Io { .. }))));
     Ok(())
 }
 

@@ -44,9 +44,9 @@ fn without(mut heights: DMatrix<f64>, missing: impl Fn(usize, usize) -> bool) ->
     heights
 }
 
-/// Numbers between −1 and 1 that look random: the fractional parts of multiples of the golden ratio.
+/// Numbers between −1 and 1 that look random.
 fn noise(node: usize) -> f64 {
-    2.0 * (node as f64 * 0.618_033_988_749_894_9).fract() - 1.0
+    2.0 * crate::surface::fourier::tests::noise(node) - 1.0
 }
 
 #[test]

@@ -126,16 +126,10 @@ impl SelfAffine {
             short_cutoff_wavelength <= rolloff_wavelength,
             "at most the roll-off wavelength",
         )?;
-        Ok(Self {
-            band: Band {
-                hurst,
-                rolloff_wavelength,
-                short_cutoff_wavelength,
-                long_cutoff_wavelength: None,
-            },
-            amplitude: amplitude.checked()?,
-            seed,
-        })
+        let long_cutoff_wavelength = None;
+        let band =
+            Band { hurst, rolloff_wavelength, short_cutoff_wavelength, long_cutoff_wavelength };
+        Ok(Self { band, amplitude: amplitude.checked()?, seed })
     }
 
     /// Leaves out all waves longer than `long_cutoff_wavelength` = λ_l \[m\].

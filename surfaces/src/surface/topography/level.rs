@@ -159,6 +159,7 @@ fn projection(heights: &DMatrix<f64>, mean: f64, phi: &[f64], psi: &[f64]) -> f6
 mod tests {
     use super::*;
     use crate::Grid;
+    use crate::surface::fourier::tests::noise;
 
     #[test]
     fn a_polynomial_is_found_and_taken_away() -> Result<(), Error> {
@@ -197,7 +198,6 @@ mod tests {
     #[test]
     fn what_is_left_has_no_trend() -> Result<(), Error> {
         let grid = Grid::new(23, 18, 1.5, 0.5)?;
-        let noise = |k: usize| (k as f64 * 0.618_033_988_749_894_9).fract();
         let map = Topography::new(grid, DMatrix::from_fn(23, 18, |i, j| noise(i + 23 * j)))?;
         for trend in [Trend::Mean, Trend::Plane, Trend::Quadratic] {
             let left = map.level(trend)?;
