@@ -42,6 +42,17 @@ impl TryFrom<Unchecked> for Grid {
     }
 }
 
+getters!(Grid {
+    /// Nodes along x.
+    nx: usize,
+    /// Nodes along y.
+    ny: usize,
+    /// Cell size along x \[m\].
+    dx: f64,
+    /// Cell size along y \[m\].
+    dy: f64,
+});
+
 impl Grid {
     /// Greatest number of nodes along a side.
     pub const MAX_SIDE: usize = 1 << 15;
@@ -104,30 +115,6 @@ impl Grid {
         Self { nx: self.ny, ny: self.nx, dx: self.dy, dy: self.dx }
     }
 
-    /// Nodes along x.
-    #[must_use]
-    pub fn nx(&self) -> usize {
-        self.nx
-    }
-
-    /// Nodes along y.
-    #[must_use]
-    pub fn ny(&self) -> usize {
-        self.ny
-    }
-
-    /// Cell size along x \[m\].
-    #[must_use]
-    pub fn dx(&self) -> f64 {
-        self.dx
-    }
-
-    /// Cell size along y \[m\].
-    #[must_use]
-    pub fn dy(&self) -> f64 {
-        self.dy
-    }
-
     /// Number of nodes along x and y, the shape of every field on this grid.
     #[must_use]
     pub fn shape(&self) -> (usize, usize) {
@@ -144,6 +131,15 @@ impl Grid {
     #[must_use]
     pub fn sides(&self) -> (f64, f64) {
         (self.nx as f64 * self.dx, self.ny as f64 * self.dy)
+    }
+
+    /// The longer or the shorter of two lengths, one along x and one along y; a direction of one node does not count.
+    pub(crate) fn of_directions(&self, (x, y): (f64, f64), of: fn(f64, f64) -> f64) -> f64 {
+        match self.shape() {
+            (_, 1) => x,
+            (1, _) => y,
+            _ => of(x, y),
+        }
     }
 
     /// Longer side of a cell over the shorter one.
@@ -233,11 +229,8 @@ impl Grid {
     ///
     /// [`Error::GridMismatch`] otherwise.
     pub fn check_shape(&self, found: (usize, usize)) -> Result<(), Error> {
-        if found == self.shape() {
-            Ok(())
-        } else {
-            Err(Error::GridMismatch { expected: self.shape(), found })
-        }
+        let expected = self.shape();
+        if found == expected { Ok(()) } else { Err(Error::GridMismatch { expected, found }) }
     }
 
     /// `Ok` if a field, which the error calls `field`, lives on this grid and is finite.
@@ -247,13 +240,11 @@ impl Grid {
     /// [`Error::GridMismatch`] and [`Error::FieldNotFinite`].
     pub fn check_finite(&self, field: &'static str, values: &DMatrix<f64>) -> Result<(), Error> {
         self.check_shape(values.shape())?;
-        match values.iter().position(|value| !value.is_finite()) {
-            Some(node) => {
-                let (ix, iy) = self.coordinates(node);
-                Err(Error::FieldNotFinite { field, ix, iy, value: values[node] })
-            }
-            None => Ok(()),
-        }
+        let Some(node) = values.iter().position(|value| !value.is_finite()) else {
+            return Ok(());
+        };
+        let (ix, iy) = self.coordinates(node);
+        Err(Error::FieldNotFinite { field, ix, iy, value: values[node] })
     }
 }
 

@@ -37,6 +37,8 @@
 //!   `y = (iy + ½) dy`. x is the first index; an image `[row, column]` must be transposed.
 //! * Results are the same bit for bit with any number of threads, and without the feature `rayon`.
 
+#[macro_use]
+mod getters;
 mod error;
 mod grid;
 pub mod io;

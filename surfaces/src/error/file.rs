@@ -101,44 +101,37 @@ mod tests {
     #[test]
     fn messages_say_what_to_do() {
         let path = || PathBuf::from("ground.gwy");
-        let channels = || vec!["Height".to_string(), "Phase".to_string()];
-        let which = |wanted: Option<&str>| FileError::WhichChannel {
-            path: path(),
-            wanted: wanted.map(str::to_string),
-            channels: channels(),
+        let which = |wanted: Option<&str>| {
+            let channels = vec!["Height".to_string(), "Phase".to_string()];
+            FileError::WhichChannel { path: path(), wanted: wanted.map(str::to_string), channels }
         };
-        assert_eq!(
-            which(None).to_string(),
-            "ground.gwy: choose one map with `ReadOptions::channel`; its maps are [\"Height\", \"Phase\"]"
-        );
-        assert_eq!(
-            which(Some("Depth")).to_string(),
-            "ground.gwy: there is not one map with the name 'Depth'; its maps are [\"Height\", \"Phase\"]"
-        );
-        let unit = |found: Option<&str>| FileError::NoUnit {
-            path: path(),
-            quantity: "heights",
-            found: found.map(str::to_string),
-            option: "`ReadOptions::height_unit`",
+        let unit = |found: Option<&str>| {
+            let (found, option) = (found.map(str::to_string), "`ReadOptions::height_unit`");
+            FileError::NoUnit { path: path(), quantity: "heights", found, option }
         };
-        assert_eq!(
-            unit(None).to_string(),
-            "ground.gwy: the heights have no unit; give it with `ReadOptions::height_unit`"
-        );
-        assert_eq!(
-            unit(Some("V")).to_string(),
-            "ground.gwy: the heights have the unit 'V', which is no length; give it with `ReadOptions::height_unit`"
-        );
-        let bad = |offset| FileError::BadFile {
-            path: path(),
-            format: "GWY",
-            offset,
-            reason: "it ends early".to_string(),
+        let bad = |offset| {
+            let reason = "it ends early".to_string();
+            FileError::BadFile { path: path(), format: "GWY", offset, reason }
         };
-        assert_eq!(
-            bad(Some(7)).to_string(),
-            "ground.gwy is no readable GWY file: it ends early (at byte 7)"
-        );
-        assert_eq!(bad(None).to_string(), "ground.gwy is no readable GWY file: it ends early");
+        for (error, message) in [
+            (
+                which(None),
+                "choose one map with `ReadOptions::channel`; its maps are [\"Height\", \"Phase\"]",
+            ),
+            (
+                which(Some("Depth")),
+                "there is not one map with the name 'Depth'; its maps are [\"Height\", \"Phase\"]",
+            ),
+            (unit(None), "the heights have no unit; give it with `ReadOptions::height_unit`"),
+            (
+                unit(Some("V")),
+                "the heights have the unit 'V', which is no length; give it with `ReadOptions::height_unit`",
+            ),
+        ] {
+            assert_eq!(error.to_string(), format!("ground.gwy: {message}"));
+        }
+        let message = "ground.gwy is no readable GWY file: it ends early";
+        assert_eq!(bad(None).to_string(), message);
+        assert_eq!(bad(Some(7)).to_string(), format!("{message} (at byte 7)"));
     }
 }

@@ -178,11 +178,8 @@ impl Error {
     /// `Ok(value)` if `value` is positive and finite, the typed error otherwise.
     #[doc(hidden)]
     pub fn require_positive(quantity: &'static str, value: f64) -> Result<f64, Self> {
-        if value > 0.0 && value.is_finite() {
-            Ok(value)
-        } else {
-            Err(Self::NotPositive { quantity, value })
-        }
+        let is_positive = value > 0.0 && value.is_finite();
+        is_positive.then_some(value).ok_or(Self::NotPositive { quantity, value })
     }
 
     /// `Ok(value)` if it is as `expected`, the typed error otherwise.
@@ -193,10 +190,7 @@ impl Error {
         is_so: bool,
         expected: &'static str,
     ) -> Result<f64, Self> {
-        if is_so {
-            return Ok(value);
-        }
-        Err(Self::OutOfRange { quantity, value, expected })
+        is_so.then_some(value).ok_or(Self::OutOfRange { quantity, value, expected })
     }
 
     /// `Ok(value)` if `value` is finite, the typed error otherwise.

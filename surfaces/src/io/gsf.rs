@@ -92,21 +92,18 @@ pub(super) fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::testing::{TestResult, only};
 
     /// Headers of all lengths modulo four, since data begin at a multiple of four; f32 holds these values exactly.
     #[test]
-    fn what_is_written_is_read_back() -> Result<(), Box<dyn std::error::Error>> {
+    fn what_is_written_is_read_back() -> TestResult {
         for (nx, unit) in [(7, "m"), (7, "nm"), (1000, "m"), (7, "rad"), (12, "Pa m"), (7, "")] {
             let grid = Grid::new(nx, 5, 2e-6, 3e-6)?;
             let mut field = DMatrix::from_fn(nx, 5, |ix, iy| 0.25 * ix as f64 - iy as f64);
             field[(3, 2)] = f64::NAN;
             let mut bytes = Vec::new();
             write(&mut bytes, &grid, &field, unit)?;
-            let channels =
-                parse(&bytes).map_err(|fault| fault.in_file(Path::new("test"), "GSF"))?;
-            let [found] = &channels[..] else {
-                return Err("one map was expected".into());
-            };
+            let found = only(parse(&bytes))?;
             assert_eq!(found.shape, (nx, 5));
             assert_eq!(found.height_unit.as_deref().unwrap_or_default(), unit);
             for (found, expected) in found.values.iter().zip(field.iter()) {

@@ -85,10 +85,11 @@ mod raw;
 mod sdf;
 #[cfg(feature = "io")]
 mod sur;
+#[cfg(all(test, feature = "io"))]
+mod testing;
 #[cfg(feature = "io")]
 mod text;
-#[cfg(all(test, feature = "io"))]
-mod truth;
+
 #[cfg(feature = "io")]
 mod unit;
 #[cfg(feature = "io")]

@@ -145,38 +145,19 @@ impl Header {
     }
 }
 
-/// The types of studies that the format knows.
-const TYPES: [&str; 22] = [
-    "something unknown",
-    "a profile",
-    "a surface",
-    "a binary image",
-    "a series of profiles",
-    "a series of surfaces",
-    "a meridian disc",
-    "a profile with layers",
-    "a surface with layers",
-    "a parallel disc",
-    "an intensity image",
-    "a surface with intensities",
-    "a colour image",
-    "a surface with colours",
-    "a force curve",
-    "a series of force curves",
-    "a surface with colours and intensities",
-    "a parametric profile",
-    "a series of colour images",
-    "something unknown",
-    "a spectrum",
-    "a map of spectra",
-];
+/// The types of studies that the format knows, from 0 on.
+const TYPES: &str = "something unknown|a profile|a surface|a binary image|a series of profiles|a series of surfaces|\
+    a meridian disc|a profile with layers|a surface with layers|a parallel disc|an intensity image|\
+    a surface with intensities|a colour image|a surface with colours|a force curve|a series of force curves|\
+    a surface with colours and intensities|a parametric profile|a series of colour images|something unknown|\
+    a spectrum|a map of spectra";
 
 fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
     // Gwyddion calls the maps that it writes profiles.
     if kind == 2 || (kind == 1 && ny > 1) {
         return Ok(());
     }
-    let name = TYPES.get(usize::from(kind)).unwrap_or(&TYPES[0]);
+    let name = TYPES.split('|').nth(kind.into()).unwrap_or("something unknown");
     bail!(at(18), "it holds {name} (type {kind}), but a surface (type 2) was expected")
 }
 

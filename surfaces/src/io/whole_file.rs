@@ -35,22 +35,15 @@ pub fn write_whole(
     work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
 ) -> Result<(), Error> {
     let path = path.as_ref();
-    write(path, work)
-        .map_err(|source| Error::File(FileError::Io { path: path.to_path_buf(), source }))
-}
-
-fn write(
-    path: &Path,
-    work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
-) -> std::io::Result<()> {
     let fill = |place: &Path| -> std::io::Result<File> {
         let mut output = BufWriter::new(File::create(place)?);
         work(&mut output)?;
         output.flush()?;
         Ok(output.into_inner()?)
     };
+    let named = |source| Error::File(FileError::Io { path: path.to_path_buf(), source });
     if fs::metadata(path).is_ok_and(|place| !place.is_file()) {
-        return fill(path).map(drop);
+        return fill(path).map(drop).map_err(named);
     }
     // A link stays one.
     let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
@@ -62,7 +55,7 @@ fn write(
         // It may not even be there.
         let _ = fs::remove_file(&unfinished);
     }
-    written
+    written.map_err(named)
 }
 
 /// The name of a file while it is written.

@@ -64,10 +64,7 @@ impl Waves {
         let along_y = FftPlanner::new().plan_fft_forward(ny);
         let normalisation = 1.0 / grid.nodes() as f64;
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
-            along_y.process_with_scratch(
-                lines,
-                &mut vec![Complex64::ZERO; along_y.get_inplace_scratch_len()],
-            );
+            along_y.process(lines);
             for value in lines {
                 *value *= normalisation;
             }
@@ -112,10 +109,7 @@ impl Waves {
         let (nx, ny) = grid.shape();
         let along_y = FftPlanner::new().plan_fft_inverse(ny);
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
-            along_y.process_with_scratch(
-                lines,
-                &mut vec![Complex64::ZERO; along_y.get_inplace_scratch_len()],
-            );
+            along_y.process(lines);
         });
         let mut rows = coefficients.transpose();
         drop(coefficients);
@@ -157,13 +151,14 @@ impl Waves {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
     use crate::Error;
 
-    fn noise(node: usize) -> f64 {
+    /// Numbers between 0 and 1 that look random: the fractional parts of multiples of the golden ratio.
+    pub(in crate::surface) fn noise(node: usize) -> f64 {
         (node as f64 * 0.618_033_988_749_894_9).fract()
     }
 

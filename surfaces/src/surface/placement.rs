@@ -14,6 +14,16 @@ pub enum Axis {
     Y,
 }
 
+impl Axis {
+    /// That of two things, one along x and one along y, which belongs to this direction.
+    pub(super) fn of<T>(self, (x, y): (T, T)) -> T {
+        match self {
+            Self::X => x,
+            Self::Y => y,
+        }
+    }
+}
+
 /// The reference point of a shape: the centre of whatever grid it is put on, or a fixed point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Placement(Option<(f64, f64)>);
@@ -91,16 +101,12 @@ mod tests {
         ) {
             let grid = Grid::new(nodes, 1, cell, 1.0).map_err(|e| TestCaseError::fail(e.to_string()))?;
             let side = grid.sides().0;
-            let center = relative * side;
-            for (i, x) in offsets(nodes, cell, Some(center)).into_iter().enumerate() {
-                let expected = grid.position(i, 0).0 - center;
-                // Both sides round quantities of at most 3 sides a handful of times.
-                prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
-            }
-            for (i, x) in offsets(nodes, cell, None).into_iter().enumerate() {
-                let expected = grid.position(i, 0).0 - grid.center().0;
-                // As above.
-                prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
+            for center in [Some(relative * side), None] {
+                for (i, x) in offsets(nodes, cell, center).into_iter().enumerate() {
+                    let expected = grid.position(i, 0).0 - center.unwrap_or(grid.center().0);
+                    // Both sides round quantities of at most 3 sides a handful of times.
+                    prop_assert!((x - expected).abs() <= 20.0 * f64::EPSILON * side);
+                }
             }
         }
 

@@ -5,9 +5,9 @@ use nalgebra::DMatrix;
 use super::placement::{Axis, Placement};
 use crate::{Error, Grid, Surface};
 
-/// Adds `centered_at` to a shape with a `placement`.
+/// Makes a shape with a `placement` a surface of this height at (x, y) from there, and adds `centered_at`.
 macro_rules! placed {
-    ($shape:ty, $point:literal) => {
+    ($shape:ty, $point:literal, |$this:ident, $x:ident, $y:ident| $height:expr) => {
         impl $shape {
             #[doc = concat!("Puts ", $point, " at (x, y) \\[m\\] instead of the centre of the grid.")]
             ///
@@ -21,6 +21,13 @@ macro_rules! placed {
             pub fn centered_at(mut self, x: f64, y: f64) -> Result<Self, Error> {
                 self.placement = Placement::at(x, y)?;
                 Ok(self)
+            }
+        }
+
+        impl Surface for $shape {
+            fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+                let $this = self;
+                self.placement.heights(grid, |$x, $y| $height)
             }
         }
     };
@@ -41,6 +48,11 @@ pub struct Paraboloid {
     placement: Placement,
 }
 
+getters!(Paraboloid {
+    /// Radius of curvature R \[m\].
+    radius: f64,
+});
+
 impl Paraboloid {
     /// A paraboloid with radius of curvature `radius` \[m\] at its apex.
     ///
@@ -48,26 +60,12 @@ impl Paraboloid {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            placement: Placement::default(),
-        })
-    }
-
-    /// Radius of curvature R \[m\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
+        let radius = Error::require_positive("radius", radius)?;
+        Ok(Self { radius, placement: Placement::default() })
     }
 }
 
-placed!(Paraboloid, "the apex");
-
-impl Surface for Paraboloid {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| -(x * x + y * y) / (2.0 * self.radius))
-    }
-}
+placed!(Paraboloid, "the apex", |this, x, y| -(x * x + y * y) / (2.0 * this.radius));
 
 /// A paraboloid with different radii of curvature along x and y.
 ///
@@ -92,11 +90,9 @@ impl EllipticParaboloid {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius_x: f64, radius_y: f64) -> Result<Self, Error> {
-        Ok(Self {
-            radius_x: Error::require_positive("radius along x", radius_x)?,
-            radius_y: Error::require_positive("radius along y", radius_y)?,
-            placement: Placement::default(),
-        })
+        let radius_x = Error::require_positive("radius along x", radius_x)?;
+        let radius_y = Error::require_positive("radius along y", radius_y)?;
+        Ok(Self { radius_x, radius_y, placement: Placement::default() })
     }
 
     /// Radii of curvature R_x and R_y \[m\].
@@ -106,14 +102,9 @@ impl EllipticParaboloid {
     }
 }
 
-placed!(EllipticParaboloid, "the apex");
-
-impl Surface for EllipticParaboloid {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement
-            .heights(grid, |x, y| -(x * x / (2.0 * self.radius_x) + y * y / (2.0 * self.radius_y)))
-    }
-}
+placed!(EllipticParaboloid, "the apex", |this, x, y| {
+    -(x * x / (2.0 * this.radius_x) + y * y / (2.0 * this.radius_y))
+});
 
 /// A parabolic cylinder, the parabolic stand-in for a circular one of radius R.
 ///
@@ -132,6 +123,13 @@ pub struct Cylinder {
     placement: Placement,
 }
 
+getters!(Cylinder {
+    /// Radius of curvature R \[m\].
+    radius: f64,
+    /// Direction of the ridge.
+    axis: Axis,
+});
+
 impl Cylinder {
     /// A cylinder of radius `radius` \[m\] whose ridge runs along `axis`.
     ///
@@ -139,39 +137,15 @@ impl Cylinder {
     ///
     /// [`Error::NotPositive`] for a radius that is not positive and finite.
     pub fn new(radius: f64, axis: Axis) -> Result<Self, Error> {
-        Ok(Self {
-            radius: Error::require_positive("radius", radius)?,
-            axis,
-            placement: Placement::default(),
-        })
-    }
-
-    /// Radius of curvature R \[m\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Direction of the ridge.
-    #[must_use]
-    pub fn axis(&self) -> Axis {
-        self.axis
+        let radius = Error::require_positive("radius", radius)?;
+        Ok(Self { radius, axis, placement: Placement::default() })
     }
 }
 
-placed!(Cylinder, "a point of the ridge");
-
-impl Surface for Cylinder {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| {
-            let across = match self.axis {
-                Axis::X => y,
-                Axis::Y => x,
-            };
-            -across * across / (2.0 * self.radius)
-        })
-    }
-}
+placed!(Cylinder, "a point of the ridge", |this, x, y| {
+    let across = this.axis.of((y, x));
+    -across * across / (2.0 * this.radius)
+});
 
 /// A cone.
 ///
@@ -187,6 +161,11 @@ pub struct Cone {
     placement: Placement,
 }
 
+getters!(Cone {
+    /// Slope t of the flank, without unit.
+    slope: f64,
+});
+
 impl Cone {
     /// A cone whose flank falls by `slope` = t metres a metre: the tangent of the angle between
     /// flank and base.
@@ -195,26 +174,12 @@ impl Cone {
     ///
     /// [`Error::NotPositive`] for a slope that is not positive and finite.
     pub fn new(slope: f64) -> Result<Self, Error> {
-        Ok(Self {
-            slope: Error::require_positive("slope", slope)?,
-            placement: Placement::default(),
-        })
-    }
-
-    /// Slope t of the flank, without unit.
-    #[must_use]
-    pub fn slope(&self) -> f64 {
-        self.slope
+        let slope = Error::require_positive("slope", slope)?;
+        Ok(Self { slope, placement: Placement::default() })
     }
 }
 
-placed!(Cone, "the apex");
-
-impl Surface for Cone {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| -self.slope * libm::hypot(x, y))
-    }
-}
+placed!(Cone, "the apex", |this, x, y| -this.slope * libm::hypot(x, y));
 
 /// A rigid flat punch as large as the grid: one height everywhere.
 ///
@@ -225,6 +190,11 @@ pub struct FlatPunch {
     height: f64,
 }
 
+getters!(FlatPunch {
+    /// The height \[m\].
+    height: f64,
+});
+
 impl FlatPunch {
     /// A flat punch at height `height` \[m\]; [`FlatPunch::default`] lies at 0.
     ///
@@ -233,12 +203,6 @@ impl FlatPunch {
     /// [`Error::OutOfRange`] for a height that is not finite.
     pub fn new(height: f64) -> Result<Self, Error> {
         Ok(Self { height: Error::require_finite("height", height)? })
-    }
-
-    /// The height \[m\].
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.height
     }
 }
 
@@ -249,11 +213,11 @@ impl Surface for FlatPunch {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// Heights equal bit for bit under x -> -x and y -> -y.
-    fn assert_mirrored(heights: &DMatrix<f64>) {
+    pub(crate) fn assert_mirrored(heights: &DMatrix<f64>) {
         let (nx, ny) = heights.shape();
         for ix in 0..nx {
             for iy in 0..ny {
@@ -337,13 +301,15 @@ mod tests {
     #[test]
     fn bad_parameters_are_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let not_positive =
-                |e: Option<Error>| assert!(matches!(e, Some(Error::NotPositive { .. })));
-            not_positive(Paraboloid::new(bad).err());
-            not_positive(EllipticParaboloid::new(bad, 1.0).err());
-            not_positive(EllipticParaboloid::new(1.0, bad).err());
-            not_positive(Cylinder::new(bad, Axis::X).err());
-            not_positive(Cone::new(bad).err());
+            for error in [
+                Paraboloid::new(bad).err(),
+                EllipticParaboloid::new(bad, 1.0).err(),
+                EllipticParaboloid::new(1.0, bad).err(),
+                Cylinder::new(bad, Axis::X).err(),
+                Cone::new(bad).err(),
+            ] {
+                assert!(matches!(error, Some(Error::NotPositive { .. })));
+            }
         }
         assert!(matches!(FlatPunch::new(f64::NAN), Err(Error::OutOfRange { .. })));
     }

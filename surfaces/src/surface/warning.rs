@@ -196,20 +196,10 @@ mod tests {
         Ok(())
     }
 
-    /// Text that has room for so many bytes.
-    struct Room(usize);
-
-    impl fmt::Write for Room {
-        fn write_str(&mut self, text: &str) -> fmt::Result {
-            self.0 = self.0.checked_sub(text.len()).ok_or(fmt::Error)?;
-            Ok(())
-        }
-    }
-
     /// Wherever its text ends too early, a warning that does not fit says so.
     #[test]
     fn a_warning_that_does_not_fit_is_an_error() {
-        use fmt::Write;
+        use std::io::Write;
         let (plane, left) = (1e-6, 1e-9);
         let rms_height = 1e-13;
         for warning in [
@@ -220,21 +210,22 @@ mod tests {
             Warning::Unresolved { share: 0.3 },
         ] {
             let length = warning.to_string().len();
+            let mut text = vec![0; length];
             for room in 0..length {
-                assert!(write!(Room(room), "{warning}").is_err(), "{room} of {length}");
+                assert!(write!(&mut text[..room], "{warning}").is_err(), "{room} of {length}");
             }
-            assert!(write!(Room(length), "{warning}").is_ok());
+            assert!(write!(&mut text[..], "{warning}").is_ok());
         }
     }
 
     #[test]
     fn heights_smaller_than_atoms_are_noticed() -> Result<(), Error> {
         let found = warnings(1e-5, |x, y| 5e-13 * (x.sin() + (0.9 * y).sin()))?;
-        let [warning @ Warning::Smooth { rms_height }] = found[..] else {
-            return Err(Error::TooFewWaves { found: 0, needed: 1 });
-        };
-        assert!((rms_height / 5e-13 - 1.0).abs() < 0.1, "{rms_height}");
-        assert!(warning.to_string().contains("less than a tenth of an atom"));
+        let is_close = |rms_height: f64| (rms_height / 5e-13 - 1.0).abs() < 0.1;
+        let is_smooth =
+            matches!(found[..], [Warning::Smooth { rms_height }] if is_close(rms_height));
+        assert!(is_smooth, "{found:?}");
+        assert!(found[0].to_string().contains("less than a tenth of an atom"));
         // Nothing is wrong with a plane.
         assert_eq!(warnings(1e-5, |_, _| 1e-6)?, []);
         Ok(())
@@ -245,11 +236,10 @@ mod tests {
     fn waves_that_the_grid_does_not_resolve_are_noticed() -> Result<(), Error> {
         let wave = |waves: f64, x: f64| (std::f64::consts::TAU * waves * x / 16.0).sin() / waves;
         let found = warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(6.0, y)))?;
-        let [warning @ Warning::Unresolved { share }] = found[..] else {
-            return Err(Error::TooFewWaves { found: 0, needed: 1 });
-        };
-        assert!((share - 0.5).abs() < 0.1, "{share}");
-        assert!(warning.to_string().contains("% of the mean square gradient"));
+        let is_half =
+            matches!(found[..], [Warning::Unresolved { share }] if (share - 0.5).abs() < 0.1);
+        assert!(is_half, "{found:?}");
+        assert!(found[0].to_string().contains("% of the mean square gradient"));
         assert_eq!(warnings(1e-5, |x, y| 1e-6 * (wave(2.0, x) + wave(2.0, y)))?, []);
         Ok(())
     }

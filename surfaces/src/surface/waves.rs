@@ -25,6 +25,15 @@ pub struct Wave {
     placement: Placement,
 }
 
+getters!(Wave {
+    /// Amplitude D \[m\].
+    amplitude: f64,
+    /// Wavelength λ \[m\].
+    wavelength: f64,
+    /// Direction along which the heights vary.
+    direction: Axis,
+});
+
 impl Wave {
     /// A wave of amplitude `amplitude` = D \[m\], half its peak-to-valley height, and wavelength
     /// `wavelength` = λ \[m\] whose heights vary along `direction`.
@@ -36,46 +45,15 @@ impl Wave {
     ///
     /// [`Error::NotPositive`] for a parameter that is not positive and finite.
     pub fn new(amplitude: f64, wavelength: f64, direction: Axis) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength: Error::require_positive("wavelength", wavelength)?,
-            direction,
-            placement: Placement::default(),
-        })
-    }
-
-    /// Amplitude D \[m\].
-    #[must_use]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    /// Wavelength λ \[m\].
-    #[must_use]
-    pub fn wavelength(&self) -> f64 {
-        self.wavelength
-    }
-
-    /// Direction along which the heights vary.
-    #[must_use]
-    pub fn direction(&self) -> Axis {
-        self.direction
+        let amplitude = Error::require_positive("amplitude", amplitude)?;
+        let wavelength = Error::require_positive("wavelength", wavelength)?;
+        Ok(Self { amplitude, wavelength, direction, placement: Placement::default() })
     }
 }
 
-placed!(Wave, "a point of a crest");
-
-impl Surface for Wave {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| {
-            let along = match self.direction {
-                Axis::X => x,
-                Axis::Y => y,
-            };
-            self.amplitude * turns::cos(along / self.wavelength)
-        })
-    }
-}
+placed!(Wave, "a point of a crest", |this, x, y| {
+    this.amplitude * turns::cos(this.direction.of((x, y)) / this.wavelength)
+});
 
 /// A two-dimensional wave.
 ///
@@ -94,6 +72,11 @@ pub struct BiWave {
     placement: Placement,
 }
 
+getters!(BiWave {
+    /// Amplitude D \[m\].
+    amplitude: f64,
+});
+
 impl BiWave {
     /// A wave of amplitude `amplitude` = D \[m\], half its peak-to-valley height, and wavelengths
     /// `wavelength_x` and `wavelength_y` \[m\].
@@ -102,18 +85,10 @@ impl BiWave {
     ///
     /// [`Error::NotPositive`] for a parameter that is not positive and finite.
     pub fn new(amplitude: f64, wavelength_x: f64, wavelength_y: f64) -> Result<Self, Error> {
-        Ok(Self {
-            amplitude: Error::require_positive("amplitude", amplitude)?,
-            wavelength_x: Error::require_positive("wavelength along x", wavelength_x)?,
-            wavelength_y: Error::require_positive("wavelength along y", wavelength_y)?,
-            placement: Placement::default(),
-        })
-    }
-
-    /// Amplitude D \[m\].
-    #[must_use]
-    pub fn amplitude(&self) -> f64 {
-        self.amplitude
+        let amplitude = Error::require_positive("amplitude", amplitude)?;
+        let wavelength_x = Error::require_positive("wavelength along x", wavelength_x)?;
+        let wavelength_y = Error::require_positive("wavelength along y", wavelength_y)?;
+        Ok(Self { amplitude, wavelength_x, wavelength_y, placement: Placement::default() })
     }
 
     /// Wavelengths λ_x and λ_y \[m\].
@@ -123,20 +98,14 @@ impl BiWave {
     }
 }
 
-placed!(BiWave, "a peak");
-
-impl Surface for BiWave {
-    fn heights(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
-        self.placement.heights(grid, |x, y| {
-            let product = turns::cos(x / self.wavelength_x) * turns::cos(y / self.wavelength_y);
-            self.amplitude * product
-        })
-    }
-}
+placed!(BiWave, "a peak", |this, x, y| {
+    this.amplitude * (turns::cos(x / this.wavelength_x) * turns::cos(y / this.wavelength_y))
+});
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::shapes::tests::assert_mirrored;
     use std::f64::consts::TAU;
 
     #[test]
@@ -169,16 +138,10 @@ mod tests {
             let heights = BiWave::new(1e-6, 1.1e-2 / 3.0, 1.1e-2 / 3.0)?.heights(&grid)?;
             assert_eq!(heights, heights.transpose());
             let profile = Wave::new(1e-6, 1.1e-2, Axis::X)?.heights(&grid)?;
-            for ix in 0..n {
-                for iy in 0..n {
-                    let z = heights[(ix, iy)].to_bits();
-                    assert_eq!(z, heights[(n - 1 - ix, iy)].to_bits());
-                    assert_eq!(z, heights[(ix, n - 1 - iy)].to_bits());
-                    let z = profile[(ix, iy)].to_bits();
-                    assert_eq!(z, profile[(n - 1 - ix, iy)].to_bits());
-                    assert_eq!(z, profile[(ix, 0)].to_bits());
-                }
-            }
+            assert_mirrored(&heights);
+            assert_mirrored(&profile);
+            let same = |ix, iy| profile[(ix, iy)].to_bits() == profile[(ix, 0)].to_bits();
+            assert!((0..n * n).all(|node| same(node % n, node / n)));
         }
         Ok(())
     }

@@ -16,24 +16,30 @@ use super::{Scratch, own};
 #[test]
 fn a_file_that_is_not_there_is_named_with_the_cause() {
     let absent = Scratch::new("absent.sdf");
-    let error = read_surface(&absent.0).unwrap_err();
-    let Error::File(FileError::Io { path, source }) = &error else {
-        panic!("{error}");
-    };
-    assert_eq!(*path, absent.0);
-    assert_eq!(source.kind(), ErrorKind::NotFound);
-    let message = error.to_string();
-    assert!(message.contains("absent.sdf"), "{message}");
-    assert!(message.contains(&source.to_string()), "{message}");
+    for error in
+        [read_surface(&absent.0).map(drop).unwrap_err(), read_npy(&absent.0).map(drop).unwrap_err()]
+    {
+        let Error::File(FileError::Io { path, source }) = &error else {
+            panic!("{error}");
+        };
+        assert_eq!(*path, absent.0);
+        assert_eq!(source.kind(), ErrorKind::NotFound);
+        let message = error.to_string();
+        assert!(message.contains("absent.sdf"), "{message}");
+        assert!(message.contains(&source.to_string()), "{message}");
+    }
 }
 
 #[test]
 fn a_folder_is_refused() {
-    let error = read_surface(own()).unwrap_err();
-    assert!(
-        matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == own() && reason.contains("regular")),
-        "{error}"
-    );
+    for error in
+        [read_surface(own()).map(drop).unwrap_err(), read_npy(own()).map(drop).unwrap_err()]
+    {
+        assert!(
+            matches!(&error, Error::File(FileError::BadFile { path, reason, .. }) if *path == own() && reason.contains("regular")),
+            "{error}"
+        );
+    }
 }
 
 /// A pipe into which nobody writes: opening it would never return.
@@ -77,6 +83,14 @@ fn files_that_cannot_be_written() {
                 panic!("{error}");
             };
             assert_eq!(*path, place);
+            if place.starts_with("/dev") {
+                assert_eq!(source.kind(), ErrorKind::StorageFull);
+                // The device is still one.
+                #[cfg(unix)]
+                assert!(std::os::unix::fs::FileTypeExt::is_char_device(
+                    &fs::metadata(&place).unwrap().file_type()
+                ));
+            }
             let message = error.to_string();
             let told = [place.display().to_string(), source.to_string()];
             assert!(told.iter().all(|part| message.contains(part)), "{message}");

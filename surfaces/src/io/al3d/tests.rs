@@ -1,4 +1,5 @@
 use super::*;
+use crate::io::testing::{MISSING, assert_refused, assert_whole, only, shown};
 
 fn tag(key: &str, value: &str) -> Vec<u8> {
     let mut tag = key.as_bytes().to_vec();
@@ -39,62 +40,42 @@ fn with(key: &str, value: &str) -> Vec<u8> {
     file(&TAGS.map(|tag| if tag.0 == key { (key, value) } else { tag }))
 }
 
-fn only(file: &[u8]) -> Result<Channel, Fault> {
-    let mut channels = parse(file)?;
-    assert_eq!(channels.len(), 1);
-    Ok(channels.remove(0))
-}
-
-fn reason(file: &[u8]) -> String {
-    match parse(file) {
-        Err(Fault::Malformed { reason, .. }) => reason,
-        other => format!("{other:?}"),
-    }
-}
-
-/// Heights in µm, with -99 for those that are missing; float32 has seven digits.
-fn micrometres(channel: &Channel) -> Vec<f64> {
-    let heights = channel.values.iter();
-    heights.map(|z| if z.is_nan() { -99.0 } else { (z * 1e11).round() / 1e5 }).collect()
+/// Heights in µm; float32 has seven digits.
+fn micrometres(file: &[u8]) -> Result<Vec<f64>, Fault> {
+    Ok(shown(&only(parse(file))?, |z| (z * 1e11).round() / 1e5))
 }
 
 #[test]
 fn padded_rows_and_both_markers_are_understood() -> Result<(), Fault> {
     let whole = file(&TAGS);
-    let expected = [1.0, 2.0, -99.0, -99.0, 5.0, -6.0];
-    let found = only(&whole)?;
-    assert_eq!(micrometres(&found), expected);
+    let expected = [1.0, 2.0, MISSING, MISSING, 5.0, -6.0];
+    let found = only(parse(&whole))?;
     assert_eq!((found.shape, found.cell), ((3, 2), Some((2e-6, 3e-6))));
     // The last padding may be absent, and anything may follow it.
     let last = whole.len() - 4;
-    assert_eq!(micrometres(&only(&whole[..last])?), expected);
-    let more = [&whole[..], b"texture"].concat();
-    assert_eq!(micrometres(&only(&more)?), expected);
-    for end in 0..last {
-        assert!(parse(&whole[..end]).is_err(), "{end} bytes");
+    for file in [&whole[..], &whole[..last], &[&whole[..], b"texture"].concat()] {
+        assert_eq!(micrometres(file)?, expected);
     }
+    assert_whole(parse, &whole, 4);
     Ok(())
 }
 
 #[test]
 fn without_a_marker_only_nan_is_missing() -> Result<(), Fault> {
-    let found = only(&file(&TAGS.map(|tag| match tag.0 {
-        "InvalidPixelValue" => ("PlaceHolder", "0"),
-        _ => tag,
-    })))?;
-    let missing = found.values.iter().filter(|z| z.is_nan()).count();
-    assert_eq!(missing, 1);
-    let found = only(&with("InvalidPixelValue", "NaN"))?;
-    assert_eq!(found.values.iter().filter(|z| z.is_nan()).count(), 1);
+    let no_marker =
+        TAGS.map(|tag| if tag.0 == "InvalidPixelValue" { ("PlaceHolder", "0") } else { tag });
     // A marker of zero is zero, and nothing near it.
-    let found = only(&with("InvalidPixelValue", "0"))?;
-    assert_eq!(found.values.iter().filter(|z| z.is_nan()).count(), 1);
+    let (nan, zero) = (with("InvalidPixelValue", "NaN"), with("InvalidPixelValue", "0"));
+    for file in [file(&no_marker), nan, zero] {
+        let missing = micrometres(&file)?.iter().filter(|z| **z == MISSING).count();
+        assert_eq!(missing, 1);
+    }
     Ok(())
 }
 
 #[test]
 fn defects_are_named() {
-    for (key, value, reason_given) in [
+    for (key, value, reason) in [
         ("Cols", "three", "tag Cols is 'three'"),
         ("Cols", "-3", "tag Cols is '-3'"),
         ("Rows", "3", "expected 44 more bytes, but the file ends after 32"),
@@ -103,17 +84,16 @@ fn defects_are_named() {
         ("InvalidPixelValue", "none", "tag InvalidPixelValue is 'none'"),
         ("PixelSizeXMeter", "", "tag PixelSizeXMeter is ''"),
     ] {
-        let reason = reason(&with(key, value));
-        assert!(reason.contains(reason_given), "{key} = {value}: {reason}");
+        assert_refused(parse(&with(key, value)), reason);
     }
-    assert!(reason(&file(&TAGS[1..])).contains("there is no tag Cols"));
+    assert_refused(parse(&file(&TAGS[1..])), "there is no tag Cols");
     let mut no_line_end = file(&TAGS);
     no_line_end[MAGIC.len() + 3 * TAG - 1] = b' ';
-    assert!(reason(&no_line_end).contains("expected CR LF at the end of tag 1"));
+    assert_refused(parse(&no_line_end), "expected CR LF at the end of tag 1");
     let mut many = file(&TAGS);
     let place = MAGIC.len() + TAG + KEY;
     many[place..place + 18].copy_from_slice(b"999999999999999999");
-    assert!(reason(&many).contains("more bytes"), "{}", reason(&many));
+    assert_refused(parse(&many), "more bytes");
     for (cols, rows) in [("0", "2"), ("3", "40000"), ("18446744073709551615", "2")] {
         let tags = TAGS.map(|tag| match tag.0 {
             "Cols" => ("Cols", cols),

@@ -4,28 +4,23 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::*;
-
-type TestResult = Result<(), Box<dyn std::error::Error>>;
-
-fn put(file: &mut [u8], place: usize, bytes: &[u8]) {
-    file[place..place + bytes.len()].copy_from_slice(bytes);
-}
+use crate::io::testing::{MISSING, TestResult, assert_refused, assert_whole, only, put, shown};
 
 /// The header of a map of 3 x 2 nodes with 16 bits each: cells of 2 µm x 3 µm, steps of 0.5 nm.
 fn header(magic: &[u8; 12]) -> Vec<u8> {
     let mut file = vec![0; HEADER];
-    put(&mut file, 0, magic);
+    put(&mut file, 0, *magic);
     for (place, value) in [(14, 1_u16), (16, 1), (18, 2), (86, 1), (98, 16)] {
-        put(&mut file, place, &value.to_le_bytes());
+        put(&mut file, place, value.to_le_bytes());
     }
     for (place, value) in [(100, -5_i32), (104, 9), (108, 3), (112, 2), (116, 6)] {
-        put(&mut file, place, &value.to_le_bytes());
+        put(&mut file, place, value.to_le_bytes());
     }
     for (place, value) in [(120, 2.0_f32), (124, 3.0), (128, 0.5)] {
-        put(&mut file, place, &value.to_le_bytes());
+        put(&mut file, place, value.to_le_bytes());
     }
     for (place, text) in
-        [(164, b"Height"), (180, b"\xb5m    "), (196, b"\xb5m    "), (212, b"nm    ")]
+        [(164, *b"Height"), (180, *b"\xb5m    "), (196, *b"\xb5m    "), (212, *b"nm    ")]
     {
         put(&mut file, place, text);
     }
@@ -61,61 +56,44 @@ fn compressed(streams: &[(u32, Vec<u8>)]) -> Vec<u8> {
     file
 }
 
-fn only(file: &[u8]) -> Result<Channel, String> {
-    let mut channels = parse(file).map_err(|fault| format!("{fault:?}"))?;
-    assert_eq!(channels.len(), 1);
-    Ok(channels.remove(0))
-}
-
-fn reason(file: &[u8]) -> String {
-    match parse(file) {
-        Err(Fault::Malformed { reason, .. }) => reason,
-        other => format!("{other:?}"),
-    }
-}
-
-/// Heights in units of the file, with -99 for those that are missing.
-fn heights(channel: &Channel) -> Vec<f64> {
-    let values = channel.values.iter();
-    values.map(|z| if z.is_nan() { -99.0 } else { *z }).collect()
+/// The heights in a file, in its units.
+fn heights(file: &[u8]) -> Result<Vec<f64>, Fault> {
+    Ok(shown(&only(parse(file))?, |z| z))
 }
 
 #[test]
 fn a_map_is_read() -> TestResult {
-    let found = only(&plain())?;
-    assert_eq!(heights(&found), [-2.5, 0.0, 1.0, 2.0, -99.0, 4.5]);
+    let found = only(parse(&plain()))?;
+    assert_eq!(heights(&plain())?, [-2.5, 0.0, 1.0, 2.0, MISSING, 4.5]);
     assert_eq!((found.shape, found.cell), ((3, 2), Some((2.0, 3.0))));
     assert_eq!(found.lateral_unit.as_deref(), Some("µm"));
     assert_eq!(found.height_unit.as_deref(), Some("nm"));
     assert_eq!(found.name, "Height");
-    let file = plain();
-    for end in 0..file.len() {
-        assert!(parse(&file[..end]).is_err(), "{end} bytes");
-    }
+    assert_whole(parse, &plain(), 0);
     Ok(())
 }
 
 #[test]
 fn special_points_offset_and_zones_are_heeded() -> TestResult {
     let mut file = plain();
-    put(&mut file, 86, &[0, 0]);
-    put(&mut file, 474, &100.0_f32.to_le_bytes());
-    put(&mut file, 334, &[3, 0, 4, 0]);
+    put(&mut file, 86, [0, 0]);
+    put(&mut file, 474, 100.0_f32.to_le_bytes());
+    put(&mut file, 334, [3, 0, 4, 0]);
     file.splice(HEADER..HEADER, *b"comment");
-    assert_eq!(heights(&only(&file)?), [97.5, 100.0, 101.0, 102.0, 96.5, 104.5]);
+    assert_eq!(heights(&file)?, [97.5, 100.0, 101.0, 102.0, 96.5, 104.5]);
     Ok(())
 }
 
 #[test]
 fn thirty_two_bits_are_read() -> TestResult {
     let mut file = header(b"DIGITAL SURF");
-    put(&mut file, 98, &[32, 0]);
+    put(&mut file, 98, [32, 0]);
     // Two below the least of all numbers is no number of 32 bits.
-    put(&mut file, 100, &i32::MIN.to_le_bytes());
+    put(&mut file, 100, i32::MIN.to_le_bytes());
     let values = [i32::MIN, i32::MAX, 0, 1, 2, 3];
     file.extend(values.map(i32::to_le_bytes).concat());
     let expected = values.map(|value| 0.5 * f64::from(value));
-    assert_eq!(heights(&only(&file)?), expected);
+    assert_eq!(heights(&file)?, expected);
     Ok(())
 }
 
@@ -131,9 +109,9 @@ fn units_may_differ_from_axis_to_axis() -> TestResult {
         (b"   ", b"   ", (2.0, 3.0), None),
     ] {
         let mut file = plain();
-        put(&mut file, 180, x);
-        put(&mut file, 196, y);
-        let found = only(&file)?;
+        put(&mut file, 180, *x);
+        put(&mut file, 196, *y);
+        let found = only(parse(&file))?;
         assert_eq!(found.lateral_unit.as_deref(), unit);
         let (dx, dy) = found.cell.ok_or("no cell")?;
         // One product each, rounded once.
@@ -146,17 +124,15 @@ fn units_may_differ_from_axis_to_axis() -> TestResult {
 #[test]
 fn one_and_several_streams_are_read() -> TestResult {
     let data = VALUES.map(i16::to_le_bytes).concat();
-    let expected = heights(&only(&plain())?);
+    let expected = heights(&plain())?;
     for cuts in [&[0, 12][..], &[0, 5, 12], &[0, 4, 4, 12]] {
         let mut streams = Vec::new();
         for cut in cuts.windows(2) {
             streams.push(((cut[1] - cut[0]) as u32, zipped(&data[cut[0]..cut[1]])?));
         }
         let file = compressed(&streams);
-        assert_eq!(heights(&only(&file)?), expected);
-        for end in 0..file.len() {
-            assert!(parse(&file[..end]).is_err(), "{end} bytes");
-        }
+        assert_eq!(heights(&file)?, expected);
+        assert_whole(parse, &file, 0);
     }
     Ok(())
 }
@@ -165,22 +141,19 @@ fn one_and_several_streams_are_read() -> TestResult {
 fn streams_that_lie_are_refused() -> TestResult {
     let data = VALUES.map(i16::to_le_bytes).concat();
     let whole = zipped(&data)?;
-    let refused = |streams: &[(u32, Vec<u8>)]| reason(&compressed(streams));
-    let less = refused(&[(11, whole.clone())]);
-    assert!(less.contains("hold 11 bytes, but the heights take 12"), "{less}");
-    let more = refused(&[(12, zipped(&[&data[..], b"x"].concat())?)]);
-    assert!(more.contains("holds more than the 12 bytes"), "{more}");
-    let short = refused(&[(12, zipped(&data[1..])?)]);
-    assert!(short.contains("holds less than the 12 bytes"), "{short}");
-    let wrapped = refused(&[(u32::MAX, whole.clone()), (13, whole.clone())]);
-    assert!(wrapped.contains("hold 4294967308 bytes"), "{wrapped}");
     let mut damaged = whole.clone();
     damaged[4] ^= 0x55;
-    let damaged = refused(&[(12, damaged)]);
-    assert!(damaged.contains("damaged"), "{damaged}");
-    let mut many = header(b"DSCOMPRESSED");
-    many.extend([0xff; 64]);
-    assert!(reason(&many).contains("more bytes"), "{}", reason(&many));
+    for (streams, reason) in [
+        (vec![(11, whole.clone())], "hold 11 bytes, but the heights take 12"),
+        (vec![(12, zipped(&[&data[..], b"x"].concat())?)], "holds more than the 12 bytes"),
+        (vec![(12, zipped(&data[1..])?)], "holds less than the 12 bytes"),
+        (vec![(u32::MAX, whole.clone()), (13, whole)], "hold 4294967308 bytes"),
+        (vec![(12, damaged)], "damaged"),
+    ] {
+        assert_refused(parse(&compressed(&streams)), reason);
+    }
+    let many = [header(b"DSCOMPRESSED"), vec![0xff; 64]].concat();
+    assert_refused(parse(&many), "more bytes");
     Ok(())
 }
 
@@ -188,16 +161,15 @@ fn streams_that_lie_are_refused() -> TestResult {
 #[test]
 fn no_stream_expands_more_than_deflate_can() {
     let mut file = compressed(&[(1 << 31, vec![0; 20])]);
-    put(&mut file, 108, &32768_u32.to_le_bytes());
-    put(&mut file, 112, &32768_u32.to_le_bytes());
-    put(&mut file, 116, &(1_u32 << 30).to_le_bytes());
-    let reason = reason(&file);
-    assert!(reason.contains("no 20 compressed bytes can hold 2147483648"), "{reason}");
+    put(&mut file, 108, 32768_u32.to_le_bytes());
+    put(&mut file, 112, 32768_u32.to_le_bytes());
+    put(&mut file, 116, (1_u32 << 30).to_le_bytes());
+    assert_refused(parse(&file), "no 20 compressed bytes can hold 2147483648");
 }
 
 #[test]
 fn what_is_no_single_map_is_refused() {
-    for (place, bytes, reason_given) in [
+    for (place, bytes, reason) in [
         (12, [1, 1], "big-endian"),
         (14, [3, 0], "there are 3 objects"),
         (18, [5, 0], "a series of surfaces (type 5)"),
@@ -211,23 +183,21 @@ fn what_is_no_single_map_is_refused() {
         (336, [2, 0], "expected 12 more bytes, but the file ends after 10"),
     ] {
         let mut file = plain();
-        put(&mut file, place, &bytes);
-        let reason = reason(&file);
-        assert!(reason.contains(reason_given), "{place}: {reason}");
+        put(&mut file, place, bytes);
+        assert_refused(parse(&file), reason);
     }
     let longer = [plain(), vec![0; 3]].concat();
-    assert!(reason(&longer).contains("but 3 bytes follow"));
+    assert_refused(parse(&longer), "but 3 bytes follow");
 }
 
 #[test]
 fn a_profile_is_a_map_if_it_has_several_lines() -> TestResult {
     let mut file = plain();
-    put(&mut file, 18, &[1, 0]);
-    assert_eq!(only(&file)?.shape, (3, 2));
-    put(&mut file, 108, &6_u32.to_le_bytes());
-    put(&mut file, 112, &1_u32.to_le_bytes());
-    let reason = reason(&file);
-    assert!(reason.contains("a profile (type 1)"), "{reason}");
+    put(&mut file, 18, [1, 0]);
+    assert_eq!(only(parse(&file))?.shape, (3, 2));
+    put(&mut file, 108, 6_u32.to_le_bytes());
+    put(&mut file, 112, 1_u32.to_le_bytes());
+    assert_refused(parse(&file), "a profile (type 1)");
     Ok(())
 }
 
@@ -235,13 +205,13 @@ fn a_profile_is_a_map_if_it_has_several_lines() -> TestResult {
 fn absurd_numbers_are_refused() {
     for (place, value) in [(128, f32::NAN), (128, 0.0), (128, -1.0), (474, f32::INFINITY)] {
         let mut file = plain();
-        put(&mut file, place, &value.to_le_bytes());
+        put(&mut file, place, value.to_le_bytes());
         assert!(parse(&file).is_err(), "{value} at {place}");
     }
     for nx in [0, 32769, u32::MAX] {
         let mut file = plain();
-        put(&mut file, 108, &nx.to_le_bytes());
-        put(&mut file, 116, &nx.wrapping_mul(2).to_le_bytes());
+        put(&mut file, 108, nx.to_le_bytes());
+        put(&mut file, 116, nx.wrapping_mul(2).to_le_bytes());
         assert!(parse(&file).is_err(), "{nx}");
     }
 }

@@ -124,6 +124,14 @@ impl Header {
         true
     }
 
+    /// Makes heights in their unit, NaN where they are missing, of the numbers in the file.
+    pub(super) fn apply(&self, numbers: &mut [f64]) {
+        let factor = self.factor.unwrap_or(1.0);
+        for number in numbers {
+            *number = if self.missing == Some(*number) { f64::NAN } else { *number * factor };
+        }
+    }
+
     /// Whether it gives the sides of a matrix.
     pub(super) fn has_sides(&self) -> bool {
         self.pixel.is_some() || self.width.is_some() && self.height.is_some()

@@ -12,25 +12,11 @@ pub(super) fn channel(header: Header, table: Table) -> Result<Channel, Fault> {
     let shape = shape(columns, rows)?;
     let (cell, lateral_unit) = header.cell(shape)?;
     let mut values = table.values;
-    finish(&header, &mut values);
+    header.apply(&mut values);
     Ok(Channel {
         name: header.title,
         height_unit: header.value_unit,
         lateral_unit,
         ..Channel::in_metres(shape, values, cell)
     })
-}
-
-/// Heights in their unit, of the numbers in the file.
-pub(super) fn finish(header: &Header, heights: &mut [f64]) {
-    if let Some(missing) = header.missing {
-        for height in heights.iter_mut().filter(|height| **height == missing) {
-            *height = f64::NAN;
-        }
-    }
-    if let Some(factor) = header.factor {
-        for height in heights {
-            *height *= factor;
-        }
-    }
 }

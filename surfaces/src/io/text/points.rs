@@ -4,7 +4,6 @@
 //! what they did not see.
 
 use super::header::Header;
-use super::matrix::finish;
 use super::table::Table;
 use crate::Grid;
 use crate::io::bytes::{reserved, shape};
@@ -57,7 +56,7 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
         );
         *value = z;
     }
-    finish(&header, &mut values);
+    header.apply(&mut values);
     let mut notes = Vec::new();
     if worst > NOTED {
         notes.push(format!(

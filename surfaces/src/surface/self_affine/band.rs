@@ -40,17 +40,10 @@ impl Band {
 
     /// `Ok` if a wave of the shortest wavelength has two nodes in each direction.
     pub(super) fn check_resolved(&self, grid: &Grid) -> Result<(), Error> {
-        let cell = match grid.shape() {
-            (1, 1) => return Ok(()),
-            (_, 1) => grid.dx(),
-            (1, _) => grid.dy(),
-            _ => grid.dx().max(grid.dy()),
-        };
-        if self.short_cutoff_wavelength * (1.0 + SLACK) < 2.0 * cell {
-            return Err(Error::CutoffBelowGrid {
-                wavelength: self.short_cutoff_wavelength,
-                shortest: 2.0 * cell,
-            });
+        let wavelength = self.short_cutoff_wavelength;
+        let shortest = 2.0 * grid.of_directions((grid.dx(), grid.dy()), f64::max);
+        if grid.nodes() > 1 && wavelength * (1.0 + SLACK) < shortest {
+            return Err(Error::CutoffBelowGrid { wavelength, shortest });
         }
         Ok(())
     }

@@ -59,12 +59,9 @@ mod tests {
         for nx in 1..9_usize {
             for ny in 1..9_usize {
                 let lattice = Lattice::new(&Grid::new(nx, ny, 1.0, 1.0)?, 1.0);
-                let mut total = 0.0;
-                for m in 0..=nx as i64 {
-                    for n in -(ny as i64)..=ny as i64 {
-                        total += lattice.multiplicity(m, n);
-                    }
-                }
+                let (m, n) = (nx as i64, ny as i64);
+                let waves = (0..=m).flat_map(|m| (-n..=n).map(move |n| (m, n)));
+                let total: f64 = waves.map(|(m, n)| lattice.multiplicity(m, n)).sum();
                 assert_eq!(total, (nx * ny - 1) as f64, "{nx} x {ny}");
             }
         }

@@ -91,6 +91,13 @@ pub struct SelfAffine {
     seed: u64,
 }
 
+getters!(SelfAffine {
+    /// The prescribed amplitude.
+    amplitude: Amplitude,
+    /// Seed of the random phases.
+    seed: u64,
+});
+
 impl SelfAffine {
     /// A surface with Hurst exponent `hurst` = H, roll-off wavelength `rolloff_wavelength` = λ_r
     /// \[m\] and short cut-off wavelength `short_cutoff_wavelength` = λ_s \[m\].
@@ -119,16 +126,10 @@ impl SelfAffine {
             short_cutoff_wavelength <= rolloff_wavelength,
             "at most the roll-off wavelength",
         )?;
-        Ok(Self {
-            band: Band {
-                hurst,
-                rolloff_wavelength,
-                short_cutoff_wavelength,
-                long_cutoff_wavelength: None,
-            },
-            amplitude: amplitude.checked()?,
-            seed,
-        })
+        let long_cutoff_wavelength = None;
+        let band =
+            Band { hurst, rolloff_wavelength, short_cutoff_wavelength, long_cutoff_wavelength };
+        Ok(Self { band, amplitude: amplitude.checked()?, seed })
     }
 
     /// Leaves out all waves longer than `long_cutoff_wavelength` = λ_l \[m\].
@@ -192,18 +193,6 @@ impl SelfAffine {
     #[must_use]
     pub fn long_cutoff_wavelength(&self) -> Option<f64> {
         self.band.long_cutoff_wavelength
-    }
-
-    /// The prescribed amplitude.
-    #[must_use]
-    pub fn amplitude(&self) -> Amplitude {
-        self.amplitude
-    }
-
-    /// Seed of the random phases.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.seed
     }
 
     /// The power spectrum on a grid, with the moments of the surface there.

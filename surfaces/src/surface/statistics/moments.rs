@@ -1,5 +1,7 @@
 //! Moments of the power spectrum.
 
+use nalgebra::Vector6;
+
 use crate::surface::Topography;
 use crate::surface::fourier::Waves;
 
@@ -41,37 +43,20 @@ pub struct SpectralMoments {
     m04: f64,
 }
 
-impl SpectralMoments {
+getters!(SpectralMoments {
     /// m₂₀ = ⟨h_x²⟩, without unit.
-    #[must_use]
-    pub fn m20(&self) -> f64 {
-        self.m20
-    }
-
+    m20: f64,
     /// m₀₂ = ⟨h_y²⟩, without unit.
-    #[must_use]
-    pub fn m02(&self) -> f64 {
-        self.m02
-    }
-
+    m02: f64,
     /// m₄₀ = ⟨h_xx²⟩ \[1/m²\].
-    #[must_use]
-    pub fn m40(&self) -> f64 {
-        self.m40
-    }
-
+    m40: f64,
     /// m₂₂ = ⟨h_xy²⟩ = ⟨h_xx h_yy⟩ \[1/m²\].
-    #[must_use]
-    pub fn m22(&self) -> f64 {
-        self.m22
-    }
-
+    m22: f64,
     /// m₀₄ = ⟨h_yy²⟩ \[1/m²\].
-    #[must_use]
-    pub fn m04(&self) -> f64 {
-        self.m04
-    }
+    m04: f64,
+});
 
+impl SpectralMoments {
     /// m₀, the mean square height \[m²\].
     #[must_use]
     pub fn m0(&self) -> f64 {
@@ -142,24 +127,20 @@ impl Topography {
     #[must_use]
     pub fn spectral_moments(&self) -> SpectralMoments {
         let waves = self.waves();
-        let mut sums = [0.0; 6];
+        let mut sums = Vector6::zeros();
         // Line by line, to keep rounding small.
-        let mut line = [0.0; 6];
+        let mut line = Vector6::zeros();
         let mut column = 0;
         for wave in waves.iter() {
             if wave.k.0 != column {
                 column = wave.k.0;
-                add(&mut sums, &mut line);
+                sums += std::mem::take(&mut line);
             }
             let (xx, yy) = (wave.q.0 * wave.q.0, wave.q.1 * wave.q.1);
-            let power = wave.count as f64 * wave.power;
-            let terms = [1.0, xx, yy, xx * xx, xx * yy, yy * yy];
-            for (sum, term) in line.iter_mut().zip(terms) {
-                *sum += power * term;
-            }
+            let terms = Vector6::new(1.0, xx, yy, xx * xx, xx * yy, yy * yy);
+            line += wave.count as f64 * wave.power * terms;
         }
-        add(&mut sums, &mut line);
-        let [m00, m20, m02, m40, m22, m04] = sums;
+        let [m00, m20, m02, m40, m22, m04] = (sums + line).into();
         SpectralMoments { m00, m20, m02, m40, m22, m04 }
     }
 
@@ -173,12 +154,5 @@ impl Topography {
     /// The waves of the map.
     pub(super) fn waves(&self) -> Waves {
         Waves::new(self.heights(), self.map().mean_height(), self.grid())
-    }
-}
-
-/// Adds `line` to `sums`, and begins a new one.
-fn add(sums: &mut [f64; 6], line: &mut [f64; 6]) {
-    for (sum, part) in sums.iter_mut().zip(line) {
-        *sum += std::mem::take(part);
     }
 }

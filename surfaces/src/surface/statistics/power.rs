@@ -40,15 +40,10 @@ impl RadialBins {
     /// The edges, for wavevectors from the least to the greatest.
     fn edges(&self, map: &Topography) -> Result<Vec<f64>, Error> {
         let grid = map.grid();
-        let (lx, ly) = grid.sides();
         let greatest = greatest_wavevector(map);
         match self {
             Self::Linear => {
-                let width = match grid.shape() {
-                    (_, 1) => TAU / lx,
-                    (1, _) => TAU / ly,
-                    _ => TAU / lx.min(ly),
-                };
+                let width = TAU / grid.of_directions(grid.sides(), f64::min);
                 // The cast saturates; the number is at most that of the nodes along the shorter side.
                 let rings = (greatest / width + 0.5) as usize;
                 Ok((0..=rings).map(|k| (k as f64 + 0.5) * width).collect())
@@ -57,11 +52,7 @@ impl RadialBins {
                 let is_number = (1..=Self::MAX_PER_DECADE).contains(rings);
                 let quantity = "number of bins in a decade";
                 Error::require(quantity, *rings as f64, is_number, "from 1 to 10000")?;
-                let least = match grid.shape() {
-                    (_, 1) => TAU / lx,
-                    (1, _) => TAU / ly,
-                    _ => TAU / lx.max(ly),
-                };
+                let least = TAU / grid.of_directions(grid.sides(), f64::max);
                 const BEYOND: f64 = 0.01;
                 let (first, last) = (libm::log10(least) - BEYOND, libm::log10(greatest) + BEYOND);
                 let decades = libm::log10(greatest) - libm::log10(least);
@@ -93,11 +84,7 @@ impl RadialBins {
 /// Up to here there are waves in all directions: π over the longer side of a cell, but for directions of one node.
 pub(super) fn greatest_wavevector(map: &Topography) -> f64 {
     let grid = map.grid();
-    PI / match grid.shape() {
-        (_, 1) => grid.dx(),
-        (1, _) => grid.dy(),
-        _ => grid.dx().max(grid.dy()),
-    }
+    PI / grid.of_directions((grid.dx(), grid.dy()), f64::max)
 }
 
 impl Topography {
@@ -158,20 +145,11 @@ impl Topography {
     /// negative k, where k = n/2 counts once. Normalisation as for [`radial_psd`](Self::radial_psd).
     #[must_use]
     pub fn psd_along(&self, axis: Axis) -> Vec<SpectralBin> {
-        let (nx, ny) = self.grid().shape();
-        let (lx, ly) = self.grid().sides();
-        let (nodes, side) = match axis {
-            Axis::X => (nx, lx),
-            Axis::Y => (ny, ly),
-        };
+        let (nodes, side) = (axis.of(self.grid().shape()), axis.of(self.grid().sides()));
         // By Parseval's theorem the mean over profiles is the sum over waves across them.
         let mut sums = vec![(0.0, 0_usize); nodes / 2 + 1];
         for wave in self.waves().iter() {
-            let along = match axis {
-                Axis::X => wave.k.0,
-                Axis::Y => wave.k.1,
-            };
-            if let Some((power, waves)) = sums.get_mut(along.unsigned_abs() as usize) {
+            if let Some((power, waves)) = sums.get_mut(axis.of(wave.k).unsigned_abs() as usize) {
                 *power += wave.count as f64 * wave.power;
                 *waves += wave.count;
             }
@@ -189,12 +167,7 @@ impl Topography {
     /// longer side, and the longer side of the map. Directions with one node do not count.
     #[must_use]
     pub fn bandwidth(&self) -> (f64, f64) {
-        let (lx, ly) = self.grid().sides();
-        let longest = match self.grid().shape() {
-            (_, 1) => lx,
-            (1, _) => ly,
-            _ => lx.max(ly),
-        };
+        let longest = self.grid().of_directions(self.grid().sides(), f64::max);
         (TAU / greatest_wavevector(self), longest)
     }
 }

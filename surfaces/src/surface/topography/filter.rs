@@ -135,11 +135,8 @@ fn gaussian_along_x(heights: &DMatrix<f64>, cutoff: f64) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::fourier::tests::noise;
     use crate::surface::{Amplitude, SelfAffine};
-
-    fn noise(node: usize) -> f64 {
-        (node as f64 * 0.618_033_988_749_894_9).fract()
-    }
 
     /// The weighted mean as it is defined, node by node.
     #[test]

@@ -34,31 +34,22 @@ pub struct FittedTrend {
     curvatures: (f64, f64, f64),
 }
 
-impl FittedTrend {
+getters!(FittedTrend {
     /// Height c of the polynomial at the centre of the map \[m\].
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.height
-    }
-
+    height: f64,
     /// Slopes (s_x, s_y) at the centre of the map, without unit.
-    #[must_use]
-    pub fn slopes(&self) -> (f64, f64) {
-        self.slopes
-    }
+    slopes: (f64, f64),
+    /// Second derivatives (κ_xx, κ_xy, κ_yy) \[1/m\], 0 unless quadratic. A cap of radius R has
+    /// κ_xx = κ_yy = −1/R.
+    curvatures: (f64, f64, f64),
+});
 
+impl FittedTrend {
     /// Angle between the tangent plane at the centre of the map and the horizontal \[rad\]:
     /// $`\arctan \sqrt{s_x^2 + s_y^2}`$.
     #[must_use]
     pub fn tilt(&self) -> f64 {
         libm::atan(libm::hypot(self.slopes.0, self.slopes.1))
-    }
-
-    /// Second derivatives (κ_xx, κ_xy, κ_yy) \[1/m\], 0 unless quadratic. A cap of radius R has
-    /// κ_xx = κ_yy = −1/R.
-    #[must_use]
-    pub fn curvatures(&self) -> (f64, f64, f64) {
-        self.curvatures
     }
 
     /// Height of the polynomial \[m\] at a position \[m\], as by [`Grid::position`](crate::Grid::position).
@@ -168,6 +159,7 @@ fn projection(heights: &DMatrix<f64>, mean: f64, phi: &[f64], psi: &[f64]) -> f6
 mod tests {
     use super::*;
     use crate::Grid;
+    use crate::surface::fourier::tests::noise;
 
     #[test]
     fn a_polynomial_is_found_and_taken_away() -> Result<(), Error> {
@@ -206,7 +198,6 @@ mod tests {
     #[test]
     fn what_is_left_has_no_trend() -> Result<(), Error> {
         let grid = Grid::new(23, 18, 1.5, 0.5)?;
-        let noise = |k: usize| (k as f64 * 0.618_033_988_749_894_9).fract();
         let map = Topography::new(grid, DMatrix::from_fn(23, 18, |i, j| noise(i + 23 * j)))?;
         for trend in [Trend::Mean, Trend::Plane, Trend::Quadratic] {
             let left = map.level(trend)?;
@@ -244,16 +235,11 @@ mod tests {
             let map = DMatrix::from_column_slice(nx, ny, values);
             Ok(Topography::new(Grid::new(nx, ny, 1.0, 1.0)?, map)?.trend(Trend::Quadratic))
         };
+        let flat = (0.0, 0.0, 0.0);
         let one = trend(1, 1, &[7.0])?;
-        assert_eq!(
-            (one.height(), one.slopes(), one.curvatures()),
-            (7.0, (0.0, 0.0), (0.0, 0.0, 0.0))
-        );
+        assert_eq!((one.height(), one.slopes(), one.curvatures()), (7.0, (0.0, 0.0), flat));
         let two = trend(2, 1, &[1.0, 3.0])?;
-        assert_eq!(
-            (two.height(), two.slopes(), two.curvatures()),
-            (2.0, (2.0, 0.0), (0.0, 0.0, 0.0))
-        );
+        assert_eq!((two.height(), two.slopes(), two.curvatures()), (2.0, (2.0, 0.0), flat));
         let three = trend(1, 3, &[1.0, 0.0, 1.0])?;
         // Eighths and thirds: a few roundings.
         assert!((three.curvatures().2 - 2.0).abs() < 1e-15 && three.height().abs() < 1e-15);

@@ -119,6 +119,7 @@ fn linear_along_x(heights: &DMatrix<f64>, nodes: usize) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::fourier::tests::noise;
     use crate::surface::{Amplitude, SelfAffine};
     use std::f64::consts::TAU;
 
@@ -144,7 +145,6 @@ mod tests {
     #[test]
     fn finer_and_back_is_the_same() -> Result<(), Error> {
         for (nx, ny) in [(1, 1), (2, 3), (8, 9), (15, 16)] {
-            let noise = |k: usize| (k as f64 * 0.618_033_988_749_894_9).fract();
             let heights = DMatrix::from_fn(nx, ny, |ix, iy| noise(ix + nx * iy));
             let map = Topography::new(Grid::new(nx, ny, 1.0, 2.0)?, heights)?;
             for (mx, my) in [(nx + 1, ny + 1), (2 * nx, 3 * ny), (3 * nx + 1, 2 * ny + 1)] {

@@ -7,53 +7,25 @@ use proptest::prelude::*;
 use super::super::raw::Channel;
 use super::*;
 use crate::Error;
-use crate::io::truth::assert_read;
-use crate::io::{LengthUnit, ReadOptions};
-
-type TestResult = Result<(), Box<dyn std::error::Error>>;
+use crate::io::testing::{self, MISSING, TestResult, only, shown};
 
 fn parsed_as(name: &str, text: impl AsRef<[u8]>) -> Result<Channel, Error> {
     let path = Path::new(name);
-    parse(text.as_ref(), path)
-        .map_err(|fault| fault.in_file(path, "text"))
-        .map(|mut channels| channels.swap_remove(0))
+    only(parse(text.as_ref(), path)).map_err(|fault| fault.in_file(path, "text"))
 }
 
 fn parsed(text: impl AsRef<[u8]>) -> Result<Channel, Error> {
     parsed_as("test.txt", text)
 }
 
-/// Shape and values, with a number for NaN, which equals nothing.
+/// Shape and values.
 fn numbers(text: impl AsRef<[u8]>) -> Result<((usize, usize), Vec<f64>), Error> {
     let channel = parsed(text)?;
-    let values = channel.values.iter();
-    let shown = values.map(|value| if value.is_nan() { MISSING } else { *value });
-    Ok((channel.shape, shown.collect()))
+    Ok((channel.shape, shown(&channel, |value| value)))
 }
-
-const MISSING: f64 = 999.0;
 
 fn assert_refused(text: impl AsRef<[u8]>, expected: &str) {
-    let message = parsed(text).map_err(|error| error.to_string());
-    assert!(
-        message.as_ref().is_err_and(|text| text.contains(expected)),
-        "{message:?} says nothing of '{expected}'"
-    );
-}
-
-#[test]
-fn the_map_of_every_file_is_that_of_its_formula() -> TestResult {
-    let metres = ReadOptions::new().height_unit(LengthUnit::METRE);
-    // Heights have seven digits in the files, all of which are zero from the fourth on: only the conversion rounds.
-    let digits = 5e-16;
-    let gwyddion = assert_read("plain_gwyddion.txt", &ReadOptions::new(), digits, true)?;
-    assert_eq!(gwyddion.title, "made");
-    assert_read("missing_matrix.asc", &metres, digits, false)?;
-    assert_read("plain_semicolon_comma.csv", &metres, digits, false)?;
-    let list = metres.lateral_unit(LengthUnit::METRE);
-    let list = assert_read("missing.xyz", &list, digits, true)?;
-    assert!(list.notes.is_empty(), "{:?}", list.notes);
-    Ok(())
+    testing::assert_refused(parse(text.as_ref(), Path::new("test.txt")), expected);
 }
 
 #[test]
@@ -93,29 +65,9 @@ fn numbers_are_parted_by_many_things() -> TestResult {
 
 #[test]
 fn missing_values_have_many_names() -> TestResult {
-    for word in [
-        "NaN",
-        "nan",
-        "-nan",
-        "NAN",
-        "inf",
-        "-Inf",
-        "+infinity",
-        "BAD",
-        "Bad",
-        "***",
-        "*****",
-        "---",
-        "--",
-        "N/A",
-        "na",
-        "null",
-        "1.#QNAN",
-        "-1.#IND",
-        "1.#INF00",
-        "-nan(ind)",
-        "#N/A",
-    ] {
+    let words = "NaN nan -nan NAN inf -Inf +infinity BAD Bad *** ***** --- -- N/A na null 1.#QNAN -1.#IND 1.#INF00 \
+        -nan(ind) #N/A";
+    for word in words.split(' ') {
         let text = format!("1 2 {word} 4\n{word} 6 7 8\n");
         let channel = parsed(&text)?;
         assert_eq!(channel.shape, (4, 2), "{word}");
@@ -130,10 +82,10 @@ fn missing_values_have_many_names() -> TestResult {
         assert_eq!(numbers(text)?, expected, "{text:?}");
     }
     // A row, and a margin, of which nothing was measured.
-    let row = numbers("1\t2\t3\t4\n\t\t\t\n5\t6\t7\t8\n")?;
-    assert_eq!((row.0, row.1[4..8].to_vec()), ((4, 3), vec![MISSING; 4]));
-    let row = numbers("1;2;3;4\n;;;\n5;6;7;8\n")?;
-    assert_eq!((row.0, row.1[4..8].to_vec()), ((4, 3), vec![MISSING; 4]));
+    for text in ["1\t2\t3\t4\n\t\t\t\n5\t6\t7\t8\n", "1;2;3;4\n;;;\n5;6;7;8\n"] {
+        let row = numbers(text)?;
+        assert_eq!((row.0, row.1[4..8].to_vec()), ((4, 3), vec![MISSING; 4]));
+    }
     let first = numbers("nan nan nan nan\n1 2 3 4\n")?;
     assert_eq!((first.0, first.1[..4].to_vec()), ((4, 2), vec![MISSING; 4]));
     Ok(())

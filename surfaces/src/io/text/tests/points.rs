@@ -1,6 +1,6 @@
 //! Lists of points.
 
-use super::{MISSING, TestResult, assert_refused, parsed, parsed_as};
+use super::{MISSING, TestResult, assert_refused, parsed, parsed_as, shown};
 use crate::io::{MeasuredSurface, ReadOptions};
 use crate::{Error, FileError};
 
@@ -15,9 +15,7 @@ fn a_list_of_points_is_read_in_any_order() -> TestResult {
         assert_eq!((channel.shape, channel.cell), ((3, 2), Some((2.0, 5.0))));
         assert_eq!(channel.height_unit, None);
         assert_eq!(channel.lateral_unit, None);
-        for (found, expected) in channel.values.iter().zip(expected) {
-            assert!(*found == expected || found.is_nan() && expected == MISSING);
-        }
+        assert_eq!(shown(&channel, |z| z), expected);
         assert_eq!(parsed_as("test.XYZ", &text)?.shape, (3, 2));
     }
     Ok(())
@@ -51,13 +49,12 @@ fn names_of_columns_tell_a_list_and_its_units() -> TestResult {
 
 #[test]
 fn a_list_without_units_needs_both() -> TestResult {
-    let path = std::env::temp_dir().join(format!("asperity-units-{}.xyz", std::process::id()));
-    std::fs::write(&path, "0 0 0\n2 0 20\n0 5 5\n2 5 25\n")?;
-    let nothing = ReadOptions::new().read(&path);
+    let read =
+        |options: ReadOptions| options.read_bytes("0 0 0\n2 0 20\n0 5 5\n2 5 25\n", "test.xyz");
+    let nothing = read(ReadOptions::new());
     let heights = ReadOptions::new().height_unit("nm".parse()?);
-    let one = heights.clone().read(&path);
-    let both = heights.lateral_unit("mm".parse()?).read(&path);
-    std::fs::remove_file(&path)?;
+    let one = read(heights.clone());
+    let both = read(heights.lateral_unit("mm".parse()?));
     let message =
         |result: Result<_, Error>| result.map(|_: MeasuredSurface| ()).map_err(|e| e.to_string());
     assert!(message(nothing).is_err_and(|text| text.contains("height_unit")));

@@ -42,15 +42,10 @@ pub(super) struct Law {
     pub(super) exponent: f64,
     pub(super) rolloff: f64,
     pub(super) dispersion: f64,
-    pub(super) errors: Errors,
-}
-
-/// Standard errors if the mean square of relative residuals is 1.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Errors {
-    pub(super) exponent: f64,
-    /// `None` where the law has no plateau.
-    pub(super) rolloff: Option<f64>,
+    /// Standard error of the exponent, if the mean square of relative residuals is 1.
+    pub(super) exponent_error: f64,
+    /// The same of the roll-off; `None` where the law has no plateau.
+    pub(super) rolloff_error: Option<f64>,
 }
 
 impl Law {
@@ -228,7 +223,8 @@ impl Line {
             exponent,
             rolloff: self.rolloff,
             dispersion,
-            errors: Errors { exponent: error(1), rolloff: bent.then(|| error(2)) },
+            exponent_error: error(1),
+            rolloff_error: bent.then(|| error(2)),
         })
     }
 }

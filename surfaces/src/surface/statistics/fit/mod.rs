@@ -154,9 +154,9 @@ impl Topography {
         Ok(SelfAffineFit {
             hurst: Estimate {
                 value: 0.5 * law.exponent - 1.0,
-                standard_error: 0.5 * dependence * law.errors.exponent,
+                standard_error: 0.5 * dependence * law.exponent_error,
             },
-            rolloff_wavelength: law.errors.rolloff.map(|error| {
+            rolloff_wavelength: law.rolloff_error.map(|error| {
                 let value = TAU / libm::exp(law.rolloff);
                 Estimate { value, standard_error: dependence * error * value }
             }),
