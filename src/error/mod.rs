@@ -112,7 +112,7 @@ pub enum Error {
     /// interval between two events in which it would be a state.
     #[error(
         "the state of load {load} at approach {approach} does not lie on this path: at step {step} the \
-         {quantity} there is {value}, but {expected} would be a state of it"
+         {quantity} there is {value}, but should be {expected}"
     )]
     NotOnPath {
         /// Number of events up to the state.

@@ -537,7 +537,7 @@ fn nothing_is_yielded_after_a_panic_at_any_call() -> Result<(), Error> {
 #[test]
 fn questions_that_fail_do_not_disturb_the_path() -> Result<(), Error> {
     let (mut failed, mut methods) = (0, BTreeSet::new());
-    for small in Small::all()? {
+    for small in Small::all()?.iter().filter(|small| !small.misleads) {
         let (expected, _) = small.states()?;
         for fault in [Fault::Refuse, Fault::PanicBefore, Fault::PanicAfter] {
             for ahead in 0..3 {
@@ -614,7 +614,13 @@ fn what_no_answer_can_be_is_refused() -> Result<(), Error> {
                     assert!(!unspoilt || state == expected[count], "{context}: {state:?}");
                     count += 1;
                     assert!(count <= 2 * expected.len() + 20, "{context} has no end");
-                    assert_eq!(small.violation(&state), None, "{context}");
+                    if matches!(fault, Fault::Tolerance(_)) {
+                        // Errors are estimated from it.
+                        let ContactState { approach, load, mean_gap, energy, .. } = state.contact;
+                        assert!([approach, load, mean_gap, energy].iter().all(|x| x.is_finite()));
+                    } else {
+                        assert_eq!(small.violation(&state), None, "{context}");
+                    }
                 }
                 assert!(failures <= 1, "{context}: {failures} errors");
                 if strike.struck().is_some() {

@@ -73,8 +73,6 @@ mod hertz_ellipse;
 mod hertz_line;
 mod hertz_sphere;
 mod punch;
-#[cfg(test)]
-mod quadrature;
 mod westergaard;
 
 pub use area_load::AreaLoadLaw;

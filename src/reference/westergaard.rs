@@ -146,6 +146,3 @@ impl Westergaard {
         scale * ratio * ratio * (0.25 - 0.5 * ratio.ln())
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,8 +1,11 @@
-use super::super::HertzLine;
-use super::super::quadrature::{derivative, integrate};
-use super::*;
-use crate::Error;
+//! A wave in one direction on a half-space (Westergaard).
+
 use approx::assert_relative_eq;
+use asperity::Error;
+use asperity::reference::{HertzLine, Westergaard};
+use std::f64::consts::PI;
+
+use super::quadrature::{derivative, integrate};
 
 const RATIOS: [f64; 5] = [1e-6, 0.03, 0.5, 0.9, 0.999];
 

@@ -1,28 +1,14 @@
-use super::super::quadrature::{derivative, integrate};
-use super::super::{HertzLine, HertzSphere};
-use super::*;
+//! Elliptic paraboloid on a half-space (Hertz).
+
 use approx::assert_relative_eq;
+use asperity::Error;
+use asperity::reference::{HertzEllipse, HertzLine, HertzSphere};
+use std::f64::consts::PI;
+
+use super::quadrature::{derivative, integrate};
 
 fn ellipse() -> Result<HertzEllipse, Error> {
     HertzEllipse::new(0.004, 0.021, 91e9)
-}
-
-/// b/a = 1/2, 1/5 and 1/10, and the ratios of radii, K and E that belong to them, from the
-/// defining integrals ∫ sin²/√(1−m sin²), ∫ cos²/√(1−m sin²) summed outside this crate.
-#[test]
-fn axis_ratio_agrees_with_the_defining_integrals() -> Result<(), Error> {
-    for (axis_ratio, radius_ratio, first, second) in [
-        (0.5, 0.351_771_642_284_186_06, 2.156_515_647_499_643, 1.211_056_027_568_459_4),
-        (0.2, 0.084_555_312_401_679_4, 3.016_112_492_477_647, 1.050_502_226_984_45),
-        (0.1, 0.027_370_194_883_873_69, 3.695_637_362_989_873, 1.015_993_545_025_224),
-    ] {
-        let ellipse = HertzEllipse::new(1.0, radius_ratio, 1.0)?;
-        // Rounding of sums of 400 terms, and of the logarithms.
-        assert_relative_eq!(ellipse.axis_ratio(), axis_ratio, max_relative = 2e-15);
-        assert_relative_eq!(ellipse.first, first, max_relative = 2e-15);
-        assert_relative_eq!(ellipse.second, second, max_relative = 2e-15);
-    }
-    Ok(())
 }
 
 #[test]
