@@ -1,6 +1,6 @@
 //! Time of one convolution: one field and two, by grid size and number of threads; free and periodic.
 //!
-//! `cargo bench --bench convolution`, or with `--no-default-features` for plain loops.
+//! `cargo bench -p asperity-benches --bench convolution`, or with `--no-default-features` for plain loops.
 
 use std::error::Error;
 

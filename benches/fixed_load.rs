@@ -1,7 +1,7 @@
 //! Time of one cold fixed-load solve, set-up included, by grid size and load, without and with the
 //! stiffness.
 //!
-//! `cargo bench --bench fixed_load`. Self-affine surfaces with λ_s = 4 cells and the roll-off at a
+//! `cargo bench -p asperity-benches --bench fixed_load`. Self-affine surfaces with λ_s = 4 cells and the roll-off at a
 //! quarter of the side; loads are mean pressures over E* times the rms gradient.
 
 use std::error::Error;

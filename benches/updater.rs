@@ -2,7 +2,7 @@
 //!
 //! Throughput is in floating-point operations where the processor is the bound (forward
 //! substitution: k n², Schur complement: k² n) and in bytes of the factor where memory is
-//! (solution, join). `cargo bench --bench updater -- solution/4000` runs some of them.
+//! (solution, join). `cargo bench -p asperity-benches --bench updater -- solution/4000` runs some of them.
 
 use std::cell::RefCell;
 use std::error::Error;

@@ -40,3 +40,28 @@ pub use parsers::parsers;
 pub use paths::paths;
 pub use records::records;
 pub use verdict::{Tally, Verdict, Violation};
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What makes an input of bytes, and looks at the answer of the library.
+pub type Driver = fn(&[u8]) -> Verdict;
+
+/// All drivers by their names, which are those of the fuzz targets as well.
+pub const DRIVERS: [(&str, Driver); 6] = [
+    ("fixed_loads", fixed_loads),
+    ("large_contacts", large_contacts),
+    ("large_loads", large_loads),
+    ("parsers", parsers),
+    ("paths", paths),
+    ("records", records),
+];
+
+/// One case of a driver; a panic of the library is a violation as well.
+///
+/// # Errors
+///
+/// What is wrong.
+pub fn case(driver: Driver, bytes: &[u8]) -> Verdict {
+    catch_unwind(AssertUnwindSafe(|| driver(bytes)))
+        .unwrap_or_else(|_| Err(Violation::new("the library panicked")))
+}

@@ -5,10 +5,9 @@
 //! `ASPERITY_DRIVER_BYTES=… cargo test --release -p asperity-drivers --test drivers NAME` repeats it.
 
 use std::env;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-use asperity_drivers::{Tally, Verdict, Violation};
+use asperity_drivers::{DRIVERS, Driver, Tally, Violation, case};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -34,19 +33,8 @@ fn from_hex(text: &str) -> Option<Vec<u8>> {
     (0..text.len()).step_by(2).map(digits).collect()
 }
 
-/// One case; a panic of the library is a violation as well.
-fn case(driver: fn(&[u8]) -> Verdict, bytes: &[u8]) -> Verdict {
-    catch_unwind(AssertUnwindSafe(|| driver(bytes)))
-        .unwrap_or_else(|_| Err(Violation::new("the library panicked")))
-}
-
 /// Runs a driver on as many random inputs as it is told to, up to so many bytes each.
-fn drive(
-    name: &str,
-    driver: fn(&[u8]) -> Verdict,
-    cases: u64,
-    most_bytes: usize,
-) -> Result<Tally, Violation> {
+fn drive(name: &str, driver: Driver, cases: u64, most_bytes: usize) -> Result<Tally, Violation> {
     if let Ok(text) = env::var("ASPERITY_DRIVER_BYTES") {
         let bytes = from_hex(&text)
             .ok_or_else(|| Violation::new("ASPERITY_DRIVER_BYTES holds no hexadecimal bytes"))?;
@@ -123,17 +111,11 @@ fn earlier_failures_are_mended() -> Result<(), Violation> {
     let cases = include_str!("cases.txt").lines().filter(|line| !line.starts_with('#'));
     for line in cases {
         let (name, text) = line.split_once(' ').unwrap_or_default();
-        let driver = match name {
-            "paths" => asperity_drivers::paths,
-            "fixed_loads" => asperity_drivers::fixed_loads,
-            "large_loads" => asperity_drivers::large_loads,
-            "large_contacts" => asperity_drivers::large_contacts,
-            "parsers" => asperity_drivers::parsers,
-            "records" => asperity_drivers::records,
-            _ => return Err(Violation::new(format!("there is no driver '{name}'"))),
+        let Some((_, driver)) = DRIVERS.iter().find(|(other, _)| *other == name) else {
+            return Err(Violation::new(format!("there is no driver '{name}'")));
         };
         let bytes = from_hex(text).unwrap_or_default();
-        case(driver, &bytes)
+        case(*driver, &bytes)
             .map_err(|violation| Violation::new(format!("{violation}\n{name} {text}")))?;
     }
     Ok(())

@@ -6,6 +6,8 @@
 //! | [`bordering`] | an updater with the three verbs that every path needs |
 //! | [`dense`] | influence matrices, and dense solutions that share no code with the library |
 //! | [`surfaces`] | heights of rough surfaces |
+//! | `random` | random surfaces for property tests (feature `proptest`) |
+//! | [`table`] | tables of reference data |
 //! | [`close`] | differences of numbers and of states |
 
 // A test that cannot go on has failed.
@@ -15,6 +17,9 @@ pub mod altered;
 pub mod bordering;
 pub mod close;
 pub mod dense;
+#[cfg(feature = "proptest")]
+pub mod random;
 pub mod surfaces;
+pub mod table;
 
 pub use altered::{Altered, Call};

@@ -95,8 +95,7 @@ pub fn surface(name: &str) -> HeightMap {
 
 /// The events of a reference path.
 pub fn read_events(name: &str) -> Vec<Event> {
-    let mut reader = csv::Reader::from_path(data(format!("{name}_events.csv"))).unwrap();
-    let rows = reader.deserialize::<Vec<f64>>().map(Result::unwrap);
+    let rows = asperity_testing::table::read(data(format!("{name}_events.csv"))).into_iter();
     rows.map(|row| Event {
         step: row[0] as usize,
         node: (row[1] as usize, row[2] as usize),

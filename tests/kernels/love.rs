@@ -1,7 +1,7 @@
 //! The Boussinesq kernel against Love's closed form in arbitrary precision.
 
 use asperity::{Boussinesq, Error, Grid, InfluenceKernel};
-use astro_float::{BigFloat, Consts, RoundingMode};
+use astro_float_num::{BigFloat, Consts, RoundingMode};
 
 /// Sides of the cells, long over short; each is tried both ways round. The last is far beyond what
 /// the documentation promises.

@@ -3,8 +3,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../common/rough.rs"]
-mod rough;
 
 mod areas;
 mod continued;

@@ -1,13 +1,13 @@
 //! What holds at every event of every path, on random rough surfaces.
 
 use crate::common::with_window;
-use crate::rough::{Case, Roughness, case, noise, rms, roughness};
 use asperity::convolution::Convolution;
 use asperity::loading::{History, LoadingSolver};
 use asperity::surface::{FlatPunch, HeightMap};
 use asperity::updater::Dense;
 use asperity::{Boussinesq, LoadingState};
 use asperity_testing::dense::{self, initial_gap};
+use asperity_testing::random::{Case, Roughness, case, noise, rms, roughness};
 use proptest::prelude::*;
 
 /// What the crate promises of pressures and gaps. The solves lose the condition number, below 1e3

@@ -7,6 +7,7 @@ use asperity::{
     ContactGrowth, Grid, InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
 };
 use asperity_testing::surfaces::rough;
+use asperity_testing::table;
 
 /// Same node at every event to full contact, every column within 1e-9: both sides come from
 /// triangular solves with a condition number of some 10³, and the last mean gaps lose five digits
@@ -19,17 +20,9 @@ fn compare(kernel: &dyn InfluenceKernel, name: &str, window: Option<usize>) {
         format!("{}/tests/data/periodic_32x24_{name}_events.csv", env!("CARGO_MANIFEST_DIR"));
     let mut events = 0;
     let (mut first_gap, mut last): (Option<f64>, Option<(f64, f64, f64)>) = (None, None);
-    for event in csv::Reader::from_path(path).unwrap().deserialize() {
-        let (step, ix, iy, load, area, fraction, mean_gap, stiffness): (
-            usize,
-            usize,
-            usize,
-            f64,
-            f64,
-            f64,
-            f64,
-            f64,
-        ) = event.unwrap();
+    for event in table::read(path) {
+        let [step, ix, iy] = [0, 1, 2].map(|column| event[column] as usize);
+        let [load, area, fraction, mean_gap, stiffness] = event[3..].try_into().unwrap();
         let state = solver.next().unwrap().unwrap();
         assert_eq!((state.step, state.node), (step, (ix, iy)), "{name}");
         for (column, found, expected) in [

@@ -1,5 +1,6 @@
 //! Every state of a path against flood fills of it, and against tamaas.
 
+use asperity_testing::table;
 use proptest::prelude::*;
 
 use super::super::*;
@@ -130,16 +131,13 @@ fn every_state_has_the_patches_that_tamaas_counts() -> TestResult {
     let data = |name: &str| format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
     let grid = Grid::new(32, 24, 2e-5, 3e-5)?;
     let mut contact = ContactSequence::new(grid);
-    let mut events = csv::Reader::from_path(data("periodic_32x24_love_events"))?;
-    for event in events.deserialize::<Vec<f64>>() {
-        let event = event?;
+    for event in table::read(data("periodic_32x24_love_events")) {
         contact.push(event[1] as usize + grid.nx() * event[2] as usize)?;
     }
-    let mut counts = csv::Reader::from_path(data("periodic_32x24_love_patches"))?;
     let mut history = PatchHistory::new(&contact, Boundary::Periodic, Connectivity::Four);
     let mut states = 0;
-    for row in counts.deserialize::<[usize; 4]>() {
-        let [step, patches, perimeter, largest] = row?;
+    for row in table::read(data("periodic_32x24_love_patches")) {
+        let [step, patches, perimeter, largest] = [0, 1, 2, 3].map(|column| row[column] as usize);
         let state = history.next().ok_or("too few states")?;
         let found = (state.patches, state.perimeter.sides(), state.largest);
         assert_eq!((state.step, found), (step, (patches, perimeter, largest)));

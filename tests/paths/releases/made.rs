@@ -8,7 +8,7 @@ use asperity::{Boundary, ContactGrowth, Grid, LoadingSolver};
 use asperity_testing::dense::restrict;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
-use rand::rngs::StdRng;
+use rand_chacha::ChaCha12Rng;
 
 /// A release exists if and only if, for some set J of holes and some i outside J,
 /// 1 − A_iJ A_JJ⁻¹ e < 0, with A the pseudo-inverse of the kernel in the zero gauge: the share of i
@@ -17,7 +17,7 @@ use rand::rngs::StdRng;
 fn a_surface_whose_node_leaves_can_be_made_from_any_set_of_holes_that_says_so() {
     let mut made = 0;
     for seed in 0..40 {
-        let mut random = StdRng::seed_from_u64(2000 + seed);
+        let mut random = ChaCha12Rng::seed_from_u64(2000 + seed);
         let kernel = Table::random((3, 3), Boundary::Periodic, &mut random);
         let (n, matrix) = (9, kernel.matrix());
         // C⁻¹ = A + e eᵀ / (s M²) with s the gauge, the mean coefficient.

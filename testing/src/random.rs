@@ -1,11 +1,11 @@
 //! Random rough surfaces for property tests.
-#![allow(clippy::unwrap_used, dead_code, unreachable_pub, missing_docs)]
 
 use asperity::surface::{Amplitude, SelfAffine};
 use asperity::{Grid, Surface};
-use asperity_testing::surfaces::smooth;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
+
+use crate::surfaces::smooth;
 
 /// How the heights of a random surface are made.
 #[derive(Debug, Clone, Copy)]
