@@ -1,6 +1,6 @@
 //! Search directions of conjugate gradients, and the step along one.
 
-use super::tuning::{CHUNK, KEPT};
+use super::tuning::{CHUNK, KEPT, MEMORY};
 use super::{NodeSet, Operator, add_scaled, dot, greatest};
 use crate::Error;
 use crate::parallel::for_each_chunk;
@@ -33,14 +33,14 @@ pub(crate) struct Step<'a> {
 }
 
 /// Search directions, oldest first: the first ones, if they are to serve other right-hand sides, and the
-/// last one.
+/// last ones.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directions {
     list: Vec<Direction>,
     /// How many of the first are kept.
     kept: usize,
-    /// Whether the next one is made conjugate to none.
-    begins_anew: bool,
+    /// Those before this one are not looked back at.
+    since: usize,
 }
 
 impl Directions {
@@ -49,16 +49,17 @@ impl Directions {
         Self { kept: KEPT, ..Self::default() }
     }
 
+    /// The last ones, to which a new one is made conjugate.
+    fn last(&self) -> &[Direction] {
+        let first = self.list.len().saturating_sub(MEMORY).max(self.since);
+        &self.list[first..]
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
-        self.last().is_none()
+        self.last().is_empty()
     }
 
-    /// The last one, to which a new one is made conjugate.
-    fn last(&self) -> Option<&Direction> {
-        if self.begins_anew { None } else { self.list.last() }
-    }
-
-    /// Takes the parts along all kept directions out of the residual of x, whose displacements of the whole
+    /// Projects the parts along all kept directions out of the residual of x, whose displacements of the whole
     /// grid are u: the directions are conjugate, so that each is a step of its own (Chan and Wan, SIAM J.
     /// Sci. Comput. 18 (1997) 1698). Returns the root of the sum of squares of all norms of these steps.
     pub(crate) fn project(&self, x: &mut [f64], residual: &mut [f64], u: &mut [f64]) -> f64 {
@@ -80,10 +81,10 @@ impl Directions {
     }
 
     /// The step that takes most of the energy out of `residual`, along the preconditioned residual
-    /// `z` made conjugate to the last direction.
+    /// `z` made conjugate to earlier directions.
     ///
-    /// On a set of few nodes nothing may be left of z once it is conjugate to a direction whose image
-    /// is of single precision: then that is forgotten, and the step goes along z itself.
+    /// On a set of few nodes nothing may be left of z once it is conjugate to directions whose images
+    /// are of single precision: then they are forgotten, and the step goes along z itself.
     ///
     /// # Errors
     ///
@@ -96,8 +97,8 @@ impl Directions {
         z: &[f64],
     ) -> Result<Step<'_>, Error> {
         let direction = match self.explore(operator, contact, z)? {
-            None if self.last().is_some() => {
-                self.begins_anew = true;
+            None if !self.is_empty() => {
+                self.since = self.list.len();
                 self.explore(operator, contact, z)?
             }
             direction => direction,
@@ -105,13 +106,15 @@ impl Directions {
         let Some(direction) = direction else {
             return Err(Error::FactorizationFailed { nodes: contact.len() });
         };
-        self.list.truncate(self.kept);
+        if self.list.len() == self.kept + MEMORY {
+            self.list.remove(self.kept);
+            self.since = self.since.saturating_sub(1);
+        }
         self.list.push(direction);
-        self.begins_anew = false;
         Ok(self.list[self.list.len() - 1].step(residual))
     }
 
-    /// The direction along `z`, conjugate to the last one; `None` unless its curvature is positive
+    /// The direction along `z`, conjugate to the earlier ones; `None` unless its curvature is positive
     /// and finite.
     fn explore(
         &self,
@@ -120,7 +123,7 @@ impl Directions {
         z: &[f64],
     ) -> Result<Option<Direction>, Error> {
         let mut sum = z.to_vec();
-        if let Some(earlier) = self.last() {
+        for earlier in self.last() {
             let part = earlier.unit * dot(z, &earlier.image) / earlier.curvature;
             add_scaled(&mut sum, -part, &earlier.values);
         }

@@ -92,7 +92,7 @@ impl Strike {
         let call = self.calls.fetch_add(1, Relaxed);
         let solves = ["advance", "probe", "solve_apart"].contains(&method);
         let possible = match self.fault {
-            Fault::Forget => ["cut", "leave"].contains(&method),
+            Fault::Forget => method == "cut",
             Fault::Each(part, _) | Fault::Last(part, _) => match part {
                 Part::Schur | Part::RowSums | Part::Proposed => method == "propose",
                 Part::Pressure | Part::Rate => ["advance", "solve_apart"].contains(&method),
@@ -274,11 +274,6 @@ impl Iterations for Failing {
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let Self { inner, strike, .. } = self;
         strike.call("cut", || inner.cut(problem, contact)).map(drop)
-    }
-
-    fn leave(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        let Self { inner, strike, .. } = self;
-        strike.call("leave", || inner.leave(problem, contact)).map(drop)
     }
 
     fn bytes(&self, nodes: usize, contact: usize) -> usize {
@@ -498,7 +493,7 @@ fn an_error_at_any_call_is_the_last_item() -> Result<(), Error> {
         }
     }
     let methods: Vec<_> = methods.into_iter().collect();
-    assert_eq!(methods, ["advance", "cut", "leave", "probe", "propose"]);
+    assert_eq!(methods, ["advance", "cut", "probe", "propose"]);
     assert!(refused > 100 && answered > refused, "{refused} {answered}");
     Ok(())
 }
@@ -528,7 +523,7 @@ fn nothing_is_yielded_after_a_panic_at_any_call() -> Result<(), Error> {
         }
     }
     let methods: Vec<_> = methods.into_iter().collect();
-    assert_eq!(methods, ["advance", "cut", "leave", "probe", "propose"]);
+    assert_eq!(methods, ["advance", "cut", "probe", "propose"]);
     assert!(answered > 200, "{answered}");
     Ok(())
 }

@@ -175,10 +175,6 @@ impl Iterations for Altered {
         Ok(())
     }
 
-    fn leave(&mut self, _: &Problem, _: &ContactSequence) -> Result<(), Error> {
-        Ok(())
-    }
-
     fn bytes(&self, _: usize, _: usize) -> usize {
         0
     }

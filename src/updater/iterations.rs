@@ -52,7 +52,7 @@ pub trait Iterations: Debug + Send + Sync {
         schur: &mut Schur,
     ) -> Result<Vec<[f64; 2]>, Error>;
 
-    /// Solves on the whole contact at an approach, and stays there. The rate is so exact that the solution keeps its tolerance over
+    /// Solves on the whole contact, which nodes may have left since the last time, at an approach, and stays there. The rate is so exact that the solution keeps its tolerance over
     /// the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
     fn advance(
         &mut self,
@@ -86,9 +86,6 @@ pub trait Iterations: Debug + Send + Sync {
 
     /// Goes back to a contact that has been cut: to the solution before, if that was on it.
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;
-
-    /// Goes on from a contact without one of its nodes.
-    fn leave(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;
 
     /// Bytes held when `contact` nodes of a grid of `nodes` are in contact.
     fn bytes(&self, nodes: usize, contact: usize) -> usize;

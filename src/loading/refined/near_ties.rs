@@ -330,6 +330,9 @@ impl NearTies<'_> {
         let displacement = iterations.probe(problem, contact, count, approach, gap_error)?;
         let nodes = problem.grid().nodes();
         UpdaterError::check_length("displacements", displacement.len(), nodes)?;
+        if !displacement.iter().copied().all(f64::is_finite) {
+            return Err(run.not_finite());
+        }
         Ok(move |node: usize| problem.initial_gap()[node] + displacement[node] - approach)
     }
 

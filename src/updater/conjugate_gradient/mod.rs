@@ -209,11 +209,6 @@ impl Iterations for ConjugateGradient {
         Ok(())
     }
 
-    fn leave(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
-        self.solutions(problem, contact)?.keep(contact);
-        Ok(())
-    }
-
     fn bytes(&self, nodes: usize, contact: usize) -> usize {
         Self::bytes_of(nodes, contact)
     }
@@ -292,7 +287,7 @@ impl LinearUpdater for ConjugateGradient {
         _node: usize,
         _position: usize,
     ) -> Result<(), Error> {
-        self.leave(problem, contact)
+        self.solutions(problem, contact).map(drop)
     }
 
     /// On a grid that is not known before the first call.

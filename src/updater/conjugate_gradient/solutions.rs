@@ -27,6 +27,8 @@ pub(super) struct Solutions {
     proposed: Proposed,
     /// Search directions of the last solution on the whole contact.
     directions: Directions,
+    /// The nodes of that contact.
+    solved: Vec<usize>,
 }
 
 impl Solutions {
@@ -41,6 +43,7 @@ impl Solutions {
             sums: RowSums::start(0, vec![0.0; nodes]),
             proposed: Proposed::default(),
             directions: Directions::default(),
+            solved: Vec::new(),
         }
     }
 
@@ -60,6 +63,7 @@ impl Solutions {
         });
         self.now = Equilibrium { count: contact.len(), approach, serves: 0.0, load, rate };
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
+        self.solved = contact.order().to_vec();
     }
 
     /// The grid of the problem.
@@ -119,6 +123,10 @@ impl Solutions {
         (approach, aim): (f64, Aim),
         solved: &mut Solved,
     ) -> Result<(), Error> {
+        if self.solved.iter().any(|&node| !contact.contains(node)) {
+            // Nodes have left since.
+            self.keep(contact);
+        }
         let now = &self.now;
         let is_here = now.count == contact.len() && now.load.is_known() && now.approach == approach;
         if !(is_here && aim.span() <= now.serves) {
@@ -131,6 +139,7 @@ impl Solutions {
                     }
                     self.now = equilibrium;
                     self.directions = directions;
+                    self.solved = contact.order().to_vec();
                 }
                 Err(error) => {
                     self.now = now;
@@ -294,13 +303,14 @@ impl Solutions {
                 if self.sums.count() > left.len() {
                     self.sums.keep(left);
                 }
+                self.solved = left.order().to_vec();
             }
             _ => self.keep(left),
         }
     }
 
     /// Keeps of all solutions, as starts, what belongs to nodes that are left in contact.
-    pub(super) fn keep(&mut self, left: &ContactSequence) {
+    fn keep(&mut self, left: &ContactSequence) {
         self.before = None;
         self.instants.clear();
         self.directions = Directions::default();
@@ -309,6 +319,7 @@ impl Solutions {
         self.now.rate.keep(left);
         self.now.count = left.len();
         self.sums.keep(left);
+        self.solved = left.order().to_vec();
     }
 }
 
