@@ -287,7 +287,8 @@ impl LinearUpdater for ConjugateGradient {
         _node: usize,
         _position: usize,
     ) -> Result<(), Error> {
-        self.solutions(problem, contact).map(drop)
+        self.solutions(problem, contact)?.keep(contact);
+        Ok(())
     }
 
     /// On a grid that is not known before the first call.

@@ -310,7 +310,7 @@ impl Solutions {
     }
 
     /// Keeps of all solutions, as starts, what belongs to nodes that are left in contact.
-    fn keep(&mut self, left: &ContactSequence) {
+    pub(super) fn keep(&mut self, left: &ContactSequence) {
         self.before = None;
         self.instants.clear();
         self.directions = Directions::default();
