@@ -6,7 +6,7 @@
 //!
 //! # How large an error may be
 //!
-//! A solution by a factor has a residual of some n roundings of the numbers that it cancels, the lengths
+//! A solution by a factor has a residual of some n rounding errors of the numbers that it cancels, the lengths
 //! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
 //! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
 //! the very set.
@@ -15,7 +15,7 @@ use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDispl
 use asperity_testing::dense::{influence_matrix, initial_gap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Roundings of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
+/// Rounding errors of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
 /// and of the path.
 const ROUNDINGS: f64 = 4.0;
 const ANYWAY: f64 = 16.0;
@@ -192,7 +192,7 @@ impl Dense {
         Some(norm(&self.influence) * norm(&inverse))
     }
 
-    /// The roundings of n nodes, relative to the lengths that cancel.
+    /// The rounding errors of n nodes, relative to the lengths that cancel.
     pub(crate) fn rounding(nodes: usize) -> f64 {
         ROUNDINGS * (ANYWAY + nodes as f64) * f64::EPSILON
     }

@@ -12,7 +12,7 @@ use crate::refusal::Circumstances;
 use crate::verdict::{Tally, Verdict, Violation, ensure};
 use crate::walk::{Demands, Walk};
 
-/// How often the roundings of a solution a tolerance has to be for a solver to be sure of it.
+/// How often the rounding errors of a solution a tolerance has to be for a solver to be sure of it.
 const SURE: f64 = 100.0;
 
 /// What a mean gap may be off by that was looked for, relative to the one without load.
@@ -91,7 +91,7 @@ impl Judge {
         states.first().map_or(0.0, |state| state.contact.mean_gap)
     }
 
-    /// Whether the tolerance lies below the roundings of a solution.
+    /// Whether the tolerance lies below the rounding errors of a solution.
     fn is_hopeless(&self, error: &Error) -> bool {
         matches!(error, Error::NoConvergence { .. })
             && self.settings.tolerance < SURE * self.circumstances.error

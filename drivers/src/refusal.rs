@@ -9,7 +9,7 @@ use crate::verdict::{Tally, Verdict, ensure};
 /// What is known of a problem that ended with an error.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Circumstances {
-    /// Roundings times the condition number: the error of a solution relative to itself. Infinite if the matrix is not
+    /// Rounding errors times the condition number: the error of a solution relative to itself. Infinite if the matrix is not
     /// positive definite.
     pub(crate) error: f64,
     pub(crate) growth: ContactGrowth,

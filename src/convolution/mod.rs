@@ -246,10 +246,10 @@ impl SingleConvolution {
         self.unit
     }
 
-    /// What the roundings of a spectrum come to: the root mean square error of displacements \[m\] under pressures of
+    /// What the rounding errors of a spectrum come to: the root mean square error of displacements \[m\] under pressures of
     /// which the sum of squares is 1, over that of a rounding.
     ///
-    /// Roundings spread over all waves alike, and the symbol makes the more of them the longer the wave. Pressures of short
+    /// Rounding errors spread over all waves alike, and the symbol makes the more of them the longer the wave. Pressures of short
     /// waves displace little, and yet what they spoil is this.
     pub(crate) fn noise(&self) -> f64 {
         self.noise

@@ -191,7 +191,7 @@ impl<'a> ActiveSet<'a> {
         way(descent, &mut self.progress)
     }
 
-    /// Takes the widest gap out of a contact that is everywhere, if an approach is prescribed and the mean displacement is
+    /// Removes the node of the widest gap from a contact that is everywhere, if an approach is prescribed and the mean displacement is
     /// arbitrary.
     ///
     /// Uniform pressure does not displace such a contact relative to its mean plane, so that no
@@ -265,7 +265,7 @@ mod tests {
     use crate::{Boussinesq, FixedLoadSolver, Grid, InfluenceKernel, PeriodicBoussinesq};
 
     /// Where everything carries and the mean displacement is arbitrary, no pressure answers to an approach: a
-    /// round takes out the node with the widest gap, and no other. A free half-space needs no such thing.
+    /// round removes the node with the widest gap, and no other. A free half-space needs no such thing.
     #[test]
     fn an_approach_leaves_one_node_out() -> Result<(), Error> {
         let grid = Grid::new(6, 5, 1.0, 1.0)?;

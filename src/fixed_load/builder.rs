@@ -77,7 +77,7 @@ impl FixedLoadBuilder<'_> {
         check_cells(&grid, boundary, LONGEST_CELLS)?;
         let memory = MemoryBudget::new(budget, &grid, boundary, settings.nested)?;
         let problem = Problem::new(self.surface, self.kernel)?;
-        // A kernel of one's own may say something else when it is asked again.
+        // A user-defined kernel may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
         let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
         Ok(FixedLoadSolver::with(settings, hierarchy))

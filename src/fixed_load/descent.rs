@@ -3,7 +3,7 @@
 use super::iterate::{Criteria, Errors, Progress};
 use super::level::{Level, Prescribed};
 use super::release::release;
-use super::tuning::ROUNDINGS;
+use super::tuning::ULPS;
 use crate::Error;
 use crate::krylov::{Directions, NodeSet, add_scaled, dot, greatest, sum, sum_over};
 
@@ -123,7 +123,7 @@ impl<'a> Descent<'a> {
                 return Ok(Errors { residual: f64::NAN, ..errors });
             }
             // A set that has just been chosen deserves a step, unless nothing but rounding is wrong.
-            let rounding = ROUNDINGS * f64::EPSILON * self.level.iterate.approach.abs();
+            let rounding = ULPS * f64::EPSILON * self.level.iterate.approach.abs();
             let fresh = directions.is_empty() && others > tolerance && errors.residual > rounding;
             if (errors.residual <= enough && !fresh)
                 || progress.iterations >= self.criteria.max_iterations

@@ -102,7 +102,7 @@ impl FixedLoadSolver {
     ///
     /// Those of [`Self::solve`] and [`Self::solve_approach`]; [`Error::OutOfRange`] for an area
     /// fraction or a mean gap that cannot be; [`Error::NoConvergence`] if the load is not found, as on an
-    /// ill-conditioned body of one's own where a loose tolerance leaves the mean gap uncertain.
+    /// ill-conditioned user-defined kernel where a loose tolerance leaves the mean gap uncertain.
     pub fn solve_target(&mut self, target: ContactTarget) -> Result<FixedLoadSolution, Error> {
         solve_target(&mut self.stepper(), target)
     }

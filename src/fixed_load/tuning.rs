@@ -72,6 +72,6 @@ pub(super) const TYPICAL: f64 = 0.05;
 /// Rounding of a mean gap, relative to the one without load: of gaps, displacements and their sum.
 pub(super) const ROUNDING: f64 = 1e-14;
 /// Residuals up to so many units in the last place of the approach are none.
-pub(super) const ROUNDINGS: f64 = 4.0;
+pub(super) const ULPS: f64 = 4.0;
 /// Least unit of length of a tolerance, relative to the approach: a hundredth of it is still above rounding.
 pub(super) const FINEST: f64 = 1e-12;

@@ -91,7 +91,7 @@ mod tests {
                 (0..size).map(|i| (0..size).map(|j| entry(i, j) * expected(j)).sum()).collect();
             solve_in_place(&mut matrix, size, &mut x);
             for (i, found) in x.iter().enumerate() {
-                // The condition number is near 1: some ten roundings of 6·10⁻⁸ of numbers up to 2.
+                // The condition number is near 1: some ten rounding errors of 6·10⁻⁸ of numbers up to 2.
                 assert!((found - expected(i)).abs() < 2e-6, "{size} {i}: {found}");
             }
         }

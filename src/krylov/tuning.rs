@@ -7,7 +7,7 @@
 
 // Conjugate gradients
 
-/// Error of a displacement in single precision, relative to the greatest, and to the noise that roundings of the spectrum
+/// Error of a displacement in single precision, relative to the greatest, and to the noise that rounding errors of the spectrum
 /// come to. Those of several steps are independent of each other, and add up in the square. It is an error, not a choice: a test
 /// compares it with that of convolutions.
 pub(crate) const SINGLE: f64 = 2e-7;

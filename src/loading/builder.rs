@@ -222,7 +222,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
         let fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
         let problem = Problem::new(self.surface, self.kernel)?;
-        // A kernel of one's own may say something else when it is asked again.
+        // A user-defined kernel may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;
         let growth = problem.growth();

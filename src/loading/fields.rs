@@ -217,7 +217,7 @@ mod tests {
     fn near(found: &DMatrix<f64>, expected: [f64; 4]) {
         assert_eq!(found.shape(), (4, 1));
         for (found, expected) in found.iter().zip(expected) {
-            // Roundings of a transform of numbers up to 9.
+            // Rounding errors of a transform of numbers up to 9.
             assert!((found - expected).abs() < 1e-13, "{found} {expected}");
         }
     }

@@ -211,7 +211,7 @@ mod tests {
     fn near(found: &[f64], expected: &[f64]) {
         assert_eq!(found.len(), expected.len());
         for (found, expected) in found.iter().zip(expected) {
-            // Roundings of a transform of numbers up to 8.
+            // Rounding errors of a transform of numbers up to 8.
             assert!((found - expected).abs() < 1e-13, "{found} {expected}");
         }
     }

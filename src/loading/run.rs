@@ -149,7 +149,7 @@ impl LoadingRun {
         self.field.advance(&self.problem, &self.contact, iterations, [approach, span])
     }
 
-    /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n roundings of
+    /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of
     /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements.
     fn check_closed(&self, approach: f64) -> Result<(), Error> {
         let own = self.problem.table().self_influence();

@@ -278,7 +278,7 @@ mod tests {
             for (found, expected) in
                 [(scalars.load, load), (scalars.energy, energy), (scalars.unit_stiffness, 0.5)]
             {
-                // Roundings of numbers up to 5.
+                // Rounding errors of numbers up to 5.
                 assert!((found - expected).abs() < 1e-14, "{found} {expected}");
             }
         }

@@ -19,7 +19,7 @@ use crate::{Error, Grid, Problem};
 /// A fused iterator: it yields one [`LoadingState`] for each node that touches (or leaves, with a kernel that
 /// lets nodes leave), from first touch (approach 0, load 0) to full contact or a limit. If the limit is a load,
 /// an approach or a mean gap, the last state is at exactly that limit. Afterwards, or after an error, it yields
-/// `None`, and [`end`](Self::end) says why; so it does if an updater of one's own has panicked and the panic was
+/// `None`, and [`end`](Self::end) says why; so it does if a user-defined updater has panicked and the panic was
 /// caught. Fields of the present state, the last one yielded, are computed on demand.
 ///
 /// ```
@@ -94,7 +94,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             if let Some(error) = self.failure.take() {
                 return Err(error);
             }
-            // If a part of one's own panics here, this is where the path has ended.
+            // If a user-defined part panics here, this is where the path has ended.
             self.end = Some(LoadingEnd::Failed);
             let produced = self.produce();
             self.end = None;

@@ -39,7 +39,7 @@ pub struct LoadingState {
 }
 
 impl LoadingState {
-    /// A state made of data: from a file of one's own, for example.
+    /// A state from data, of the user's own file for example.
     #[must_use]
     pub fn new(
         step: usize,

@@ -112,7 +112,7 @@ pub(super) const UNWATCHED: f64 = 100.0;
 /// How far below zero a gap may lie at the end of an exact window before events are taken back, as a multiple of the greatest gap
 /// that the solution there leaves in contact, which is rounding. What is taken back without need costs time and changes nothing,
 /// so that the bound need not be as wide as that of an error.
-pub(super) const ROUNDINGS: f64 = 8.0;
+pub(super) const OF_RESIDUAL: f64 = 8.0;
 /// How far below zero a gap may lie, relative to the greatest initial gap and the approach, or a pressure,
 /// relative to the greatest one, before it counts as wrong. The displacement comes from an FFT and
 /// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the

@@ -376,7 +376,7 @@ mod tests {
         assert_eq!(window.play(2), None);
         let found = found(&window);
         assert_eq!(found[0], (7, 0.0));
-        // A few roundings of numbers near 1.
+        // A few rounding errors of numbers near 1.
         assert!(found[1].0 == 8 && (found[1].1 - 2.0).abs() < 1e-14, "{found:?}");
         let [[first, _], [second, _]] = *window.increments() else {
             unreachable!("two were asked for");

@@ -1,6 +1,6 @@
 //! Events in windows, of kernels whose contact only grows, with an updater.
 
-use super::tuning::{MULTIPLE, ROUNDINGS};
+use super::tuning::{MULTIPLE, OF_RESIDUAL};
 use std::time::Instant;
 
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
@@ -198,7 +198,7 @@ fn contradiction(run: &LoadingRun, approach: f64) -> Option<f64> {
     let left = run.contact.order().iter();
     let left = left.map(|&node| run.field.left_at(&run.problem, node)[0].abs());
     let least = f64::EPSILON * (run.problem.greatest_gap() + approach);
-    let overlap = -ROUNDINGS * left.fold(least, f64::max);
+    let overlap = -OF_RESIDUAL * left.fold(least, f64::max);
     let lines = run.field.lines(&run.problem, &run.contact, approach);
     lines
         .filter(|(_, line)| line.gap < overlap)

@@ -98,7 +98,7 @@ mod tests {
             let one = CompleteElliptic::from_log_complement(complement.ln());
             let other = CompleteElliptic::from_log_complement(k.ln());
             let sum = one.first * other.second + one.second * other.first - one.first * other.first;
-            // A few roundings of terms of size up to 13.
+            // A few rounding errors of terms of size up to 13.
             assert_relative_eq!(sum, FRAC_PI_2, max_relative = 2e-14);
         }
     }

@@ -238,7 +238,7 @@ mod tests {
             for (events, &j) in order.iter().enumerate() {
                 let both = 0..=last.min(events);
                 let products = both.map(|t| touched.factor(i, t) * touched.factor(j, t));
-                // A few dozen roundings of numbers up to 400.
+                // A few dozen rounding errors of numbers up to 400.
                 let error = products.sum::<f64>() - dominant(i, j);
                 assert!(error.abs() < 1e-12, "{i} {j} {error}");
             }
@@ -291,7 +291,7 @@ mod tests {
             let mut found = order.map(|node| b[node]);
             factor.solve_both(&mut found);
             for (found, expected) in found.concat().iter().zip(order.map(|node| x[node]).concat()) {
-                // Roundings of numbers up to 12.
+                // Rounding errors of numbers up to 12.
                 assert!((found - expected).abs() < 1e-14, "{found} {expected}");
             }
         }
@@ -322,7 +322,7 @@ mod tests {
                 factor.finish(&mut schur);
                 let found =
                     DMatrix::from_fn(open.len(), open.len(), |i, j| schur.entry(open[i], open[j]));
-                // A few dozen roundings of numbers up to 400.
+                // A few dozen rounding errors of numbers up to 400.
                 let error = (found - &expected).amax();
                 assert!(error < 1e-12, "{events}: {error:e}");
             }

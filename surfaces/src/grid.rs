@@ -215,7 +215,7 @@ impl Grid {
         let is_one = fraction > 0.0 && fraction <= 1.0;
         Error::require("area fraction", fraction, is_one, "above 0 and at most 1")?;
         let all = self.nodes() as f64;
-        // A fraction computed as k/M falls short of k nodes by at most three roundings.
+        // A fraction computed as k/M falls short of k nodes by at most three rounding errors.
         let nodes = (fraction * all * (1.0 + 4.0 * f64::EPSILON)).floor();
         if nodes < 1.0 {
             return Err(Error::LessThanOneNode { fraction, least: 1.0 / all });

@@ -1,4 +1,4 @@
-//! An updater of one's own.
+//! A user-defined updater.
 
 use asperity::contact::ContactSequence;
 use asperity::updater::{LinearUpdater, Schur, Solution, WindowFactor};

@@ -207,7 +207,7 @@ fn own_cell_of_a_square() {
     let kernel = Boussinesq::new(grid, 7.3e10).expect("kernel");
     let exact =
         4.0 * (1.0 + 2f64.sqrt()).ln() * grid.dx() / (std::f64::consts::PI * kernel.e_star());
-    // Roundings of the formula here, and of the kernel.
+    // Rounding errors of the formula here, and of the kernel.
     assert!((kernel.coefficient(0, 0) / exact - 1.0).abs() < 1e-15);
 }
 

@@ -121,7 +121,7 @@ fn spectral_symbol_is_the_formula() -> Result<(), Error> {
                 let q = qx.hypot(qy);
                 let expected = if q > 0.0 { 2.0 / (2.5 * q) } else { 0.0 };
                 let found = kernel.symbol(kx as isize, ky as isize);
-                // A handful of roundings on either side.
+                // A handful of rounding errors on either side.
                 assert!((found - expected).abs() <= 2e-15 * expected, "({kx}, {ky}): {found:e}");
             }
         }

@@ -1,4 +1,4 @@
-//! Parts of one's own, and parts chosen at run time, by the public interface alone.
+//! User-defined parts, and parts chosen at run time, by the public interface alone.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod parts;

@@ -1,4 +1,4 @@
-//! A surface and a kernel of one's own.
+//! A user-defined surface and kernel.
 
 use asperity::{Boundary, ContactGrowth, Grid, InfluenceKernel, Surface, SurfaceError};
 use nalgebra::DMatrix;

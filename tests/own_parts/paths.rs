@@ -1,4 +1,4 @@
-//! Paths of one's own surface, kernel and updater.
+//! Paths of a user-defined surface, kernel and updater.
 
 use crate::parts::{Facets, Grains};
 use asperity::kernel::{self, KernelTable};

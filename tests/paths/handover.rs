@@ -132,7 +132,7 @@ fn a_factor_is_given_up_where_both_cost_the_same() {
             let n = contact as f64;
             let expected = (1e-11 * n * n).min(iterations(n));
             let found = event_seconds(nodes, contact);
-            // A few roundings of the same sum.
+            // A few rounding errors of the same sum.
             assert!((found / expected - 1.0).abs() < 1e-14, "{side}: {contact}");
         }
     }

@@ -77,7 +77,7 @@ fn a_kernel_that_is_not_positive_definite_names_node_and_approach() {
         let first = path.next().unwrap().unwrap();
         let second = path.next().unwrap().unwrap();
         assert_eq!((first.node, second.node), ((0, 0), (1, 0)));
-        // Three nodes, a handful of roundings.
+        // Three nodes, a handful of rounding errors.
         assert!((second.contact.approach - 0.5).abs() < 1e-14);
         let error = path.next().unwrap().unwrap_err();
         let Error::NotPositiveDefinite { ix, iy, approach, pivot } = error else {

@@ -340,7 +340,7 @@ fn statistics_of_heights_of_any_size() {
     let heights = DMatrix::from_row_slice(2, 2, &[1.0, 3.0, -1.0, 1.0]);
     for height in [1e-300, 1e-200, 1e-154, 1.0, 1e154, 1e200, 5e307] {
         let map = HeightMap::new(&heights * height).unwrap();
-        // A few roundings.
+        // A few rounding errors.
         let near = |value: f64, expected: f64| (value / height - expected).abs() < 1e-14;
         assert!(near(map.mean_height(), 1.0), "{height:e}");
         assert!(near(map.mean_absolute_height(), 1.0), "{height:e}");

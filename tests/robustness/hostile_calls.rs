@@ -1,4 +1,4 @@
-//! Parts of one's own that contradict themselves, and calls in an order that no path makes: errors or
+//! User-defined parts that contradict themselves, and calls in an order that no path makes: errors or
 //! nonsense, and never a panic.
 
 use std::cell::Cell;

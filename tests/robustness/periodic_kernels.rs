@@ -122,7 +122,7 @@ fn any_gauge_has_the_same_path() {
             assert_eq!(states.len(), expected.len());
             for (state, expected) in states.iter().zip(&expected) {
                 assert_eq!(state.node, expected.node, "gauge {gauge}");
-                // Some roundings of coefficients that are so much larger.
+                // Some rounding errors of coefficients that are so much larger.
                 let allowed = 1e-13 * f64::max(gauge, 1e3);
                 for (a, b) in [
                     (state.contact.load, expected.contact.load),

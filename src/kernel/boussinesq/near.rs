@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn own_square_cell() {
         let exact = 4.0 * (1.0 + 2f64.sqrt()).ln();
-        // Two roundings on either side.
+        // Two rounding errors on either side.
         assert!((own_cell(1.0) - exact).abs() <= 2.0 * f64::EPSILON * exact);
     }
 }

@@ -107,7 +107,7 @@ fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
         (0..grid.nodes()).map(|place| rows[place / ny + nx * (place % ny)]).collect();
     planner.plan_fft_forward(ny).process(&mut columns);
     let greatest = columns.iter().map(|value| value.re).fold(0.0, f64::max);
-    // A Fourier transform errs by a few roundings of the greatest value.
+    // A Fourier transform errs by a few rounding errors of the greatest value.
     let rounding = 16.0 * f64::EPSILON * greatest;
     let skipped = usize::from(table.gauge().is_some());
     let mut least = f64::INFINITY;

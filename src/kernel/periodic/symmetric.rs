@@ -156,7 +156,7 @@ mod tests {
         let grid = Grid::new(2, 1, 1.0, 1.0)?;
         let symbol = Even::from_fn((2, 1), |k, _| 3.0 * k as f64);
         let least = least_gauge(&grid, &symbol).unwrap_or(f64::NAN);
-        // A few roundings of numbers near 1.
+        // A few rounding errors of numbers near 1.
         assert!((least - 1.5).abs() < 1e-15, "{least}");
         Ok(())
     }

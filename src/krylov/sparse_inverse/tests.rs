@@ -30,7 +30,7 @@ fn few_nodes_are_inverted_exactly() -> Result<(), Error> {
             .zip(&y)
             .map(|(&j, y)| table.between(table.place(i), table.place(j)) * y)
             .sum();
-        // Some roundings of 6·10⁻⁸ of numbers up to 4.
+        // Some rounding errors of 6·10⁻⁸ of numbers up to 4.
         assert!((product - b).abs() < 2e-6, "{i}: {product}");
     }
     // Of nothing comes nothing.

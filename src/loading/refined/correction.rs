@@ -220,7 +220,7 @@ mod tests {
         let opposite = corrected(&with_error(&[(1.0, [1.0, -1.5, 0.5])]));
         for correction in [two, one, opposite] {
             assert!(correction.is_updated);
-            // Roundings of numbers up to 5, times a condition number of 40.
+            // Rounding errors of numbers up to 5, times a condition number of 40.
             let error = (test_chain::matrix(&correction.window) - exact()).abs().max();
             assert!(error < 1e-12, "{error:e}");
             for (course, line) in correction.window.courses().zip(LINES) {
@@ -317,7 +317,7 @@ mod tests {
             for (end, &node) in ends.iter().zip(nodes) {
                 let (pressure, gap) = of_node[node];
                 for k in 0..2 {
-                    // Roundings of a transform of numbers up to 8.
+                    // Rounding errors of a transform of numbers up to 8.
                     let errors = [end.pressure[k] - pressure[k], end.gap[k] - gap[k]];
                     assert!(errors.iter().all(|error| error.abs() < 1e-13), "{node} {end:?}");
                 }

@@ -101,7 +101,7 @@ mod tests {
                 let stiffnesses =
                     stiffnesses.map(|(a, b)| (a.unwrap_or(f64::NAN), b.unwrap_or_default()));
                 for (found, expected) in pairs.into_iter().chain(stiffnesses) {
-                    // Roundings of numbers up to 10.
+                    // Rounding errors of numbers up to 10.
                     assert!((found - expected).abs() < 1e-13, "{k}: {found} {expected}");
                 }
             }

@@ -164,7 +164,7 @@ fn lines_and_complement_of_watched_nodes() -> Result<(), Error> {
         let pairs = pairs.chain(matrix.iter().copied().zip(&[3.75, 0.0, 0.0, 4.0]));
         let row_sums = found.schur().row_sums().iter().copied();
         for (found, expected) in pairs.chain(row_sums.zip(&[4.75, 6.0])) {
-            // Roundings of a transform of numbers up to 9.
+            // Rounding errors of a transform of numbers up to 9.
             assert!((found - expected).abs() < 1e-13, "{found} {expected}");
         }
         assert_eq!(run.timings.windows, 1);

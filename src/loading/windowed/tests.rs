@@ -37,7 +37,7 @@ fn of_nodes_that_touch_at_once_the_lowest_are_chosen() {
         let nodes: Vec<usize> = windowed.ranking[..found].iter().map(|(_, n)| *n).collect();
         let nodes = nodes.into_iter().collect::<std::collections::BTreeSet<_>>();
         assert!(nodes.into_iter().eq(expected), "{size}");
-        // Roundings of the approach.
+        // Rounding errors of the approach.
         assert!(until == horizon || (until - horizon).abs() < 1e-11, "{size}: {until}");
     }
 }

@@ -37,7 +37,7 @@ proptest! {
         prop_assert_eq!(inside + histogram.outside(), values.len());
         if inside > 0 {
             let share = inside as f64 / values.len() as f64;
-            // Some 60 bins of three roundings.
+            // Some 60 bins of three rounding errors.
             prop_assert!((integral(&histogram) - share).abs() < 1e-13);
         }
         match bins {

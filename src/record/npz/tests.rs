@@ -45,7 +45,7 @@ fn a_record_does_not_fit() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The members that a record is read from, checksums and all, with a text of parameters of one's own and a change of the
+/// The members that a record is read from, checksums and all, with other parameters and a change of the
 /// columns.
 fn archive(
     record: &LoadingRecord,

@@ -144,7 +144,7 @@ mod tests {
 
     /// Small triangles, panels and groups of them, at their borders; with three groups threads share the work. The factor
     /// is that of many more rows. Its diagonal is 4, and beside it are powers of 1/2: each solution, of small integers, comes
-    /// back but for a few roundings.
+    /// back but for a few rounding errors.
     #[test]
     fn factors_are_solved_backwards() {
         let entry = |r: usize, c: usize| match r - c {

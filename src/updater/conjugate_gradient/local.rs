@@ -233,7 +233,7 @@ mod tests {
             assert_eq!((local.node, &local.contact), (node, &contact));
             assert_eq!(local.weights.len(), weights.len());
             for (found, expected) in local.weights.iter().zip(&weights) {
-                // Roundings in single precision.
+                // Rounding errors in single precision.
                 assert!((found - expected).abs() < 1e-7, "{found} {expected}");
             }
         }

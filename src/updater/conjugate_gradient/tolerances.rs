@@ -87,7 +87,7 @@ mod tests {
             (found.drift[1], drift[1]),
         ];
         for (found, expected) in pairs {
-            // Roundings of a few products.
+            // Rounding errors of a few products.
             let same = found == expected || (found / expected - 1.0).abs() < 1e-14;
             assert!(same, "{found:e} {expected:e}");
         }

@@ -266,7 +266,7 @@ mod tests {
         assert_eq!(map.peak_to_valley(), 6.0);
         // (5 * 1 + 5) / 6: a rounding.
         assert!((map.mean_absolute_height() - 5.0 / 3.0).abs() < 1e-15);
-        // (5 * 1 + 25) / 6 = 5, and likewise (125 - 5) / 6 and (625 + 5) / 6: a few roundings.
+        // (5 * 1 + 25) / 6 = 5, and likewise (125 - 5) / 6 and (625 + 5) / 6: a few rounding errors.
         assert!((map.rms_height() - 5.0_f64.sqrt()).abs() < 1e-15);
         assert!((map.skewness() - 20.0 / 5.0_f64.powf(1.5)).abs() < 1e-14);
         assert!((map.kurtosis() - 105.0 / 25.0).abs() < 1e-14);
@@ -290,7 +290,7 @@ mod tests {
         let (n, side, d) = (4000, 1.0, 1e-3);
         let grid = Grid::with_sides(n, 1, side, 1.0)?;
         let map = HeightMap::sample(&Wave::new(d, side / 4.0, Axis::X)?, &grid)?;
-        // Sums of whole periods of cosine powers are exact, up to 4000 roundings.
+        // Sums of whole periods of cosine powers are exact, up to 4000 rounding errors.
         assert!((map.rms_height() / (d / 2.0_f64.sqrt()) - 1.0).abs() < 1e-12);
         assert!((map.kurtosis() - 1.5).abs() < 1e-12);
         let gradient = std::f64::consts::TAU * 4.0 * d / 2.0_f64.sqrt();

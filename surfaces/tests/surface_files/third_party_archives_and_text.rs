@@ -50,7 +50,7 @@ impl Found<'_> {
         assert_eq!(found.missing, self.missing, "{name}");
         let (nx, ny) = self.shape;
         let sides = found.cell.map(|(dx, dy)| (nx as f64 * dx, ny as f64 * dy));
-        // Products with a unit, a number of nodes, a factor: a few roundings.
+        // Products with a unit, a number of nodes, a factor: a few rounding errors.
         let close = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-14 * scale;
         match (sides, self.sides) {
             (Some(a), Some(b)) => {

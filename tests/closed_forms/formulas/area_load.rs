@@ -38,7 +38,7 @@ fn perssons_density_is_a_gaussian_less_its_image() -> Result<(), Error> {
             let gauss = |z: f64| (-0.5 * z * z).exp() / (2.0 * PI).sqrt() / deviation;
             let expected = gauss(p - mean) - gauss(p + mean);
             let found = law.persson_density(p * deviation, mean * deviation);
-            // Arguments of up to 32 in the exponential carry as many roundings.
+            // Arguments of up to 32 in the exponential carry as many rounding errors.
             assert_relative_eq!(found, expected, max_relative = 1e-13);
         }
     }

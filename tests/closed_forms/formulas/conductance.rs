@@ -36,7 +36,7 @@ fn strips_have_the_resistance_of_a_conformal_map() -> Result<(), Error> {
         let found = contact_conductance(stiffness, wave.e_star(), rho_1 + rho_2)?;
         let resistance = |rho: f64| rho * wavelength / PI * -(PI * part).sin().ln();
         let expected = 1.0 / (resistance(rho_1) + resistance(rho_2));
-        // At a/λ = 0.49 the logarithm is 5e-4, and shows 2000 roundings of its argument.
+        // At a/λ = 0.49 the logarithm is 5e-4, and shows 2000 rounding errors of its argument.
         assert_relative_eq!(found, expected, max_relative = 5e-12);
     }
     let full = wave.interfacial_stiffness(wave.full_contact_pressure());

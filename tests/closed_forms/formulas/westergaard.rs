@@ -23,7 +23,7 @@ fn pressure_averages_to_the_mean_pressure() -> Result<(), Error> {
         // Accuracy of the quadrature.
         assert_relative_eq!(sum / wave.wavelength(), mean, max_relative = 1e-12);
         let back = wave.mean_pressure_at_half_width(a);
-        // A few roundings: where arcsin √P loses digits, sin² is flat and does not miss them.
+        // A few rounding errors: where arcsin √P loses digits, sin² is flat and does not miss them.
         assert_relative_eq!(back, mean, max_relative = 1e-14);
     }
     Ok(())

@@ -110,7 +110,7 @@ fn half_the_waves_along_an_axis_is_catalan() -> Result<(), Error> {
         let d = 1e-6;
         let kernel = PeriodicBoussinesq::new(Grid::new(n, 3, d, d)?, e_star)?;
         let found = e_star * kernel.symbol(n as isize / 2, 0) / d;
-        // Some 30 roundings of a sum of 4.5 in terms of 0.74, most of them far smaller.
+        // Some 30 rounding errors of a sum of 4.5 in terms of 0.74, most of them far smaller.
         assert_close(found, 8.0 * CATALAN / (PI * PI), 1e-14, "8 G / π²");
     }
     Ok(())

@@ -23,7 +23,7 @@ fn correction(window: &Window, matrix: &DMatrix<f64>) -> Correction {
 fn close(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(expected) {
-        // Roundings of a few operations, and of a transform where gaps come from one.
+        // Rounding errors of a few operations, and of a transform where gaps come from one.
         assert!((found - expected).abs() < 1e-13, "{found} {expected}");
     }
 }

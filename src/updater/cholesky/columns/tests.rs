@@ -46,7 +46,7 @@ fn check(columns: &Columns, numbers: &[usize], rows: usize) {
         let (block, column) = columns.locate(position).unwrap();
         for row in 0..rows {
             let found = block.values[row * block.width + column];
-            // Roundings of a few numbers up to 40.
+            // Rounding errors of a few numbers up to 40.
             let error = found - solution(row, number);
             assert!(error.abs() < 1e-13, "{position} {row}: {error:e}");
         }
@@ -141,7 +141,7 @@ fn columns_are_solved_for_and_kept() {
     assert!(columns.rows == 3 && columns.locate(0).is_none());
 }
 
-/// Sums of products of integers are exact but for the roundings of the columns.
+/// Sums of products of integers are exact but for the rounding errors of the columns.
 fn check_products(columns: &Columns, numbers: &[usize]) {
     let size = numbers.len();
     let mut gram = vec![1.0; size * size];

@@ -137,7 +137,7 @@ mod tests {
                 remove(&mut panels, k).remove(&mut x);
                 let (l, expected) = factor(&kept);
                 assert_eq!(panels.rows(), kept.len());
-                // The condition number is 1; a few hundred roundings of entries up to 20.
+                // The condition number is 1; a few hundred rounding errors of entries up to 20.
                 let rows: Vec<Vec<f64>> = panels.rows_mut(0).map(|row| row.to_vec()).collect();
                 for (row, values) in rows.iter().zip(&l) {
                     for (a, b) in row.iter().zip(values) {

@@ -43,7 +43,7 @@ fn interpolation_is_exact_for_polynomials() {
             let weights = axis.weights(offset);
             let points = &axis.points[..axis.count];
             let found: f64 = points.iter().zip(weights).map(|(&x, weight)| at(x) * weight).sum();
-            // Roundings of numbers up to 10³.
+            // Rounding errors of numbers up to 10³.
             assert!((found - at(offset)).abs() < 1e-11, "{offset}: {found}");
         }
     }

@@ -25,7 +25,7 @@ fn proposed() -> Result<(Problem, Proposed), Error> {
 fn near(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(expected) {
-        // Roundings of a few numbers up to 10.
+        // Rounding errors of a few numbers up to 10.
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
 }

@@ -178,7 +178,7 @@ proptest! {
         let expected = dense(&map).ok_or_else(|| TestCaseError::fail("no dense solution"))?;
         let highest = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let lowest = measured.iter().copied().fold(f64::INFINITY, f64::min);
-        // The error promised, and a few roundings of heights below 1.
+        // The error promised, and a few rounding errors of heights below 1.
         let allowed = 1e-10 * (highest - lowest) + 1e-14;
         for (node, z) in filled.iter().enumerate() {
             if map[node].is_finite() {

@@ -157,7 +157,7 @@ mod tests {
             .with_long_cutoff_wavelength(5e-3)?;
         let spectrum = surface.spectrum(&Grid::with_sides(300, 240, 1e-2, 8e-3)?)?;
         let (ql, qr, qs) = (TAU / 5e-3, TAU / 2e-3, TAU / 1e-4);
-        // Powers with a handful of roundings, exponent 3.4.
+        // Powers with a handful of rounding errors, exponent 3.4.
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-14, "{a} {b}");
         close(spectrum.prefactor(), 3e-5);
         for q in [ql, 1.5 * ql, 0.999 * qr] {

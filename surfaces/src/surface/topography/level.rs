@@ -241,7 +241,7 @@ mod tests {
         let two = trend(2, 1, &[1.0, 3.0])?;
         assert_eq!((two.height(), two.slopes(), two.curvatures()), (2.0, (2.0, 0.0), flat));
         let three = trend(1, 3, &[1.0, 0.0, 1.0])?;
-        // Eighths and thirds: a few roundings.
+        // Eighths and thirds: a few rounding errors.
         assert!((three.curvatures().2 - 2.0).abs() < 1e-15 && three.height().abs() < 1e-15);
         Ok(())
     }

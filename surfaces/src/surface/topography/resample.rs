@@ -187,7 +187,7 @@ mod tests {
         let map = Topography::new(grid, plane(&grid))?;
         for (nx, ny) in [(10, 8), (25, 16), (5, 4), (1, 1), (33, 7)] {
             let resampled = map.resample(nx, ny, Interpolation::Bilinear)?;
-            // A few roundings of heights below 2.
+            // A few rounding errors of heights below 2.
             let error = (resampled.heights() - plane(resampled.grid())).amax();
             assert!(error < 2e-15, "{nx} x {ny}: {error:e}");
         }

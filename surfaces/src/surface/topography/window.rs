@@ -108,7 +108,7 @@ mod tests {
                 let middle = nodes / 2;
                 for (i, weight) in weights.iter().enumerate() {
                     assert_eq!(weight.to_bits(), weights[nodes - 1 - i].to_bits());
-                    // A normalisation apart; a few roundings.
+                    // A normalisation apart; a few rounding errors.
                     let relative = weight / weights[middle];
                     assert!((relative - expected(i) / expected(middle)).abs() < 1e-13);
                 }
