@@ -599,7 +599,7 @@ fn what_no_answer_can_be_is_refused() -> Result<(), Error> {
                     }
                 };
                 let (mut count, mut failures) = (0, 0);
-                while let Some(item) = path.next() {
+                for item in path.by_ref() {
                     let Ok(state) = item else {
                         failures += 1;
                         continue;

@@ -58,6 +58,7 @@
 mod builder;
 mod cost;
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod failing_iterations;
 mod fields;
 mod gap_field;

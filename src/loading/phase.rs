@@ -123,7 +123,7 @@ impl<U: LinearUpdater> Phase<U> {
     /// `Ok` if there is room for so many nodes in contact.
     pub(super) fn check_room(&self, run: &LoadingRun, contact: usize) -> Result<(), Error> {
         let grid = run.problem.grid();
-        run.memory.check(self.bytes(grid.nodes(), contact, 0), run.contact.len())
+        run.memory.check(self.bytes(grid.nodes(), contact), run.contact.len())
     }
 
     /// Goes on without a node that was at `position` of the contact.
@@ -170,7 +170,7 @@ impl<U: LinearUpdater> Phase<U> {
         let at = (nodes.len(), approach);
         if !run.releases.is_prefix(step) {
             // Nodes of that contact have left the updater since.
-            let own = self.bytes(problem.grid().nodes(), contact.len(), 0);
+            let own = self.bytes(problem.grid().nodes(), contact.len());
             let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
             run.memory.check(own.saturating_add(rebuilt), contact.len())?;
             let (mut updater, contact) = RecursiveCholesky::of(problem, &nodes)?;
@@ -197,10 +197,10 @@ impl<U: LinearUpdater> Phase<U> {
         }
     }
 
-    /// Bytes held when `contact` nodes of a grid of `nodes` are in contact and `watched` are watched.
-    pub(super) fn bytes(&self, nodes: usize, contact: usize, watched: usize) -> usize {
+    /// Bytes held between two windows when `contact` nodes of a grid of `nodes` are in contact.
+    pub(super) fn bytes(&self, nodes: usize, contact: usize) -> usize {
         match self {
-            Self::Factor { updater, .. } => updater.bytes(contact, watched),
+            Self::Factor { updater, .. } => updater.bytes(contact, 0),
             Self::Iterations(iterations) => iterations.bytes(nodes, contact),
         }
     }

@@ -263,7 +263,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub fn bytes(&self) -> usize {
         let run = &self.run;
         let (nodes, contact) = (run.problem.grid().nodes(), run.contact.len());
-        let own = self.phase.bytes(nodes, contact, 0);
+        let own = self.phase.bytes(nodes, contact);
         run.memory.fixed.saturating_add(own)
     }
 }

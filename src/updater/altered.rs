@@ -8,6 +8,8 @@ use crate::{Error, Problem};
 
 /// What is done to an answer on its way.
 type Alteration<T> = Arc<dyn Fn(&mut T) + Send + Sync>;
+/// Makes the iterations that a path takes in the place of an updater.
+type Maker = Arc<dyn Fn(&Altered) -> Box<dyn Iterations> + Send + Sync>;
 /// A Schur complement, and the displacements of its nodes.
 pub(crate) type Proposal = (Schur, Vec<[f64; 2]>);
 
@@ -18,7 +20,7 @@ pub(crate) struct Altered {
     solution: Alteration<Solution>,
     tolerance: f64,
     /// The iterations for which a path takes it.
-    iterations: Option<Arc<dyn Fn(&Self) -> Box<dyn Iterations> + Send + Sync>>,
+    iterations: Option<Maker>,
     /// Bytes that it asks for before the first node is in contact.
     room: usize,
     /// Displacements of all nodes under the last solution, and under its rate.
