@@ -247,6 +247,7 @@ impl Solutions {
         aim: Aim,
         from: &Equilibrium,
     ) -> Result<(Equilibrium, Directions), Error> {
+        Error::require("approach", approach, approach.is_finite(), "finite")?;
         self.solver.choose(contact, count);
         let nodes = &contact.order()[..count];
         let joined = nodes.get(from.count..).unwrap_or_default();

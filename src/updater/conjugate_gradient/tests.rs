@@ -32,12 +32,40 @@ fn tolerances_lie_between_0_and_1() {
         (-1e-9, false),
         (f64::NAN, false),
         (1e-300, true),
+        (1e-13, true),
         (0.99, true),
     ] {
         let updater = ConjugateGradient::with_tolerance(tolerance);
         assert_eq!(updater.is_ok(), is_one, "{tolerance}");
         assert!(updater.is_ok_and(|updater| updater.tolerance() == tolerance) == is_one);
     }
+}
+
+/// Whatever span, approach or error is asked for, in whatever order: an error, or pressures that are finite; and after it a question
+/// that makes sense has its answer.
+#[test]
+fn senseless_numbers_are_survived() -> Result<(), Error> {
+    let problem = problem()?;
+    let contact = ContactSequence::with_order(problem.grid(), (0..60).step_by(2))?;
+    let numbers = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 0.0, 1e-300, 1e-9, 1.0, 1e300];
+    let mut updater = ConjugateGradient::new();
+    let mut solved = Solved::default();
+    for approach in numbers {
+        for span in numbers {
+            if updater.advance(&problem, &contact, approach, span, &mut solved).is_ok() {
+                let Solution { pressure, rate } = &solved.solution;
+                assert!(pressure.iter().chain(rate).all(|x| x.is_finite()), "{approach} {span}");
+            }
+            let probed = updater.probe(&problem, &contact, 20, approach, span);
+            assert!(probed.is_err() || approach.is_finite(), "{approach} {span}");
+        }
+        updater.advance(&problem, &contact, 3.0, f64::INFINITY, &mut solved)?;
+        let mut exact = Solution::default();
+        Dense.solve(&problem, &contact, 30, 3.0, &mut exact)?;
+        // To the tolerance of gaps, times the condition of so few nodes.
+        assert!(error(&solved.solution.pressure, &exact.pressure) < 1e-7, "{approach}");
+    }
+    Ok(())
 }
 
 /// A rough surface of 16 × 15 nodes.
