@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use super::lattice::{Lattice, Lattices, Neighbour};
-use super::single::{product, solve_in_place};
 use super::tuning::{
     CHUNK, FEW, GROWTH, MANY, NEIGHBOURS, PARTS, SAME_INFLUENCE, SEARCH, SEARCHED,
 };
@@ -279,32 +278,54 @@ impl<const K: usize> Pattern<K> {
     const ALONE: Self =
         Self { steps: [0; K], weights: [0.0; K], precision: 1.0, least: f32::NEG_INFINITY };
 
-    /// The column given the neighbours.
+    /// The column given the neighbours: Gaussian elimination of their k × k influence matrix, with
+    /// unit rows for missing ones.
     #[inline(always)]
     fn fill(&mut self, lattice: &Lattice, found: &Found<K>) {
         let count = found.count as usize;
-        self.steps = found.neighbours.map(|neighbour| neighbour.node as i32);
-        let neighbours = &found.neighbours[..count];
+        let found = &found.neighbours;
+        self.steps = found.map(|neighbour| neighbour.node as i32);
         if count == K {
-            self.least = lattice.between(neighbours[K - 1].offset, 0) - SAME_INFLUENCE;
+            self.least = lattice.between(found[K - 1].offset, 0) - SAME_INFLUENCE;
         }
         let mut matrix = [[0.0_f32; K]; K];
-        let matrix = &mut matrix.as_flattened_mut()[..count * count];
-        let mut coupling = [0.0_f32; K];
-        for (j, neighbour) in neighbours.iter().enumerate() {
-            coupling[j] = lattice.between(neighbour.offset, 0);
-            let column = &mut matrix[j * count..(j + 1) * count];
-            column[j] = 1.0;
-            for (value, other) in column[j + 1..].iter_mut().zip(&neighbours[j + 1..]) {
-                *value = lattice.between(neighbour.offset, other.offset);
+        let mut rhs = [0.0_f32; K];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] = 1.0;
+            if i < count {
+                rhs[i] = lattice.between(found[i].offset, 0);
+                for (value, other) in row[i + 1..count].iter_mut().zip(&found[i + 1..count]) {
+                    *value = lattice.between(found[i].offset, other.offset);
+                }
             }
         }
-        let mut weights = coupling;
-        solve_in_place(matrix, count, &mut weights[..count]);
-        let unexplained = 1.0 - product(&coupling, &weights);
+        let mut unexplained = 1.0_f32;
+        for j in 0..K {
+            let pivot_row = matrix[j];
+            let inverse = 1.0 / pivot_row[j];
+            unexplained -= rhs[j] * rhs[j] * inverse;
+            for i in j + 1..K {
+                let factor = pivot_row[i] * inverse;
+                for (value, pivot) in matrix[i].iter_mut().zip(&pivot_row) {
+                    *value -= factor * pivot;
+                }
+                rhs[i] -= factor * rhs[j];
+            }
+        }
+        for j in (0..K).rev() {
+            let row = &matrix[j];
+            let mut value = rhs[j];
+            for (entry, weight) in row[j + 1..].iter().zip(&self.weights[j + 1..]) {
+                value -= entry * weight;
+            }
+            self.weights[j] = value / row[j];
+        }
+        self.precision = 1.0 / unexplained;
         // A kernel may be too close to singular for single precision: then the node stands alone.
-        if unexplained > 1e-4 && weights.iter().all(|weight| weight.is_finite()) {
-            (self.weights, self.precision) = (weights, 1.0 / unexplained);
+        let sane = unexplained > 1e-4 && self.weights.iter().all(|weight| weight.is_finite());
+        if !sane {
+            self.weights = [0.0; K];
+            self.precision = 1.0;
         }
     }
 }

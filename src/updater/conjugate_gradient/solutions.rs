@@ -255,7 +255,7 @@ impl Solutions {
         let overlap = |node: usize| approach - gap[node];
         let least = problem.least_length();
         let length = greatest(count, least, |k| overlap(nodes[k]).abs());
-        let tolerances = Tolerances::of(criteria, aim, length);
+        let tolerances = Tolerances::of(criteria, aim, length, from.rate.open());
         let max_iterations = criteria.max_iterations;
         let wants_rate = !matches!(aim, Aim::Gaps(_));
         let (mut directions, mut rate) = (Directions::default(), Field::default());

@@ -1,6 +1,8 @@
 //! How exact solutions have to be.
 
-use super::tuning::{ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_SPAN, RATE_TOLERANCE};
+use super::tuning::{
+    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE,
+};
 
 /// The purpose of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +45,8 @@ pub(super) struct Tolerances {
 }
 
 impl Tolerances {
-    /// For overlaps of up to `length`.
-    pub(super) fn of(criteria: Criteria, aim: Aim, length: f64) -> Self {
+    /// For overlaps of up to `length`, and gaps that close at the rate `open` on average.
+    pub(super) fn of(criteria: Criteria, aim: Aim, length: f64, open: f64) -> Self {
         let least = criteria.tolerance * length;
         match aim {
             Aim::Exact => {
@@ -58,12 +60,12 @@ impl Tolerances {
             Aim::Span(span) => {
                 let of_span = (OF_SPAN * span).min(OF_LENGTH * length);
                 let of_length = ADJOINT * OF_LENGTH * length / span;
-                let rate = RATE_TOLERANCE.min(of_length);
+                let rate = RATE_TOLERANCE.min(OF_OPEN * open).min(of_length);
                 let drift = DRIFT * ADJOINT * least;
                 Self {
                     load: ADJOINT * of_span.max(least),
                     rate: rate.max(LEAST_RATE_TOLERANCE),
-                    drift: [drift, drift / span],
+                    drift: [drift, RATE_DRIFT * drift / span],
                 }
             }
         }
@@ -74,9 +76,9 @@ impl Tolerances {
 mod tests {
     use super::*;
 
-    fn tolerances(aim: Aim, length: f64) -> Tolerances {
+    fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
         let criteria = Criteria { tolerance: 1e-10, max_iterations: 1 };
-        Tolerances::of(criteria, aim, length)
+        Tolerances::of(criteria, aim, length, open)
     }
 
     fn check(found: Tolerances, load: f64, rate: f64, drift: [f64; 2]) {
@@ -98,15 +100,17 @@ mod tests {
     fn the_tightest_bound_counts() {
         let none = f64::INFINITY;
         // The solution itself: rounding.
-        check(tolerances(Aim::Exact, 2.0), 2e-10, 1e-11, [none; 2]);
+        check(tolerances(Aim::Exact, 2.0, 0.5), 2e-10, 1e-11, [none; 2]);
         // Gaps, to the tolerance times 30 or an error times 30.
-        check(tolerances(Aim::Gaps(0.0), 2.0), 6e-9, 1e-11, [none; 2]);
-        check(tolerances(Aim::Gaps(1e-6), 2.0), 3e-5, 1e-11, [none; 2]);
+        check(tolerances(Aim::Gaps(0.0), 2.0, 0.5), 6e-9, 1e-11, [none; 2]);
+        check(tolerances(Aim::Gaps(1e-6), 2.0, 0.5), 3e-5, 1e-11, [none; 2]);
         // A window of a hundredth of the length: 2e-6 of the span, and a quarter of 30 times the least.
-        check(tolerances(Aim::Span(1e-2), 1.0), 30.0 * 1e-8, 1.5e-5, [7.5e-10, 7.5e-8]);
+        check(tolerances(Aim::Span(1e-2), 1.0, 0.5), 30.0 * 1e-8, 1.5e-5, [7.5e-10, 7.5e-9]);
         // A shorter one.
-        check(tolerances(Aim::Span(1e-3), 1.0), 30.0 * 2e-9, 1.5e-5, [7.5e-10, 7.5e-7]);
+        check(tolerances(Aim::Span(1e-3), 1.0, 0.5), 30.0 * 2e-9, 1.5e-5, [7.5e-10, 7.5e-8]);
+        // Gaps that hardly close: 1e-3 of the rate.
+        check(tolerances(Aim::Span(1e-3), 1.0, 1e-3), 30.0 * 2e-9, 1e-6, [7.5e-10, 7.5e-8]);
         // A window that is long beside the length: 3e-7 of length over span.
-        check(tolerances(Aim::Span(10.0), 0.1), 30.0 * 1e-9, 3e-9, [7.5e-11, 7.5e-12]);
+        check(tolerances(Aim::Span(10.0), 0.1, 0.5), 30.0 * 1e-9, 3e-9, [7.5e-11, 7.5e-13]);
     }
 }
