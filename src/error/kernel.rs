@@ -76,6 +76,11 @@ pub enum KernelError {
         opposite: f64,
     },
 
+    /// A hardness was given for a kernel of [`ContactGrowth::Unknown`](crate::ContactGrowth): where pressures may fall as the approach
+    /// grows, yielded nodes may unload, and a hardness does not determine the contact.
+    #[error("a hardness needs a kernel that promises that contact grows with the approach")]
+    GrowthUnknown,
+
     /// A kernel does not keep a promise, as [`kernel::check`](crate::kernel::check()) has found.
     #[error(
         "the kernel is not what it promises to be, {promise}: with {} nodes in contact the \

@@ -1,9 +1,12 @@
 //! How the solver is set up.
 
 use super::budget::MemoryBudget;
+use super::hardness::Limit;
 use super::hierarchy::Hierarchy;
 use super::settings::Settings;
 use super::solver::FixedLoadSolver;
+use nalgebra::DMatrix;
+
 use crate::krylov::check_cells;
 use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
 
@@ -20,9 +23,26 @@ pub struct FixedLoadBuilder<'a> {
     surface: &'a dyn Surface,
     kernel: &'a dyn InfluenceKernel,
     settings: Settings,
+    hardness: Limit<'a>,
 }
 
-impl FixedLoadBuilder<'_> {
+impl<'a> FixedLoadBuilder<'a> {
+    /// Greatest pressure H \[Pa\]: nodes that reach it yield, and [`FixedLoadSolution::plastic`](super::FixedLoadSolution::plastic)
+    /// has what stays of them. Infinity, as by default, is elastic contact.
+    ///
+    /// A solution takes some ten elastic ones, and states are not continued from each other. A load of H times the nominal area or
+    /// more is an [`Error::OutOfRange`]: all nodes yield below it.
+    pub fn hardness(mut self, hardness: f64) -> Self {
+        self.hardness = Limit::Uniform(hardness);
+        self
+    }
+
+    /// The same, with a hardness for each node \[Pa\], nx × ny.
+    pub fn hardness_map(mut self, hardness: &'a DMatrix<f64>) -> Self {
+        self.hardness = Limit::Map(hardness);
+        self
+    }
+
     /// Greatest error that a solution may have, 10⁻⁸ by default: of every gap in contact and of every
     /// overlap, relative to the approach, or to C(0, 0) p̄ if that is larger on a periodic half-space
     /// of arbitrary mean displacement. From 10⁻¹² on rounding begins to matter.
@@ -67,6 +87,8 @@ impl FixedLoadBuilder<'_> {
     /// cells more than [`MAX_ASPECT`](PeriodicBoussinesq::MAX_ASPECT) times as long as wide: from ten times that on,
     /// iterations on [`Spectral`](crate::Spectral) were found to end without an answer. A path with a
     /// factor, a single row of nodes and a free boundary know no such limit.
+    /// [`Error::NotPositive`] for a hardness, [`Error::GridMismatch`] for a map of another grid, and
+    /// [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a hardness with a kernel that may let nodes leave.
     /// [`Error::MemoryBudget`] if the grid is too large for the budget; and those of [`Problem::new`].
     pub fn build(self) -> Result<FixedLoadSolver, Error> {
         let settings = self.settings;
@@ -79,8 +101,9 @@ impl FixedLoadBuilder<'_> {
         let problem = Problem::new(self.surface, self.kernel)?;
         // A user-defined kernel may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
+        let hardness = self.hardness.resolve(&problem)?;
         let hierarchy = Hierarchy::new(&problem, settings.nested, memory)?;
-        Ok(FixedLoadSolver::with(settings, hierarchy))
+        Ok(FixedLoadSolver::with(settings, hierarchy, hardness))
     }
 }
 
@@ -121,7 +144,7 @@ impl FixedLoadSolver {
         surface: &'a dyn Surface,
         kernel: &'a dyn InfluenceKernel,
     ) -> FixedLoadBuilder<'a> {
-        FixedLoadBuilder { surface, kernel, settings: Settings::default() }
+        FixedLoadBuilder { surface, kernel, settings: Settings::default(), hardness: Limit::None }
     }
 }
 

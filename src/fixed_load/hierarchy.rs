@@ -122,7 +122,7 @@ fn start_uniformly(level: &mut Level, prescribed: Prescribed) {
 }
 
 /// Gives pressures the sum that is prescribed. What cannot have it, from a solution that failed, becomes uniform.
-fn scale(pressure: &mut [f64], prescribed: Prescribed) {
+pub(super) fn scale(pressure: &mut [f64], prescribed: Prescribed) {
     if let Prescribed::Sum(target) = prescribed {
         let factor = target / sum(pressure);
         if factor > 0.0 && factor.is_finite() {

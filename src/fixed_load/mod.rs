@@ -17,8 +17,8 @@
 //! * **Active set, inexact inside.** On the set I of nodes with pressure or overlap, the equations
 //!   `C_II p = δ − g` are solved with `Σ p` fixed by projected conjugate gradients, one convolution a
 //!   step, only until what is left is smaller than the worst error in I itself.
-//! * **Preconditioner** of two levels: a sparse inverse Cholesky factor of `C_II`, and bilinear hats for
-//!   the long waves, which are what it misses.
+//! * **Preconditioner** of two levels: a sparse inverse Cholesky factor of `C_II`, and a bilinear coarse
+//!   space for the long waves that it misses.
 //! * **Release**: nodes with tension are set free, their neighbours corrected by the
 //!   preconditioner alone, and the step goes only as far as the energy falls, unless there was tension
 //!   at its start already.
@@ -26,6 +26,14 @@
 //!   computed afresh in double precision before the errors of these steps matter.
 //! * **Nested grids**: the start comes from a grid of half as many nodes a side, recursively, with
 //!   the Galerkin kernel (pressures uniform on blocks of 2 × 2), which any kernel has.
+//!
+//! # Metals that yield
+//!
+//! With [`FixedLoadBuilder::hardness`] no pressure exceeds the hardness H (Almqvist et al., J. Mech. Phys. Solids 55 (2007) 1744:
+//! elastic–perfectly plastic contact): the bounds are `0 ≤ p ≤ H`, and where `p = H` the surfaces overlap elastically by the
+//! plastic depth, which stays in the surface. Nodes that yield are a load on the others, whose problem is the elastic one with the
+//! initial gap `g + C H`; rounds of elastic solutions, each with the nodes above H yielded, end at the solution. The model has
+//! no hardening, does not conserve volume, and knows of no stress below the surface: the pressure of a cell is at most H, nothing else.
 //!
 //! # Periodic half-spaces
 //!
@@ -67,6 +75,7 @@ mod budget;
 mod builder;
 mod continuation;
 mod descent;
+mod hardness;
 mod hierarchy;
 mod iterate;
 mod level;
@@ -81,6 +90,6 @@ mod tangent;
 mod tuning;
 
 pub use builder::FixedLoadBuilder;
-pub use solution::{FixedLoadSolution, SolverEffort};
+pub use solution::{FixedLoadSolution, Plastic, SolverEffort};
 pub use solver::FixedLoadSolver;
 pub use sweep::LoadSweep;

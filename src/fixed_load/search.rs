@@ -19,6 +19,11 @@ pub(super) fn solve_target(
 ) -> Result<FixedLoadSolution, Error> {
     match target {
         ContactTarget::Load(load) => stepper.step_to_load(load),
+        ContactTarget::Approach(approach) if stepper.finds_approach() => {
+            let target = Error::require_positive("approach", approach)?;
+            let unloaded = stepper.finest().mean_initial_gap();
+            search(stepper, Sought::Approach { target, unloaded })
+        }
         ContactTarget::Approach(approach) => stepper.step_to_approach(approach),
         ContactTarget::AreaFraction(fraction) => {
             let nodes = stepper.finest().grid.nodes_in(fraction)?;
@@ -38,6 +43,8 @@ enum Sought {
     Nodes(usize),
     /// A mean gap, given the one without load. It falls with the logarithm of the load over decades.
     MeanGap { target: f64, unloaded: f64 },
+    /// An approach, and the mean gap without load.
+    Approach { target: f64, unloaded: f64 },
 }
 
 impl Sought {
@@ -62,6 +69,7 @@ impl Sought {
                 ((carrying as f64 + touching) / nodes as f64).ln()
             }
             Self::MeanGap { target, unloaded } => (target - state.mean_gap) / unloaded,
+            Self::Approach { target, unloaded } => (state.approach - target) / unloaded,
         }
     }
 
@@ -72,6 +80,9 @@ impl Sought {
             Self::MeanGap { target, unloaded } => {
                 (state.mean_gap - target).abs() <= error.max(ROUNDING * unloaded)
             }
+            Self::Approach { target, unloaded } => {
+                (state.approach - target).abs() <= error.max(ROUNDING * unloaded)
+            }
         }
     }
 
@@ -79,6 +90,7 @@ impl Sought {
     fn slope(self, state: &ContactState) -> (f64, bool) {
         match self {
             Self::Nodes(_) => (1.0, false),
+            Self::Approach { .. } => (0.2, false),
             Self::MeanGap { unloaded, .. } => match state.interfacial_stiffness {
                 Some(stiffness) => (state.load / stiffness / unloaded, true),
                 None => (0.2, false),
@@ -98,7 +110,7 @@ impl Sought {
         }
         let nodes = match self {
             Self::Nodes(nodes) => nodes as f64,
-            Self::MeanGap { .. } => TYPICAL * level.grid.nodes() as f64,
+            _ => TYPICAL * level.grid.nodes() as f64,
         };
         level.grid.cell_area() * nodes * (0.56 * step / level.self_influence)
     }
@@ -129,6 +141,10 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         None => sought.typical_load(stepper.finest()).ln(),
     };
     for _ in 0..MOST_STEPS {
+        if let Some(greatest) = stepper.greatest_load() {
+            // No state has that load.
+            x = x.min(greatest.ln() - NARROWEST.sqrt());
+        }
         let solution = stepper.step_to_load(x.exp())?;
         let state = &solution.state;
         let carrying = solution.carrying_nodes();

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::level::Level;
 use crate::contact::{Certificate, Conditions, ContactState};
 use crate::krylov::{dot, sum, sum_over};
-use crate::{Error, Grid};
+use crate::{Error, Grid, HeightMap};
 
 /// Contact under one load: fields and scalars.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,46 @@ pub struct FixedLoadSolution {
     pub certificate: Certificate,
     /// The effort.
     pub effort: SolverEffort,
+    /// Nodes that have yielded, with a [hardness](super::FixedLoadBuilder::hardness); `None` without one.
+    pub plastic: Option<Plastic>,
+}
+
+/// Nodes whose pressure is their hardness, and what stays of them in the surface.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Plastic {
+    /// Which nodes have yielded, nx × ny; all of them are in contact.
+    pub yielded_map: DMatrix<bool>,
+    /// Plastic depth \[m\], nx × ny: the elastic overlap of yielded nodes, 0 elsewhere. Less it, the surface presses into the
+    /// half-space elastically on unloading and reloading, up to this state.
+    pub depth: DMatrix<f64>,
+    /// Area of yielded nodes \[m²\].
+    pub area: f64,
+    /// Sum of the plastic depth over the area \[m³\].
+    pub volume: f64,
+    /// Energy that is lost, H times the volume where H is the same everywhere \[J\]. The energy of the state is elastic.
+    pub work: f64,
+}
+
+impl Plastic {
+    /// Number of nodes that have yielded.
+    #[must_use]
+    pub fn yielded_nodes(&self) -> usize {
+        self.yielded_map.iter().filter(|has_yielded| **has_yielded).count()
+    }
+
+    fn new(grid: &Grid, pressure: &[f64], yielded: &[bool], depth: Vec<f64>) -> Self {
+        let (nx, ny) = grid.shape();
+        let cell_area = grid.cell_area();
+        let count = yielded.iter().filter(|has_yielded| **has_yielded).count();
+        Self {
+            yielded_map: DMatrix::from_column_slice(nx, ny, yielded),
+            area: count as f64 * cell_area,
+            volume: cell_area * sum(&depth),
+            work: cell_area * dot(pressure, &depth),
+            depth: DMatrix::from_vec(nx, ny, depth),
+        }
+    }
 }
 
 /// The effort of a solution.
@@ -95,13 +135,30 @@ impl FixedLoadSolution {
 
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was
     /// prescribed, else that of the pressure.
-    pub(super) fn of(level: &Level, load: Option<f64>, effort: SolverEffort) -> Self {
+    ///
+    /// Nodes that have yielded overlap by their plastic depth, which is no gap.
+    pub(super) fn of(
+        level: &Level,
+        load: Option<f64>,
+        effort: SolverEffort,
+        yielded: Option<&[bool]>,
+    ) -> Self {
         let (nx, ny) = level.grid.shape();
         let nodes = level.grid.nodes();
         let cell_area = level.grid.cell_area();
         let (approach, total_gap) = (level.iterate.approach, &level.iterate.total_gap);
         let pressure = DMatrix::from_column_slice(nx, ny, &level.iterate.pressure);
-        let gap = DMatrix::from_iterator(nx, ny, total_gap.iter().map(|c| c - approach));
+        let mut gap = DMatrix::from_iterator(nx, ny, total_gap.iter().map(|c| c - approach));
+        let plastic = yielded.map(|yielded| {
+            let mut depth = vec![0.0; nodes];
+            for ((depth, gap), has_yielded) in depth.iter_mut().zip(&mut gap).zip(yielded) {
+                if *has_yielded {
+                    // What rounds is none.
+                    (*depth, *gap) = ((-*gap).max(0.0), 0.0);
+                }
+            }
+            Plastic::new(&level.grid, &level.iterate.pressure, yielded, depth)
+        });
         let displacements = total_gap.iter().zip(&level.gap).map(|(c, g)| c - g);
         let displacement = DMatrix::from_iterator(nx, ny, displacements);
         let contact_map = pressure.zip_map(&gap, |p, gap| p > 0.0 || gap <= 0.0);
@@ -135,7 +192,34 @@ impl FixedLoadSolution {
             pressure_rate: DMatrix::zeros(0, 0),
             certificate,
             effort,
+            plastic,
         }
+    }
+
+    /// The surface \[m\] with its plastic depth taken off: on unloading, and on loading up to this state again, its contact is
+    /// elastic. Without a hardness it is the surface itself.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] for a surface of another grid.
+    pub fn residual_surface(&self, surface: &HeightMap) -> Result<HeightMap, Error> {
+        let Some(plastic) = &self.plastic else {
+            return Ok(surface.clone());
+        };
+        let heights = surface.matrix();
+        if heights.shape() != plastic.depth.shape() {
+            return Err(Error::GridMismatch {
+                expected: plastic.depth.shape(),
+                found: heights.shape(),
+            });
+        }
+        Ok(HeightMap::new(heights - &plastic.depth)?)
+    }
+
+    /// Whether a node is in contact and has not yielded.
+    pub(super) fn is_elastic(&self, node: usize) -> bool {
+        let has_yielded = self.plastic.as_ref().is_some_and(|p| p.yielded_map.as_slice()[node]);
+        self.contact_map.as_slice()[node] && !has_yielded
     }
 }
 
@@ -145,7 +229,7 @@ mod parts {
     use nalgebra::{DMatrix, Scalar};
     use serde::{Deserialize, Serialize};
 
-    use super::{FixedLoadSolution, SolverEffort};
+    use super::{FixedLoadSolution, Plastic, SolverEffort};
     use crate::Error;
     use crate::contact::{Certificate, ContactState};
 
@@ -163,6 +247,19 @@ mod parts {
         pressure_rate: Vec<f64>,
         certificate: Certificate,
         effort: SolverEffort,
+        /// Of a solution with a hardness.
+        #[serde(default)]
+        plastic: Option<PlasticParts>,
+    }
+
+    /// The parts of what has yielded.
+    #[derive(Debug, Clone, Serialize, Deserialize)]
+    struct PlasticParts {
+        yielded_map: Vec<bool>,
+        depth: Vec<f64>,
+        area: f64,
+        volume: f64,
+        work: f64,
     }
 
     impl From<FixedLoadSolution> for Parts {
@@ -177,6 +274,11 @@ mod parts {
                 pressure_rate: solution.pressure_rate.data.into(),
                 certificate: solution.certificate,
                 effort: solution.effort,
+                plastic: solution.plastic.map(|plastic| {
+                    let Plastic { yielded_map, depth, area, volume, work } = plastic;
+                    let (yielded_map, depth) = (yielded_map.data.into(), depth.data.into());
+                    PlasticParts { yielded_map, depth, area, volume, work }
+                }),
             }
         }
     }
@@ -205,6 +307,16 @@ mod parts {
                 pressure_rate,
                 certificate: parts.certificate,
                 effort: parts.effort,
+                plastic: match parts.plastic {
+                    None => None,
+                    Some(plastic) => Some(Plastic {
+                        yielded_map: matrix(parts.shape, plastic.yielded_map)?,
+                        depth: matrix(parts.shape, plastic.depth)?,
+                        area: plastic.area,
+                        volume: plastic.volume,
+                        work: plastic.work,
+                    }),
+                },
             })
         }
     }

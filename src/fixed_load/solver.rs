@@ -1,5 +1,6 @@
 //! The solver.
 
+use super::hardness::Hardness;
 use super::hierarchy::Hierarchy;
 #[cfg(test)]
 use super::level::Level;
@@ -33,11 +34,17 @@ use crate::{Error, Grid};
 pub struct FixedLoadSolver {
     settings: Settings,
     hierarchy: Hierarchy,
+    /// The greatest pressures, if they have an end.
+    hardness: Option<Hardness>,
 }
 
 impl FixedLoadSolver {
-    pub(super) fn with(settings: Settings, hierarchy: Hierarchy) -> Self {
-        Self { settings, hierarchy }
+    pub(super) fn with(
+        settings: Settings,
+        hierarchy: Hierarchy,
+        hardness: Option<Hardness>,
+    ) -> Self {
+        Self { settings, hierarchy, hardness }
     }
 
     /// The grid of surface and kernel.
@@ -80,19 +87,21 @@ impl FixedLoadSolver {
         solution: &FixedLoadSolution,
         load: f64,
     ) -> Result<FixedLoadSolution, Error> {
-        Stepper::at(&self.settings, &mut self.hierarchy, solution)?.step_to_load(load)
+        Stepper::at(&self.settings, &mut self.hierarchy, self.hardness.as_ref(), solution)?
+            .step_to_load(load)
     }
 
     /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
     /// half-space is periodic and its mean displacement arbitrary, where it determines the load only
-    /// below the mean initial gap.
+    /// below the mean initial gap. With a hardness the load is found there by solving for several; an approach at which all nodes
+    /// in contact have yielded goes with no load of its own, and is an [`Error::NoConvergence`].
     ///
     /// # Errors
     ///
     /// [`Error::NotPositive`] for the approach, [`Error::ApproachNotReached`] if no load or every
     /// large one goes with it on such a half-space, and those of [`Self::solve`].
     pub fn solve_approach(&mut self, approach: f64) -> Result<FixedLoadSolution, Error> {
-        self.stepper().step_to_approach(approach)
+        self.solve_target(ContactTarget::Approach(approach))
     }
 
     /// Contact at a target: a load, an approach, a contact area or a mean gap. For the latter two
@@ -132,7 +141,7 @@ impl FixedLoadSolver {
     }
 
     fn stepper(&mut self) -> Stepper<'_> {
-        Stepper::new(&self.settings, &mut self.hierarchy)
+        Stepper::new(&self.settings, &mut self.hierarchy, self.hardness.as_ref())
     }
 }
 

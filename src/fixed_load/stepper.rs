@@ -2,7 +2,8 @@
 
 use super::active_set::ActiveSet;
 use super::continuation::Continuation;
-use super::hierarchy::Hierarchy;
+use super::hardness::{Hardness, Yielded};
+use super::hierarchy::{Hierarchy, scale};
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
 use super::settings::Settings;
@@ -17,6 +18,7 @@ use crate::{Error, Grid};
 pub(super) struct Stepper<'a> {
     settings: &'a Settings,
     hierarchy: &'a mut Hierarchy,
+    hardness: Option<&'a Hardness>,
     continuation: Continuation,
     /// The state that the finest grid holds, if it holds one.
     last: Option<ContactState>,
@@ -24,10 +26,14 @@ pub(super) struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// Knows no state yet.
-    pub(super) fn new(settings: &'a Settings, hierarchy: &'a mut Hierarchy) -> Self {
+    pub(super) fn new(
+        settings: &'a Settings,
+        hierarchy: &'a mut Hierarchy,
+        hardness: Option<&'a Hardness>,
+    ) -> Self {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
-        Self { settings, hierarchy, continuation: Continuation::default(), last: None }
+        Self { settings, hierarchy, hardness, continuation: Continuation::default(), last: None }
     }
 
     /// Begins at a solution.
@@ -39,10 +45,15 @@ impl<'a> Stepper<'a> {
     pub(super) fn at(
         settings: &'a Settings,
         hierarchy: &'a mut Hierarchy,
+        hardness: Option<&'a Hardness>,
         solution: &FixedLoadSolution,
     ) -> Result<Self, Error> {
         let finest = &mut hierarchy.finest;
         check(solution, &finest.grid)?;
+        if hardness.is_some() || solution.plastic.is_some() {
+            // Nodes that have yielded may not have at the next load.
+            return Ok(Self::new(settings, hierarchy, hardness));
+        }
         let iterate = &mut finest.iterate;
         iterate.pressure.copy_from_slice(solution.pressure.as_slice());
         iterate.approach = solution.state.approach;
@@ -50,7 +61,7 @@ impl<'a> Stepper<'a> {
         for (total_gap, (gap, displacement)) in iterate.total_gap.iter_mut().zip(gaps) {
             *total_gap = gap + displacement;
         }
-        let mut stepper = Self::new(settings, hierarchy);
+        let mut stepper = Self::new(settings, hierarchy, None);
         let tangent = Tangent::of(&mut stepper.hierarchy.finest, solution)?;
         stepper.continuation = Continuation::new(tangent);
         stepper.last = Some(solution.state);
@@ -78,7 +89,19 @@ impl<'a> Stepper<'a> {
         let cell = self.finest().cell_response();
         let sum = load / self.finest().grid.cell_area();
         cell.check(cell.displacement(sum))?;
+        if self.greatest_load().is_some_and(|greatest| load >= greatest) {
+            return Err(Error::OutOfRange {
+                quantity: "load",
+                value: load,
+                expected: "below the hardness times the nominal area, where all nodes yield",
+            });
+        }
         self.to(Prescribed::Sum(sum), sum, Some(load))
+    }
+
+    /// The load that no state has \[N\], if there is a hardness.
+    pub(super) fn greatest_load(&self) -> Option<f64> {
+        self.hardness.map(|hardness| hardness.greatest_load(&self.finest().grid))
     }
 
     /// Contact at the approach `approach` \[m\].
@@ -94,6 +117,12 @@ impl<'a> Stepper<'a> {
         }
         let sum = self.continuation.sum_at(finest, approach);
         self.to(Prescribed::Approach(approach), sum, None)
+    }
+
+    /// Whether an approach has to be found by loads: where the mean displacement is arbitrary, nodes may yield in an elastic solution
+    /// at an approach of mean planes that do not in the end.
+    pub(super) fn finds_approach(&self) -> bool {
+        self.hardness.is_some() && self.finest().gauge.is_some()
     }
 
     /// Greatest error of the gaps of a state that was found under its load.
@@ -135,6 +164,10 @@ impl<'a> Stepper<'a> {
         sum: f64,
         load: Option<f64>,
     ) -> Result<FixedLoadSolution, Error> {
+        if let Some(hardness) = self.hardness {
+            let (iterations, yielded) = self.yield_to(hardness, prescribed)?;
+            return self.solution(load, iterations, Some(&yielded));
+        }
         // After an error the finest grid holds no state.
         let is_near = self.last.take().is_some() && Continuation::reaches(self.finest(), sum);
         let iterations = if is_near {
@@ -149,11 +182,64 @@ impl<'a> Stepper<'a> {
         } else {
             self.solve_afresh(prescribed)?
         };
+        self.solution(load, iterations, None)
+    }
+
+    /// Contact with a hardness: the number of iterations, and which nodes have yielded.
+    fn yield_to(
+        &mut self,
+        hardness: &Hardness,
+        prescribed: Prescribed,
+    ) -> Result<(usize, Vec<bool>), Error> {
+        self.last = None;
+        let mut yielded = Yielded::none(hardness, &mut self.hierarchy.finest)?;
+        match self.rounds(&mut yielded, prescribed) {
+            Ok(iterations) => Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?)),
+            Err(error) => {
+                yielded.abandon(&mut self.hierarchy.finest);
+                Err(error)
+            }
+        }
+    }
+
+    /// Elastic solutions, until no more node yields.
+    fn rounds(
+        &mut self,
+        yielded: &mut Yielded<'_>,
+        prescribed: Prescribed,
+    ) -> Result<usize, Error> {
+        let mut iterations = self.solve_afresh(prescribed)?;
+        while yielded.grow(&mut self.hierarchy.finest)? && !yielded.is_everywhere() {
+            let rest = match prescribed {
+                Prescribed::Sum(sum) => Prescribed::Sum(sum - yielded.sum()),
+                approach @ Prescribed::Approach(_) => approach,
+            };
+            let finest = &mut self.hierarchy.finest;
+            if let Prescribed::Approach(approach) = rest
+                && finest.gap.iter().all(|gap| *gap >= approach)
+            {
+                // All that is in contact has yielded.
+                finest.iterate.pressure.fill(0.0);
+                break;
+            }
+            scale(&mut finest.iterate.pressure, rest);
+            iterations += self.solve(rest, false)?;
+        }
+        Ok(iterations)
+    }
+
+    /// The solution that the finest grid holds, after so many iterations.
+    fn solution(
+        &mut self,
+        load: Option<f64>,
+        iterations: usize,
+        yielded: Option<&[bool]>,
+    ) -> Result<FixedLoadSolution, Error> {
         let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
         let effort =
             SolverEffort { iterations, stiffness_iterations: 0, convolutions, coarse_convolutions };
         let finest = &mut self.hierarchy.finest;
-        let mut solution = FixedLoadSolution::of(finest, load, effort);
+        let mut solution = FixedLoadSolution::of(finest, load, effort, yielded);
         if self.settings.stiffness {
             let tangent = &mut self.continuation.tangent;
             tangent.complete(finest, self.settings, &mut solution)?;

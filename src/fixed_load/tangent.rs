@@ -61,8 +61,17 @@ impl Tangent {
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
         let in_contact = solution.contact_map.as_slice();
-        level.choose_contact(|node, _, _| in_contact[node])?;
-        Error::require_positive("number of nodes in contact", level.iterate.contact.len() as f64)?;
+        let count = in_contact.iter().filter(|is_in| **is_in).count();
+        Error::require_positive("number of nodes in contact", count as f64)?;
+        level.choose_contact(|node, _, _| solution.is_elastic(node))?;
+        if level.iterate.contact.len() == 0 {
+            // All that is in contact yields: the load stays what it is.
+            let (nx, ny) = level.grid.shape();
+            solution.pressure_rate = DMatrix::zeros(nx, ny);
+            solution.state.contact_stiffness = level.gauge.is_none().then_some(0.0);
+            solution.state.interfacial_stiffness = Some(0.0);
+            return Ok(());
+        }
         let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
         let nodes = level.grid.nodes();
         let displacement = &self.displacement;

@@ -2,7 +2,7 @@
 
 use super::gap_field::GapLine;
 use super::run::LoadingRun;
-use super::tuning::{EXACT_TIE, RATE_TOLERANCE, ROUNDING, TIE, UNWATCHED};
+use super::tuning::{EXACT_TIE, OF_GAP, RATE_TOLERANCE, ROUNDING, TIE, UNWATCHED};
 
 /// Up to which approach events tie with one at some approach, with an exact updater.
 pub(super) fn ties_until(approach: f64) -> f64 {
@@ -45,6 +45,11 @@ impl WindowTolerances {
         self.tie.max(error / closing.max(1e-12))
     }
 
+    /// Error of the time at which a node that closes at a rate touches, by the error of its gap at the window's beginning.
+    pub(super) fn time_of_gap(&self, closing: f64) -> f64 {
+        OF_GAP * self.tolerance * self.length / closing.max(1e-12)
+    }
+
     /// Tolerance of rates that serve over a span.
     pub(super) fn rate_tolerance(&self, span: f64) -> f64 {
         let [least, most] = RATE_TOLERANCE;
@@ -74,6 +79,9 @@ mod tests {
                 let found = tolerances.tie_of(closing) / unit;
                 assert!((found / time - 1.0).abs() < 1e-12, "{closing}: {found:e}");
             }
+            // 30 · 1e-10 · 2 over the rate.
+            let found = tolerances.time_of_gap(0.25) / unit;
+            assert!((found / 2.4e-8 - 1.0).abs() < 1e-12, "{found:e}");
             // Solutions over a span: 1e-10 · 2 / span, between its bounds.
             for (span, rate) in [(1e-4, 2e-6), (1.0, 5e-7), (0.0, 1e-5)] {
                 let found = tolerances.rate_tolerance(span * unit);

@@ -33,6 +33,23 @@ fn a_solution_is_data() {
     }
 }
 
+/// With a hardness, of which half the contact has had enough.
+#[test]
+fn what_has_yielded_is_data() {
+    let grid = Grid::new(12, 9, 1.0, 1.0).unwrap();
+    let map = rough(&grid, 4);
+    let kernel = Kernel::free(grid, 1.0);
+    let elastic = FixedLoadSolver::new(&map, &kernel).unwrap().solve(1e-2).unwrap();
+    let hardness = 0.5 * elastic.max_pressure();
+    let builder = FixedLoadSolver::builder(&map, &kernel).hardness(hardness);
+    let solution = builder.build().unwrap().solve(1e-2).unwrap();
+    assert!(solution.plastic.as_ref().unwrap().yielded_nodes() > 0);
+    assert_eq!(read(&written(&solution)).unwrap(), solution);
+    let mut fewer: Value = serde_json::from_str(&written(&solution)).unwrap();
+    fewer["plastic"]["depth"].as_array_mut().unwrap().pop();
+    assert!(serde_json::from_value::<FixedLoadSolution>(fewer).is_err());
+}
+
 #[test]
 fn fields_of_another_shape_are_refused() {
     let grid = Grid::square(16, 1.0).unwrap();

@@ -10,6 +10,7 @@ mod along_the_path;
 mod as_data;
 mod closed_forms;
 mod extremes;
+mod hardness;
 mod problems;
 mod references;
 mod refusals;

@@ -267,7 +267,7 @@ impl Refined {
                 let passed =
                     self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
                 if let Some((correction, settled)) = passed {
-                    self.finish(run, correction, &settled, at)?;
+                    self.finish(run, correction, &settled, at, tolerances)?;
                     return Ok(Outcome::Done);
                 }
             }
@@ -382,6 +382,7 @@ impl Refined {
         correction: Correction,
         settled: &Settled,
         (mark, time): (&Mark, f64),
+        tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         self.last_span = time;
         let events = settled.events.iter();
@@ -389,7 +390,7 @@ impl Refined {
         let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
-        states::enqueue(run, window, settled, (mark, time))
+        states::enqueue(run, window, settled, (mark, time), tolerances)
     }
 }
 

@@ -4,8 +4,9 @@ use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
+use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
-use crate::loading::window::Window;
+use crate::loading::window::{Window, WindowEvent};
 
 /// Queues the states of the events of a corrected window, from a mark to the present approach.
 ///
@@ -17,8 +18,12 @@ pub(super) fn enqueue(
     mut window: Window,
     settled: &Settled,
     (mark, time): (&Mark, f64),
+    tolerances: &WindowTolerances,
 ) -> Result<(), Error> {
     let start = &mark.scalars;
+    let closing = |event: &WindowEvent| window.course(event.position).line.closing;
+    let of_gaps: Vec<f64> =
+        settled.events.iter().map(|event| tolerances.time_of_gap(closing(event))).collect();
     for event in &settled.events {
         window.touch(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
     }
@@ -49,7 +54,8 @@ pub(super) fn enqueue(
         let node = window.node(event.position);
         let error = settled.errors[k];
         load_error += scalars.load_of(scaled[0] * steps[k][0], error);
-        let error = scalars.reported_error(OF_TIME * error, OF_LOAD * load_error);
+        let error = OF_TIME * error + of_gaps[k];
+        let error = scalars.reported_error(error, OF_LOAD * load_error);
         run.enqueue_at(&scalars, (step, ContactEvent::Touch, node), contact_nodes, error)?;
     }
     Ok(())
@@ -61,6 +67,10 @@ mod tests {
     use crate::loading::test_chain;
 
     const GAPS: [f64; 6] = [0.0, 9.0, 1.5, 9.0, 2.5, 9.0];
+
+    fn tolerances(tolerance: f64) -> WindowTolerances {
+        WindowTolerances { length: 2.0, tolerance, tie: 0.0 }
+    }
 
     /// The path with some nodes in contact, and all scalars known.
     fn at(contact: &[usize], approach: f64) -> Result<LoadingRun, Error> {
@@ -80,13 +90,15 @@ mod tests {
                 events: test_chain::events(&[(1, 0.5), (0, 1.5)]),
                 errors: vec![1e-3, 2e-3],
             };
-            enqueue(&mut run, window, &settled, (&mark, 2.0))?;
+            enqueue(&mut run, window, &settled, (&mark, 2.0), &tolerances(1e-6))?;
             let found: Vec<_> = run.queue.drain(..).collect();
             assert_eq!(found.len(), 2);
             for (k, state) in found.iter().enumerate() {
                 assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));
                 assert_eq!(state.node, ([2, 4][k], 0));
-                assert_eq!(state.approach_error, [2e-3, 4e-3][k]);
+                // Twice what was settled, and 30 · 10⁻⁶ of 2 m at a closing rate of 1.
+                let error = [2e-3, 4e-3][k] + 6e-5;
+                assert!((state.approach_error - error).abs() < 1e-15, "{}", state.approach_error);
                 let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.scalars.state(k + 2);
                 let pairs = [
                     (state.contact.approach, expected.approach),
@@ -117,7 +129,7 @@ mod tests {
         // The event is known to be at 0.5; at 1.0 load and stiffness lack what half a metre of 2/4 N/m gives, 1/4 N.
         let settled = Settled { events: test_chain::events(&[(0, 1.0)]), errors: vec![0.0] };
         let window = test_chain::apart(&[(2, 0.5)], 9.0);
-        enqueue(&mut run, window, &settled, (&mark, 2.0))?;
+        enqueue(&mut run, window, &settled, (&mark, 2.0), &tolerances(0.0))?;
         let load = run.queue[0].contact.load;
         // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
         assert!((load - 1.125).abs() < 1e-14, "{load}");

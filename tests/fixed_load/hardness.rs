@@ -1,0 +1,334 @@
+//! Single loads with a hardness, against paths of events from dense solutions.
+
+use std::path::Path;
+
+use asperity::io::read_npy;
+use asperity::kernel::KernelTable;
+use asperity::surface::{FlatPunch, HeightMap, Paraboloid};
+use asperity::{
+    Boundary, Boussinesq, ContactGrowth, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver,
+    Grid, InfluenceKernel, KernelError, PeriodicBoussinesq, Spectral,
+};
+use nalgebra::DMatrix;
+
+const E_STAR: f64 = 115e9;
+const HARDNESS: f64 = 3e9;
+
+/// An event of a path: 16 × 12 nodes, from the first touch to full yielding (see `tests/data/README.md`).
+struct Event {
+    yields: bool,
+    node: usize,
+    approach: f64,
+    load: f64,
+    mean_gap: f64,
+    interfacial_stiffness: f64,
+    plastic_work: f64,
+    plastic_volume: f64,
+}
+
+fn events(name: &str) -> Vec<Event> {
+    let text = std::fs::read_to_string(data(&format!("{name}_events.csv"))).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let place = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    lines
+        .map(|line| {
+            let number = |name: &str| line[place(name)].parse::<f64>().unwrap();
+            Event {
+                yields: line[place("event")] == "yield",
+                node: number("ix") as usize + 16 * number("iy") as usize,
+                approach: number("approach"),
+                load: number("load"),
+                mean_gap: number("mean_gap"),
+                interfacial_stiffness: number("interfacial_stiffness"),
+                plastic_work: number("plastic_work"),
+                plastic_volume: number("plastic_volume"),
+            }
+        })
+        .collect()
+}
+
+fn data(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hardness").join(name)
+}
+
+fn grid() -> Grid {
+    Grid::new(16, 12, 2e-5, 3e-5).unwrap()
+}
+
+fn surface(name: &str) -> HeightMap {
+    HeightMap::new(read_npy(data(&format!("{name}.npy"))).unwrap()).unwrap()
+}
+
+fn kernels() -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
+    [
+        ("free_16x12_0.1", Box::new(Boussinesq::new(grid(), E_STAR).unwrap())),
+        ("periodic_love_16x12_0.5", Box::new(PeriodicBoussinesq::new(grid(), E_STAR).unwrap())),
+        ("periodic_spectral_16x12_1.5", Box::new(Spectral::new(grid(), E_STAR).unwrap())),
+    ]
+}
+
+fn near(found: f64, expected: f64, allowed: f64, context: &str) {
+    assert!((found - expected).abs() <= allowed, "{context}: {found:e} {expected:e} {allowed:e}");
+}
+
+/// Halfway between two events everything but energies is the mean of both, and the sets are those of the events so far.
+#[test]
+fn states_lie_on_the_path() {
+    for (name, kernel) in kernels() {
+        let (events, heights) = (events(name), surface(name));
+        assert_eq!(events.len(), 2 * grid().nodes());
+        let mut solver = FixedLoadSolver::builder(&heights, &*kernel)
+            .hardness(HARDNESS)
+            .tolerance(1e-11)
+            .build()
+            .unwrap();
+        let longest = events.last().unwrap().approach;
+        let mut compared = 0;
+        for k in (2..events.len() - 1).step_by(7) {
+            let (this, next) = (&events[k], &events[k + 1]);
+            // Where hardly any load lies between them the sets rest on rounding.
+            if next.load - this.load < 1e-6 * next.load {
+                continue;
+            }
+            let context = format!("{name} after event {k}");
+            let mean = |of: fn(&Event) -> f64| 0.5 * (of(this) + of(next));
+            let solution = solver.solve(mean(|event| event.load)).unwrap();
+            let plastic = solution.plastic.as_ref().unwrap();
+            for node in 0..grid().nodes() {
+                let has = |yields| {
+                    events[..=k].iter().any(|event| event.yields == yields && event.node == node)
+                };
+                assert_eq!(solution.contact_map.as_slice()[node], has(false), "{context}: {node}");
+                assert_eq!(plastic.yielded_map.as_slice()[node], has(true), "{context}: {node}");
+            }
+            let state = &solution.state;
+            // Gaps are right to 1e-11 of the approach; a plateau has none of its own.
+            let allowed = 1e-9 * longest;
+            near(state.approach, mean(|event| event.approach), allowed, &context);
+            near(state.mean_gap, mean(|event| event.mean_gap), allowed, &context);
+            let area = grid().nominal_area();
+            near(plastic.volume, mean(|event| event.plastic_volume), allowed * area, &context);
+            near(
+                plastic.work,
+                mean(|event| event.plastic_work),
+                HARDNESS * allowed * area,
+                &context,
+            );
+            // Until the next event the stiffness is that of this one.
+            if this.interfacial_stiffness.is_finite() {
+                let found = state.interfacial_stiffness.unwrap();
+                near(found / this.interfacial_stiffness, 1.0, 1e-6, &context);
+            }
+            conditions(&solution, &context);
+            compared += 1;
+            // In full contact mean planes stay where they are until a node yields.
+            if next.approach - this.approach < 1e-6 * next.approach {
+                continue;
+            }
+            let by_approach = solver.solve_approach(mean(|event| event.approach)).unwrap();
+            assert_eq!(by_approach.contact_map, solution.contact_map, "{context}");
+            let found = by_approach.plastic.unwrap();
+            assert_eq!(found.yielded_map, plastic.yielded_map, "{context}");
+            near(by_approach.state.load / state.load, 1.0, 1e-6, &context);
+        }
+        assert!(compared > 40, "{name}: {compared}");
+    }
+}
+
+/// 0 ≤ p ≤ H, gaps ≥ 0, pressure only where the gap is closed, plastic depth only where p = H.
+fn conditions(solution: &FixedLoadSolution, context: &str) {
+    let plastic = solution.plastic.as_ref().unwrap();
+    let length = 1e-9 * solution.certificate.length;
+    for node in 0..solution.pressure.len() {
+        let (p, gap) = (solution.pressure[node], solution.gap[node]);
+        let (depth, has_yielded) = (plastic.depth[node], plastic.yielded_map[node]);
+        assert!((0.0..=HARDNESS).contains(&p) && depth >= 0.0, "{context}: {p} {depth}");
+        assert!(gap >= -length && (p == 0.0 || gap <= length), "{context}: {p} {gap}");
+        assert!(has_yielded || depth == 0.0, "{context}");
+        assert!(!has_yielded || p == HARDNESS, "{context}: {p}");
+    }
+    let certificate = &solution.certificate;
+    assert!(certificate.greatest_contact_gap <= 1e-9, "{context}: {certificate:?}");
+    assert!(solution.plastic.as_ref().unwrap().yielded_nodes() <= solution.state.contact_nodes);
+}
+
+/// The surface less its plastic depth carries the same pressures elastically, at the approach less what is left of the highest node.
+#[test]
+fn unloading_is_elastic_on_the_residual_surface() {
+    for (name, kernel) in kernels() {
+        let heights = surface(name);
+        let events = events(name);
+        let load = events[200].load;
+        let mut solver = FixedLoadSolver::builder(&heights, &*kernel)
+            .hardness(HARDNESS)
+            .tolerance(1e-11)
+            .build()
+            .unwrap();
+        let solution = solver.solve(load).unwrap();
+        let residual = solution.residual_surface(&heights).unwrap();
+        let mut elastic =
+            FixedLoadSolver::builder(&residual, &*kernel).tolerance(1e-11).build().unwrap();
+        let again = elastic.solve(load).unwrap();
+        assert!(again.plastic.is_none());
+        let lowered = heights.max_height() - residual.max_height();
+        near(again.state.approach + lowered, solution.state.approach, 1e-14, name);
+        near(again.state.energy / solution.state.energy, 1.0, 1e-8, name);
+        for (found, expected) in again.pressure.iter().zip(&solution.pressure) {
+            near(*found, *expected, 1e-6 * HARDNESS, name);
+        }
+    }
+}
+
+/// C = ((2, 1), (1, 2)), g = (0, 1), H = 3/4, worked out by hand: touch 0 at 0, yield 0 at 3/2, touch 1 at 7/4, yield 1 at 13/4.
+#[test]
+fn two_nodes_by_hand() {
+    let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
+    let kernel = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Monotone, |di, _| {
+        if di == 0 { 2.0 } else { 1.0 }
+    })
+    .unwrap();
+    let heights = HeightMap::new(DMatrix::from_row_slice(2, 1, &[0.0, -1.0])).unwrap();
+    let mut solver = FixedLoadSolver::builder(&heights, &kernel)
+        .hardness(0.75)
+        .tolerance(1e-12)
+        .build()
+        .unwrap();
+    // (approach, pressures, yielded, plastic depth of node 0)
+    for (approach, pressures, yielded, depth) in [
+        (1.0, [0.5, 0.0], [false, false], 0.0),
+        (1.625, [0.75, 0.0], [true, false], 0.125),
+        // 2 p₁ + 3/4 = δ − 1.
+        (2.75, [0.75, 0.5], [true, false], 0.75),
+        (4.0, [0.75, 0.75], [true, true], 1.75),
+    ] {
+        let solution = solver.solve_approach(approach).unwrap();
+        for (found, expected) in solution.pressure.iter().zip(pressures) {
+            near(*found, expected, 1e-11, "pressure");
+        }
+        let plastic = solution.plastic.as_ref().unwrap();
+        assert_eq!(plastic.yielded_map.as_slice(), yielded, "{approach}");
+        near(plastic.depth[0], depth, 1e-11, "depth");
+        // On the plateau, and behind the end, the load stays what it is.
+        let flat = [false, true, false, true]
+            [[1.0, 1.625, 2.75, 4.0].iter().position(|a| *a == approach).unwrap()];
+        assert_eq!(solution.state.contact_stiffness == Some(0.0), flat, "{approach}");
+    }
+    for load in [1.5, 2.0] {
+        assert!(matches!(
+            solver.solve(load),
+            Err(Error::OutOfRange { quantity: "load", value, .. }) if value == load
+        ));
+    }
+    near(solver.solve(1.25).unwrap().state.approach, 2.75, 1e-11, "approach");
+}
+
+/// A hardness without end, or above all pressures, changes nothing.
+#[test]
+fn a_great_hardness_is_none() {
+    let (name, kernel) = kernels().into_iter().next().unwrap();
+    let heights = surface(name);
+    let solve = |hardness: Option<f64>| {
+        let builder = FixedLoadSolver::builder(&heights, &*kernel);
+        let builder = hardness.map_or(builder, |hardness| builder.hardness(hardness));
+        builder.build().unwrap().solve(100.0).unwrap()
+    };
+    let elastic = solve(None);
+    assert_eq!(solve(Some(f64::INFINITY)), elastic);
+    let high = solve(Some(10.0 * elastic.max_pressure()));
+    assert_eq!(high.contact_map, elastic.contact_map);
+    assert_eq!(high.plastic.unwrap().yielded_nodes(), 0);
+    for (found, expected) in high.pressure.iter().zip(&elastic.pressure) {
+        near(*found, *expected, 1e-7 * elastic.max_pressure(), "pressure");
+    }
+    // A map of one value is that value, and one that is infinite at places limits the others alone.
+    let soft = solve(Some(HARDNESS));
+    let map = DMatrix::from_element(16, 12, HARDNESS);
+    let builder = FixedLoadSolver::builder(&heights, &*kernel).hardness_map(&map);
+    assert_eq!(builder.build().unwrap().solve(100.0).unwrap(), soft);
+    let mut map = map;
+    let hardest = soft.plastic.as_ref().unwrap().yielded_map.iter().position(|y| *y).unwrap();
+    map[hardest] = f64::INFINITY;
+    let builder = FixedLoadSolver::builder(&heights, &*kernel).hardness_map(&map);
+    let mixed = builder.build().unwrap().solve(100.0).unwrap();
+    assert!(mixed.pressure[hardest] > HARDNESS && mixed.plastic.unwrap().yielded_nodes() > 0);
+}
+
+/// Area and mean gap as targets, and a sweep, lead to the states of the same loads.
+#[test]
+fn targets_and_sweeps() {
+    for (name, kernel) in kernels() {
+        let heights = surface(name);
+        let builder =
+            FixedLoadSolver::builder(&heights, &*kernel).hardness(HARDNESS).tolerance(1e-10);
+        let mut solver = builder.build().unwrap();
+        let load = events(name)[150].load * 1.001;
+        let solution = solver.solve(load).unwrap();
+        let target = ContactTarget::MeanGap(solution.state.mean_gap);
+        let found = solver.solve_target(target).unwrap();
+        near(found.state.load / load, 1.0, 1e-6, name);
+        let fraction = solution.state.contact_area_fraction;
+        let found = solver.solve_target(ContactTarget::AreaFraction(fraction)).unwrap();
+        assert_eq!(found.state.contact_nodes, solution.state.contact_nodes, "{name}");
+        let loads = [0.5 * load, load, 0.7 * load].map(ContactTarget::Load);
+        let swept: Vec<_> = solver.sweep(loads).map(Result::unwrap).collect();
+        assert_eq!(swept[1].contact_map, solution.contact_map, "{name}");
+        assert_eq!(
+            swept[1].plastic.as_ref().map(|p| p.yielded_map.clone()),
+            solution.plastic.map(|p| p.yielded_map)
+        );
+        assert_eq!(swept.len(), 3);
+    }
+}
+
+/// Everything yields at once: flat surfaces, and a hardness next to nothing.
+#[test]
+fn all_yield_together() {
+    let grid = Grid::new(6, 6, 1.0, 1.0).unwrap();
+    for kernel in [
+        Box::new(Spectral::new(grid, 1.0).unwrap()) as Box<dyn InfluenceKernel>,
+        Box::new(Boussinesq::new(grid, 1.0).unwrap()),
+    ] {
+        let mut solver = FixedLoadSolver::builder(&FlatPunch::default(), &*kernel)
+            .hardness(2.0)
+            .build()
+            .unwrap();
+        for part in [0.5, 0.99, 0.999_999] {
+            let solution = solver.solve(72.0 * part).unwrap();
+            assert_eq!(solution.state.contact_nodes, 36);
+            near(solution.pressure.sum(), 72.0 * part, 1e-9, "sum");
+            assert!(solution.max_pressure() <= 2.0);
+        }
+    }
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    for hardness in [1e-3, 1e-9, 1e-30] {
+        let surface = Paraboloid::new(10.0).unwrap();
+        let mut solver =
+            FixedLoadSolver::builder(&surface, &kernel).hardness(hardness).build().unwrap();
+        let solution = solver.solve(18.5 * hardness).unwrap();
+        // The bearing area: 18 nodes carry the hardness, and one or more what is left.
+        assert!((18..=36).contains(&solution.state.contact_nodes), "{hardness}");
+        assert!(solution.max_pressure() <= hardness);
+        near(solution.pressure.sum() / hardness, 18.5, 1e-7, "sum");
+    }
+}
+
+#[test]
+fn what_is_no_hardness_is_refused() {
+    let grid = Grid::new(6, 5, 1.0, 1.0).unwrap();
+    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let surface = Paraboloid::new(10.0).unwrap();
+    for value in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+        let refused = FixedLoadSolver::builder(&surface, &kernel).hardness(value).build();
+        assert!(matches!(refused, Err(Error::NotPositive { quantity: "hardness", .. })), "{value}");
+    }
+    let map = DMatrix::from_element(5, 6, 1.0);
+    let refused = FixedLoadSolver::builder(&surface, &kernel).hardness_map(&map).build();
+    assert!(matches!(refused, Err(Error::GridMismatch { .. })), "{refused:?}");
+    let unknown = KernelTable::from_fn(grid, Boundary::Free, ContactGrowth::Unknown, |di, dj| {
+        (-((di * di + dj * dj) as f64)).exp()
+    })
+    .unwrap();
+    let refused = FixedLoadSolver::builder(&surface, &unknown).hardness(1.0).build();
+    assert!(matches!(refused, Err(Error::Kernel(KernelError::GrowthUnknown))), "{refused:?}");
+}
