@@ -40,10 +40,8 @@ pub(super) const OF_SPAN: f64 = 2e-6;
 /// And relative to the approach, on which loads depend: near first touch windows are long beside it. Half: 1.05 times the
 /// convolutions, and errors of the white and the strip 0.6 times as great. Twice: 0.95 of the convolutions.
 pub(super) const OF_LENGTH: f64 = 1e-8;
-/// The residual of the rate, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests and, on long
-/// periodic cells, where gaps are small beside the approach, all times. No effect on the four paths, even a thousand times as great;
-/// without it the approach of a periodic 20 × 20 surface with cells of 1 : 10 was off by 4·10⁻⁶ at 70 % contact, twenty times its
-/// estimate.
+/// The residual of the rate, relative to the mean closing rate of the gaps, on which the interfacial stiffness rests. No effect on the
+/// four paths, even a thousand times as great: it is a bound for contacts whose gaps hardly close.
 pub(super) const OF_OPEN: f64 = 1e-3;
 /// So many times the tolerance residuals may be where gaps of watched nodes are all that matters: what is
 /// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
