@@ -81,6 +81,7 @@ pub mod convolution;
 mod elasticity;
 mod error;
 pub mod fixed_load;
+mod hardness;
 pub mod kernel;
 mod krylov;
 pub mod loading;

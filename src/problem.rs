@@ -1,6 +1,6 @@
 //! The contact problem: a surface on a half-space, before any node is in contact.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::cell_response::CellResponse;
 use crate::convolution::Convolution;
@@ -25,11 +25,11 @@ use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Surface};
 /// ```
 #[derive(Debug)]
 pub struct Problem {
-    table: KernelTable,
+    table: Arc<KernelTable>,
     gap: Vec<f64>,
     greatest_gap: f64,
     rms_height: f64,
-    convolution: Convolution,
+    convolution: Arc<Convolution>,
     row_sums: OnceLock<Vec<f64>>,
 }
 
@@ -71,8 +71,8 @@ impl Problem {
             gap: gap.collect(),
             greatest_gap,
             rms_height: heights.rms_height(),
-            convolution,
-            table,
+            convolution: Arc::new(convolution),
+            table: Arc::new(table),
             row_sums: OnceLock::new(),
         })
     }
@@ -154,12 +154,27 @@ impl Problem {
     /// A convolution with the kernel: memory of its own, the transform of the kernel shared.
     #[must_use]
     pub fn convolution(&self) -> Convolution {
-        self.convolution.clone()
+        Convolution::clone(&self.convolution)
     }
 
     /// The right-hand sides (g, 1, s) at a node of the grid.
     pub(crate) fn rhs(&self, node: usize) -> [f64; Self::RHS] {
         [self.gap[node], 1.0, self.row_sums()[node]]
+    }
+
+    /// The problem of the nodes that do not carry a given load: the load's `displacement` comes to their gap, and nodes under it are
+    /// not counted by row sums, to which they would come with `unit`, their displacement under a pressure of 1.
+    pub(crate) fn under_load(&self, displacement: &[f64], unit: &[f64]) -> Self {
+        let gap = self.gap.iter().zip(displacement).map(|(gap, u)| gap + u);
+        let row_sums = self.row_sums().iter().zip(unit).map(|(sum, u)| sum - u);
+        Self {
+            table: Arc::clone(&self.table),
+            gap: gap.collect(),
+            greatest_gap: self.greatest_gap,
+            rms_height: self.rms_height,
+            convolution: Arc::clone(&self.convolution),
+            row_sums: OnceLock::from(row_sums.collect::<Vec<_>>()),
+        }
     }
 
     /// `Ok` if all nodes lie in the grid.

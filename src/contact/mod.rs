@@ -12,5 +12,5 @@ mod target;
 pub use certificate::Certificate;
 pub(crate) use certificate::{Conditions, ErrorLength};
 pub use sequence::ContactSequence;
-pub use state::ContactState;
+pub use state::{ContactState, PlasticState};
 pub use target::ContactTarget;

@@ -35,8 +35,29 @@ pub struct ContactState {
     /// Interfacial stiffness `Kᵢ = −dW/dḡ` \[N/m\], ḡ being the mean gap: infinite in full contact,
     /// where the mean gap cannot change. `None` if stiffnesses were not asked for; a path always has it.
     pub interfacial_stiffness: Option<f64>,
-    /// Elastic energy `U = ∫ W dδ = ½ ΔA Σ p u` \[J\].
+    /// Elastic energy `U = ½ ΔA Σ p u` \[J\], which comes back on unloading. Where nothing yields it is `∫ W dδ`.
     pub energy: f64,
+    /// What has yielded, on a path with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one.
+    pub plastic: Option<PlasticState>,
+}
+
+/// Nodes whose pressure is their hardness, and what they have lost of their height.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct PlasticState {
+    /// Number of nodes that have yielded; all of them are in contact.
+    pub yielded_nodes: usize,
+    /// Their area over the nominal area.
+    pub yielded_area_fraction: f64,
+    /// Volume `V = ΔA Σ v` of the plastic depth v, the overlap of yielded nodes \[m³\].
+    pub volume: f64,
+    /// Energy that is lost, `ΔA Σ H v` \[J\].
+    pub work: f64,
+    /// dV/dW on further loading \[m³/N\]; 0 on a plateau, where no node is elastic and the load does not change.
+    pub volume_per_load: f64,
+    /// The same of the work \[m\].
+    pub work_per_load: f64,
 }
 
 impl ContactState {
@@ -54,6 +75,7 @@ impl ContactState {
             contact_stiffness: None,
             interfacial_stiffness: None,
             energy: 0.0,
+            plastic: None,
         }
     }
 
@@ -74,8 +96,11 @@ impl ContactState {
             self.energy,
         ];
         let full = self.contact_area_fraction == 1.0;
+        let plastic = self.plastic.unwrap_or_default();
+        let plastic =
+            [plastic.volume, plastic.work, plastic.volume_per_load, plastic.work_per_load];
         let interfacial = self.interfacial_stiffness.unwrap_or_default();
-        quantities.iter().all(|quantity| quantity.is_finite())
+        quantities.iter().chain(&plastic).all(|quantity| quantity.is_finite())
             && self.contact_stiffness.unwrap_or_default().is_finite()
             && (interfacial.is_finite() || (full && !interfacial.is_nan()))
     }
@@ -93,30 +118,76 @@ impl ContactState {
     pub(crate) fn keep_growing(&mut self, earlier: &Self) {
         self.approach = self.approach.max(earlier.approach);
         self.load = self.load.max(earlier.load);
-        self.energy = self.energy.max(earlier.energy);
         self.mean_gap = self.mean_gap.min(earlier.mean_gap);
+        if let (Some(plastic), Some(earlier)) = (&mut self.plastic, &earlier.plastic) {
+            plastic.volume = plastic.volume.max(earlier.volume);
+            plastic.work = plastic.work.max(earlier.work);
+        } else {
+            // About the mean displacement of a periodic half-space all nodes at their hardness have no elastic energy.
+            self.energy = self.energy.max(earlier.energy);
+        }
     }
 
     /// dW/dδ for the approach of this state: of the mean planes if there is no other.
     fn load_rate(&self) -> Option<f64> {
-        self.contact_stiffness.or(self.interfacial_stiffness)
+        let yielding = self.plastic.filter(|plastic| plastic.volume_per_load != 0.0);
+        self.contact_stiffness.or_else(|| match (self.interfacial_stiffness, yielding) {
+            // Mean planes approach by what the mean gap closes and by what yields.
+            (Some(stiffness), Some(plastic)) => {
+                let area = self.contact_area / self.contact_area_fraction;
+                Some(1.0 / (1.0 / stiffness + plastic.volume_per_load / area))
+            }
+            (stiffness, _) => stiffness,
+        })
+    }
+
+    /// Whether all nodes in contact have yielded: the approach grows, and the load does not.
+    pub(crate) fn is_plateau(&self) -> bool {
+        self.plastic.is_some_and(|plastic| {
+            plastic.yielded_nodes > 0 && plastic.yielded_nodes == self.contact_nodes
+        })
+    }
+
+    /// The state further on a plateau: gaps close as the approach grows, and yielded nodes give way.
+    fn along_plateau(&self, advance: f64) -> Self {
+        let plastic = self.plastic.map(|plastic| PlasticState {
+            volume: plastic.volume + self.contact_area * advance,
+            work: plastic.work + self.load * advance,
+            ..plastic
+        });
+        Self {
+            approach: self.approach + advance,
+            mean_gap: self.mean_gap - (1.0 - self.contact_area_fraction) * advance,
+            plastic,
+            ..*self
+        }
     }
 
     /// The state at another load with the same nodes in contact, by the exact linear relations
     /// between two events: `W = Wₙ + K (δ − δₙ)`, `ḡ = ḡₙ − (K / Kᵢ)(δ − δₙ)`.
     ///
-    /// `None` without stiffnesses.
+    /// `None` without stiffnesses, and on a plateau.
     pub(crate) fn at_load(&self, load: f64) -> Option<Self> {
         if load == self.load {
             return Some(*self);
         }
+        if self.is_plateau() {
+            return None;
+        }
         let change = load - self.load;
         let advance = change / self.load_rate()?;
+        let lost = self.plastic.map_or(0.0, |plastic| plastic.work_per_load * change);
+        let plastic = self.plastic.map(|plastic| PlasticState {
+            volume: plastic.volume + plastic.volume_per_load * change,
+            work: plastic.work + lost,
+            ..plastic
+        });
         Some(Self {
             approach: self.approach + advance,
             load,
             mean_gap: self.mean_gap - change / self.interfacial_stiffness?,
-            energy: self.energy + 0.5 * (self.load + load) * advance,
+            energy: self.energy + 0.5 * (self.load + load) * advance - lost,
+            plastic,
             ..*self
         })
     }
@@ -127,6 +198,9 @@ impl ContactState {
         if approach == self.approach {
             return Some(*self);
         }
+        if self.is_plateau() {
+            return Some(Self { approach, ..self.along_plateau(approach - self.approach) });
+        }
         let rate = self.load_rate().filter(|rate| rate.is_finite())?;
         let state = self.at_load(self.load + rate * (approach - self.approach))?;
         Some(Self { approach, ..state })
@@ -136,6 +210,11 @@ impl ContactState {
     pub(crate) fn at_mean_gap(&self, mean_gap: f64) -> Option<Self> {
         if mean_gap == self.mean_gap {
             return Some(*self);
+        }
+        if self.is_plateau() {
+            let open = 1.0 - self.contact_area_fraction;
+            let advance = (self.mean_gap - mean_gap) / open;
+            return (open > 0.0).then(|| Self { mean_gap, ..self.along_plateau(advance) });
         }
         let rate = self.interfacial_stiffness.filter(|rate| rate.is_finite())?;
         let state = self.at_load(self.load + rate * (self.mean_gap - mean_gap))?;

@@ -68,6 +68,13 @@ pub enum UpdaterError {
         iy: usize,
     },
 
+    /// The path has a hardness, and the updater does not serve nodes that yield.
+    #[error(
+        "this updater does not serve a path with a hardness: it takes one that keeps a factor, and has `watch_both` and \
+         `solve_for`"
+    )]
+    HardnessNotSupported,
+
     /// The end of a window contradicts its last events, and the updater cannot take nodes back.
     #[error("the last events after {nodes} nodes have to be taken back, and this updater cannot")]
     TruncateNotSupported {

@@ -1,12 +1,12 @@
 //! How the solver is set up.
 
 use super::budget::MemoryBudget;
-use super::hardness::Limit;
 use super::hierarchy::Hierarchy;
 use super::settings::Settings;
 use super::solver::FixedLoadSolver;
 use nalgebra::DMatrix;
 
+use crate::hardness::Limit;
 use crate::krylov::check_cells;
 use crate::{Boundary, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Problem, Surface, memory};
 

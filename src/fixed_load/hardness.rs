@@ -1,71 +1,14 @@
 //! Pressures that end at a hardness: nodes yield, round after round.
 
 use super::level::Level;
-use crate::krylov::sum;
-use crate::{ContactGrowth, Error, Grid, KernelError, Problem};
-
-use nalgebra::DMatrix;
-
-/// The greatest pressure of each node \[Pa\].
-///
-/// With 0 ≤ p ≤ H the problem stays convex: minimise ½ pᵀCp + pᵀ(g − δ). Nodes that yield carry H, and are a load on the others,
-/// whose problem is the elastic one with the initial gap g + C H. On a body whose contact only grows, no node that carries more than H
-/// in an elastic solution can be elastic in the end: pressure that is taken off it goes to others, and never back. So rounds of
-/// elastic solutions, each with the nodes above H yielded, end, and end at the solution.
-#[derive(Debug, Clone)]
-pub(super) struct Hardness {
-    values: Vec<f64>,
-}
-
-/// What a builder was given.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Limit<'a> {
-    None,
-    Uniform(f64),
-    Map(&'a DMatrix<f64>),
-}
-
-impl Limit<'_> {
-    /// The hardness of each node; `None` where no pressure is limited.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotPositive`] for a hardness that is not above zero, [`Error::GridMismatch`] for a map of another grid, and
-    /// [`KernelError::GrowthUnknown`] for a kernel that does not promise that contact grows.
-    pub(super) fn resolve(self, problem: &Problem) -> Result<Option<Hardness>, Error> {
-        let grid = problem.grid();
-        let values = match self {
-            Self::None => return Ok(None),
-            Self::Uniform(hardness) => vec![hardness; grid.nodes()],
-            Self::Map(map) => {
-                grid.check_shape(map.shape())?;
-                map.as_slice().to_vec()
-            }
-        };
-        for &value in &values {
-            // Infinity limits nothing.
-            if value.is_nan() || value <= 0.0 {
-                return Err(Error::NotPositive { quantity: "hardness", value });
-            }
-        }
-        if values.iter().all(|value| value.is_infinite()) {
-            return Ok(None);
-        }
-        if problem.growth() == ContactGrowth::Unknown {
-            return Err(Error::Kernel(KernelError::GrowthUnknown));
-        }
-        Ok(Some(Hardness { values }))
-    }
-}
-
-impl Hardness {
-    /// The load \[N\] under which all nodes yield.
-    pub(super) fn greatest_load(&self, grid: &Grid) -> f64 {
-        sum(&self.values) * grid.cell_area()
-    }
-}
+use crate::Error;
+use crate::hardness::Hardness;
 
 /// Nodes that have yielded, on the way to a solution.
+///
+/// On a body whose contact only grows, no node that carries more than H
+/// in an elastic solution can be elastic in the end: pressure that is taken off it goes to others, and never back. So rounds of
+/// elastic solutions, each with the nodes above H yielded, end, and end at the solution.
 #[derive(Debug)]
 pub(super) struct Yielded<'a> {
     hardness: &'a Hardness,
@@ -82,8 +25,8 @@ impl<'a> Yielded<'a> {
     pub(super) fn none(hardness: &'a Hardness, level: &mut Level) -> Result<Self, Error> {
         let finite =
             |values: &[f64]| values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
-        let most = finite(&hardness.values);
-        let field: Vec<f64> = hardness.values.iter().map(|value| value.min(most)).collect();
+        let most = finite(hardness.values());
+        let field: Vec<f64> = hardness.values().iter().map(|value| value.min(most)).collect();
         let displacement = finite(level.operator.apply_field(&field)?).abs();
         let own_gap = level.gap.clone();
         let open = 4.0 * (finite(&own_gap) + displacement);
@@ -103,7 +46,7 @@ impl<'a> Yielded<'a> {
     /// Lets the nodes of the level's iterate whose pressure exceeds their hardness yield; false if there is none.
     pub(super) fn grow(&mut self, level: &mut Level) -> Result<bool, Error> {
         let mut load = vec![0.0; self.map.len()];
-        let pressures = level.iterate.pressure.iter_mut().zip(&self.hardness.values);
+        let pressures = level.iterate.pressure.iter_mut().zip(self.hardness.values());
         for (node, (pressure, &hardness)) in pressures.enumerate() {
             if *pressure > hardness {
                 (self.map[node], load[node], *pressure) = (true, hardness, 0.0);
@@ -124,7 +67,7 @@ impl<'a> Yielded<'a> {
     /// yielded.
     pub(super) fn finish(self, level: &mut Level) -> Result<Vec<bool>, Error> {
         level.gap = self.own_gap;
-        let pressures = level.iterate.pressure.iter_mut().zip(&self.hardness.values);
+        let pressures = level.iterate.pressure.iter_mut().zip(self.hardness.values());
         for ((pressure, hardness), has_yielded) in pressures.zip(&self.map) {
             if *has_yielded {
                 *pressure = *hardness;

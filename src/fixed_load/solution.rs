@@ -179,6 +179,7 @@ impl FixedLoadSolution {
             contact_stiffness: None,
             interfacial_stiffness: None,
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
+            plastic: None,
         };
         let conditions = Conditions::new(load / cell_area, approach, level.scale);
         let certificate =

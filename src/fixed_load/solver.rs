@@ -1,6 +1,5 @@
 //! The solver.
 
-use super::hardness::Hardness;
 use super::hierarchy::Hierarchy;
 #[cfg(test)]
 use super::level::Level;
@@ -10,6 +9,7 @@ use super::solution::FixedLoadSolution;
 use super::stepper::Stepper;
 use super::sweep::LoadSweep;
 use super::tangent::Tangent;
+use crate::hardness::Hardness;
 use crate::contact::ContactTarget;
 use crate::{Error, Grid};
 

@@ -2,13 +2,14 @@
 
 use super::active_set::ActiveSet;
 use super::continuation::Continuation;
-use super::hardness::{Hardness, Yielded};
+use super::hardness::Yielded;
 use super::hierarchy::{Hierarchy, scale};
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
 use super::settings::Settings;
 use super::solution::{FixedLoadSolution, SolverEffort};
 use super::tangent::Tangent;
+use crate::hardness::Hardness;
 use crate::contact::ContactState;
 use crate::parallel::inside;
 use crate::{Error, Grid};

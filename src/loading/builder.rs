@@ -2,6 +2,9 @@
 
 use std::collections::VecDeque;
 use std::fmt;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
 
 use super::gap_field::GapField;
 use super::history::History;
@@ -15,9 +18,13 @@ use super::scalars::PathScalars;
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
+use super::yielding::{Plastic, Yielding};
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
+use crate::hardness::Limit;
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
-use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
+use crate::{
+    Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, UpdaterError, memory,
+};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Clone)]
@@ -32,6 +39,7 @@ pub struct LoadingBuilder<'a, U = Handover> {
     targets: Vec<ContactTarget>,
     max_mean_pressure: Option<f64>,
     memory_budget: Option<usize>,
+    hardness: Limit<'a>,
 }
 
 impl<U: fmt::Debug> fmt::Debug for LoadingBuilder<'_, U> {
@@ -45,6 +53,7 @@ impl<U: fmt::Debug> fmt::Debug for LoadingBuilder<'_, U> {
             .field("targets", &self.targets)
             .field("max_mean_pressure", &self.max_mean_pressure)
             .field("memory_budget", &self.memory_budget)
+            .field("has_hardness", &!matches!(self.hardness, Limit::None))
             .finish_non_exhaustive()
     }
 }
@@ -119,6 +128,7 @@ impl<'a> LoadingBuilder<'a> {
             targets: Vec::new(),
             max_mean_pressure: None,
             memory_budget: None,
+            hardness: Limit::None,
         }
     }
 }
@@ -136,6 +146,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             targets: self.targets,
             max_mean_pressure: self.max_mean_pressure,
             memory_budget: self.memory_budget,
+            hardness: self.hardness,
         }
     }
 
@@ -195,6 +206,25 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         self
     }
 
+    /// Limits the pressure to a hardness H \[Pa\]: elastic–perfectly plastic contact (Almqvist et al., J. Mech. Phys. Solids 55
+    /// (2007) 1744). A node whose pressure rises to H *yields*, a state of its own ([`ContactEvent::Yield`]): from then on it carries
+    /// H, stays in contact, and loses as much of its height as it would overlap. The path goes on behind full contact until all nodes
+    /// have yielded, under the load H A, unless a limit ends it; no load limit may be as great as that. Infinity limits nothing.
+    ///
+    /// Contact must be known to grow ([`ContactGrowth`]), and the path needs a factor of the elastic nodes to its end: it is not handed over to iterations.
+    ///
+    /// [`ContactEvent::Yield`]: super::ContactEvent::Yield
+    pub fn hardness(mut self, hardness: f64) -> Self {
+        self.hardness = Limit::Uniform(hardness);
+        self
+    }
+
+    /// The same with a hardness for each node \[Pa\], nx × ny.
+    pub fn hardness_map(mut self, hardness: &'a DMatrix<f64>) -> Self {
+        self.hardness = Limit::Map(hardness);
+        self
+    }
+
     /// Ends the path with an error before it holds more than this many bytes; every state up to there has
     /// then been yielded. By default three quarters of the machine's memory, where the system tells it
     /// (Linux), and without limit elsewhere. Close to the limit windows become smaller. What each thread takes for
@@ -209,8 +239,19 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// # Errors
     ///
     /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no
-    /// sense; [`Error::MemoryBudget`] if not even the grid fits.
+    /// sense; [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and [`Error::GridMismatch`]
+    /// for itself, [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that contact
+    /// grows, and [`UpdaterError::HardnessNotSupported`](crate::UpdaterError::HardnessNotSupported) for iterations.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
+        let path = self.build_to_read()?;
+        match (&path.run.plastic, &path.phase) {
+            (Some(_), Phase::Iterations(_)) => Err(UpdaterError::HardnessNotSupported.into()),
+            _ => Ok(path),
+        }
+    }
+
+    /// The same, for a path that need not go on.
+    pub(crate) fn build_to_read(self) -> Result<LoadingSolver<U>, Error> {
         if self.window_size == Some(0) {
             return Err(Error::OutOfRange {
                 quantity: "window size",
@@ -220,14 +261,28 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         }
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
         let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
-        let fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
+        let mut fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
         let problem = Problem::new(self.surface, self.kernel)?;
         // A user-defined kernel may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;
         let growth = problem.growth();
+        let (plastic, problem) = match self.hardness.resolve(&problem)? {
+            Some(hardness) => {
+                limits.check_hardness(hardness.greatest_load(&grid))?;
+                fixed_bytes += Plastic::bytes_on(&grid, boundary);
+                if fixed_bytes > budget {
+                    let needed = fixed_bytes;
+                    return Err(Error::MemoryBudget { needed, budget, nodes_that_fit: 0 });
+                }
+                let (plastic, elastic) = Plastic::new(hardness, problem);
+                (Some(Arc::new(plastic)), elastic)
+            }
+            None => (None, problem),
+        };
         let procedure = match growth {
             ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
+            _ if plastic.is_some() => Procedure::Yielding(Yielding::new(self.window_size)),
             _ => {
                 let settles = self.rule == ContactRule::FirstContact;
                 let refined = Refined::new(self.window_size, settles);
@@ -236,19 +291,24 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         };
         // Before first touch.
         let unloaded = ContactState::new(&grid, 0, 0.0, 0.0, f64::INFINITY);
-        let last = matches!(procedure, Procedure::Windows(..)).then_some(unloaded);
+        let last = (growth != ContactGrowth::Unknown).then_some(unloaded);
         let mut run = LoadingRun {
             contact: ContactSequence::new(problem.grid()),
             releases: Releases::default(),
             field: GapField::new(&problem),
             scalars: PathScalars::new(&problem),
             problem,
+            plastic,
             queue: VecDeque::new(),
             memory: Memory { budget, fixed: fixed_bytes },
             last,
             timings: LoadingTimings::default(),
         };
-        let mut phase = Phase::new(self.updater);
+        let mut phase = if run.plastic.is_some() {
+            Phase::to_the_end(self.updater)
+        } else {
+            Phase::new(self.updater)
+        };
         let handed_over_at = phase.hand_over(&mut run)?.then_some(0);
         phase.make_room(&run)?;
         Ok(LoadingSolver {

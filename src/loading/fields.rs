@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::snapshot::Snapshot;
 use super::solver::LoadingSolver;
 use super::state::LoadingState;
-use crate::Error;
+use crate::{Error, HeightMap};
 use crate::contact::{Certificate, Conditions, ErrorLength};
 use crate::updater::LinearUpdater;
 
@@ -42,8 +42,84 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 
     fn order_at(&self, step: usize) -> Vec<usize> {
-        let run = &self.run;
-        run.releases.contact_at(run.contact.order(), step)
+        let releases = &self.run.releases;
+        releases.with_yielded(releases.contact_at(self.run.contact.order(), step), step)
+    }
+
+    /// Which nodes have yielded at the present state, with a [hardness](super::LoadingBuilder::hardness).
+    #[must_use]
+    pub fn yielded_map(&self) -> DMatrix<bool> {
+        self.yielded_by(self.state.map_or(0, |state| state.step))
+    }
+
+    /// The same at any state up to the present one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StateNotReached`].
+    pub fn yielded_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error> {
+        self.check_reached(state)?;
+        Ok(self.yielded_by(state.step))
+    }
+
+    fn yielded_by(&self, step: usize) -> DMatrix<bool> {
+        let mut map = DMatrix::from_element(self.grid().nx(), self.grid().ny(), false);
+        for node in self.run.releases.yielded_at(step) {
+            map.as_mut_slice()[node] = true;
+        }
+        map
+    }
+
+    /// Plastic depth v \[m\] at the present state: by how much yielded nodes would overlap, 0 elsewhere.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn plastic_depth(&mut self) -> Result<DMatrix<f64>, Error> {
+        let displacement = self.displacement()?;
+        let (step, approach) = self.state.map_or((0, 0.0), |s| (s.step, s.contact.approach));
+        Ok(self.total_gap_over(displacement, approach).zip_map(&self.yielded_by(step), depth))
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+        let displacement = self.displacement_at(state)?;
+        let gap = self.total_gap_over(displacement, state.contact.approach);
+        Ok(gap.zip_map(&self.yielded_by(state.step), depth))
+    }
+
+    /// The surface with the plastic depth of the present state taken off, from its highest node before: none of its heights \[m\]
+    /// is positive.
+    ///
+    /// Its elastic contact is that of unloading from this state, and of loading again up to it (flow rule of perfect plasticity; gaps
+    /// only close on loading). Beyond, the path of the first surface goes on.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure`].
+    pub fn residual_surface(&mut self) -> Result<HeightMap, Error> {
+        let depth = self.plastic_depth()?;
+        self.without(&depth)
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error> {
+        let depth = self.plastic_depth_at(state)?;
+        self.without(&depth)
+    }
+
+    fn without(&self, depth: &DMatrix<f64>) -> Result<HeightMap, Error> {
+        let heights = self.problem().initial_gap().iter().zip(depth).map(|(gap, v)| -(gap + v));
+        let (nx, ny) = depth.shape();
+        Ok(HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?)
     }
 
     fn check_reached(&self, state: &LoadingState) -> Result<(), Error> {
@@ -126,7 +202,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure`].
     pub fn gap(&mut self) -> Result<DMatrix<f64>, Error> {
         let displacement = self.displacement()?;
-        Ok(self.gap_over(displacement, self.state.map_or(0.0, |state| state.contact.approach)))
+        let (step, approach) = self.state.map_or((0, 0.0), |s| (s.step, s.contact.approach));
+        Ok(self.gap_over(displacement, (step, approach)))
     }
 
     /// The same at any state up to the present one: see [`Self::pressure_at`].
@@ -136,11 +213,24 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Those of [`Self::pressure_at`].
     pub fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         let displacement = self.displacement_at(state)?;
-        Ok(self.gap_over(displacement, state.contact.approach))
+        Ok(self.gap_over(displacement, (state.step, state.contact.approach)))
     }
 
-    fn gap_over(&self, mut displacement: DMatrix<f64>, approach: f64) -> DMatrix<f64> {
-        for (value, initial) in displacement.iter_mut().zip(self.run.problem.initial_gap()) {
+    /// The gap, which is none where the overlap is the plastic depth.
+    fn gap_over(
+        &self,
+        displacement: DMatrix<f64>,
+        (step, approach): (usize, f64),
+    ) -> DMatrix<f64> {
+        let mut gap = self.total_gap_over(displacement, approach);
+        for node in self.run.releases.yielded_at(step) {
+            gap.as_mut_slice()[node] = 0.0;
+        }
+        gap
+    }
+
+    fn total_gap_over(&self, mut displacement: DMatrix<f64>, approach: f64) -> DMatrix<f64> {
+        for (value, initial) in displacement.iter_mut().zip(self.problem().initial_gap()) {
             *value = initial + *value - approach;
         }
         displacement
@@ -161,21 +251,34 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
-        let contact = self.contact_map();
+        let (contact, yielded) = (self.contact_map(), self.yielded_map());
         let pressure = self.pressure()?;
+        let excess = self.run.plastic.as_ref().map(|plastic| {
+            let parts = pressure.iter().zip(plastic.hardness().values());
+            parts.map(|(p, hardness)| p / hardness - 1.0).fold(-1.0, f64::max)
+        });
         let state = self.state.map(|state| state.contact);
         let run = &mut self.run;
+        let gap: &[f64] = match &run.plastic {
+            Some(plastic) => plastic.surface().initial_gap(),
+            None => run.problem.initial_gap(),
+        };
         let approach = state.map_or(0.0, |state| run.scalars.own_approach(&state));
         let reported = state.map_or(0.0, |state| state.approach);
         let gaps = run.field.displace(pressure.as_slice())?;
-        let gaps = gaps.iter().zip(run.problem.initial_gap());
-        let gaps = gaps.map(|(u, g)| g + u - approach);
+        let gaps = gaps.iter().zip(gap).zip(&yielded);
+        // Yielded nodes overlap by their plastic depth.
+        let gaps = gaps.map(|((u, g), has_yielded)| {
+            let gap = g + u - approach;
+            if *has_yielded { gap.max(0.0) } else { gap }
+        });
         let nodes = pressure.iter().zip(gaps).zip(&contact);
         let nodes = nodes.map(|((p, gap), in_contact)| (*p, gap, *in_contact));
         let load = state.map_or(0.0, |state| state.load);
         let scale = ErrorLength::new(run.problem.rms_height(), run.problem.table());
         let sum = load / run.problem.grid().cell_area();
-        Ok(Conditions::new(sum, reported, scale).check(nodes))
+        let certificate = Conditions::new(sum, reported, scale).check(nodes);
+        Ok(Certificate { excess_pressure: excess, ..certificate })
     }
 
     /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and
@@ -194,6 +297,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         snapshot.recognise(&mut self.run, &self.phase, &state)?;
         snapshot.check_gaps(&self.run, &state, &certificate)
     }
+}
+
+/// The plastic depth of a node.
+fn depth(total_gap: f64, has_yielded: bool) -> f64 {
+    // What rounds is none.
+    if has_yielded { (-total_gap).max(0.0) } else { 0.0 }
 }
 
 #[cfg(test)]

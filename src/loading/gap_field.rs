@@ -74,8 +74,26 @@ impl GapField {
         approach: f64,
     ) -> Result<(), Error> {
         self.revision = None;
+        solve(problem, contact, updater, (contact.len(), approach), &mut self.solved.solution)?;
+        self.displace_solution(contact, approach)
+    }
+
+    /// Goes to a contact at an approach with a solution that is known, and computes all displacements.
+    pub(super) fn place(
+        &mut self,
+        contact: &ContactSequence,
+        solution: Solution,
+        approach: f64,
+    ) -> Result<(), Error> {
+        self.revision = None;
+        check_solution(&solution, contact.len())?;
+        self.solved.solution = solution;
+        self.displace_solution(contact, approach)
+    }
+
+    /// Computes the displacements under the solution on a contact at an approach.
+    fn displace_solution(&mut self, contact: &ContactSequence, approach: f64) -> Result<(), Error> {
         let Solved { solution, displacement: [u, u_rate] } = &mut self.solved;
-        solve(problem, contact, updater, (contact.len(), approach), solution)?;
         let values = [&solution.pressure, &solution.rate];
         for (field, values) in self.pressure.iter_mut().zip(values) {
             field.fill(0.0);

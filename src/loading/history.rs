@@ -122,6 +122,13 @@ impl History {
     #[must_use]
     pub fn at_load(&self, load: f64) -> Option<LoadingState> {
         let after = self.states.partition_point(|state| state.contact.load <= load);
+        // A plateau has this load from its beginning on.
+        let first = self.states.partition_point(|state| state.contact.load < load);
+        if let Some(state) =
+            self.states[first..after].iter().find(|state| state.contact.is_plateau())
+        {
+            return Some(*state);
+        }
         self.read(load, after, |state| state.contact.load, ContactState::at_load)
     }
 
@@ -175,7 +182,8 @@ impl History {
         }
         let last = self.states.get(after.checked_sub(1)?)?;
         let is_there = after < self.states.len()
-            || last.contact.contact_area_fraction == 1.0
+            || (last.contact.contact_area_fraction == 1.0
+                && last.contact.plastic.is_none_or(|plastic| plastic.yielded_area_fraction == 1.0))
             || quantity(last) == target;
         let contact = is_there.then(|| at(&last.contact, target))??;
         contact.is_finite().then(|| last.with(contact))

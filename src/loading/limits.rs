@@ -9,8 +9,11 @@ use crate::{Error, Grid};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LoadingEnd {
-    /// All nodes are in contact: from here on everything is linear in the load.
+    /// All nodes are in contact: from here on everything is linear in the load. With a hardness only if that of the nodes that have
+    /// not yielded is infinite.
     FullContact,
+    /// All nodes have yielded: the load is the hardness times the nominal area, and cannot grow.
+    FullyPlastic,
     /// The greatest load, or mean pressure; the last state is at exactly this load.
     Load,
     /// The greatest approach; the last state is at exactly this approach.
@@ -101,6 +104,18 @@ impl Limits {
         Ok(())
     }
 
+    /// `Ok` unless the greatest load is one under which all nodes would yield.
+    pub(super) fn check_hardness(&self, most: f64) -> Result<(), Error> {
+        if self.load == f64::INFINITY || self.load < most {
+            return Ok(());
+        }
+        Err(Error::OutOfRange {
+            quantity: "greatest load",
+            value: self.load,
+            expected: "below the hardness times the nominal area, where all nodes yield",
+        })
+    }
+
     /// `Ok` if a path that has got to a state has not passed any of the limits. It may be at one already, unless it is to
     /// go on.
     ///
@@ -184,7 +199,13 @@ impl Limits {
     ) -> Option<(LoadingEnd, Option<LoadingState>)> {
         let last = last?;
         let exceeded = [
-            (LoadingEnd::Load, next.contact.load > self.load, last.contact.at_load(self.load)),
+            (
+                LoadingEnd::Load,
+                // On a plateau the load is reached where that begins.
+                next.contact.load > self.load
+                    || (last.contact.load == self.load && last.contact.is_plateau()),
+                last.contact.at_load(self.load),
+            ),
             (
                 LoadingEnd::Approach,
                 next.contact.approach > self.approach,

@@ -83,13 +83,14 @@ mod tolerances;
 mod tuning;
 mod window;
 mod windowed;
+mod yielding;
 
 pub use builder::LoadingBuilder;
 pub use history::History;
 pub use limits::LoadingEnd;
 #[doc(hidden)]
 pub use phase::{event_seconds, last_factor};
-pub(crate) use resume::replay;
+pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository
 pub use run::LoadingTimings;

@@ -6,7 +6,7 @@ use super::tuning::{FACTOR, ITERATIONS, LEAST_WINDOW, WINDOW};
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
-    ConjugateGradient, Iterations, LinearUpdater, Method, RecursiveCholesky, Solution,
+    ConjugateGradient, Iterations, Left, LinearUpdater, Method, RecursiveCholesky, Solution,
     WindowFactor, join_all,
 };
 use crate::{Error, Problem};
@@ -27,6 +27,14 @@ impl<U: LinearUpdater> Phase<U> {
             Method::Factor => Self::Factor { updater, may_end: false },
             Method::FactorWhileItPays => Self::Factor { updater, may_end: true },
             Method::Iterations(iterations) => Self::Iterations(iterations),
+        }
+    }
+
+    /// The same, with a factor that is never given up.
+    pub(super) fn to_the_end(updater: U) -> Self {
+        match Self::new(updater) {
+            Self::Factor { updater, .. } => Self::Factor { updater, may_end: false },
+            iterations @ Self::Iterations(_) => iterations,
         }
     }
 
@@ -126,15 +134,15 @@ impl<U: LinearUpdater> Phase<U> {
         run.memory.check(self.bytes(grid.nodes(), contact), run.contact.len())
     }
 
-    /// Goes on without a node that was at `position` of the contact.
+    /// Goes on without nodes that left the contact.
     pub(super) fn release(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        (node, position): (usize, usize),
+        left: &[Left],
     ) -> Result<(), Error> {
         match self {
-            Self::Factor { updater, .. } => updater.release(problem, contact, node, position),
+            Self::Factor { updater, .. } => updater.release(problem, contact, left),
             // They notice by themselves.
             Self::Iterations(_) => Ok(()),
         }
@@ -173,6 +181,9 @@ impl<U: LinearUpdater> Phase<U> {
             let own = self.bytes(problem.grid().nodes(), contact.len());
             let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
             run.memory.check(own.saturating_add(rebuilt), contact.len())?;
+            let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
+            let beside = run.plastic.as_ref().map(|plastic| plastic.beside(&yielded)).transpose()?;
+            let problem = beside.as_ref().map_or(problem, |(_, problem)| problem);
             let (mut updater, contact) = RecursiveCholesky::of(problem, &nodes)?;
             gap_field::solve(problem, &contact, &mut updater, at, solution)?;
             return Ok(nodes);

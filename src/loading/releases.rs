@@ -1,6 +1,8 @@
-//! Nodes that left the contact, and the contact before they did.
+//! Nodes that left the linear system, and the contact before they did.
 
-/// A node that left the contact.
+use crate::updater::Left;
+
+/// A node that left the linear system.
 #[derive(Debug, Clone, Copy)]
 struct Release {
     /// The number of the event.
@@ -8,6 +10,8 @@ struct Release {
     node: usize,
     /// Where it was in the order of contact.
     position: usize,
+    /// Whether it yielded, and stays in contact with its hardness.
+    has_yielded: bool,
 }
 
 /// All nodes that left, in the order in which they did.
@@ -26,15 +30,44 @@ impl Releases {
     }
 
     /// Notes that a node left at the event number `step`.
-    pub(super) fn push(&mut self, step: usize, node: usize, position: usize) {
-        self.prefix_since = step;
-        self.log.push(Release { step, node, position });
+    pub(super) fn push(&mut self, step: usize, Left { node, position }: Left) {
+        self.note(Release { step, node, position, has_yielded: false });
+    }
+
+    /// Notes that a node yielded at the event number `step`.
+    pub(super) fn push_yielded(&mut self, step: usize, Left { node, position }: Left) {
+        self.note(Release { step, node, position, has_yielded: true });
+    }
+
+    fn note(&mut self, release: Release) {
+        self.prefix_since = release.step;
+        self.log.push(release);
+    }
+
+    /// Says that the updater does not hold the contact of any state up to the event number `step`.
+    pub(super) fn forget(&mut self, step: usize) {
+        self.prefix_since = step + 1;
+    }
+
+    /// The nodes that had yielded after `step` events, in the order in which they did.
+    pub(super) fn yielded_at(&self, step: usize) -> impl Iterator<Item = usize> {
+        let log = self.log.iter().take_while(move |release| release.step <= step);
+        log.filter(|release| release.has_yielded).map(|release| release.node)
     }
 
     /// Takes back the last one; returns its place and node. The updater stays without it.
     pub(super) fn pop(&mut self) -> Option<(usize, usize)> {
         let last = self.log.pop()?;
         Some((last.position, last.node))
+    }
+
+    /// Puts the nodes that had yielded after `step` events back among those of the contact that had not, in the order of joining.
+    pub(super) fn with_yielded(&self, mut elastic: Vec<usize>, step: usize) -> Vec<usize> {
+        let log = self.log.iter().rev().filter(|release| release.step <= step);
+        for release in log.filter(|release| release.has_yielded) {
+            elastic.insert(release.position, release.node);
+        }
+        elastic
     }
 
     /// Whether the contact after `step` events is a prefix of what the updater holds.
@@ -66,8 +99,8 @@ mod tests {
     fn contacts_before_releases_are_found_again() {
         // Touch 4, 5, 6, release 5, touch 7, release 4, touch 5.
         let mut releases = Releases::default();
-        releases.push(4, 5, 1);
-        releases.push(6, 4, 0);
+        releases.push(4, Left { node: 5, position: 1 });
+        releases.push(6, Left { node: 4, position: 0 });
         let present = [6, 7, 5];
         assert_eq!(releases.steps(present.len()), 7);
         let contacts: Vec<_> = (0..=7).map(|k| releases.contact_at(&present, k)).collect();

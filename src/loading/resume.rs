@@ -5,7 +5,7 @@ use super::snapshot::{Snapshot, not_on_path};
 use super::solver::LoadingSolver;
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
-use crate::updater::LinearUpdater;
+use crate::updater::{Left, LinearUpdater};
 use crate::{Error, Grid};
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -14,9 +14,14 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub(crate) fn restore(&mut self, history: &History) -> Result<(), Error> {
         let run = &mut self.run;
         let releases = &mut run.releases;
-        let contact = replay(&run.problem.grid(), history, |step, node, position| {
-            releases.push(step, node, position);
+        let Replayed { elastic, .. } = replay(&run.problem.grid(), history, |step, event, left| {
+            if event == ContactEvent::Yield {
+                releases.push_yielded(step, left);
+            } else {
+                releases.push(step, left);
+            }
         })?;
+        run.yield_at(history.states().last().map_or(0, |state| state.step))?;
         // A limit is no event: it comes again if the path is still to end there.
         let events = history.events().iter();
         self.state = events.last().copied();
@@ -24,7 +29,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             run.scalars.place_at(run.scalars.own_approach(&state.contact));
             run.last = run.last.map(|_| state.contact);
         }
-        run.contact = contact;
+        run.contact = elastic;
         Ok(())
     }
 
@@ -46,14 +51,23 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 }
 
+/// The contact after the states of a path.
+pub(crate) struct Replayed {
+    /// All nodes in contact.
+    pub(crate) contact: ContactSequence,
+    /// Those that have not yielded.
+    elastic: ContactSequence,
+}
+
 /// The contact after the states of a path, which are checked to be in an order that a path may have; `left` is told of
-/// each node that leaves: the number of the event, the node, and its place in the order of contact.
+/// each node that leaves or yields: the number of the event, which it is, and the node's place among those that have done neither.
 pub(crate) fn replay(
     grid: &Grid,
     history: &History,
-    mut left: impl FnMut(usize, usize, usize),
-) -> Result<ContactSequence, Error> {
+    mut left: impl FnMut(usize, ContactEvent, Left),
+) -> Result<Replayed, Error> {
     let mut contact = ContactSequence::new(*grid);
+    let mut elastic = contact.clone();
     let mut step = 0;
     let states = history.states();
     for (k, state) in states.iter().enumerate() {
@@ -61,11 +75,18 @@ pub(crate) fn replay(
         if state.event != ContactEvent::Limit {
             step += 1;
             let node = node_of(grid, state)?;
-            if state.event == ContactEvent::Release {
-                let position = contact.remove(node)?;
-                left(step, node, position);
-            } else {
-                contact.push(node)?;
+            match state.event {
+                ContactEvent::Release => {
+                    contact.remove(node)?;
+                    left(step, state.event, Left { node, position: elastic.remove(node)? });
+                }
+                ContactEvent::Yield => {
+                    left(step, state.event, Left { node, position: elastic.remove(node)? });
+                }
+                _ => {
+                    contact.push(node)?;
+                    elastic.push(node)?;
+                }
             }
         } else if !is_last || step == 0 {
             return Err(not_a_path(
@@ -88,8 +109,17 @@ pub(crate) fn replay(
                 "that of the events",
             ));
         }
+        let yielded = contact.len() - elastic.len();
+        let said = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+        if said != yielded {
+            return Err(not_a_path(
+                state,
+                ("number of nodes that have yielded", said),
+                "that of the events",
+            ));
+        }
     }
-    Ok(contact)
+    Ok(Replayed { contact, elastic })
 }
 
 /// The node of a state.

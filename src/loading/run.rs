@@ -2,6 +2,7 @@
 
 use super::tuning::TOLERANCE;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::gap_field::{GapField, GapLine};
@@ -10,6 +11,7 @@ use super::scalars::PathScalars;
 use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
+use super::yielding::Plastic;
 use crate::contact::{ContactSequence, ContactState};
 use crate::updater::{Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
@@ -73,8 +75,12 @@ impl Memory {
 /// A path under way, apart from what solves on its contact.
 #[derive(Debug)]
 pub(super) struct LoadingRun {
+    /// The problem of the nodes that have not yielded: that of the surface where there is no hardness.
     pub(super) problem: Problem,
+    /// The nodes in contact that have not yielded.
     pub(super) contact: ContactSequence,
+    /// With a hardness.
+    pub(super) plastic: Option<Arc<Plastic>>,
     pub(super) releases: Releases,
     pub(super) field: GapField,
     pub(super) scalars: PathScalars,
@@ -107,6 +113,34 @@ impl LoadingRun {
     /// Number of events so far, those in the queue included.
     pub(super) fn steps(&self) -> usize {
         self.releases.steps(self.contact.len())
+    }
+
+    /// The problem of the surface.
+    pub(super) fn surface(&self) -> &Problem {
+        self.plastic.as_ref().map_or(&self.problem, |plastic| plastic.surface())
+    }
+
+    /// Number of nodes in contact, with those that have yielded.
+    pub(super) fn contact_nodes(&self) -> usize {
+        self.contact.len() + self.plastic.as_ref().map_or(0, |plastic| plastic.count())
+    }
+
+    /// Lets the nodes that the log says had yielded after `step` events have done so.
+    pub(super) fn yield_at(&mut self, step: usize) -> Result<(), Error> {
+        let yielded: Vec<usize> = self.releases.yielded_at(step).collect();
+        match &self.plastic {
+            Some(plastic) => {
+                let (plastic, problem) = plastic.beside(&yielded)?;
+                (self.plastic, self.problem) = (Some(Arc::new(plastic)), problem);
+                Ok(())
+            }
+            None if yielded.is_empty() => Ok(()),
+            None => Err(Error::OutOfRange {
+                quantity: "hardness",
+                value: f64::INFINITY,
+                expected: "that of a path on which nodes have yielded",
+            }),
+        }
     }
 
     /// Begins a step.

@@ -2,7 +2,7 @@
 
 use super::gap_field::GapField;
 use super::sum::Sum;
-use crate::contact::{ContactSequence, ContactState};
+use crate::contact::{ContactSequence, ContactState, PlasticState};
 use crate::kernel::Gauge;
 use crate::updater::Solution;
 use crate::{Grid, Problem};
@@ -26,6 +26,32 @@ pub(super) struct PathScalars {
     unit_stiffness: f64,
     /// Mean of r₂ over the grid: how fast the mean gap closes with the approach.
     closing: f64,
+    /// With a hardness.
+    plastic: Option<PlasticScalars>,
+}
+
+/// Overlaps of yielded nodes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct PlasticScalars {
+    /// Number of these nodes.
+    pub(super) nodes: usize,
+    /// Σ v.
+    pub(super) depth: f64,
+    /// Σ H v.
+    pub(super) work: f64,
+    /// How fast both grow with the approach.
+    pub(super) rates: [f64; 2],
+}
+
+/// What an event makes of the rates, per unit of approach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rates {
+    /// `eᵀ C_II⁻¹ e` of the elastic nodes.
+    pub(super) unit_stiffness: f64,
+    /// Sum of closing rates.
+    pub(super) closing: f64,
+    /// Sums of v and H v of yielded nodes.
+    pub(super) plastic: [f64; 2],
 }
 
 impl PathScalars {
@@ -40,6 +66,7 @@ impl PathScalars {
             mean_gap: 0.0,
             unit_stiffness: 0.0,
             closing: 0.0,
+            plastic: None,
         }
     }
 
@@ -55,6 +82,12 @@ impl PathScalars {
         self.approach = approach;
         self.energy += 0.5 * (self.load + load) * change;
         self.load = load;
+        if let Some(plastic) = &mut self.plastic {
+            let [depth, work] = plastic.rates;
+            plastic.depth += depth * change;
+            plastic.work += work * change;
+            self.energy -= self.grid.cell_area() * work * change;
+        }
         self.mean_gap -= self.closing * change;
     }
 
@@ -109,6 +142,33 @@ impl PathScalars {
         }
     }
 
+    /// Takes over the rates behind an event, with `elastic` and `yielded` nodes in contact; the sum of the pressures of the latter
+    /// is the load on a plateau, where no node is elastic.
+    pub(super) fn change_rates(&mut self, rates: Rates, [elastic, yielded]: [usize; 2], sum: f64) {
+        self.unit_stiffness = rates.unit_stiffness;
+        self.closing = rates.closing / self.grid.nodes() as f64;
+        let plastic = self.plastic.get_or_insert_default();
+        plastic.nodes = yielded;
+        plastic.rates = rates.plastic;
+        if elastic == 0 {
+            // By identity.
+            plastic.rates = [yielded as f64, sum];
+            self.unit_stiffness = 0.0;
+            self.load = self.grid.cell_area() * sum;
+            self.closing = (self.grid.nodes() - yielded) as f64 / self.grid.nodes() as f64;
+        }
+        if elastic + yielded == self.grid.nodes() {
+            self.close();
+        }
+    }
+
+    /// Takes load, elastic energy and plastic sums at the present approach from a solution.
+    pub(super) fn renew_plastic(&mut self, [load, energy]: [Sum; 2], plastic: PlasticScalars) {
+        self.load = self.grid.cell_area() * load.total();
+        self.energy = 0.5 * self.grid.cell_area() * energy.total();
+        self.plastic = Some(plastic);
+    }
+
     /// Full contact, by identity and not by arithmetic.
     pub(super) fn close(&mut self) {
         self.mean_gap = 0.0;
@@ -158,15 +218,35 @@ impl PathScalars {
         let approach = self.gauge.reported_approach(self.approach, self.load);
         ContactState {
             contact_stiffness: self.has_distant_point.then_some(stiffness),
-            interfacial_stiffness: Some(stiffness / self.closing),
+            interfacial_stiffness: Some(if self.closing == 0.0 {
+                f64::INFINITY
+            } else {
+                stiffness / self.closing
+            }),
+            plastic: self.plastic.map(|plastic| self.plastic_state(&plastic)),
             energy: self.gauge.reported_energy(self.energy, self.load),
             ..ContactState::new(&self.grid, contact_nodes, approach, self.load, self.mean_gap)
         }
     }
 
-    /// Whether the state is one: everything finite, the stiffness positive.
+    fn plastic_state(&self, plastic: &PlasticScalars) -> PlasticState {
+        let area = self.grid.cell_area();
+        let per_load = |rate: f64| {
+            if self.unit_stiffness > 0.0 { rate / self.unit_stiffness } else { 0.0 }
+        };
+        let mut state = PlasticState::default();
+        state.yielded_nodes = plastic.nodes;
+        state.yielded_area_fraction = plastic.nodes as f64 / self.grid.nodes() as f64;
+        state.volume = area * plastic.depth;
+        state.work = area * plastic.work;
+        [state.volume_per_load, state.work_per_load] = plastic.rates.map(per_load);
+        state
+    }
+
+    /// Whether the state is one: everything finite, the stiffness positive unless all nodes in contact have yielded.
     pub(super) fn is_sound(&self, state: &ContactState) -> bool {
-        state.is_finite() && self.unit_stiffness > 0.0 && self.unit_stiffness.is_finite()
+        let is_stiff = self.unit_stiffness > 0.0 || state.is_plateau();
+        state.is_finite() && is_stiff && self.unit_stiffness.is_finite()
     }
 
     /// The approach of a state in the gauge of the kernel.

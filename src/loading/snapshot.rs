@@ -34,7 +34,9 @@ pub(super) fn not_on_path(
 
 /// The solution at a state.
 pub(super) struct Snapshot {
+    /// Nodes in contact that have not yielded.
     nodes: Vec<usize>,
+    yielded: Vec<usize>,
     /// In the gauge of the kernel.
     approach: f64,
     /// dW/dδ for that approach.
@@ -59,7 +61,14 @@ impl Snapshot {
         for (&node, value) in nodes.iter().zip(&solution.pressure) {
             values[node] = *value;
         }
+        let yielded: Vec<usize> = run.releases.yielded_at(state.step).collect();
+        if let Some(plastic) = &run.plastic {
+            for &node in &yielded {
+                values[node] = plastic.hardness().values()[node];
+            }
+        }
         Ok(Self {
+            yielded,
             stiffness: grid.cell_area() * solution.rate.iter().sum::<f64>(),
             nodes,
             approach,
@@ -147,8 +156,8 @@ impl Snapshot {
     /// The gap of the node that touches next, which is the first to overlap; of all nodes out of contact if
     /// the next one is not known.
     fn worst_overlap(&self, run: &mut LoadingRun, step: usize) -> Result<f64, Error> {
-        let gap = run.problem.initial_gap();
-        if step < run.steps() {
+        if step < run.steps() && run.plastic.is_none() {
+            let gap = run.problem.initial_gap();
             let next = run.releases.contact_at(run.contact.order(), step + 1);
             let Some(&node) = next.last().filter(|_| next.len() > self.nodes.len()) else {
                 // One that leaves: its pressure has been looked at.
@@ -161,14 +170,19 @@ impl Snapshot {
                 terms.map(|&other| table.between(place, table.place(other)) * self.pressure[other]);
             return Ok(gap[node] + terms.sum::<f64>() - self.approach);
         }
-        if self.nodes.len() == gap.len() {
+        let all = self.pressure.len();
+        if self.nodes.len() + self.yielded.len() == all {
             return Ok(0.0);
         }
-        let mut in_contact = vec![false; gap.len()];
-        for &node in &self.nodes {
+        let mut in_contact = vec![false; all];
+        for &node in self.nodes.iter().chain(&self.yielded) {
             in_contact[node] = true;
         }
         let displacement = run.field.displace(self.pressure.as_slice())?;
+        let gap = match &run.plastic {
+            Some(plastic) => plastic.surface().initial_gap(),
+            None => run.problem.initial_gap(),
+        };
         let gaps = gap.iter().zip(displacement).zip(&in_contact);
         let out = gaps.filter(|(_, in_contact)| !**in_contact);
         let least = out.map(|((g, u), _)| g + u - self.approach);
@@ -214,6 +228,7 @@ mod tests {
             }
             let snapshot = Snapshot {
                 nodes: self.pressures.iter().map(|(node, _)| *node).collect(),
+                yielded: Vec::new(),
                 approach: self.approach,
                 stiffness: self.stiffness,
                 pressure,

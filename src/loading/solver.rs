@@ -10,9 +10,10 @@ use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
+use super::yielding::Yielding;
 use crate::contact::ContactTarget;
 use crate::updater::{Handover, LinearUpdater};
-use crate::{Error, Grid, Problem};
+use crate::{Error, Grid, Problem, UpdaterError};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
@@ -63,6 +64,8 @@ pub(super) enum Procedure {
     /// In windows: exact ones while there is a factor, and refined ones with iterations.
     Windows(Windowed, Refined),
     Stepwise(Stepwise),
+    /// In windows in which nodes yield as well.
+    Yielding(Yielding),
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -101,8 +104,11 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             produced?;
         }
         let Some(next) = self.run.queue.front() else {
-            let nodes = self.run.contact.len();
-            self.end = Some(if nodes == self.run.problem.grid().nodes() {
+            let nodes = self.run.contact_nodes();
+            let has_yielded = self.run.plastic.as_ref().map_or(0, |plastic| plastic.count());
+            self.end = Some(if has_yielded == self.run.problem.grid().nodes() {
+                LoadingEnd::FullyPlastic
+            } else if nodes == self.run.problem.grid().nodes() {
                 if self.limits.ends_before_full_contact() {
                     log::warn!(
                         "full contact before the load, approach or mean gap at which the path was to end"
@@ -127,13 +133,25 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     fn produce(&mut self) -> Result<(), Error> {
         let (run, phase) = (&mut self.run, &mut self.phase);
         let most_nodes = self.limits.most_nodes().min(run.problem.grid().nodes());
-        let is_enough = run.contact.len() >= most_nodes;
+        let limit = self.limits.most_nodes();
+        // With a hardness nodes yield behind full contact.
+        let is_enough = match &run.plastic {
+            Some(_) => run.contact_nodes() >= limit,
+            None => run.contact.len() >= most_nodes,
+        };
         if !is_enough && phase.hand_over(run)? {
             self.handed_over_at = Some(run.contact.len());
         }
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
             _ if is_enough => Ok(()),
+            (Procedure::Yielding(yielding), Phase::Factor { updater, .. }) => {
+                self.failure = yielding.produce(run, updater, limit)?;
+                Ok(())
+            }
+            (Procedure::Yielding(_), Phase::Iterations(_)) => {
+                Err(UpdaterError::HardnessNotSupported.into())
+            }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
                 refined.produce(run, &mut **iterations, most_nodes)
             }
@@ -177,7 +195,11 @@ impl<U: LinearUpdater> Iterator for LoadingSolver<U> {
         }
         let nodes = self.run.problem.grid().nodes();
         let done = self.state.map_or(0, |state| state.contact.contact_nodes);
-        let most = self.limits.most_nodes().min(nodes).saturating_sub(done);
+        let mut most = self.limits.most_nodes().min(nodes).saturating_sub(done);
+        if let Some(plastic) = &self.run.plastic {
+            // Each node in contact may yield.
+            most += self.limits.most_nodes().min(nodes).saturating_sub(plastic.count());
+        }
         // One more for an error or a limit.
         (0, Some(most + 1))
     }
@@ -189,7 +211,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// The contact problem.
     #[must_use]
     pub fn problem(&self) -> &Problem {
-        &self.run.problem
+        self.run.surface()
     }
 
     /// Where the path is to end, whichever comes first; a number of nodes is given as a fraction of the area.

@@ -9,7 +9,7 @@ use super::state::ContactEvent;
 use super::tolerances::{WindowTolerances, ties_until};
 use super::window::Window;
 use crate::Error;
-use crate::updater::{LinearUpdater, Solution};
+use crate::updater::{Left, LinearUpdater, Solution};
 
 /// The next event, unless another one comes first.
 #[derive(Debug, Clone, Copy)]
@@ -99,8 +99,8 @@ impl Stepwise {
     ) -> Result<(), Error> {
         let position = run.contact.remove(node)?;
         // First, so that earlier contacts are known even if the updater panics.
-        run.releases.push(step, node, position);
-        let released = phase.release(&run.problem, &run.contact, (node, position));
+        run.releases.push(step, Left { node, position });
+        let released = phase.release(&run.problem, &run.contact, &[Left { node, position }]);
         if released.is_err() {
             run.take_back_release()?;
         }

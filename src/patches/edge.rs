@@ -66,7 +66,7 @@ impl ContactEdge {
         Ok(edge)
     }
 
-    /// Follows an event of a path: at a limit nothing changes.
+    /// Follows an event of a path: at a limit, and where a node yields, nothing changes.
     ///
     /// # Errors
     ///
@@ -76,8 +76,8 @@ impl ContactEdge {
         let node = node_of(&self.grid, ix, iy)?;
         match (event, self.in_contact[node]) {
             (ContactEvent::Touch, true) => return Err(Error::AlreadyInContact { ix, iy }),
-            (ContactEvent::Release, false) => return Err(Error::NotInContact { ix, iy }),
-            (ContactEvent::Limit, _) => (),
+            (ContactEvent::Release | ContactEvent::Yield, false) => return Err(Error::NotInContact { ix, iy }),
+            (ContactEvent::Limit, _) | (ContactEvent::Yield, true) => (),
             (ContactEvent::Touch | ContactEvent::Release, is_in) => self.change(node, !is_in),
         }
         Ok(())

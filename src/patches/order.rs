@@ -26,7 +26,7 @@ pub fn contact_sequence(
             ContactEvent::Release => {
                 return Err(Error::NodeLeaves { ix, iy, event: number });
             }
-            ContactEvent::Limit => (),
+            ContactEvent::Yield | ContactEvent::Limit => (),
         }
     }
     Ok(contact)

@@ -43,7 +43,7 @@ use nalgebra::DMatrix;
 
 use crate::contact::ContactSequence;
 use crate::kernel::{InfluenceKernel, KernelTable};
-use crate::loading::{ContactRule, History, LoadingEnd, LoadingState, replay};
+use crate::loading::{Replayed, ContactRule, History, LoadingEnd, LoadingState, replay};
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
 use crate::{ContactTarget, Error, Grid, LoadingSolver};
@@ -182,7 +182,8 @@ impl LoadingRecord {
     ///
     /// None, of a record that was made by this crate.
     pub fn contact(&self) -> Result<ContactSequence, Error> {
-        replay(&self.grid, &self.history, |_, _, _| {})
+        let Replayed { contact, .. } = replay(&self.grid, &self.history, |_, _, _| {})?;
+        Ok(contact)
     }
 
     /// The path once more, behind its last state, with the default updater: to where it was to end, or beyond, by

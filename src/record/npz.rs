@@ -238,12 +238,14 @@ fn code(event: ContactEvent) -> i64 {
         ContactEvent::Touch => 0,
         ContactEvent::Release => 1,
         ContactEvent::Limit => 2,
+        ContactEvent::Yield => 3,
     }
 }
 
 /// The event of a number.
 fn event(code: f64) -> Option<ContactEvent> {
-    let all = [ContactEvent::Touch, ContactEvent::Release, ContactEvent::Limit];
+    use ContactEvent::{Limit, Release, Touch, Yield};
+    let all = [Touch, Release, Limit, Yield];
     all.into_iter().find(|event| self::code(*event) as f64 == code)
 }
 

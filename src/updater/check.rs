@@ -1,6 +1,6 @@
 //! Holds an updater to what a path asks of it.
 
-use super::{Dense, LinearUpdater, Method, Schur, Solution, WindowFactor};
+use super::{Dense, Left, LinearUpdater, Method, Schur, Solution, WindowFactor};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
@@ -167,7 +167,7 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         };
         let position = self.contact.remove(node)?;
         let (problem, contact) = (self.problem, &self.contact);
-        match self.updater.release(problem, contact, node, position) {
+        match self.updater.release(problem, contact, &[Left { node, position }]) {
             Err(Error::Updater(UpdaterError::ReleaseNotSupported { .. })) => Ok(false),
             done => {
                 let count = self.contact.len();

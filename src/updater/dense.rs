@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-use super::{LinearUpdater, Schur, Solution, WindowFactor};
+use super::{Left, LinearUpdater, Schur, Solution, WindowFactor, check_count};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
@@ -99,9 +99,47 @@ impl LinearUpdater for Dense {
         &mut self,
         _: &Problem,
         _: &ContactSequence,
-        _: usize,
-        _: usize,
+        _: &[Left],
     ) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn watch_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        positions: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        let contact = contact.order();
+        let outside = Self::influence(problem, contact, nodes)?;
+        let size = nodes.len() + positions.len();
+        let coupling = DMatrix::from_fn(contact.len(), size, |i, j| match j.checked_sub(nodes.len()) {
+            None => outside[(i, j)],
+            Some(q) => f64::from(u8::from(positions[q] == i)),
+        });
+        let solved = Self::factor(problem, contact)?.solve(&coupling);
+        let mut matrix = coupling.transpose() * solved * -1.0;
+        let mut own = matrix.view_mut((0, 0), (nodes.len(), nodes.len()));
+        own += Self::influence(problem, nodes, nodes)?;
+        schur.resize(size)?;
+        schur.matrix_mut().copy_from(&matrix);
+        Ok(())
+    }
+
+    fn solve_for(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        rhs: &mut [[f64; 2]],
+    ) -> Result<(), Error> {
+        check_count(contact.len(), rhs.len())?;
+        let b = DMatrix::from_fn(rhs.len(), 2, |i, c| rhs[i][c]);
+        let solved = Self::factor(problem, contact.order())?.solve(&b);
+        for (i, x) in rhs.iter_mut().enumerate() {
+            *x = [solved[(i, 0)], solved[(i, 1)]];
+        }
         Ok(())
     }
 

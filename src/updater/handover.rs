@@ -1,7 +1,7 @@
 //! The default: a factor, which the path may give up for iterations.
 
 use super::{
-    LinearUpdater, Method, RecursiveCholesky, Schur, Solution, WindowFactor, forward_verbs,
+    Left, LinearUpdater, Method, RecursiveCholesky, Schur, Solution, WindowFactor, forward_verbs,
 };
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};

@@ -47,6 +47,15 @@ pub use window_factor::WindowFactor;
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
+/// A node that left the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Left {
+    /// Its index.
+    pub node: usize,
+    /// How many nodes were before it in the order of contact.
+    pub position: usize,
+}
+
 /// A contact that grows, and rarely shrinks, and the inverse of its influence matrix.
 ///
 /// The path owns the order of contact and passes it along; an updater keeps whatever it needs to answer
@@ -205,9 +214,9 @@ pub trait LinearUpdater {
         Err(UpdaterError::TruncateNotSupported { nodes }.into())
     }
 
-    /// Forgets a node that left the contact, in which it was number `position` from 0: `contact` is
-    /// without it already. No node is watched afterwards. Called only if a pressure falls to zero, which
-    /// takes a kernel of unknown growth.
+    /// Forgets nodes that left the contact, by their positions in it, ascending: `contact` is without them already, and initial
+    /// gap and row sums of `problem` may be others than before. No node is watched afterwards. Called only if a pressure falls to
+    /// zero, which takes a kernel of unknown growth, or rises to a hardness.
     ///
     /// # Errors
     ///
@@ -216,13 +225,57 @@ pub trait LinearUpdater {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        node: usize,
-        position: usize,
+        left: &[Left],
     ) -> Result<(), Error> {
-        let _ = (contact, position);
+        let _ = contact;
+        let Some(&Left { node, .. }) = left.first() else {
+            return Ok(());
+        };
         problem.check_nodes(&[node])?;
         let (ix, iy) = problem.grid().coordinates(node);
         Err(UpdaterError::ReleaseNotSupported { ix, iy }.into())
+    }
+
+    /// Eliminates the contact I from the system bordered by nodes P out of contact and by the nodes Q at some positions of it,
+    /// ascending, which may yield:
+    ///
+    /// ```math
+    /// M = \begin{pmatrix} C_{PP} & 0 \\ 0 & 0 \end{pmatrix} -
+    ///     \begin{pmatrix} C_{PI} \\ E_Q^T \end{pmatrix} C_{II}^{-1} \begin{pmatrix} C_{IP} & E_Q \end{pmatrix}
+    /// ```
+    ///
+    /// with the unit vectors $`E_Q`$ of these positions. M says what pressures on P and overlaps of Q change: gaps of P, and
+    /// pressures of Q. Only its lower triangle need be written, and no row sums. Called only on paths with a hardness.
+    /// [`join`](Self::join) may follow, for some of P.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the updater from answering; by default [`UpdaterError::HardnessNotSupported`].
+    fn watch_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        positions: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        let _ = (problem, contact, nodes, positions, schur);
+        Err(UpdaterError::HardnessNotSupported.into())
+    }
+
+    /// Makes right-hand sides b, two for each node in contact, into $`C_{II}^{-1} b`$. Called only on paths with a hardness.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the updater from answering; by default [`UpdaterError::HardnessNotSupported`].
+    fn solve_for(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        rhs: &mut [[f64; 2]],
+    ) -> Result<(), Error> {
+        let _ = (problem, contact, rhs);
+        Err(UpdaterError::HardnessNotSupported.into())
     }
 
     /// Bytes this updater holds when `contact` nodes are in contact and `watched` are watched.
@@ -291,10 +344,29 @@ macro_rules! forward_verbs {
             &mut self,
             problem: &Problem,
             contact: &ContactSequence,
-            node: usize,
-            position: usize,
+            left: &[Left],
         ) -> Result<(), Error> {
-            self.$inner().release(problem, contact, node, position)
+            self.$inner().release(problem, contact, left)
+        }
+
+        fn watch_both(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            nodes: &[usize],
+            positions: &[usize],
+            schur: &mut Schur,
+        ) -> Result<(), Error> {
+            self.$inner().watch_both(problem, contact, nodes, positions, schur)
+        }
+
+        fn solve_for(
+            &mut self,
+            problem: &Problem,
+            contact: &ContactSequence,
+            rhs: &mut [[f64; 2]],
+        ) -> Result<(), Error> {
+            self.$inner().solve_for(problem, contact, rhs)
         }
 
         fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {

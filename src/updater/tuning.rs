@@ -7,6 +7,8 @@
 pub(crate) const ROWS: usize = 256;
 /// Rows that are rotated together, so that a rotation is one vector operation.
 pub(crate) const ROTATED: usize = 16;
+/// Columns that are rotated before the next rows are: so many that their rotations stay in cache.
+pub(crate) const ROTATED_COLUMNS: usize = 128;
 /// Numbers that are multiplied at a time: two to four of the widest vectors.
 pub(crate) const LANES: usize = 32;
 /// Panels that are solved between two meetings of the threads, which take some 0.1 ms each.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use asperity::contact::ContactSequence;
-use asperity::updater::{LinearUpdater, Method, Schur, Solution, WindowFactor};
+use asperity::updater::{Left, LinearUpdater, Method, Schur, Solution, WindowFactor};
 use asperity::{Error, Problem};
 
 /// A call of a [`LinearUpdater`] that can fail, with the place of its answer.
@@ -35,8 +35,19 @@ pub enum Call<'a> {
     Release {
         problem: &'a Problem,
         contact: &'a ContactSequence,
-        node: usize,
-        position: usize,
+        left: &'a [Left],
+    },
+    WatchBoth {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        nodes: &'a [usize],
+        positions: &'a [usize],
+        schur: &'a mut Schur,
+    },
+    SolveFor {
+        problem: &'a Problem,
+        contact: &'a ContactSequence,
+        rhs: &'a mut [[f64; 2]],
     },
     MakeRoom {
         problem: &'a Problem,
@@ -54,6 +65,8 @@ impl Call<'_> {
             Self::Solve { .. } => "solve",
             Self::Truncate { .. } => "truncate",
             Self::Release { .. } => "release",
+            Self::WatchBoth { .. } => "watch_both",
+            Self::SolveFor { .. } => "solve_for",
             Self::MakeRoom { .. } => "make_room",
         }
     }
@@ -73,9 +86,11 @@ impl Call<'_> {
                 updater.solve(problem, contact, *count, *approach, solution)
             }
             Self::Truncate { problem, contact } => updater.truncate(problem, contact),
-            Self::Release { problem, contact, node, position } => {
-                updater.release(problem, contact, *node, *position)
+            Self::Release { problem, contact, left } => updater.release(problem, contact, left),
+            Self::WatchBoth { problem, contact, nodes, positions, schur } => {
+                updater.watch_both(problem, contact, nodes, positions, schur)
             }
+            Self::SolveFor { problem, contact, rhs } => updater.solve_for(problem, contact, rhs),
             Self::MakeRoom { problem, bytes } => updater.make_room(problem, *bytes),
         }
     }
@@ -190,10 +205,29 @@ impl<'a, U: LinearUpdater + 'a, S> LinearUpdater for Altered<'a, U, S> {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        node: usize,
-        position: usize,
+        left: &[Left],
     ) -> Result<(), Error> {
-        self.call(Call::Release { problem, contact, node, position })
+        self.call(Call::Release { problem, contact, left })
+    }
+
+    fn watch_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        positions: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.call(Call::WatchBoth { problem, contact, nodes, positions, schur })
+    }
+
+    fn solve_for(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        rhs: &mut [[f64; 2]],
+    ) -> Result<(), Error> {
+        self.call(Call::SolveFor { problem, contact, rhs })
     }
 
     fn make_room(&mut self, problem: &Problem, bytes: usize) -> Result<(), Error> {

@@ -10,6 +10,7 @@ mod ends;
 mod flat;
 mod foreign_states;
 mod handover;
+mod hardness;
 mod inexact_updaters;
 mod long_cells;
 mod path_properties;

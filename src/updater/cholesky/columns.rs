@@ -145,6 +145,19 @@ impl Columns {
         });
     }
 
+    /// `x ← L⁻¹ x` for some right-hand sides.
+    pub(super) fn solve<const N: usize>(factor: &Panels, x: &mut [[f64; N]]) {
+        let mut columns = Self::default();
+        columns.watch(&[], N);
+        columns.forward_substitute(factor, 0, |row, first, values| {
+            values.copy_from_slice(&x[row][first..first + values.len()]);
+        });
+        let solved = columns.blocks.iter().flat_map(|block| block.values.chunks(block.width));
+        for (x, solved) in x.iter_mut().zip(solved) {
+            x.copy_from_slice(solved);
+        }
+    }
+
     /// S −= Fᵀ F (lower triangle, column by column).
     pub(super) fn subtract_gram(&self, mut matrix: &mut [f64]) {
         let tiles = self.tiles();

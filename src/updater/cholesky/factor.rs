@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::columns::Columns;
-use super::panels::{Panels, Rotations, remove};
+use super::panels::{Panels, remove};
 use crate::contact::ContactSequence;
 use crate::updater::{Schur, WindowFactor, check_count};
 use crate::{Error, Problem};
@@ -22,6 +22,14 @@ pub struct CholeskyTimings {
     pub release: Duration,
     /// Solutions on the contact set.
     pub solve: Duration,
+}
+
+/// `Ok` if a position is one of `count`.
+fn check_position(position: usize, count: usize) -> Result<(), Error> {
+    if position < count {
+        return Ok(());
+    }
+    Err(Error::LengthMismatch { expected: count, found: position })
 }
 
 /// The factor `C_II = L Lᵀ` and the columns `F = L⁻¹ C_IP` of the watched nodes P.
@@ -48,7 +56,7 @@ impl Factor {
         self.panels.rows()
     }
 
-    /// Makes `nodes` the watched ones and writes their Schur complement to `schur`.
+    /// Makes `nodes` and those at `places` of the contact the watched ones, and writes their Schur complement to `schur`.
     ///
     /// Nodes that were watched before are recognised if they come first and in the same order; only
     /// the others cost a forward substitution.
@@ -57,20 +65,34 @@ impl Factor {
         problem: &Problem,
         contact: &ContactSequence,
         nodes: &[usize],
+        positions: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
         problem.check_nodes(contact.order())?;
         check_count(self.len(), contact.len())?;
+        for &position in positions {
+            check_position(position, contact.len())?;
+        }
         let start = Instant::now();
-        let kept = self.watch(nodes);
+        let out = nodes.len();
+        let nodes: Vec<usize> =
+            nodes.iter().copied().chain(positions.iter().map(|&p| contact.order()[p])).collect();
+        let kept = self.watch(&nodes);
         let table = problem.table();
         let places_of = |nodes: &[usize]| -> Vec<usize> {
             nodes.iter().map(|&node| table.place(node)).collect()
         };
-        let (places, contact) = (places_of(nodes), places_of(contact.order()));
+        let (places, contact) = (places_of(&nodes[..out]), places_of(contact.order()));
         self.columns.forward_substitute(&self.panels, kept, |row, first, values| {
-            table.fill_column(contact[row], &places[first..], values);
+            let outside = values.len().min(out.saturating_sub(first));
+            let (coefficients, units) = values.split_at_mut(outside);
+            if outside > 0 {
+                table.fill_column(contact[row], &places[first..first + outside], coefficients);
+            }
+            for (value, position) in units.iter_mut().zip(&positions[(first + outside).saturating_sub(out)..]) {
+                *value = f64::from(u8::from(*position == row));
+            }
         });
         let forward_done = Instant::now();
         self.timings.forward += forward_done - start;
@@ -78,7 +100,11 @@ impl Factor {
         schur.resize(nodes.len())?;
         let matrix = schur.as_mut_slice();
         for (j, column) in matrix.chunks_mut(nodes.len().max(1)).enumerate() {
-            table.fill_column(places[j], &places[j..], &mut column[j..]);
+            let (outside, inside) = column[j..].split_at_mut(out.saturating_sub(j));
+            if let Some(&place) = places.get(j) {
+                table.fill_column(place, &places[j..], outside);
+            }
+            inside.fill(0.0);
         }
         self.columns.subtract_gram(matrix);
         self.timings.schur += forward_done.elapsed();
@@ -129,23 +155,25 @@ impl Factor {
         }
     }
 
-    /// Removes the node at `position` from the contact, which is `contact` now, and forgets the watched
-    /// ones. Returns what removes its entry from L⁻¹B.
+    /// Removes the nodes at `positions` (ascending) from the contact, which is `contact` now, and forgets the watched ones.
     pub(super) fn release(
         &mut self,
         contact: &ContactSequence,
-        position: usize,
-    ) -> Result<Rotations, Error> {
-        check_count(self.len(), contact.len() + 1)?;
-        if position >= self.len() {
-            return Err(Error::NodeOutOfGrid { node: position, nodes: self.len() });
+        positions: &[usize],
+    ) -> Result<(), Error> {
+        check_count(self.len(), contact.len() + positions.len())?;
+        for (k, &position) in positions.iter().enumerate() {
+            check_position(position, self.len())?;
+            if k > 0 {
+                check_position(positions[k - 1], position)?;
+            }
         }
         let start = Instant::now();
         self.watched.clear();
-        let rotations = remove(&mut self.panels, position);
+        remove(&mut self.panels, positions);
         self.columns.forget(self.panels.rows());
         self.timings.release += start.elapsed();
-        Ok(rotations)
+        Ok(())
     }
 
     /// Bytes held with `contact` nodes in contact and `watched` watched.

@@ -11,9 +11,12 @@ pub use factor::CholeskyTimings;
 
 use std::time::Instant;
 
-use super::{JOINED, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all};
+use super::{
+    JOINED, Left, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all,
+};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
+use columns::Columns;
 use factor::Factor;
 
 /// The Cholesky factor of the contact's influence matrix, grown by one row for each node that touches
@@ -83,7 +86,7 @@ impl LinearUpdater for RecursiveCholesky {
         nodes: &[usize],
         schur: &mut Schur,
     ) -> Result<(), Error> {
-        self.factor.eliminate(problem, contact, nodes, schur)?;
+        self.factor.eliminate(problem, contact, nodes, &[], schur)?;
         let start = Instant::now();
         self.reduced.clear();
         self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
@@ -141,17 +144,56 @@ impl LinearUpdater for RecursiveCholesky {
         Ok(())
     }
 
-    /// The rows of later nodes are rotated into place, n² of them at most: much less than a new factor,
-    /// and as accurate.
+    /// The rows of later nodes are rotated into place: much less than a new factor, and as accurate.
     fn release(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        left: &[Left],
+    ) -> Result<(), Error> {
+        problem.check_nodes(contact.order())?;
+        let positions: Vec<usize> = left.iter().map(|left| left.position).collect();
+        self.factor.release(contact, &positions)?;
+        self.border.clear();
+        self.border.extend(contact.order().iter().map(|&node| problem.rhs(node)));
+        Columns::solve(&self.factor.panels, &mut self.border);
+        Ok(())
+    }
+
+    fn watch_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        positions: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        self.factor.eliminate(problem, contact, nodes, positions, schur)?;
+        // Row sums are not asked for.
+        self.reduced.clear();
+        self.reduced.extend(nodes.iter().map(|&node| problem.rhs(node)));
+        self.reduced.extend(positions.iter().map(|_| [0.0; Problem::RHS]));
+        self.factor.columns.subtract_products(&self.border, &mut self.reduced);
+        Ok(())
+    }
+
+    fn solve_for(
         &mut self,
         _problem: &Problem,
         contact: &ContactSequence,
-        _node: usize,
-        position: usize,
+        rhs: &mut [[f64; 2]],
     ) -> Result<(), Error> {
-        let rotations = self.factor.release(contact, position)?;
-        rotations.remove(&mut self.border);
+        check_count(self.factor.len(), contact.len())?;
+        check_count(self.factor.len(), rhs.len())?;
+        let start = Instant::now();
+        let panels = &self.factor.panels;
+        Columns::solve(panels, rhs);
+        let [mut first, mut second] = [0, 1].map(|k| rhs.iter().map(|x| x[k]).collect::<Vec<_>>());
+        panels.solve_transposed([&mut first[..], &mut second[..]]);
+        for (x, solved) in rhs.iter_mut().zip(first.into_iter().zip(second)) {
+            *x = solved.into();
+        }
+        self.factor.timings.solve += start.elapsed();
         Ok(())
     }
 

@@ -16,6 +16,11 @@ pub(super) fn reading(rows: usize, columns: usize) -> usize {
     16 * rows * columns
 }
 
+/// A rotation of all rows for each column and each of so many others: three products of a pair.
+pub(super) fn rotations(rows: usize, columns: usize, others: usize) -> usize {
+    3 * rows * columns * others
+}
+
 /// A matrix that is moved: a number on its way to memory that is new takes as long as so many products.
 pub(super) fn moving(rows: usize, columns: usize) -> usize {
     64 * rows * columns
@@ -25,10 +30,11 @@ pub(super) fn moving(rows: usize, columns: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// Six rows and four columns: 18 products a column; 4 · 4/2 of 6 each; 24 numbers.
+    /// Six rows and four columns: 18 products a column; 4 · 4/2 of 6 each; 24 numbers, rotated with two others.
     #[test]
     fn work_of_a_small_matrix() {
-        let found = [forward(6, 4), gram(6, 4), reading(6, 4), moving(6, 4)];
-        assert_eq!(found, [72, 48, 384, 1536]);
+        let found =
+            [forward(6, 4), gram(6, 4), reading(6, 4), moving(6, 4), rotations(6, 4, 2)];
+        assert_eq!(found, [72, 48, 384, 1536, 144]);
     }
 }

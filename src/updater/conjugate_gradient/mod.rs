@@ -14,7 +14,7 @@ mod tolerances;
 mod tuning;
 
 use super::{
-    Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor, check_count,
+    Iterations, Left, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
 use crate::krylov::check_cells;
@@ -284,8 +284,7 @@ impl LinearUpdater for ConjugateGradient {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        _node: usize,
-        _position: usize,
+        _left: &[Left],
     ) -> Result<(), Error> {
         self.solutions(problem, contact)?.keep(contact);
         Ok(())

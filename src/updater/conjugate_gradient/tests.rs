@@ -1,7 +1,7 @@
 use super::*;
 use crate::surface::{Amplitude, SelfAffine};
 use crate::updater::altered::Altered;
-use crate::updater::{Dense, check};
+use crate::updater::{Dense, Left, check};
 use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq, Spectral};
 
 /// 480 bytes for each of 240 nodes, and 1000 for each one in contact: as iterations on any grid, and as an updater on that of the
@@ -210,7 +210,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     updater.truncate(&problem, &contact)?;
     propose(&mut updater, &contact)?;
     let position = contact.remove(7)?;
-    updater.release(&problem, &contact, 7, position)?;
+    updater.release(&problem, &contact, &[Left { node: 7, position }])?;
     propose(&mut updater, &contact).map(drop)
 }
 

@@ -1,0 +1,492 @@
+//! Events in windows on a path with a hardness: nodes that touch, and elastic nodes that yield.
+//!
+//! A node goes from out of contact to elastic to yielded, and never back, on every body whose contact only grows. Nodes that have
+//! yielded carry their hardness and take no part in the linear system: `ContactSequence` holds the elastic nodes, and
+//! `LoadingRun::problem` is their problem, with the displacement under the yielded ones in its initial gap.
+//!
+//! Rates rise where a node yields, so that the time at which a node would touch or yield if no other did is no bound. So a window is
+//! played, solved at its end, and checked there before the factor learns of it. Gaps only close and pressures only grow: what is right
+//! at the end was right throughout. Where the end contradicts events, fewer are played.
+
+mod exchange;
+mod plastic;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::cost::{WITH_FACTOR, automatic_window, watched_for};
+use super::run::LoadingRun;
+use super::scalars::{PlasticScalars, Rates};
+use super::state::ContactEvent;
+use super::sum::Sum;
+use super::tuning::{OF_RESIDUAL, TOLERANCE};
+use crate::contact::ContactSequence;
+use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
+use crate::{Error, Problem};
+use exchange::{Exchange, NodeState, SUMS, Watched};
+pub(super) use plastic::Plastic;
+use plastic::Displaced;
+
+/// Finds events of both kinds in windows.
+#[derive(Debug, Default)]
+pub(super) struct Yielding {
+    /// How many nodes to watch, if the user says so.
+    size: Option<usize>,
+    window: Exchange,
+    schur: Schur,
+    /// Nodes out of contact that were watched, in the order of the updater.
+    watched_before: Vec<usize>,
+    /// Nodes by the time of their next event if no other came first.
+    ranking: Vec<(f64, usize)>,
+}
+
+/// A window at its end, before the updater learns of it.
+struct Trial {
+    contact: ContactSequence,
+    problem: Problem,
+    displaced: Displaced,
+    /// Nodes that yielded, in the order in which they did.
+    yielded: Vec<usize>,
+    /// The same with the number of their event in the window, from 1 on, and their places in the contact then.
+    departures: Vec<(usize, Left)>,
+}
+
+impl Yielding {
+    pub(super) fn new(size: Option<usize>) -> Self {
+        Self { size, ..Self::default() }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if no node is left to touch or to yield.
+    /// Returns what went wrong after them.
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+        most_nodes: usize,
+    ) -> Result<Option<Error>, Error> {
+        let Some(plastic) = run.plastic.clone() else {
+            return Ok(None);
+        };
+        let approach = run.scalars.approach();
+        run.renew_field(updater, approach)?;
+        let rates = self.survey(run, &plastic)?;
+        if self.ranking.is_empty() {
+            return Ok(None);
+        }
+        let touches = most_nodes - run.contact.len() - plastic.count();
+        let size = run.affordable(updater, self.next_size(run, touches))?;
+        let start = Instant::now();
+        let horizon = self.choose(run, size);
+        run.timings.choice += start.elapsed();
+        self.watch(run, &plastic, updater, rates)?;
+
+        let start = Instant::now();
+        let mut bad_pivot = self.window.play(horizon, touches, usize::MAX);
+        run.timings.events += start.elapsed();
+        if self.window.events().is_empty() {
+            let stopped = || self.growth_stopped(run);
+            return Err(bad_pivot.map_or_else(stopped, |bad| run.not_positive_definite(bad)));
+        }
+        let trial = loop {
+            let (trial, until) = self.try_end(run, &plastic, updater)?;
+            let events = self.window.events();
+            let Some(until) = until.filter(|_| events.len() > 1) else {
+                break trial;
+            };
+            let kept = events.iter().take_while(|event| event.time <= until).count();
+            let kept = kept.clamp(1, events.len() - 1);
+            run.timings.taken_back += events.len() - kept;
+            let start = Instant::now();
+            bad_pivot = self.window.play(horizon, touches, kept);
+            run.timings.events += start.elapsed();
+        };
+        let before = [run.contact.len(), plastic.count()];
+        let plastic = self.commit(run, &plastic, updater, trial)?;
+        let start = Instant::now();
+        let queued = self.enqueue(run, &plastic, before);
+        run.timings.events += start.elapsed();
+        Ok(queued.err().or_else(|| bad_pivot.map(|bad| run.not_positive_definite(bad))))
+    }
+
+    /// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
+    /// rates.
+    fn survey(&mut self, run: &mut LoadingRun, plastic: &Plastic) -> Result<Rates, Error> {
+        let start = Instant::now();
+        let approach = run.scalars.approach();
+        let hardness = plastic.hardness().values();
+        let gaps = plastic.surface().initial_gap();
+        let least_gap = -TOLERANCE * (run.problem.greatest_gap() + approach);
+        let least_rate = -TOLERANCE * run.greatest_rate();
+        self.ranking.clear();
+        let [mut load, mut energy, mut mean_gap, mut closing] = [Sum::default(); 4];
+        let [mut depth, mut work, mut depth_rate, mut work_rate] = [Sum::default(); 4];
+        let mut unit_stiffness = Sum::default();
+        let rates = &run.field.solution().rate;
+        for ((node, pressure), &rate) in run.field.pressures(&run.contact, approach).zip(rates) {
+            if rate.is_nan() || rate < least_rate {
+                return Err(run.not_monotone("pressure per unit of approach", node, rate));
+            }
+            load.add(pressure);
+            energy.add(pressure * (approach - gaps[node]));
+            unit_stiffness.add(rate);
+            let left = hardness[node] - pressure;
+            if rate > 0.0 && left < f64::INFINITY {
+                self.ranking.push(((left / rate).max(0.0), node));
+            }
+        }
+        for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
+            if line.gap.is_nan() {
+                return Err(run.not_finite());
+            }
+            let grows = line.closing >= -TOLERANCE;
+            if plastic.has_yielded(node) {
+                if !grows {
+                    let quantity = "rate of the plastic depth";
+                    return Err(run.not_monotone(quantity, node, line.closing));
+                }
+                let hardness = hardness[node];
+                load.add(hardness);
+                energy.add(hardness * (approach - gaps[node] + line.gap));
+                depth.add(-line.gap);
+                work.add(-(hardness * line.gap));
+                depth_rate.add(line.closing);
+                work_rate.add(hardness * line.closing);
+            } else {
+                if line.gap < least_gap {
+                    return Err(run.not_monotone("gap", node, line.gap));
+                }
+                mean_gap.add(line.gap);
+                closing.add(line.closing);
+                if line.closing > 0.0 {
+                    self.ranking.push((line.touches().max(0.0), node));
+                }
+            }
+        }
+        let rates = Rates {
+            unit_stiffness: unit_stiffness.total(),
+            closing: closing.total(),
+            plastic: [depth_rate.total(), work_rate.total()],
+        };
+        run.scalars.renew_gap(mean_gap, closing);
+        run.scalars.renew_plastic(
+            [load, energy],
+            PlasticScalars {
+                nodes: plastic.count(),
+                depth: depth.total(),
+                work: work.total(),
+                rates: rates.plastic,
+            },
+        );
+        run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
+        run.timings.choice += start.elapsed();
+        Ok(rates)
+    }
+
+    /// How many nodes to watch.
+    fn next_size(&self, run: &LoadingRun, touches: usize) -> usize {
+        let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
+        let size = self.size.unwrap_or_else(|| {
+            // Nodes that yield are not counted: without any a window has no more touches than are left.
+            automatic_window(count, nodes, WITH_FACTOR).min(watched_for(touches).saturating_mul(2))
+        });
+        size.min(self.ranking.len())
+    }
+
+    /// Keeps the nodes to watch in the ranking, those out of contact first, in the order in which they were watched before; returns
+    /// the time of the next of the others.
+    fn choose(&mut self, run: &LoadingRun, size: usize) -> f64 {
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut horizon = f64::INFINITY;
+        if size < self.ranking.len() {
+            horizon = self.ranking.select_nth_unstable_by(size, order).1.0;
+            self.ranking.truncate(size);
+        }
+        self.ranking.sort_unstable_by_key(|&(_, node)| (run.contact.contains(node), node));
+        let out = self.ranking.partition_point(|&(_, node)| !run.contact.contains(node));
+        let mut front = 0;
+        for node in self.watched_before.drain(..) {
+            let rest = &mut self.ranking[front..out];
+            if let Ok(found) = rest.binary_search_by_key(&node, |&(_, node)| node) {
+                rest[..=found].rotate_right(1);
+                front += 1;
+            }
+        }
+        horizon
+    }
+
+    /// Opens the window on the nodes that have been chosen.
+    fn watch<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        updater: &mut U,
+        rates: Rates,
+    ) -> Result<(), Error> {
+        let approach = run.scalars.approach();
+        let order = run.contact.order();
+        let places = places(order, run.problem.grid().nodes());
+        let chosen = self.ranking.iter().map(|&(_, node)| node);
+        let (inside, outside): (Vec<_>, Vec<_>) = chosen.partition(|&n| run.contact.contains(n));
+        let mut positions: Vec<usize> = inside.iter().map(|&node| places[node]).collect();
+        positions.sort_unstable();
+        updater.watch_both(&run.problem, &run.contact, &outside, &positions, &mut self.schur)?;
+        let inside = positions.iter().map(|&position| order[position]);
+        let watched: Vec<usize> = outside.iter().copied().chain(inside).collect();
+        run.check_complement(&watched, &self.schur)?;
+
+        // Sums over nodes out of contact and over yielded ones, by reciprocity: what right-hand sides of the same sums answer.
+        let (gaps, row_sums) = (run.problem.initial_gap(), run.problem.row_sums());
+        let surface = plastic.surface().initial_gap();
+        let sums = |node: usize| -> [f64; SUMS] {
+            [row_sums[node], -plastic.unit()[node], surface[node] - gaps[node]]
+        };
+        let mut solved: Vec<[f64; 2]> =
+            order.iter().map(|&node| [sums(node)[0], sums(node)[1]]).collect();
+        let mut last: Vec<[f64; 2]> = order.iter().map(|&node| [sums(node)[2], 0.0]).collect();
+        updater.solve_for(&run.problem, &run.contact, &mut solved)?;
+        updater.solve_for(&run.problem, &run.contact, &mut last)?;
+        let table = run.problem.table();
+        let elastic: Vec<usize> = order.iter().map(|&node| table.place(node)).collect();
+        let pressures: Vec<(usize, f64)> = run.field.pressures(&run.contact, approach).collect();
+        let hardness = plastic.hardness().values();
+        let watched: Vec<Watched> = watched
+            .into_iter()
+            .enumerate()
+            .map(|(k, node)| {
+                let hardness = hardness[node];
+                if let Some(q) = k.checked_sub(outside.len()) {
+                    let position = positions[q];
+                    let [first, second] = solved[position];
+                    let sums = [first, second, last[position][0]];
+                    let value = pressures[position].1;
+                    let rate = run.field.solution().rate[position];
+                    return Watched { node, is_elastic: true, hardness, value, rate, sums };
+                }
+                let line = run.field.line(&run.problem, node, approach);
+                let mut sums = sums(node);
+                let place = table.place(node);
+                for ((&other, [first, second]), [third, _]) in
+                    elastic.iter().zip(&solved).zip(&last)
+                {
+                    let coefficient = table.between(place, other);
+                    sums[0] -= coefficient * first;
+                    sums[1] -= coefficient * second;
+                    sums[2] -= coefficient * third;
+                }
+                let (value, rate) = (line.gap, -line.closing);
+                Watched { node, is_elastic: false, hardness, value, rate, sums }
+            })
+            .collect();
+        self.window.begin(approach, &watched, &self.schur, rates);
+        self.watched_before.clear();
+        self.watched_before.extend(outside);
+        run.timings.windows += 1;
+        Ok(())
+    }
+
+    /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns with it the
+    /// approach of the first contradiction in terms of the time of the window, as far as rates tell.
+    fn try_end<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        updater: &mut U,
+    ) -> Result<(Trial, Option<f64>), Error> {
+        let end = self.window.events().last().map_or(0.0, |event| event.time);
+        let approach = run.scalars.approach() + end;
+        let order = run.contact.order();
+        let nodes = run.problem.grid().nodes();
+        let table = run.problem.table();
+        // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
+        let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
+        let mut values = vec![[0.0; 2]; nodes];
+        let hardness = plastic.hardness().values();
+        for (node, state, value) in self.window.nodes() {
+            match (state, run.contact.contains(node)) {
+                (NodeState::Elastic, false) => pressed.push((node, value)),
+                (NodeState::Yielded, false) => pressed.push((node, [hardness[node], 0.0])),
+                (NodeState::Yielded, true) => values[node] = value,
+                _ => (),
+            }
+        }
+        let loads: Vec<(usize, [f64; 2])> =
+            pressed.iter().map(|&(node, value)| (table.place(node), value)).collect();
+        let gaps = run.problem.initial_gap();
+        let mut solved: Vec<[f64; 2]> = order
+            .iter()
+            .map(|&node| {
+                let [gap, rate] = values[node];
+                let mut rhs = [approach - gaps[node] + gap, 1.0 + rate];
+                let place = table.place(node);
+                for (other, [pressure, rate]) in &loads {
+                    let coefficient = table.between(place, *other);
+                    rhs[0] -= coefficient * pressure;
+                    rhs[1] -= coefficient * rate;
+                }
+                rhs
+            })
+            .collect();
+        updater.solve_for(&run.problem, &run.contact, &mut solved)?;
+        for (&node, solved) in order.iter().zip(&solved) {
+            values[node] = *solved;
+        }
+        for (node, value) in pressed {
+            values[node] = value;
+        }
+        let trial = self.trial(run, plastic)?;
+        let after = trial.contact.order();
+        let solution = Solution {
+            pressure: after.iter().map(|&node| values[node][0]).collect(),
+            rate: after.iter().map(|&node| values[node][1]).collect(),
+        };
+        run.field.place(&trial.contact, solution, approach)?;
+        run.timings.convolution = run.field.time();
+        let until = contradiction(run, plastic, &trial, approach);
+        Ok((trial, until.map(|until| end + until)))
+    }
+
+    /// Contact and problem behind the window.
+    fn trial(&self, run: &LoadingRun, plastic: &Plastic) -> Result<Trial, Error> {
+        let mut contact = run.contact.clone();
+        let (mut yielded, mut departures) = (Vec::new(), Vec::new());
+        let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
+        for (number, event) in (1..).zip(self.window.events()) {
+            let node = nodes[event.position];
+            if event.kind == ContactEvent::Touch {
+                contact.push(node)?;
+            } else {
+                let position = contact.remove(node)?;
+                yielded.push(node);
+                departures.push((number, Left { node, position }));
+            }
+        }
+        let displaced = plastic.displaced(&yielded)?;
+        let problem = plastic.elastic(&run.problem, &displaced);
+        Ok(Trial { contact, problem, displaced, yielded, departures })
+    }
+
+    /// Lets the updater follow to the end of the window.
+    fn commit<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        updater: &mut U,
+        trial: Trial,
+    ) -> Result<Arc<Plastic>, Error> {
+        let step = run.steps();
+        let Trial { contact, problem, displaced, yielded, departures } = trial;
+        let before = run.contact.order();
+        let old = |node: usize| run.contact.contains(node);
+        let followed = if yielded.is_empty() {
+            let joined = contact.order()[before.len()..].iter();
+            let place = |node: &usize| self.window.nodes().position(|(other, ..)| other == *node);
+            let positions: Vec<usize> = joined.filter_map(place).collect();
+            self.watched_before.retain(|&node| !contact.contains(node));
+            WindowFactor::of(self.schur.clone(), &positions)
+                .and_then(|factor| updater.join(&problem, &contact, &factor))
+        } else {
+            self.watched_before.clear();
+            let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
+            let left = before.iter().enumerate().filter(has_left);
+            let left: Vec<Left> =
+                left.map(|(position, &node)| Left { node, position }).collect();
+            let (kept, joined): (Vec<_>, Vec<_>) =
+                contact.order().iter().partition(|&&node| old(node));
+            ContactSequence::with_order(problem.grid(), kept).and_then(|mut kept| {
+                updater.release(&problem, &kept, &left)?;
+                join_all(updater, &problem, &mut kept, &joined, run.memory.left())
+            })
+        };
+        if let Err(error) = followed {
+            run.releases.forget(step);
+            return Err(run.memory.in_all(error));
+        }
+        let plastic = Arc::new(plastic.grown(&yielded, &displaced));
+        run.plastic = Some(Arc::clone(&plastic));
+        run.problem = problem;
+        run.contact = contact;
+        for (number, left) in departures {
+            run.releases.push_yielded(step + number, left);
+        }
+        Ok(plastic)
+    }
+
+    /// Turns the events of the window, which began with so many elastic and yielded nodes, into states.
+    fn enqueue(
+        &self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        [mut elastic, mut yielded]: [usize; 2],
+    ) -> Result<(), Error> {
+        let start = run.scalars.approach();
+        let mut step = elastic + 2 * yielded;
+        let hardness = plastic.hardness().values();
+        let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
+        let later = self.window.events().iter();
+        let later = later.filter(|event| event.kind == ContactEvent::Yield);
+        let mut sum = plastic.sum() - later.map(|event| hardness[nodes[event.position]]).sum::<f64>();
+        for event in self.window.events() {
+            let node = nodes[event.position];
+            run.scalars.advance(start + event.time);
+            run.scalars.clamp_mean_gap();
+            if event.kind == ContactEvent::Touch {
+                elastic += 1;
+            } else {
+                elastic -= 1;
+                yielded += 1;
+                sum += hardness[node];
+            }
+            run.scalars.change_rates(event.rates, [elastic, yielded], sum);
+            step += 1;
+            run.enqueue(step, event.kind, node, elastic + yielded)?;
+        }
+        Ok(())
+    }
+
+    /// The path cannot go on although nodes are left.
+    fn growth_stopped(&self, run: &LoadingRun) -> Error {
+        let node = self.ranking.iter().map(|&(_, node)| node).min();
+        run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+    }
+}
+
+/// The place of each node in an order; of nodes that are not there it means nothing.
+fn places(order: &[usize], nodes: usize) -> Vec<usize> {
+    let mut places = vec![0; nodes];
+    for (place, &node) in order.iter().enumerate() {
+        places[node] = place;
+    }
+    places
+}
+
+/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
+/// earlier the first was not yet, as far as the rates tell: not after 0.
+fn contradiction(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    trial: &Trial,
+    approach: f64,
+) -> Option<f64> {
+    let Trial { contact, problem, .. } = trial;
+    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
+    let least = f64::EPSILON * (problem.greatest_gap() + approach);
+    let length = OF_RESIDUAL * left.fold(least, f64::max);
+    let pressure = length / problem.table().self_influence();
+    let is_new = |node: usize| trial.yielded.contains(&node);
+    let lines = run.field.lines(problem, contact, approach);
+    let overlaps = lines
+        .filter(|&(node, line)| {
+            line.gap < -length && !plastic.has_yielded(node) && !is_new(node)
+        })
+        .map(|(_, line)| {
+            if line.closing > 0.0 { line.gap / line.closing } else { f64::NEG_INFINITY }
+        });
+    let hardness = plastic.hardness().values();
+    let rates = &run.field.solution().rate;
+    let pressures = run.field.pressures(contact, approach).zip(rates);
+    let beyond = pressures
+        .map(|((node, value), &rate)| (hardness[node] - value, rate))
+        .filter(|&(left, _)| left < -pressure)
+        .map(|(left, rate)| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY });
+    overlaps.chain(beyond).reduce(f64::min)
+}

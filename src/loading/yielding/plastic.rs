@@ -1,0 +1,147 @@
+//! The nodes that have yielded on a path.
+
+use std::sync::Arc;
+
+use crate::convolution::Convolution;
+use crate::hardness::Hardness;
+use crate::{Boundary, Error, Grid, Problem};
+
+/// A path's hardness, and the nodes that have yielded.
+///
+/// They carry their hardness, and are a load on the others: whose contact is elastic, with the initial gap g + C H of that load.
+#[derive(Debug)]
+pub(in crate::loading) struct Plastic {
+    hardness: Arc<Hardness>,
+    /// The problem of the surface, on which nothing has yielded.
+    surface: Arc<Problem>,
+    has_yielded: Vec<bool>,
+    count: usize,
+    /// Sum of the pressures of these nodes \[Pa\].
+    sum: f64,
+    /// Displacement under a pressure of 1 on them.
+    unit: Vec<f64>,
+}
+
+/// What nodes that yield displace.
+pub(super) struct Displaced {
+    /// Under their hardness.
+    load: Vec<f64>,
+    /// Under a pressure of 1.
+    unit: Vec<f64>,
+}
+
+impl Plastic {
+    /// None yet. Returns the problem of the elastic nodes as well.
+    pub(in crate::loading) fn new(hardness: Hardness, problem: Problem) -> (Self, Problem) {
+        let nodes = problem.grid().nodes();
+        let nothing = vec![0.0; nodes];
+        let elastic = problem.under_load(&nothing, &nothing);
+        let has_yielded = vec![false; nodes];
+        let none = Self {
+            hardness: Arc::new(hardness),
+            surface: Arc::new(problem),
+            has_yielded,
+            count: 0,
+            sum: 0.0,
+            unit: nothing,
+        };
+        (none, elastic)
+    }
+
+    /// Bytes on a grid.
+    pub(in crate::loading) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+        let fields = 8 * size_of::<f64>() + size_of::<bool>();
+        grid.nodes() * fields + Convolution::bytes_on(grid, boundary)
+    }
+
+    pub(in crate::loading) fn hardness(&self) -> &Hardness {
+        &self.hardness
+    }
+
+    /// The problem of the surface, on which nothing has yielded.
+    pub(in crate::loading) fn surface(&self) -> &Problem {
+        &self.surface
+    }
+
+    /// Number of nodes that have yielded.
+    pub(in crate::loading) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Sum of their pressures \[Pa\].
+    pub(super) fn sum(&self) -> f64 {
+        self.sum
+    }
+
+    pub(super) fn has_yielded(&self, node: usize) -> bool {
+        self.has_yielded[node]
+    }
+
+    /// Displacement of all nodes under a pressure of 1 on those that have yielded.
+    pub(super) fn unit(&self) -> &[f64] {
+        &self.unit
+    }
+
+    /// What nodes displace when they yield.
+    pub(super) fn displaced(&self, nodes: &[usize]) -> Result<Displaced, Error> {
+        let hardness = |node: usize| self.hardness.values()[node];
+        let displacement = |pressure: &dyn Fn(usize) -> f64| -> Result<Vec<f64>, Error> {
+            let mut field = vec![0.0; self.unit.len()];
+            for &node in nodes {
+                field[node] = pressure(node);
+            }
+            let mut displaced = vec![0.0; field.len()];
+            self.surface.convolution().apply(&field, &mut displaced)?;
+            Ok(displaced)
+        };
+        if nodes.is_empty() {
+            let nothing = vec![0.0; self.unit.len()];
+            return Ok(Displaced { load: nothing.clone(), unit: nothing });
+        }
+        let load = displacement(&hardness)?;
+        let unit = match self.hardness.uniform() {
+            Some(hardness) => load.iter().map(|u| u / hardness).collect(),
+            None => displacement(&|_| 1.0)?,
+        };
+        Ok(Displaced { load, unit })
+    }
+
+    /// The problem of the nodes that stay elastic, from the one before.
+    pub(super) fn elastic(&self, before: &Problem, displaced: &Displaced) -> Problem {
+        before.under_load(&displaced.load, &displaced.unit)
+    }
+
+    /// The same after more nodes have yielded.
+    pub(super) fn grown(&self, nodes: &[usize], displaced: &Displaced) -> Self {
+        let mut has_yielded = self.has_yielded.clone();
+        let mut sum = self.sum;
+        for &node in nodes {
+            has_yielded[node] = true;
+            sum += self.hardness.values()[node];
+        }
+        let unit = self.unit.iter().zip(&displaced.unit).map(|(unit, more)| unit + more);
+        Self {
+            hardness: Arc::clone(&self.hardness),
+            surface: Arc::clone(&self.surface),
+            has_yielded,
+            count: self.count + nodes.len(),
+            sum,
+            unit: unit.collect(),
+        }
+    }
+
+    /// The same when these nodes and no others have yielded, and the problem of the elastic ones.
+    pub(in crate::loading) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
+        let displaced = self.displaced(yielded)?;
+        let nodes = self.unit.len();
+        let none = Self {
+            hardness: Arc::clone(&self.hardness),
+            surface: Arc::clone(&self.surface),
+            has_yielded: vec![false; nodes],
+            count: 0,
+            sum: 0.0,
+            unit: vec![0.0; nodes],
+        };
+        Ok((none.grown(yielded, &displaced), self.elastic(&self.surface, &displaced)))
+    }
+}
