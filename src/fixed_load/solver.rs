@@ -9,8 +9,8 @@ use super::solution::FixedLoadSolution;
 use super::stepper::Stepper;
 use super::sweep::LoadSweep;
 use super::tangent::Tangent;
-use crate::hardness::Hardness;
 use crate::contact::ContactTarget;
+use crate::hardness::Hardness;
 use crate::{Error, Grid};
 
 /// Solves for contact under a given load or approach: see the [module](super).

@@ -9,8 +9,8 @@ use super::level::{Level, Prescribed};
 use super::settings::Settings;
 use super::solution::{FixedLoadSolution, SolverEffort};
 use super::tangent::Tangent;
-use crate::hardness::Hardness;
 use crate::contact::ContactState;
+use crate::hardness::Hardness;
 use crate::parallel::inside;
 use crate::{Error, Grid};
 

@@ -5,9 +5,9 @@ use nalgebra::DMatrix;
 use super::snapshot::Snapshot;
 use super::solver::LoadingSolver;
 use super::state::LoadingState;
-use crate::{Error, HeightMap};
 use crate::contact::{Certificate, Conditions, ErrorLength};
 use crate::updater::LinearUpdater;
+use crate::{Error, HeightMap};
 
 impl<U: LinearUpdater> LoadingSolver<U> {
     /// Node indices in contact at the present state, in the order in which they touched.
@@ -217,11 +217,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 
     /// The gap, which is none where the overlap is the plastic depth.
-    fn gap_over(
-        &self,
-        displacement: DMatrix<f64>,
-        (step, approach): (usize, f64),
-    ) -> DMatrix<f64> {
+    fn gap_over(&self, displacement: DMatrix<f64>, (step, approach): (usize, f64)) -> DMatrix<f64> {
         let mut gap = self.total_gap_over(displacement, approach);
         for node in self.run.releases.yielded_at(step) {
             gap.as_mut_slice()[node] = 0.0;

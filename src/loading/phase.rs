@@ -182,7 +182,8 @@ impl<U: LinearUpdater> Phase<U> {
             let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
             run.memory.check(own.saturating_add(rebuilt), contact.len())?;
             let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
-            let beside = run.plastic.as_ref().map(|plastic| plastic.beside(&yielded)).transpose()?;
+            let beside =
+                run.plastic.as_ref().map(|plastic| plastic.beside(&yielded)).transpose()?;
             let problem = beside.as_ref().map_or(problem, |(_, problem)| problem);
             let (mut updater, contact) = RecursiveCholesky::of(problem, &nodes)?;
             gap_field::solve(problem, &contact, &mut updater, at, solution)?;

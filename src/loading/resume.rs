@@ -14,13 +14,14 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub(crate) fn restore(&mut self, history: &History) -> Result<(), Error> {
         let run = &mut self.run;
         let releases = &mut run.releases;
-        let Replayed { elastic, .. } = replay(&run.problem.grid(), history, |step, event, left| {
-            if event == ContactEvent::Yield {
-                releases.push_yielded(step, left);
-            } else {
-                releases.push(step, left);
-            }
-        })?;
+        let Replayed { elastic, .. } =
+            replay(&run.problem.grid(), history, |step, event, left| {
+                if event == ContactEvent::Yield {
+                    releases.push_yielded(step, left);
+                } else {
+                    releases.push(step, left);
+                }
+            })?;
         run.yield_at(history.states().last().map_or(0, |state| state.step))?;
         // A limit is no event: it comes again if the path is still to end there.
         let events = history.events().iter();

@@ -162,6 +162,12 @@ impl PathScalars {
         }
     }
 
+    /// A load beyond what nodes with pressures of these sums carry is rounding.
+    pub(super) fn clamp_load(&mut self, [least, most]: [f64; 2]) {
+        let area = self.grid.cell_area();
+        self.load = self.load.max(area * least).min(area * most);
+    }
+
     /// Takes load, elastic energy and plastic sums at the present approach from a solution.
     pub(super) fn renew_plastic(&mut self, [load, energy]: [Sum; 2], plastic: PlasticScalars) {
         self.load = self.grid.cell_area() * load.total();

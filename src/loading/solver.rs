@@ -2,6 +2,8 @@
 
 use std::iter::FusedIterator;
 
+use nalgebra::DMatrix;
+
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
 use super::refined::Refined;
@@ -224,6 +226,14 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     #[must_use]
     pub fn rule(&self) -> ContactRule {
         self.rule
+    }
+
+    /// The hardness of each node \[Pa\], if the path has [one](super::LoadingBuilder::hardness).
+    #[must_use]
+    pub fn hardness_map(&self) -> Option<DMatrix<f64>> {
+        let (nx, ny) = self.grid().shape();
+        let plastic = self.run.plastic.as_ref()?;
+        Some(DMatrix::from_column_slice(nx, ny, plastic.hardness().values()))
     }
 
     /// The grid.

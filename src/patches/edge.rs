@@ -76,7 +76,9 @@ impl ContactEdge {
         let node = node_of(&self.grid, ix, iy)?;
         match (event, self.in_contact[node]) {
             (ContactEvent::Touch, true) => return Err(Error::AlreadyInContact { ix, iy }),
-            (ContactEvent::Release | ContactEvent::Yield, false) => return Err(Error::NotInContact { ix, iy }),
+            (ContactEvent::Release | ContactEvent::Yield, false) => {
+                return Err(Error::NotInContact { ix, iy });
+            }
             (ContactEvent::Limit, _) | (ContactEvent::Yield, true) => (),
             (ContactEvent::Touch | ContactEvent::Release, is_in) => self.change(node, !is_in),
         }

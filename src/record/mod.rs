@@ -43,7 +43,9 @@ use nalgebra::DMatrix;
 
 use crate::contact::ContactSequence;
 use crate::kernel::{InfluenceKernel, KernelTable};
-use crate::loading::{Replayed, ContactRule, History, LoadingEnd, LoadingState, replay};
+use crate::loading::{
+    ContactRule, History, LoadingBuilder, LoadingEnd, LoadingState, Replayed, replay,
+};
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
 use crate::{ContactTarget, Error, Grid, LoadingSolver};
@@ -73,6 +75,45 @@ pub struct Settings {
     pub rule: ContactRule,
     /// Where it was to end, whichever came first.
     pub targets: Vec<ContactTarget>,
+    /// The hardness, if it had one.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub hardness: Option<RecordedHardness>,
+}
+
+/// The hardness of a path.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum RecordedHardness {
+    /// The same for all nodes \[Pa\].
+    Uniform(f64),
+    /// That of each node \[Pa\], x fast; `None` where it is infinite.
+    Map(Vec<Option<f64>>),
+}
+
+impl RecordedHardness {
+    /// Of a map.
+    fn of(map: &DMatrix<f64>) -> Self {
+        match map.iter().next() {
+            Some(first) if map.iter().all(|value| value == first) => Self::Uniform(*first),
+            _ => Self::Map(map.iter().map(|value| value.is_finite().then_some(*value)).collect()),
+        }
+    }
+
+    /// Of each node of a grid.
+    fn map(&self, grid: &Grid) -> Result<DMatrix<f64>, Error> {
+        let (nx, ny) = grid.shape();
+        match self {
+            Self::Uniform(hardness) => Ok(DMatrix::from_element(nx, ny, *hardness)),
+            Self::Map(values) if values.len() == grid.nodes() => {
+                let values = values.iter().map(|value| value.unwrap_or(f64::INFINITY));
+                Ok(DMatrix::from_iterator(nx, ny, values))
+            }
+            Self::Map(values) => {
+                Err(Error::LengthMismatch { expected: grid.nodes(), found: values.len() })
+            }
+        }
+    }
 }
 
 impl LoadingRecord {
@@ -95,7 +136,8 @@ impl LoadingRecord {
         let (nx, ny) = grid.shape();
         let heights = HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?;
         let kernel = KernelRecord::of(problem.table());
-        let settings = Settings { rule: path.rule(), targets: path.targets() };
+        let hardness = path.hardness_map().map(|map| RecordedHardness::of(&map));
+        let settings = Settings { rule: path.rule(), targets: path.targets(), hardness };
         Self::from_parts(grid, heights, kernel, settings, history, path.end())
     }
 
@@ -198,11 +240,33 @@ impl LoadingRecord {
     /// Those of [`Self::make_kernel`] and of [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume).
     pub fn resume(&self) -> Result<LoadingSolver, Error> {
         let kernel = self.make_kernel()?;
-        let mut builder = LoadingSolver::builder(&self.heights, &kernel).rule(self.settings.rule);
+        let hardness = self.hardness_map()?;
+        let mut builder = self.builder(&kernel, hardness.as_ref());
         for &target in &self.settings.targets {
             builder = builder.until(target);
         }
         builder.resume(&self.history)
+    }
+
+    /// The hardness of each node, if the path had one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::LengthMismatch`] for one of another grid.
+    pub fn hardness_map(&self) -> Result<Option<DMatrix<f64>>, Error> {
+        self.settings.hardness.as_ref().map(|hardness| hardness.map(&self.grid)).transpose()
+    }
+
+    fn builder<'a>(
+        &'a self,
+        kernel: &'a dyn InfluenceKernel,
+        hardness: Option<&'a DMatrix<f64>>,
+    ) -> LoadingBuilder<'a> {
+        let builder = LoadingSolver::builder(&self.heights, kernel).rule(self.settings.rule);
+        match hardness {
+            Some(hardness) => builder.hardness_map(hardness),
+            None => builder,
+        }
     }
 
     /// The path as it was, for the fields of its states
@@ -224,10 +288,9 @@ impl LoadingRecord {
         &self,
         kernel: &dyn InfluenceKernel,
     ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
-        let mut solver = LoadingSolver::builder(&self.heights, kernel)
-            .updater(ConjugateGradient::new())
-            .rule(self.settings.rule)
-            .build()?;
+        let hardness = self.hardness_map()?;
+        let builder = self.builder(kernel, hardness.as_ref());
+        let mut solver = builder.updater(ConjugateGradient::new()).build_to_read()?;
         self.kernel.check(solver.problem().table())?;
         solver.restore(&self.history)?;
         Ok(solver)

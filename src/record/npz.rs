@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::{KernelRecord, LoadingRecord, Settings};
-use crate::contact::ContactState;
+use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::io::write_whole;
 use crate::loading::{ContactEvent, History, LoadingEnd, LoadingState};
@@ -18,7 +18,9 @@ use crate::{Error, FileError, Grid};
 /// Name of the format in errors, and in the file itself.
 const NAME: &str = "asperity record";
 /// Grows with every change that older readers would misunderstand.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// Version of records without a hardness, which older readers understand.
+const ELASTIC_VERSION: u32 = 1;
 
 /// The parameters of a record, as JSON in the member `parameters`.
 #[derive(Debug, Serialize, Deserialize)]
@@ -76,6 +78,29 @@ const COLUMNS: [Column; 9] = [
     Column { name: "approach_error", get: |s| s.approach_error, set: |s, x| s.approach_error = x },
 ];
 
+/// The same of what has yielded.
+struct PlasticColumn {
+    name: &'static str,
+    get: fn(&PlasticState) -> f64,
+    set: fn(&mut PlasticState, f64),
+}
+
+/// The columns of a path with a hardness.
+const PLASTIC_COLUMNS: [PlasticColumn; 4] = [
+    PlasticColumn { name: "plastic_volume", get: |s| s.volume, set: |s, x| s.volume = x },
+    PlasticColumn { name: "plastic_work", get: |s| s.work, set: |s, x| s.work = x },
+    PlasticColumn {
+        name: "plastic_volume_per_load",
+        get: |s| s.volume_per_load,
+        set: |s, x| s.volume_per_load = x,
+    },
+    PlasticColumn {
+        name: "plastic_work_per_load",
+        get: |s| s.work_per_load,
+        set: |s, x| s.work_per_load = x,
+    },
+];
+
 impl LoadingRecord {
     /// Writes the record as an `.npz` archive, which `numpy.load` opens: an array for each column of the states,
     /// `patches`, `largest_patch` and `perimeter` beside them, `heights`, `activation` (the load at which each node touched, NaN
@@ -121,6 +146,14 @@ impl LoadingRecord {
         for Column { name, get, .. } in COLUMNS {
             archive.numbers(name, states.len(), states.iter().map(get))?;
         }
+        if self.settings.hardness.is_some() {
+            let plastic = || states.iter().map(|state| state.contact.plastic.unwrap_or_default());
+            let nodes = plastic().map(|plastic| plastic.yielded_nodes as i64);
+            archive.integers("yielded_nodes", states.len(), nodes)?;
+            for PlasticColumn { name, get, .. } in PLASTIC_COLUMNS {
+                archive.numbers(name, states.len(), plastic().map(|plastic| get(&plastic)))?;
+            }
+        }
         self.write_patches(&mut archive)?;
         archive.matrix("heights", self.heights.matrix())?;
         if let Ok(load) = activation_map(&self.grid, self.states(), |state| state.contact.load) {
@@ -155,14 +188,14 @@ impl LoadingRecord {
     fn parameters(&self) -> Parameters {
         Parameters {
             format: NAME.to_string(),
-            version: VERSION,
+            version: if self.settings.hardness.is_some() { VERSION } else { ELASTIC_VERSION },
             program: concat!("asperity ", env!("CARGO_PKG_VERSION")).to_string(),
             shape: self.grid.shape(),
             cell: (self.grid.dx(), self.grid.dy()),
             kernel: self.kernel.clone(),
             settings: self.settings.clone(),
             end: self.end,
-            units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit"
+            units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit, 3 yield"
                 .to_string(),
         }
     }
@@ -218,6 +251,23 @@ impl LoadingRecord {
             let values = archive.vector(name, length)?;
             for (state, value) in states.iter_mut().zip(values) {
                 set(state, value);
+            }
+        }
+        if parameters.settings.hardness.is_some() {
+            let yielded = archive.vector("yielded_nodes", length)?;
+            for (state, yielded) in states.iter_mut().zip(yielded) {
+                let mut plastic = PlasticState::default();
+                plastic.yielded_nodes = whole(yielded);
+                plastic.yielded_area_fraction = plastic.yielded_nodes as f64 / grid.nodes() as f64;
+                state.contact.plastic = Some(plastic);
+            }
+            for PlasticColumn { name, set, .. } in PLASTIC_COLUMNS {
+                let values = archive.vector(name, length)?;
+                for (state, value) in states.iter_mut().zip(values) {
+                    if let Some(plastic) = &mut state.contact.plastic {
+                        set(plastic, value);
+                    }
+                }
             }
         }
         let history: History = states.into_iter().collect();

@@ -95,12 +95,7 @@ impl LinearUpdater for Dense {
         Ok(())
     }
 
-    fn release(
-        &mut self,
-        _: &Problem,
-        _: &ContactSequence,
-        _: &[Left],
-    ) -> Result<(), Error> {
+    fn release(&mut self, _: &Problem, _: &ContactSequence, _: &[Left]) -> Result<(), Error> {
         Ok(())
     }
 
@@ -115,10 +110,11 @@ impl LinearUpdater for Dense {
         let contact = contact.order();
         let outside = Self::influence(problem, contact, nodes)?;
         let size = nodes.len() + positions.len();
-        let coupling = DMatrix::from_fn(contact.len(), size, |i, j| match j.checked_sub(nodes.len()) {
-            None => outside[(i, j)],
-            Some(q) => f64::from(u8::from(positions[q] == i)),
-        });
+        let coupling =
+            DMatrix::from_fn(contact.len(), size, |i, j| match j.checked_sub(nodes.len()) {
+                None => outside[(i, j)],
+                Some(q) => f64::from(u8::from(positions[q] == i)),
+            });
         let solved = Self::factor(problem, contact)?.solve(&coupling);
         let mut matrix = coupling.transpose() * solved * -1.0;
         let mut own = matrix.view_mut((0, 0), (nodes.len(), nodes.len()));

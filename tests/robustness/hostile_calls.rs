@@ -199,7 +199,11 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                 let _ = updater.truncate(&problems[*p], &contact);
             }
             Call::Release(p, node, position) => {
-                let _ = updater.release(&problems[*p], &contact, &[Left { node: *node, position: *position }]);
+                let _ = updater.release(
+                    &problems[*p],
+                    &contact,
+                    &[Left { node: *node, position: *position }],
+                );
             }
             Call::Push(node) => {
                 edit(&mut contact, |order| order.push(*node));

@@ -2,7 +2,7 @@
 
 use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
-use crate::loading::tuning::EXACT_TIE;
+use crate::loading::tuning::{EXACT_TIE, TOLERANCE};
 use crate::loading::window::BadPivot;
 use crate::parallel::vectorized;
 use crate::updater::Schur;
@@ -109,8 +109,9 @@ impl Exchange {
         start.rates.extend(watched.iter().map(|watched| watched.rate));
         start.rates.extend([-rates.closing, rates.plastic[0], rates.plastic[1]]);
         start.states.clear();
-        let state =
-            |watched: &Watched| if watched.is_elastic { NodeState::Elastic } else { NodeState::Out };
+        let state = |watched: &Watched| {
+            if watched.is_elastic { NodeState::Elastic } else { NodeState::Out }
+        };
         start.states.extend(watched.iter().map(state));
         start.unit_stiffness = rates.unit_stiffness;
         start.time = 0.0;
@@ -144,6 +145,10 @@ impl Exchange {
                 return Some(BadPivot { node: self.nodes[position], time, pivot });
             }
             touched += usize::from(self.now.states[position] == NodeState::Elastic);
+            if self.recovers() {
+                // Not on a body whose contact grows: the end of the window shows it.
+                return None;
+            }
         }
         None
     }
@@ -170,17 +175,20 @@ impl Exchange {
         let first = first?;
         let length = EXACT_TIE * (self.approach + now + earliest);
         let ties = |&k: &usize| {
-            let tie = if states[k] == NodeState::Elastic {
-                EXACT_TIE * self.hardness[k]
-            } else {
-                length
-            };
+            let tie =
+                if states[k] == NodeState::Elastic { EXACT_TIE * self.hardness[k] } else { length };
             let course = course(k).filter(comes);
             course.is_some_and(|(left, rate)| left - earliest * rate <= tie)
         };
         let tied = (0..self.nodes.len()).filter(ties);
         let lowest = tied.chain([first]).min_by_key(|&k| self.nodes[k])?;
         Some((lowest, now + earliest))
+    }
+
+    /// Whether the plastic depth of a node falls.
+    fn recovers(&self) -> bool {
+        let nodes = self.now.states.iter().zip(&self.now.rates);
+        nodes.into_iter().any(|(state, rate)| *state == NodeState::Yielded && *rate > TOLERANCE)
     }
 
     /// Lets the node at a position touch or yield.

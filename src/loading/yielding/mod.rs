@@ -24,8 +24,8 @@ use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
 use crate::{Error, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
-pub(super) use plastic::Plastic;
 use plastic::Displaced;
+pub(super) use plastic::Plastic;
 
 /// Finds events of both kinds in windows.
 #[derive(Debug, Default)]
@@ -130,8 +130,9 @@ impl Yielding {
             energy.add(pressure * (approach - gaps[node]));
             unit_stiffness.add(rate);
             let left = hardness[node] - pressure;
-            if rate > 0.0 && left < f64::INFINITY {
-                self.ranking.push(((left / rate).max(0.0), node));
+            let time = (left / rate).max(0.0);
+            if rate > 0.0 && time < f64::INFINITY {
+                self.ranking.push((time, node));
             }
         }
         for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
@@ -388,8 +389,7 @@ impl Yielding {
             self.watched_before.clear();
             let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
             let left = before.iter().enumerate().filter(has_left);
-            let left: Vec<Left> =
-                left.map(|(position, &node)| Left { node, position }).collect();
+            let left: Vec<Left> = left.map(|(position, &node)| Left { node, position }).collect();
             let (kept, joined): (Vec<_>, Vec<_>) =
                 contact.order().iter().partition(|&&node| old(node));
             ContactSequence::with_order(problem.grid(), kept).and_then(|mut kept| {
@@ -424,13 +424,22 @@ impl Yielding {
         let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
         let later = self.window.events().iter();
         let later = later.filter(|event| event.kind == ContactEvent::Yield);
-        let mut sum = plastic.sum() - later.map(|event| hardness[nodes[event.position]]).sum::<f64>();
+        let mut sum =
+            plastic.sum() - later.map(|event| hardness[nodes[event.position]]).sum::<f64>();
+        // What the nodes in contact could carry: a load beyond it is rounding.
+        let touched = self.window.events().iter();
+        let touched = touched.filter(|event| event.kind == ContactEvent::Touch);
+        let new = touched.map(|event| hardness[nodes[event.position]]).sum::<f64>();
+        let all = run.contact.order().iter().map(|&node| hardness[node]).sum::<f64>();
+        let mut most = all + plastic.sum() - new;
         for event in self.window.events() {
             let node = nodes[event.position];
             run.scalars.advance(start + event.time);
+            run.scalars.clamp_load([sum, most]);
             run.scalars.clamp_mean_gap();
             if event.kind == ContactEvent::Touch {
                 elastic += 1;
+                most += hardness[node];
             } else {
                 elastic -= 1;
                 yielded += 1;
@@ -461,32 +470,30 @@ fn places(order: &[usize], nodes: usize) -> Vec<usize> {
 
 /// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
 /// earlier the first was not yet, as far as the rates tell: not after 0.
-fn contradiction(
-    run: &LoadingRun,
-    plastic: &Plastic,
-    trial: &Trial,
-    approach: f64,
-) -> Option<f64> {
+fn contradiction(run: &LoadingRun, plastic: &Plastic, trial: &Trial, approach: f64) -> Option<f64> {
     let Trial { contact, problem, .. } = trial;
     let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
     let least = f64::EPSILON * (problem.greatest_gap() + approach);
     let length = OF_RESIDUAL * left.fold(least, f64::max);
     let pressure = length / problem.table().self_influence();
-    let is_new = |node: usize| trial.yielded.contains(&node);
+    let has_yielded = |node: usize| plastic.has_yielded(node) || trial.yielded.contains(&node);
+    let before = |left: f64, rate: f64| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY };
     let lines = run.field.lines(problem, contact, approach);
-    let overlaps = lines
-        .filter(|&(node, line)| {
-            line.gap < -length && !plastic.has_yielded(node) && !is_new(node)
-        })
-        .map(|(_, line)| {
-            if line.closing > 0.0 { line.gap / line.closing } else { f64::NEG_INFINITY }
-        });
+    let outside = lines.filter_map(|(node, line)| {
+        if !has_yielded(node) {
+            return (line.gap < -length).then(|| before(line.gap, line.closing));
+        }
+        // Plastic depth neither is negative nor falls.
+        let recovers = line.gap > length || line.closing < -TOLERANCE;
+        recovers.then_some(f64::NEG_INFINITY)
+    });
     let hardness = plastic.hardness().values();
     let rates = &run.field.solution().rate;
     let pressures = run.field.pressures(contact, approach).zip(rates);
-    let beyond = pressures
-        .map(|((node, value), &rate)| (hardness[node] - value, rate))
-        .filter(|&(left, _)| left < -pressure)
-        .map(|(left, rate)| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY });
-    overlaps.chain(beyond).reduce(f64::min)
+    let inside = pressures.filter_map(|((node, value), &rate)| {
+        let left = hardness[node] - value;
+        let pulls = (value < -pressure).then_some(f64::NEG_INFINITY);
+        pulls.or_else(|| (left < -pressure).then(|| before(left, rate)))
+    });
+    outside.chain(inside).reduce(f64::min)
 }

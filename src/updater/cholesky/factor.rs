@@ -90,7 +90,9 @@ impl Factor {
             if outside > 0 {
                 table.fill_column(contact[row], &places[first..first + outside], coefficients);
             }
-            for (value, position) in units.iter_mut().zip(&positions[(first + outside).saturating_sub(out)..]) {
+            for (value, position) in
+                units.iter_mut().zip(&positions[(first + outside).saturating_sub(out)..])
+            {
                 *value = f64::from(u8::from(*position == row));
             }
         });

@@ -11,9 +11,7 @@ pub use factor::CholeskyTimings;
 
 use std::time::Instant;
 
-use super::{
-    JOINED, Left, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all,
-};
+use super::{JOINED, Left, LinearUpdater, Schur, Solution, WindowFactor, check_count, join_all};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 use columns::Columns;

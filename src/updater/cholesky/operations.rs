@@ -33,8 +33,7 @@ mod tests {
     /// Six rows and four columns: 18 products a column; 4 · 4/2 of 6 each; 24 numbers, rotated with two others.
     #[test]
     fn work_of_a_small_matrix() {
-        let found =
-            [forward(6, 4), gram(6, 4), reading(6, 4), moving(6, 4), rotations(6, 4, 2)];
+        let found = [forward(6, 4), gram(6, 4), reading(6, 4), moving(6, 4), rotations(6, 4, 2)];
         assert_eq!(found, [72, 48, 384, 1536, 144]);
     }
 }
