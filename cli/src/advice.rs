@@ -6,6 +6,9 @@ use asperity::{Warning, surface};
 pub(crate) fn told(warning: &Warning) -> String {
     match warning {
         Warning::Surface(surface::Warning::Tilted { .. }) => format!("{warning} (`--level plane`)"),
+        Warning::HighPressure { .. } => {
+            format!("{warning} (`--hardness`, or `--yield` for a typical one)")
+        }
         _ => warning.to_string(),
     }
 }

@@ -14,20 +14,29 @@ pub(crate) fn draw(
     state: &ContactState,
     pressure: &DMatrix<f64>,
     contact_map: &DMatrix<bool>,
+    yielded_map: Option<&DMatrix<bool>>,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
+    let yielded = yielded_map.map_or(0, |map| map.iter().filter(|has| **has).count());
+    let of_them = if yielded > 0 { format!(", {yielded} of them yielded") } else { String::new() };
     let caption = format!(
-        "{} nodes in contact, A/A₀ = {:.4} %, W = {}",
+        "{} nodes in contact{of_them}, A/A₀ = {:.4} %, W = {}",
         state.contact_nodes,
         100.0 * state.contact_area_fraction,
         quantity(state.load, "N", 4)
     );
     let greatest = pressure.iter().copied().fold(0.0, f64::max);
     let in_contact = |pressure: f64, is_in| if is_in { pressure } else { f64::NAN };
+    let mut values = pressure.zip_map(contact_map, in_contact);
+    for (value, has_yielded) in values.iter_mut().zip(yielded_map.into_iter().flatten()) {
+        if *has_yielded {
+            *value = f64::INFINITY;
+        }
+    }
     FieldMap {
         grid,
         length_unit: "m",
-        values: &pressure.zip_map(contact_map, in_contact),
+        values: &values,
         range: (0.0, greatest),
         scale: Scale::Linear,
         contours: &[],

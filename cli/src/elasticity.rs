@@ -71,6 +71,15 @@ impl Elasticity {
         }
     }
 
+    /// A typical hardness \[Pa\] of the softer body that is named, of steel if nothing was said; `None` where none is known.
+    pub(crate) fn typical_hardness(&self) -> Option<f64> {
+        let named = match (self.e_star, self.material) {
+            (None, None) => [Some(Material::STEEL), None],
+            _ => [self.material, self.against],
+        };
+        named.into_iter().flatten().filter_map(|body| body.hardness).reduce(f64::min)
+    }
+
     /// The bodies, without which no measured surface can be pressed.
     pub(crate) fn required(&self) -> Result<Bodies, Failure> {
         self.given()?.ok_or_else(|| {
@@ -107,13 +116,15 @@ struct Material {
     e: f64,
     /// Poisson's ratio.
     nu: f64,
+    /// Typical hardness \[Pa\], as a mean pressure under an indenter.
+    hardness: Option<f64>,
 }
 
 impl Material {
     const STEEL: Self = Self::named(MATERIALS[0]);
 
-    const fn named((name, e, nu): (&'static str, f64, f64)) -> Self {
-        Self { name: Some(name), e, nu }
+    const fn named((name, e, nu, hardness): (&'static str, f64, f64, Option<f64>)) -> Self {
+        Self { name: Some(name), e, nu, hardness }
     }
 }
 
@@ -128,27 +139,27 @@ impl fmt::Display for Material {
     }
 }
 
-/// Typical values at room temperature. Those of an alloy or a polymer vary: for results that matter they are given
+/// Typical values at room temperature: Young's modulus, Poisson's ratio, hardness. Those of an alloy or a polymer vary: for results that matter they are given
 /// as numbers.
-const MATERIALS: [(&str, f64, f64); 18] = [
-    ("steel", 210e9, 0.3),
-    ("stainless-steel", 195e9, 0.29),
-    ("cast-iron", 110e9, 0.26),
-    ("aluminium", 70e9, 0.33),
-    ("copper", 125e9, 0.34),
-    ("brass", 105e9, 0.34),
-    ("bronze", 110e9, 0.34),
-    ("titanium", 115e9, 0.33),
-    ("tungsten-carbide", 620e9, 0.22),
-    ("gold", 78e9, 0.42),
-    ("silver", 83e9, 0.37),
-    ("alumina", 370e9, 0.22),
-    ("glass", 70e9, 0.22),
-    ("fused-silica", 72e9, 0.17),
-    ("pmma", 3e9, 0.37),
-    ("polycarbonate", 2.4e9, 0.37),
-    ("ptfe", 0.5e9, 0.46),
-    ("rubber", 2e6, 0.5),
+const MATERIALS: [(&str, f64, f64, Option<f64>); 18] = [
+    ("steel", 210e9, 0.3, Some(2.5e9)),
+    ("stainless-steel", 195e9, 0.29, Some(2.0e9)),
+    ("cast-iron", 110e9, 0.26, Some(2.0e9)),
+    ("aluminium", 70e9, 0.33, Some(1.0e9)),
+    ("copper", 125e9, 0.34, Some(0.9e9)),
+    ("brass", 105e9, 0.34, Some(1.3e9)),
+    ("bronze", 110e9, 0.34, Some(1.2e9)),
+    ("titanium", 115e9, 0.33, Some(3.4e9)),
+    ("tungsten-carbide", 620e9, 0.22, Some(16e9)),
+    ("gold", 78e9, 0.42, Some(0.5e9)),
+    ("silver", 83e9, 0.37, Some(0.6e9)),
+    ("alumina", 370e9, 0.22, Some(16e9)),
+    ("glass", 70e9, 0.22, Some(5.5e9)),
+    ("fused-silica", 72e9, 0.17, Some(9e9)),
+    ("pmma", 3e9, 0.37, Some(0.25e9)),
+    ("polycarbonate", 2.4e9, 0.37, Some(0.15e9)),
+    ("ptfe", 0.5e9, 0.46, Some(0.03e9)),
+    ("rubber", 2e6, 0.5, None),
 ];
 
 impl FromStr for Material {
@@ -160,7 +171,7 @@ impl FromStr for Material {
         }
         let number = |text: &str| text.trim().parse::<f64>().ok();
         match text.split_once(',').map(|(e, nu)| (number(e), number(nu))) {
-            Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu }),
+            Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu, hardness: None }),
             _ => {
                 let names: Vec<&str> = MATERIALS.iter().map(|(name, ..)| *name).collect();
                 Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))

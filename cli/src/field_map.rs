@@ -23,6 +23,8 @@ const FONT: i32 = 20;
 const MARGIN: Margin = Margin { left: 130, right: 200, top: 80, bottom: 100 };
 /// Values below the range.
 const BELOW: RGBColor = RGBColor(230, 0, 0);
+/// Nodes that have yielded.
+const YIELDED: RGBColor = RGBColor(240, 120, 0);
 
 struct Margin {
     left: i32,
@@ -48,7 +50,7 @@ pub struct FieldMap<'a> {
     pub grid: &'a Grid,
     /// Unit of the sides of the grid.
     pub length_unit: &'a str,
-    /// The values, NaN where nothing is to be drawn.
+    /// The values, NaN where nothing is to be drawn, and infinite where nodes have yielded.
     pub values: &'a DMatrix<f64>,
     /// The least and the greatest value.
     pub range: (f64, f64),
@@ -184,14 +186,18 @@ impl FieldMap<'_> {
             let ends = [(0.0, level), (1.0, level)].into_iter();
             bar.curve(area, (&across, colours), ends, self.ink_on(colours.place(level)))?;
         }
-        if self.values.iter().any(|value| self.is_below(*value)) {
+        let marks: [(&str, RGBColor, bool); 2] = [
+            ("below 0", BELOW, self.values.iter().any(|value| self.is_below(*value))),
+            ("yielded", YIELDED, self.values.iter().any(|value| *value == f64::INFINITY)),
+        ];
+        for (text, colour, _) in marks.into_iter().filter(|(.., is_there)| *is_there) {
             let at = (bar.left + bar.width, bar.top - FONT);
             let pos = anchor(HPos::Right, VPos::Center);
             area.draw(&Rectangle::new(
                 [(at.0 + 8, at.1 - 8), (at.0 + 24, at.1 + 8)],
-                BELOW.filled(),
+                colour.filled(),
             ))?;
-            bar.write(area, "below 0", at, FONT, pos)?;
+            bar.write(area, text, at, FONT, pos)?;
         }
         Ok(())
     }
@@ -205,6 +211,9 @@ impl FieldMap<'_> {
         let (least, greatest) = self.range;
         if self.is_below(value) {
             return BELOW;
+        }
+        if value == f64::INFINITY {
+            return YIELDED;
         }
         match colours.place(value) {
             Some(share) if greatest > least => self.shade(share),

@@ -16,6 +16,7 @@ use clap::Args;
 use crate::advice;
 use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
+use crate::hardness::Hardness;
 use crate::reading::Reading;
 use crate::resolution::Resolution;
 use crate::room;
@@ -24,8 +25,8 @@ use crate::values::{bytes, positive};
 /// The contact of a measured surface under given loads or mean pressures, each solved by itself
 ///
 /// Prints one line for each load on stdout, for programs, and a description on stderr. Writes load.csv and
-/// contact_map_K.png, where K counts the loads from 0. The model is that of `asperity path`: elastic, without friction and
-/// adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
+/// contact_map_K.png, where K counts the loads from 0. The model is that of `asperity path`: elastic up to the hardness if there is
+/// one, without friction and adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
@@ -38,6 +39,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     elasticity: Elasticity,
+
+    #[command(flatten)]
+    hardness: Hardness,
 
     #[command(flatten)]
     loads: Loads,
@@ -91,7 +95,11 @@ impl Loads {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
+    let hardness = options.hardness.of(&options.elasticity)?;
     eprintln!("bodies     {bodies}");
+    if let Some(hardness) = hardness {
+        eprintln!("hardness   {hardness}");
+    }
     let warnings = Warning::of_surface(&surface).into_iter();
     for warning in warnings.chain(Warning::of_modulus(bodies.e_star)) {
         eprintln!("warning: {}", advice::told(&warning));
@@ -107,6 +115,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut builder = FixedLoadSolver::builder(&surface, &half_space)
         .tolerance(options.tolerance)
         .stiffness(false);
+    if let Some(hardness) = hardness {
+        builder = builder.hardness(hardness.pascals);
+    }
     if let Some(budget) = options.memory_budget {
         builder = builder.memory_budget(budget);
     }
@@ -144,7 +155,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Ok(solution) => {
                 let picture = options.out.join(format!("contact_map_{k}.png"));
                 let FixedLoadSolution { state, pressure, contact_map, .. } = &solution;
-                outcome.written(draw_map(&grid, state, pressure, contact_map, &picture));
+                outcome.written(draw_map(
+                    &grid,
+                    state,
+                    pressure,
+                    contact_map,
+                    solution.plastic.as_ref().map(|plastic| &plastic.yielded_map),
+                    &picture,
+                ));
                 if let Some(directory) = &options.save {
                     outcome.all_written(save(directory, &solution, k));
                 }
@@ -180,7 +198,7 @@ fn solve(
 }
 
 /// The columns of load.csv, in SI units.
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 13] = [
     "load",
     "contact_nodes",
     "max_pressure",
@@ -192,10 +210,12 @@ const COLUMNS: [&str; 11] = [
     "contact_area",
     "contact_area_fraction",
     "corrected_contact_area",
+    "yielded_area_fraction",
+    "plastic_volume",
 ];
 
 /// The numbers of those columns; nothing where there is none.
-fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> [String; 11] {
+fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> [String; 13] {
     let state = solution.state;
     let exact = |value: f64| format!("{value:e}");
     let optional = |value: Option<f64>| value.map_or_else(String::new, exact);
@@ -211,11 +231,13 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
         exact(state.contact_area),
         exact(state.contact_area_fraction),
         exact(resolution.corrected_area),
+        exact(solution.plastic.as_ref().map_or(0.0, |p| p.area / grid.nominal_area())),
+        exact(solution.plastic.as_ref().map_or(0.0, |plastic| plastic.volume)),
     ]
 }
 
 /// The line for programs.
-fn print_line(numbers: &[String; 11], solution: &FixedLoadSolution, seconds: f64) {
+fn print_line(numbers: &[String; 13], solution: &FixedLoadSolution, seconds: f64) {
     let named = COLUMNS.iter().zip(numbers);
     let named: Vec<String> = named.map(|(name, number)| format!("{name}={number}")).collect();
     say!("{} iterations={} seconds={seconds:.6}", named.join(" "), solution.effort.iterations,);
@@ -264,9 +286,20 @@ fn print_words(
         "  {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more for the stiffness",
         solution.effort.convolutions, solution.effort.coarse_convolutions,
     );
-    let high = Warning::of_pressure(greatest, e_star);
-    for warning in resolution.warning().into_iter().chain(high) {
+    if let Some(plastic) = &solution.plastic {
+        eprintln!(
+            "  {} nodes have yielded, plastic volume {}, energy lost {}",
+            plastic.yielded_nodes(),
+            quantity(plastic.volume, "m³", 4),
+            quantity(plastic.work, "J", 4)
+        );
+    }
+    let high = Warning::of_pressure(greatest, e_star).filter(|_| solution.plastic.is_none());
+    if let Some(warning) = resolution.warning() {
         eprintln!("warning: {warning}");
+    }
+    if let Some(warning) = high {
+        eprintln!("warning: {}", advice::told(&warning));
     }
     if state.contact_area_fraction == 1.0 {
         eprintln!("note: the contact is full; beyond full contact only the pressure changes");

@@ -6,6 +6,7 @@ mod contact_map;
 mod elasticity;
 mod ensemble;
 mod gather;
+mod hardness;
 mod info;
 mod load;
 mod patches;
@@ -24,8 +25,8 @@ use clap::{Parser, Subcommand};
 
 /// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single loads.
 ///
-/// The model: a rigid rough surface is pressed into an elastic half-space, without friction, adhesion or yielding, and with
-/// slopes well below 1. Two elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one
+/// The model: a rigid rough surface is pressed into an elastic half-space, without friction and adhesion, and with
+/// slopes well below 1. Nothing yields, unless a hardness is given. Two elastic bodies are equivalent to one with the composite modulus E*. The discrete problem has one
 /// pressure for each cell of the grid. The program solves it to rounding, or prints the remaining error. Every command warns if
 /// the grid is too coarse for the surface.
 ///

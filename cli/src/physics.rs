@@ -14,7 +14,7 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     ),
     (
         &["plastic", "hardness", "yield"],
-        "nothing yields, however high the pressure; compare the greatest pressure with the hardness",
+        "nothing yields here; `asperity path` and `asperity load` take --hardness",
     ),
     (
         &["adhesi", "surface-energy", "cohesi", "jkr", "dmt"],
@@ -29,7 +29,8 @@ const LEFT_OUT: [(&[&str], &str); 8] = [
     (&["lubric", "viscosity", "fluid", "leak"], "there is nothing between the surfaces"),
     (
         &["unload"],
-        "unloading needs no option: elastic contact without friction goes back through the same states",
+        "unloading needs no option where nothing yields: elastic contact without friction goes back through the same states; \
+         `asperity path --hardness` takes --unload",
     ),
 ];
 

@@ -26,6 +26,24 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A hardness \[Pa\], as a pressure or as a Brinell or Vickers number.
+pub(crate) fn hardness(text: &str) -> Result<f64, String> {
+    let scaled = |number: &str, pascals: f64| positive(number.trim()).map(|value| value * pascals);
+    if let Some(number) = text.strip_suffix("HB") {
+        scaled(number, BRINELL)
+    } else if let Some(number) = text.strip_suffix("HV") {
+        scaled(number, VICKERS)
+    } else {
+        positive(text)
+    }
+}
+
+/// Mean pressure \[Pa\] under a ball per Brinell number: kilograms-force per square millimetre of the surface of the indentation, of
+/// which 0.964 lies in the plane at its usual width of 0.375 diameters.
+const BRINELL: f64 = 9.80665e6 / 0.9635;
+/// The same under a Vickers pyramid, whose faces stand 68° from its axis.
+const VICKERS: f64 = 9.80665e6 / 0.92718;
+
 fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())
 }
@@ -33,4 +51,27 @@ fn number(text: &str) -> Result<f64, String> {
 /// A unit of length.
 pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::SurfaceError> {
     text.parse()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball that has sunk in 0.375 of its diameter wide: the cap has the area `2 (1 − √(1 − x²)) / x²` times its circle.
+    #[test]
+    fn hardness_is_a_pressure() {
+        let x: f64 = 0.375;
+        let cap = 2.0 * (1.0 - (1.0 - x * x).sqrt()) / (x * x);
+        for (text, pascals) in [
+            ("2.5e9", 2.5e9),
+            ("250HB", 250.0 * 9.80665e6 * cap),
+            ("250 HV", 250.0 * 9.80665e6 / 68_f64.to_radians().sin()),
+        ] {
+            let found = hardness(text).unwrap_or_default();
+            assert!((found / pascals - 1.0).abs() < 1e-3, "{text}: {found:e} {pascals:e}");
+        }
+        for text in ["", "HB", "0", "-1HV", "60HRC", "NaN", "infHB"] {
+            assert!(hardness(text).is_err(), "{text}");
+        }
+    }
 }

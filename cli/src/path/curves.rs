@@ -94,10 +94,21 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         None => ("approach δ", "stiffness", &both[..]),
         Some(_) => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
     };
+    let contact_and_yielded: [Curve; 2] =
+        [(|s| s.contact.contact_area, BLUE, "contact"), (yielded_area, ORANGE, "yielded")];
+    let contact: [Curve; 1] = [(|s| s.contact.contact_area, BLUE, "")];
+    let areas = match job.has_hardness() {
+        true => &contact_and_yielded[..],
+        false => &contact[..],
+    };
     let all: [(Axis, &[Curve]); 4] = [
         (
-            logarithmic("contact area A", "m²", &[|s| s.contact.contact_area]),
-            &[(|s| s.contact.contact_area, BLUE, "")],
+            logarithmic(
+                "contact area A",
+                "m²",
+                &areas.iter().map(|(value, ..)| *value).collect::<Vec<_>>(),
+            ),
+            areas,
         ),
         (linear(approach, "m", |s| s.contact.approach), &[(|s| s.contact.approach, BLUE, "")]),
         (linear("mean gap", "m", |s| s.contact.mean_gap), &[(|s| s.contact.mean_gap, BLUE, "")]),
@@ -149,6 +160,13 @@ fn legend<DB: DrawingBackend>(area: &Area<DB>, panel: &Panel, curves: &[Curve]) 
         panel.write(area, name, (x + 44 * FINE, y), panel.font, pos)?;
     }
     Ok(())
+}
+
+/// NaN, which is not drawn, where nothing has yielded.
+fn yielded_area(state: &LoadingState) -> f64 {
+    let yielded = state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+    let area = state.contact.contact_area * yielded as f64 / state.contact.contact_nodes as f64;
+    if yielded > 0 { area } else { f64::NAN }
 }
 
 /// NaN, which is not drawn, where there is none.

@@ -21,13 +21,20 @@ pub(super) enum Format {
     Vti,
 }
 
-/// Pressure and gap.
-pub(super) type Fields = [(&'static str, DMatrix<f64>); 2];
+/// Pressure and gap, and with a hardness the plastic depth.
+pub(super) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 
 /// Those of the present state.
 pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     let failed = |error| Failure::new("cannot compute the fields of the last state", error);
-    Ok([("pressure", solver.pressure().map_err(failed)?), ("gap", solver.gap().map_err(failed)?)])
+    let mut fields = vec![
+        ("pressure", solver.pressure().map_err(failed)?),
+        ("gap", solver.gap().map_err(failed)?),
+    ];
+    if solver.hardness_map().is_some() {
+        fields.push(("plastic_depth", solver.plastic_depth().map_err(failed)?));
+    }
+    Ok(fields)
 }
 
 /// Writes fields into a directory; returns the names of the files.
@@ -42,8 +49,8 @@ pub(super) fn write(
     };
     if let Format::Vti = format {
         let name = directory.join("fields.vti");
-        let both = fields.each_ref().map(|(name, field)| (*name, field));
-        let written = write_vti(&name, grid, &both);
+        let all: Vec<_> = fields.iter().map(|(name, field)| (*name, field)).collect();
+        let written = write_vti(&name, grid, &all);
         return named(name, written).map(|name| vec![name]);
     }
     let one = |(field, values): &(&str, DMatrix<f64>)| {

@@ -7,8 +7,8 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use asperity::LoadingState;
 use asperity::patches::ContactEdge;
+use asperity::{ContactEvent, LoadingState};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::interrupt::Interrupt;
@@ -105,6 +105,16 @@ impl Followed {
     }
 }
 
+/// The name of an event in the file.
+fn in_words(event: ContactEvent) -> &'static str {
+    match event {
+        ContactEvent::Touch => "touch",
+        ContactEvent::Yield => "yield",
+        ContactEvent::Release => "release",
+        _ => "limit",
+    }
+}
+
 /// The file `path.csv`: one line for each state. While it is written its name is `path.csv.part`, and what it holds
 /// are whole lines.
 pub(super) struct PathFile {
@@ -135,8 +145,8 @@ impl PathFile {
             name,
             part,
             output,
-            lines: "step,ix,iy,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error\n"
+            lines: "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,\
+                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error,yielded_area_fraction\n"
                 .to_string(),
             waiting: 0,
         })
@@ -155,8 +165,9 @@ impl PathFile {
         // Writing to a text cannot fail.
         let _ = writeln!(
             self.lines,
-            "{},{ix},{iy},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e}",
+            "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e},{:e}",
             state.step,
+            in_words(state.event),
             state.contact.approach,
             state.contact.load,
             state.contact.contact_area,
@@ -166,6 +177,7 @@ impl PathFile {
             printed(state.contact.interfacial_stiffness),
             self.edge.corrected_area(),
             state.approach_error,
+            state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction),
         );
         self.waiting += 1;
         if self.waiting == STRIDE {

@@ -12,6 +12,7 @@ use asperity::{
     Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
     Warning,
 };
+use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use super::Solver;
@@ -36,6 +37,9 @@ pub(super) struct Job {
     rms_gradient: f64,
     bodies: Bodies,
     periodic: Option<Periodic>,
+    /// Of each node \[Pa\], if nodes yield.
+    hardness: Option<DMatrix<f64>>,
+    hardness_in_words: String,
     rule: ContactRule,
     updater: Updater,
     memory_budget: Option<usize>,
@@ -66,8 +70,12 @@ impl Job {
             None => generate(options)?,
         };
         let grid = *surface.grid();
+        let hardness = hardness(options, &grid)?;
         Ok(Self {
             name,
+            hardness_in_words: options
+                .greatest_pressure()?
+                .map_or_else(String::new, |hardness| hardness.to_string()),
             rms_gradient: rms_gradient(&surface)?,
             periodic: options.periodic,
             rule: options.rule.into(),
@@ -77,6 +85,7 @@ impl Job {
             begun: None,
             record: options.record.clone(),
             settings: settings(options, (&bodies, &grid), source)?,
+            hardness,
             bodies,
             surface,
         })
@@ -128,9 +137,12 @@ impl Job {
             "heights_md5": fingerprint(&surface),
         });
         let bodies = Bodies::of_modulus(e_star, "composite modulus of the record");
+        let hardness = record.hardness_map().map_err(failed)?;
+        let greatest = hardness.as_ref().map(DMatrix::max);
         let parts = Parts {
             bodies: &bodies,
             periodic,
+            hardness: hardness.as_ref(),
             rule: record.settings().rule,
             updater: options.updater,
             targets: &targets,
@@ -140,11 +152,14 @@ impl Job {
             rms_gradient: rms_gradient(&surface)?,
             settings: parts.settings(&grid, source)?,
             periodic,
+            hardness_in_words: greatest
+                .map_or_else(String::new, |h| format!("{}, of the record", quantity(h, "Pa", 4))),
             rule: parts.rule,
             updater: options.updater,
             memory_budget: options.memory_budget,
             targets,
             bodies,
+            hardness,
             surface,
             begun: Some(history),
             record: kept,
@@ -174,6 +189,9 @@ impl Job {
             .rule(self.rule);
         for &target in &self.targets {
             builder = builder.until(target);
+        }
+        if let Some(hardness) = &self.hardness {
+            builder = builder.hardness_map(hardness);
         }
         if let Some(budget) = self.memory_budget {
             builder = builder.memory_budget(budget);
@@ -282,7 +300,12 @@ impl Job {
         self.periodic
     }
 
-    fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
+    /// Whether nodes yield.
+    pub(super) fn has_hardness(&self) -> bool {
+        self.hardness.is_some()
+    }
+
+    pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
         half_space(self.periodic, self.grid(), self.e_star())
             .map_err(|error| Failure::new("cannot make the half-space", error))
     }
@@ -308,6 +331,9 @@ impl fmt::Display for Job {
             self.rms_gradient.abs()
         )?;
         writeln!(f, "bodies     {}", self.bodies)?;
+        if self.hardness.is_some() {
+            writeln!(f, "hardness   {}", self.hardness_in_words)?;
+        }
         match self.periodic {
             None => writeln!(f, "half-space free")?,
             Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
@@ -346,14 +372,23 @@ fn settings(
     (bodies, grid): (&Bodies, &Grid),
     source: Value,
 ) -> Result<Settings, Failure> {
+    let hardness = hardness(options, grid)?;
     Parts {
         bodies,
         periodic: options.periodic,
+        hardness: hardness.as_ref(),
         rule: options.rule.into(),
         updater: options.updater,
         targets: &targets(options, grid),
     }
     .settings(grid, source)
+}
+
+/// The hardness of each node, if there is one.
+fn hardness(options: &Options, grid: &Grid) -> Result<Option<DMatrix<f64>>, Failure> {
+    let (nx, ny) = grid.shape();
+    let greatest = options.greatest_pressure()?;
+    Ok(greatest.map(|hardness| DMatrix::from_element(nx, ny, hardness.pascals)))
 }
 
 fn targets(options: &Options, grid: &Grid) -> Vec<ContactTarget> {

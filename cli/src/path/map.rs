@@ -20,6 +20,7 @@ pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<P
         &state.contact,
         &pressure,
         &solver.contact_map(),
+        job.has_hardness().then(|| solver.yielded_map()).as_ref(),
         &directory.join("contact_map.png"),
     )
 }

@@ -16,6 +16,7 @@ mod parts;
 mod progress;
 mod source;
 mod table;
+mod unloading;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -90,6 +91,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 /// Does one job and writes its files.
 fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let job = Job::new(options)?;
+    if options.unload && !job.has_hardness() {
+        return Err(Failure::request(
+            "--unload needs --hardness or --yield: elastic contact goes back through the same states",
+        ));
+    }
     eprint!("{job}");
     for warning in job.warnings() {
         eprintln!("warning: {}", crate::advice::told(&warning));
@@ -144,6 +150,9 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
         outcome.written(kept);
     }
     outcome.note(table::print(&job, &mut solver, &states, seconds));
+    if options.unload {
+        outcome.all_written(unloading::write(&job, &mut solver, &options.out));
+    }
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
     Ok(outcome)

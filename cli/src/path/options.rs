@@ -12,6 +12,7 @@ use clap::{ArgGroup, Args, Parser, ValueEnum};
 use super::fields::Format;
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
+use crate::hardness::{GreatestPressure, Hardness};
 use crate::reading::Reading;
 use crate::room;
 use crate::values::{bytes, fraction, positive};
@@ -22,7 +23,7 @@ use crate::values::{bytes, fraction, positive};
 /// line for each state), loading_curve.svg and contact_map.png.
 ///
 /// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If both bodies
-/// are elastic, E* contains both. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
+/// are elastic, E* contains both. With --hardness cells yield at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
 /// approach_error estimates the remaining error. No solver can restore what the grid does not resolve: corrected_contact_area
 /// removes the excess of whole cells from the area, and the program warns if contact patches or wavelengths are only a few cells
 /// wide.
@@ -43,6 +44,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     elasticity: Elasticity,
+
+    #[command(flatten)]
+    pub(super) hardness: Hardness,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
     /// pressure outside the surface]; the approach is then that of the mean planes, and of the two stiffnesses there is only
@@ -81,13 +85,18 @@ pub(crate) struct Options {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(super) fields: Option<Format>,
 
+    /// Unload from the last state of a path with a hardness: write unloading.csv, and the surface that is left as
+    /// residual_surface.npy and .x3p
+    #[arg(long)]
+    pub(super) unload: bool,
+
     /// Save the record each time that many states have been added, and not only at the end
     #[arg(long, value_name = "STATES", requires = "kept")]
     pub(super) save_every: Option<NonZeroUsize>,
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "hardness", "typical", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
@@ -148,6 +157,11 @@ impl Options {
             Some(_) => self.elasticity.required(),
             None => self.elasticity.or_steel(),
         }
+    }
+
+    /// Their hardness, if there is to be one.
+    pub(super) fn greatest_pressure(&self) -> Result<Option<GreatestPressure>, Failure> {
+        self.hardness.of(&self.elasticity)
     }
 
     /// What there is no room for.

@@ -4,16 +4,28 @@ use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use asperity_cli::outcome::Failure;
 use clap::ValueEnum;
+use nalgebra::DMatrix;
 use serde_json::{Map, Value, json};
 
 use super::options::Updater;
 use crate::elasticity::Bodies;
 use crate::settings::Settings;
 
+/// The hardness, a number if it is the same everywhere; nothing if nothing yields.
+fn hardness(map: Option<&DMatrix<f64>>) -> Value {
+    let first = map.and_then(|map| map.iter().next().copied());
+    match (map, first) {
+        (Some(map), Some(first)) if map.iter().all(|value| *value == first) => json!(first),
+        (Some(_), _) => json!("one value for each node"),
+        _ => Value::Null,
+    }
+}
+
 /// What a path is of besides its surface.
 pub(super) struct Parts<'a> {
     pub(super) bodies: &'a Bodies,
     pub(super) periodic: Option<Periodic>,
+    pub(super) hardness: Option<&'a DMatrix<f64>>,
     pub(super) rule: ContactRule,
     pub(super) updater: Updater,
     pub(super) targets: &'a [ContactTarget],
@@ -39,6 +51,7 @@ impl Parts<'_> {
                     Some(kernel) => json!(format!("periodic, {} kernel", kernel.name())),
                 },
             ),
+            ("hardness", hardness(self.hardness)),
             ("rule", plain(serde_json::to_value(self.rule))?),
             (
                 "updater",

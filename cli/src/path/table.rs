@@ -96,6 +96,12 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
         column("K", "N/m", &|state| stiffness(state.contact.contact_stiffness)),
         column("K_i", "N/m", &|state| stiffness(state.contact.interfacial_stiffness)),
     ];
+    if job.has_hardness() {
+        let yielded = |state: &LoadingState| {
+            state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction)
+        };
+        columns.insert(6, Column::percent("yielded", rows.iter().map(yielded)));
+    }
     // A periodic half-space has no contact stiffness.
     let has_k = rows.iter().any(|state| state.contact.contact_stiffness.is_some());
     columns.retain(|column| has_k || column.name() != "K");
@@ -108,6 +114,9 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
     match job.periodic() {
         None => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
         Some(_) => say!("approach: of the mean planes, from first touch"),
+    }
+    if job.has_hardness() {
+        say!("yielded: cells at the hardness; they count as contact");
     }
     say!("K_i: interfacial stiffness, -d load/d mean gap");
     say!();
@@ -138,7 +147,10 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
         ),
         ("estimated error of the approach", quantity(last.approach_error, "m", 2)),
     ];
-    for (what, value) in left {
+    let excess = certificate
+        .excess_pressure
+        .map(|excess| ("greatest pressure over hardness, less 1", scientific(excess, 2)));
+    for (what, value) in left.into_iter().chain(excess) {
         say!("  {what:32} {value}");
     }
 }
@@ -148,8 +160,9 @@ fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let pressure = solver
         .max_pressure()
         .map_err(|error| Failure::new("cannot compute the pressure of the last state", error))?;
-    let high = Warning::of_pressure(pressure, job.e_star());
-    let mut warnings: Vec<String> = high.iter().map(Warning::to_string).collect();
+    // With a hardness it is what was asked for.
+    let high = Warning::of_pressure(pressure, job.e_star()).filter(|_| !job.has_hardness());
+    let mut warnings: Vec<String> = high.iter().map(crate::advice::told).collect();
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
     {
@@ -175,6 +188,7 @@ fn rows(states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
 fn reason(end: LoadingEnd) -> &'static str {
     match end {
         LoadingEnd::FullContact => "full contact",
+        LoadingEnd::FullyPlastic => "all cells have yielded",
         LoadingEnd::Load => "the requested load",
         LoadingEnd::Approach => "the requested approach",
         LoadingEnd::MeanGap => "the requested mean gap",

@@ -1,0 +1,71 @@
+//! Unloading from the last state, with `--unload`: `unloading.csv` and the surface that is left.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use asperity::io::{write_npy, write_x3p};
+use asperity::{LoadingSolver, LoadingState};
+
+use super::Solver;
+use super::job::Job;
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::{self, Failure};
+use asperity_cli::say;
+
+/// Writes the states on unloading, from the last state of the path to the last touch, and the surface that is left; prints what
+/// the loop costs.
+pub(super) fn write(
+    job: &Job,
+    solver: &mut Solver,
+    directory: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error| Failure::new("cannot compute the unloading path", error);
+    let Some(last) = solver.state() else {
+        return Ok(Vec::new());
+    };
+    let surface = solver.residual_surface().map_err(failed)?;
+    let kernel = job.kernel()?;
+    let builder = LoadingSolver::builder(&surface, &kernel).max_load(last.contact.load);
+    let path = builder.build().map_err(failed)?;
+    let states = path.collect::<Result<Vec<LoadingState>, _>>().map_err(failed)?;
+    // Approaches of the path count from the first touch of the first surface.
+    let touch = -surface.max_height();
+    let mut lines = "load,approach,mean_gap,contact_area,contact_area_fraction,contact_stiffness,\
+                     interfacial_stiffness,elastic_energy\n"
+        .to_string();
+    let printed = |stiffness: Option<f64>| {
+        stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
+    };
+    for state in states.iter().rev() {
+        let contact = &state.contact;
+        // Writing to a text cannot fail.
+        let _ = writeln!(
+            lines,
+            "{:e},{:e},{:e},{:e},{:e},{},{},{:e}",
+            contact.load,
+            contact.approach + touch,
+            contact.mean_gap,
+            contact.contact_area,
+            contact.contact_area_fraction,
+            printed(contact.contact_stiffness),
+            printed(contact.interfacial_stiffness),
+            contact.energy,
+        );
+    }
+    if let Some(plastic) = last.contact.plastic {
+        say!();
+        say!(
+            "unloading: the surfaces part at an approach of {}; {} of {} come back, {} are lost in a plastic volume of {}",
+            quantity(touch, "m", 4),
+            quantity(last.contact.energy, "J", 4),
+            quantity(last.contact.energy + plastic.work, "J", 4),
+            quantity(plastic.work, "J", 4),
+            quantity(plastic.volume, "m³", 4)
+        );
+    }
+    let [npy, x3p] = ["npy", "x3p"].map(|end| directory.join(format!("residual_surface.{end}")));
+    let heights = surface.matrix();
+    write_npy(&npy, heights).map_err(|error| Failure::writing(&npy, error))?;
+    write_x3p(&x3p, &job.grid(), heights).map_err(|error| Failure::writing(&x3p, error))?;
+    Ok(vec![outcome::write(&directory.join("unloading.csv"), lines)?, npy, x3p])
+}
