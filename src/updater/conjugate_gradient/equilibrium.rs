@@ -92,8 +92,8 @@ impl Equilibrium {
         sums
     }
 
-    /// Scales pressures and rates so that their sums, load and stiffness, are right to second order: with a
-    /// residual r left they lack `y₂ᵀ r`.
+    /// Scales pressures and rates of an improved solution so that their sums, load and stiffness, are right to second order: with a
+    /// residual r left those of this one lack `y₂ᵀ r`. What improved single pressures without the answer of others is no part of it.
     pub(super) fn scale(
         &self,
         problem: &Problem,
@@ -114,7 +114,7 @@ impl Equilibrium {
             sums[1] += rate;
         }
         for (k, values) in [&mut solution.pressure, &mut solution.rate].into_iter().enumerate() {
-            let factor = 1.0 + lacking[k] / sums[k];
+            let factor = (sums[k] + lacking[k]) / values.iter().sum::<f64>();
             if factor.is_finite() {
                 for value in values {
                     *value *= factor;
@@ -203,22 +203,26 @@ mod tests {
         Ok(())
     }
 
-    /// Rates of 1/4 and 1/2 times what is left: 1/8 − 1/16 for the load, 1/8 for the rate, over sums of 3/4 each.
+    /// Rates of 1/4 and 1/2 times what is left: 1/8 − 1/16 for the load, 1/8 for the rate, beside sums of 3/4 each.
     #[test]
     fn sums_are_right_to_second_order() -> Result<(), crate::Error> {
         let (problem, contact, mut solved) = solved()?;
-        let scaled = |solved: &Equilibrium| {
-            let mut solution = Solution { pressure: vec![0.5, 0.25], rate: vec![0.25, 0.5] };
+        let scaled = |solved: &Equilibrium, pressure: [f64; 2], rate: [f64; 2]| {
+            let mut solution = Solution { pressure: pressure.to_vec(), rate: rate.to_vec() };
             solved.scale(&problem, &contact, &mut solution);
             [solution.pressure, solution.rate].concat()
         };
-        let [load, rate] = [1.0 + 0.0625 / 0.75, 1.0 + 0.125 / 0.75];
-        assert_eq!(scaled(&solved), [0.5 * load, 0.25 * load, 0.25 * rate, 0.5 * rate]);
-        // Sums of nothing scale nothing, and without a rate there is nothing to scale by.
-        solved.load.pressure.fill(0.0);
-        assert_eq!(scaled(&solved), [0.5, 0.25, 0.25 * rate, 0.5 * rate]);
+        let (own, own_rate) = ([0.5, 0.25], [0.25, 0.5]);
+        let [load, rate] = [0.8125 / 0.75, 0.875 / 0.75];
+        let of_rate = [0.25 * rate, 0.5 * rate];
+        let found = scaled(&solved, own, own_rate);
+        assert_eq!(found, [0.5 * load, 0.25 * load, of_rate[0], of_rate[1]]);
+        // The same sums where single pressures were improved: 13/16 from 1 + 5/8, and 7/8 from 1 + 3/4.
+        assert_eq!(scaled(&solved, [1.0, 0.625], [1.0, 0.75]), [0.5, 0.3125, 0.5, 0.375]);
+        // Sums of nothing are not scaled, and without a rate there is nothing to scale by.
+        assert_eq!(scaled(&solved, [0.0; 2], own_rate), [0.0, 0.0, of_rate[0], of_rate[1]]);
         solved.rate.displacement.clear();
-        assert_eq!(scaled(&solved), [0.5, 0.25, 0.25, 0.5]);
+        assert_eq!(scaled(&solved, own, own_rate), [0.5, 0.25, 0.25, 0.5]);
         Ok(())
     }
 
