@@ -207,6 +207,7 @@ mod tests {
                 contact_stiffness: Some(1.0),
                 interfacial_stiffness: Some(10.0),
                 energy: step as f64,
+                plastic: None,
             };
             LoadingState::new(step, ContactEvent::Touch, (step, 0), contact)
         };
@@ -237,6 +238,7 @@ mod tests {
                 contact_stiffness: Some(2.0),
                 interfacial_stiffness: Some(4.0),
                 energy: 0.25 * load * load,
+                plastic: None,
             };
             LoadingState::new(nodes, ContactEvent::Touch, (nodes, 0), contact)
         };

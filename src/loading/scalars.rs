@@ -240,13 +240,15 @@ impl PathScalars {
         let per_load = |rate: f64| {
             if self.unit_stiffness > 0.0 { rate / self.unit_stiffness } else { 0.0 }
         };
-        let mut state = PlasticState::default();
-        state.yielded_nodes = plastic.nodes;
-        state.yielded_area_fraction = plastic.nodes as f64 / self.grid.nodes() as f64;
-        state.volume = area * plastic.depth;
-        state.work = area * plastic.work;
-        [state.volume_per_load, state.work_per_load] = plastic.rates.map(per_load);
-        state
+        let [volume_per_load, work_per_load] = plastic.rates.map(per_load);
+        PlasticState {
+            yielded_nodes: plastic.nodes,
+            yielded_area_fraction: plastic.nodes as f64 / self.grid.nodes() as f64,
+            volume: area * plastic.depth,
+            work: area * plastic.work,
+            volume_per_load,
+            work_per_load,
+        }
     }
 
     /// Whether the state is one: everything finite, the stiffness positive unless all nodes in contact have yielded.

@@ -256,9 +256,12 @@ impl LoadingRecord {
         if parameters.settings.hardness.is_some() {
             let yielded = archive.vector("yielded_nodes", length)?;
             for (state, yielded) in states.iter_mut().zip(yielded) {
-                let mut plastic = PlasticState::default();
-                plastic.yielded_nodes = whole(yielded);
-                plastic.yielded_area_fraction = plastic.yielded_nodes as f64 / grid.nodes() as f64;
+                let yielded_nodes = whole(yielded);
+                let plastic = PlasticState {
+                    yielded_nodes,
+                    yielded_area_fraction: yielded_nodes as f64 / grid.nodes() as f64,
+                    ..PlasticState::default()
+                };
                 state.contact.plastic = Some(plastic);
             }
             for PlasticColumn { name, set, .. } in PLASTIC_COLUMNS {

@@ -26,8 +26,10 @@ pub struct UpdaterReport {
     pub solution_error: f64,
     /// Whether the updater takes nodes back.
     pub truncates: bool,
-    /// Whether the updater lets a node in the middle of the contact go.
+    /// Whether the updater lets nodes in the middle of the contact go.
     pub releases: bool,
+    /// Whether it serves paths with a hardness.
+    pub yields: bool,
 }
 
 /// Goes through all verbs of an updater that has no node in contact yet, in the order in which a path
@@ -75,12 +77,14 @@ pub fn check<U: LinearUpdater + ?Sized>(
     }
     let truncates = examiner.truncate(contact_nodes - contact_nodes / 3)?;
     let releases = truncates && examiner.release()?;
+    let yields = releases && examiner.watch_both()?;
     Ok(UpdaterReport {
         contact_nodes,
         schur_error: examiner.schur_error,
         solution_error: examiner.solution_error,
         truncates,
         releases,
+        yields,
     })
 }
 
@@ -160,20 +164,67 @@ impl<U: LinearUpdater + ?Sized> Examiner<'_, U> {
         }
     }
 
-    /// Lets the node in the middle go; false if the updater cannot follow.
+    /// Lets the node in the middle go, and the first and the last; false if the updater cannot follow.
     fn release(&mut self) -> Result<bool, Error> {
-        let Some(&node) = self.contact.order().get(self.contact.len() / 2) else {
-            return Ok(true);
-        };
-        let position = self.contact.remove(node)?;
+        let order = self.contact.order().to_vec();
+        let mut positions = vec![0, order.len() / 2, order.len().saturating_sub(1)];
+        positions.dedup();
+        let left = positions.into_iter().filter_map(|position| {
+            let node = *order.get(position)?;
+            Some(Left { node, position })
+        });
+        let left: Vec<Left> = left.collect();
+        for left in &left {
+            self.contact.remove(left.node)?;
+        }
         let (problem, contact) = (self.problem, &self.contact);
-        match self.updater.release(problem, contact, &[Left { node, position }]) {
+        match self.updater.release(problem, contact, &left) {
             Err(Error::Updater(UpdaterError::ReleaseNotSupported { .. })) => Ok(false),
             done => {
                 let count = self.contact.len();
                 done.and_then(|()| self.solution(count)).map(|()| true)
             }
         }
+    }
+
+    /// Watches nodes out of contact and in it, and solves for right-hand sides; false if the updater cannot.
+    fn watch_both(&mut self) -> Result<bool, Error> {
+        let Self { updater, problem, contact, .. } = self;
+        let count = contact.len();
+        let outside: Vec<usize> = (0..problem.grid().nodes())
+            .filter(|&node| !contact.contains(node))
+            .take(WATCHED)
+            .collect();
+        let inside: Vec<usize> = (0..count).step_by(5).take(WATCHED).collect();
+        let (mut schur, mut expected) = (Schur::default(), Schur::default());
+        match updater.watch_both(problem, contact, &outside, &inside, &mut schur) {
+            Err(Error::Updater(UpdaterError::HardnessNotSupported)) => return Ok(false),
+            done => done?,
+        }
+        Dense.watch_both(problem, contact, &outside, &inside, &mut expected)?;
+        let size = outside.len() + inside.len();
+        UpdaterError::check_length("the Schur complement", schur.size(), size)?;
+        let own = problem.table().self_influence();
+        let tolerance = tolerance(*updater);
+        for j in 0..size {
+            for i in j..size {
+                // Pressures under overlaps are 1/C, gaps under pressures C, and the others have no unit.
+                let inner = [i, j].iter().filter(|k| **k >= outside.len()).count();
+                let scale = own.powi(1 - inner as i32);
+                let error = (schur.matrix()[(i, j)] - expected.matrix()[(i, j)]).abs() / scale;
+                check_error("the Schur complement of both kinds", count, error, tolerance)?;
+            }
+        }
+        let mut found: Vec<[f64; 2]> = (0..count).map(|k| [own, own * (k % 3) as f64]).collect();
+        let mut dense = found.clone();
+        updater.solve_for(problem, contact, &mut found)?;
+        Dense.solve_for(problem, contact, &mut dense)?;
+        let scale = dense.iter().flatten().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+        for (found, expected) in found.iter().flatten().zip(dense.iter().flatten()) {
+            let error = (found - expected).abs() / scale;
+            check_error("the solution for right-hand sides", count, error, tolerance)?;
+        }
+        Ok(true)
     }
 }
 
@@ -230,6 +281,7 @@ mod tests {
         for (name, mut updater) in updaters {
             let report = check(&mut updater, &problem)?;
             assert!(report.truncates && report.releases, "{name}: {report:?}");
+            assert_eq!(report.yields, name != "iterations", "{report:?}");
             assert!(report.contact_nodes > 100, "{name}: {report:?}");
         }
         Ok(())

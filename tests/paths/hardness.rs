@@ -6,7 +6,7 @@ use asperity::io::read_npy;
 use asperity::kernel::KernelTable;
 use asperity::loading::{History, LoadingBuilder, LoadingEnd};
 use asperity::record::LoadingRecord;
-use asperity::surface::{FlatPunch, HeightMap, Paraboloid};
+use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid,
@@ -472,7 +472,6 @@ fn flat_and_soft_surfaces() {
             }
         }
     }
-    let _ = FlatPunch::new(1.0);
 }
 
 /// Each node has its own hardness, of some it is infinite: the same states as single loads have.
@@ -504,25 +503,12 @@ fn a_hardness_for_each_node() {
             let load = 0.5 * (states[k].contact.load + states[k + 1].contact.load);
             let (state, solution) = (history.at_load(load).unwrap(), solver.solve(load).unwrap());
             let plastic = solution.plastic.unwrap();
-            let context = format!("{name} {k}");
-            let found = path.contact_map_at(&state).unwrap();
-            for node in 0..192 {
-                let at = (
-                    path.pressure_at(&state).unwrap()[node],
-                    solution.pressure[node],
-                    solution.gap[node],
-                    map[node],
-                );
-                assert_eq!(
-                    found[node], solution.contact_map[node],
-                    "{context} {node} {at:?} {:?} {:?}",
-                    state.contact, solution.state
-                );
-            }
+            assert_eq!(path.contact_map_at(&state).unwrap(), solution.contact_map, "{name} {k}");
             assert_eq!(path.yielded_map_at(&state).unwrap(), plastic.yielded_map, "{name} {k}");
             let found = state.contact.plastic.unwrap();
-            assert!((found.work / plastic.work - 1.0).abs() < 1e-8, "{name} {k}");
-            assert!((found.volume / plastic.volume - 1.0).abs() < 1e-8, "{name} {k}");
+            let [work, volume] = [found.work - plastic.work, found.volume - plastic.volume];
+            assert!(work.abs() <= 1e-8 * plastic.work, "{name} {k}: {work:e}");
+            assert!(volume.abs() <= 1e-8 * plastic.volume, "{name} {k}: {volume:e}");
         }
     }
 }

@@ -8,7 +8,7 @@ use asperity::convolution::{Convolution, direct_sum};
 use asperity::kernel::{self, KernelTable};
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{
-    ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky, Schur, Solution,
+    ConjugateGradient, Dense, Handover, Left, LinearUpdater, RecursiveCholesky, Schur, Solution,
     WindowFactor,
 };
 use asperity::{
@@ -120,6 +120,7 @@ enum Call {
     Solve(usize, usize, f64),
     Truncate(usize, usize),
     Release(usize, usize, usize),
+    WatchBoth(usize, Vec<usize>, Vec<usize>),
     /// The contact changes, and the updater is not told.
     Push(usize),
     Remove(usize),
@@ -148,6 +149,8 @@ fn call() -> impl Strategy<Value = Call> {
         3 => (which(), 0_usize..8, number()).prop_map(|(p, n, a)| Call::Solve(p, n, a)),
         1 => (which(), 0_usize..6).prop_map(|(p, n)| Call::Truncate(p, n)),
         1 => (which(), node(), 0_usize..6).prop_map(|(p, n, at)| Call::Release(p, n, at)),
+        1 => (which(), prop::collection::vec(node(), 0..4), prop::collection::vec(0_usize..6, 0..4))
+            .prop_map(|(p, nodes, positions)| Call::WatchBoth(p, nodes, positions)),
         1 => node().prop_map(Call::Push),
         1 => node().prop_map(Call::Remove),
         1 => (which(), 0_usize..3_000_000).prop_map(|(p, bytes)| Call::MakeRoom(p, bytes)),
@@ -204,6 +207,13 @@ fn make_calls(updater: &mut dyn LinearUpdater, problems: &[Problem; 2], calls: &
                     &contact,
                     &[Left { node: *node, position: *position }],
                 );
+            }
+            Call::WatchBoth(p, nodes, positions) => {
+                let mut schur = Schur::default();
+                let updated =
+                    updater.watch_both(&problems[*p], &contact, nodes, positions, &mut schur);
+                let mut rhs = vec![[1.0, 2.0]; contact.len() + positions.len() % 2];
+                let _ = (updated, updater.solve_for(&problems[*p], &contact, &mut rhs));
             }
             Call::Push(node) => {
                 edit(&mut contact, |order| order.push(*node));

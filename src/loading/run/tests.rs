@@ -5,6 +5,7 @@ use crate::loading::phase::Phase;
 use crate::loading::ranking::rank;
 use crate::loading::test_chain::{self, Altered};
 use crate::surface::{Amplitude, SelfAffine};
+use crate::updater::Left;
 use crate::updater::{ConjugateGradient, Dense, RecursiveCholesky};
 use crate::{Boussinesq, InfluenceKernel, PeriodicBoussinesq};
 
@@ -52,7 +53,7 @@ fn earlier_contacts_need_room_of_their_own() -> Result<(), Error> {
     // 0, 2 and 4 touch, and 2 leaves as the fourth event; then it touches again.
     run.contact.remove(2)?;
     run.contact.push(4)?;
-    run.releases.push(4, 2, 1);
+    run.releases.push(4, Left { node: 2, position: 1 });
     run.contact.push(2)?;
     let (mut phase, mut solution) = (Phase::new(Dense), Solution::default());
     // 16 · 3² bytes of a dense updater.
