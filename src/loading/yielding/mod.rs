@@ -247,7 +247,17 @@ impl Yielding {
         updater.solve_for(&run.problem, &run.contact, &mut solved)?;
         updater.solve_for(&run.problem, &run.contact, &mut last)?;
         let table = run.problem.table();
-        let elastic: Vec<usize> = order.iter().map(|&node| table.place(node)).collect();
+        let places_outside: Vec<usize> = outside.iter().map(|&node| table.place(node)).collect();
+        let mut outer: Vec<[f64; SUMS]> = outside.iter().map(|&node| sums(node)).collect();
+        let mut coefficients = vec![0.0; outside.len()];
+        for ((&node, [first, second]), [third, _]) in order.iter().zip(&solved).zip(&last) {
+            table.fill_column(table.place(node), &places_outside, &mut coefficients);
+            for (sums, coefficient) in outer.iter_mut().zip(&coefficients) {
+                sums[0] -= coefficient * first;
+                sums[1] -= coefficient * second;
+                sums[2] -= coefficient * third;
+            }
+        }
         let pressures: Vec<(usize, f64)> = run.field.pressures(&run.contact, approach).collect();
         let hardness = plastic.hardness().values();
         let watched: Vec<Watched> = watched
@@ -264,16 +274,7 @@ impl Yielding {
                     return Watched { node, is_elastic: true, hardness, value, rate, sums };
                 }
                 let line = run.field.line(&run.problem, node, approach);
-                let mut sums = sums(node);
-                let place = table.place(node);
-                for ((&other, [first, second]), [third, _]) in
-                    elastic.iter().zip(&solved).zip(&last)
-                {
-                    let coefficient = table.between(place, other);
-                    sums[0] -= coefficient * first;
-                    sums[1] -= coefficient * second;
-                    sums[2] -= coefficient * third;
-                }
+                let sums = outer[k];
                 let (value, rate) = (line.gap, -line.closing);
                 Watched { node, is_elastic: false, hardness, value, rate, sums }
             })
@@ -310,17 +311,17 @@ impl Yielding {
                 _ => (),
             }
         }
-        let loads: Vec<(usize, [f64; 2])> =
-            pressed.iter().map(|&(node, value)| (table.place(node), value)).collect();
+        let pressed_places: Vec<usize> =
+            pressed.iter().map(|&(node, _)| table.place(node)).collect();
+        let mut coefficients = vec![0.0; pressed.len()];
         let gaps = run.problem.initial_gap();
         let mut solved: Vec<[f64; 2]> = order
             .iter()
             .map(|&node| {
                 let [gap, rate] = values[node];
                 let mut rhs = [approach - gaps[node] + gap, 1.0 + rate];
-                let place = table.place(node);
-                for (other, [pressure, rate]) in &loads {
-                    let coefficient = table.between(place, *other);
+                table.fill_column(table.place(node), &pressed_places, &mut coefficients);
+                for ((_, [pressure, rate]), coefficient) in pressed.iter().zip(&coefficients) {
                     rhs[0] -= coefficient * pressure;
                     rhs[1] -= coefficient * rate;
                 }
