@@ -70,8 +70,8 @@
 //!
 //! # Limits of the model
 //!
-//! Contact is elastic, frictionless and without adhesion, and slopes are small. Unloading retraces loading. Nothing
-//! yields: compare the greatest pressure with the hardness.
+//! Contact is frictionless and without adhesion, and slopes are small. It is elastic, and unloading retraces loading, unless a
+//! hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
 
 #![warn(missing_debug_implementations)]
 

@@ -10,6 +10,9 @@
 //!   reached. If bounds may fail, a window is checked at its end.
 //! * One at a time, nodes that *leave* among them, if nothing is known of the kernel.
 //!
+//! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Yielding` then takes the place of `Windowed`: it
+//! watches nodes of both kinds, and checks each window at its end before the updater learns of it.
+//!
 //! # How a window is made
 //!
 //! | | who | what |

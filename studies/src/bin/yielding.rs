@@ -1,0 +1,214 @@
+//! Contact with a hardness: the path of metals beside the elastic one, a sphere, and tamaas' solver with a ceiling.
+//!
+//! ```text
+//! cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md
+//! ```
+//!
+//! The table of tamaas is what `studies/src/bin/peers/hardness.py` has written.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use asperity::loading::History;
+use asperity::surface::Paraboloid;
+use asperity::{
+    Boussinesq, ContactEvent, Error, Grid, LoadingSolver, LoadingState, SelfAffine,
+    plane_strain_modulus,
+};
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
+use asperity_cli::field_map::{FieldMap, Scale};
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::panel;
+use asperity_studies::page::Section;
+use clap::Parser;
+use nalgebra::DMatrix;
+
+const HARDNESS: f64 = 2.5e9;
+/// What tamaas found.
+const TAMAAS: &str = include_str!("peers/hardness.csv");
+
+/// Contact with a hardness.
+#[derive(Debug, Parser)]
+#[command(name = "yielding")]
+struct Options {
+    /// Also write the section of this page
+    #[arg(long, value_name = "FILE.md")]
+    report: Option<PathBuf>,
+
+    /// Folder for the pictures
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let failed = |error: Error| Failure::new("cannot follow a path", error);
+    panel::register_font()?;
+    std::fs::create_dir_all(&options.out)
+        .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
+    let mut text = String::from("# Contact with a hardness\n");
+    let pictures = metals(&options.out, &mut text)?;
+    sphere(&mut text).map_err(failed)?;
+    tamaas(&mut text);
+    println!("{text}");
+    let mut outcome = Outcome::default();
+    if let Some(page) = &options.report {
+        let section = Section { study: "yielding", text: &text, pictures: &pictures };
+        outcome.written(section.publish(page));
+    }
+    outcome.finish()
+}
+
+/// The surface of the first command, of steel, with a hardness and without.
+fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error: Error| Failure::new("cannot follow the path of a rough surface", error);
+    let e_star = plane_strain_modulus(210e9, 0.3).map_err(failed)?;
+    let grid = Grid::square(256, 1e-2).map_err(|error| failed(error.into()))?;
+    let half_space = Boussinesq::new(grid, e_star).map_err(failed)?;
+    let paper = SelfAffine::zhang2020(1);
+    let (rolloff, shortest) = (paper.rolloff_wavelength(), 8.0 * grid.dx());
+    let spectrum = SelfAffine::new(paper.hurst(), rolloff, shortest, paper.amplitude(), 1)
+        .map_err(|error| failed(error.into()))?;
+    let builder = || LoadingSolver::builder(&spectrum, &half_space).max_area_fraction(0.2);
+    let elastic = states(builder().build().map_err(failed)?).map_err(failed)?;
+    let mut path = builder().hardness(HARDNESS).build().map_err(failed)?;
+    let yielding = path.by_ref().collect::<Result<Vec<_>, _>>().map_err(failed)?;
+
+    let area = |state: &LoadingState| (state.contact.load, state.contact.contact_area_fraction);
+    let yielded = |state: &LoadingState| {
+        let plastic = state.contact.plastic.unwrap_or_default();
+        (state.contact.load, plastic.yielded_area_fraction)
+    };
+    let loaded = |states: &[LoadingState]| -> Vec<LoadingState> {
+        states.iter().filter(|state| state.contact.load > 1.0).copied().collect()
+    };
+    let (elastic, plastic) = (loaded(&elastic), loaded(&yielding));
+    let chart = Chart {
+        title: "Steel, rigid against rough: 256 × 256 nodes to 20 % contact".to_string(),
+        x: Axis::logarithmic("load W", "N", 1.0, 1e6),
+        y: Axis::logarithmic("contact area over nominal area", "", 1e-6, 0.3),
+        series: vec![
+            Series::new("elastic", GREY, Style::Line, elastic.iter().map(area)),
+            Series::new("hardness 2.5 GPa", BLUE, Style::Line, plastic.iter().map(area)),
+            Series::new("yielded", ORANGE, Style::Dashed, plastic.iter().map(yielded)),
+        ],
+        legend: Corner::TopLeft,
+    };
+    let curves = chart::draw(&[chart], 1, &directory.join("yielding_area.png"))?;
+
+    // The map at 10 %.
+    let history: History = yielding.iter().copied().collect();
+    let state = history.at_area_fraction(0.1).ok_or_else(|| Failure::request("no such area"))?;
+    let pressure = path.pressure_at(&state).map_err(failed)?;
+    let contact = path.contact_map_at(&state).map_err(failed)?;
+    let yielded = path.yielded_map_at(&state).map_err(failed)?;
+    let values =
+        DMatrix::from_fn(256, 256, |ix, iy| match (contact[(ix, iy)], yielded[(ix, iy)]) {
+            (false, _) => f64::NAN,
+            (true, true) => f64::INFINITY,
+            (true, false) => pressure[(ix, iy)],
+        });
+    let map = FieldMap {
+        grid: &grid,
+        length_unit: "m",
+        values: &values,
+        range: (0.0, HARDNESS),
+        scale: Scale::Linear,
+        contours: &[],
+        label: ("pressure", "Pa"),
+    }
+    .write(&directory.join("yielding_map.png"), "10 % contact under a hardness of 2.5 GPa")?;
+
+    let count = |kind| yielding.iter().filter(|state| state.event == kind).count();
+    let last = yielding.last().map(|state| state.contact);
+    let load = last.map_or(0.0, |contact| contact.load);
+    // Writing to a text cannot fail.
+    let _ = write!(
+        text,
+        "\nThe surface of the first command (256 × 256 nodes, E* = 230.8 GPa) with a hardness of 2.5 GPa, typical of steel, to 20 % \
+         contact: {} nodes touch and {} yield, each event exact. The load there is {:.1} kN; without a hardness it is {:.0} kN. \
+         Written by `cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md`.\n\n\
+         ![Contact area and yielded area against load, beside the elastic path](images/yielding_area.png)\n\n\
+         ![Contact map at 10 %, yielded nodes marked](images/yielding_map.png)\n",
+        count(ContactEvent::Touch),
+        count(ContactEvent::Yield),
+        load / 1e3,
+        elastic.last().map_or(0.0, |state| state.contact.load) / 1e3,
+    );
+    Ok(vec![curves, map])
+}
+
+fn states(path: LoadingSolver) -> Result<Vec<LoadingState>, Error> {
+    path.collect()
+}
+
+/// A rigid sphere of R = 1 on E* = 1 with H = 0.1: first yield at `δ = R (πH/2E*)²`, where Hertz' greatest pressure is H, under
+/// `W = π³R²H³/6E*²`; and loads beyond, from 800 rings of exact influence, extrapolated.
+fn sphere(text: &mut String) -> Result<(), Error> {
+    let hardness = 0.1;
+    let first = (std::f64::consts::FRAC_PI_2 * hardness).powi(2);
+    let load = std::f64::consts::PI.powi(3) * f64::powi(hardness, 3) / 6.0;
+    let beyond = [(1.2, 1.31208), (1.5, 1.81525), (2.0, 2.72037), (3.0, 4.69615)];
+    text.push_str(
+        "\n## A rigid sphere\n\nThe first node yields at the approach δ_y = R (πH/2E*)² under W_y = π³R²H³/6E*² (Hertz). Beyond, the \
+         contact has no closed form; the loads are those of 800 rings of exact influence, extrapolated (R = 1, E* = 1, H = 0.1). \
+         Errors fall with the square of the cell, less evenly where few cells are elastic.\n\n\
+         | nodes | δ_y found / exact | W/W_y at δ = 1.2 δ_y | 1.5 δ_y | 2 δ_y | 3 δ_y |\n|---|---|---|---|---|---|\n",
+    );
+    let surface = Paraboloid::new(1.0)?;
+    for nodes in [17, 33, 65, 129] {
+        let grid = Grid::square(nodes, 0.7)?;
+        let half_space = Boussinesq::new(grid, 1.0)?;
+        let builder = LoadingSolver::builder(&surface, &half_space).hardness(hardness);
+        let path = builder.max_approach(3.0 * first).build()?;
+        let history: History = path.collect::<Result<_, _>>()?;
+        let mut events = history.states().iter();
+        let yields = events.find(|state| state.event == ContactEvent::Yield);
+        let found = yields.map_or(f64::NAN, |state| state.contact.approach / first);
+        let _ = write!(text, "| {nodes}² | {found:.4} |");
+        for (approach, _) in beyond {
+            let at = history.at_approach(approach * first);
+            let ratio = at.map_or(f64::NAN, |state| state.contact.load / load);
+            let _ = write!(text, " {ratio:.5} |");
+        }
+        text.push('\n');
+    }
+    let _ = write!(text, "| rings | 1 |");
+    for (_, ratio) in beyond {
+        let _ = write!(text, " {ratio:.5} |");
+    }
+    text.push('\n');
+    Ok(())
+}
+
+/// What tamaas' solver finds.
+fn tamaas(text: &mut String) {
+    text.push_str(
+        "\n## tamaas with a ceiling\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a periodic half-space, one mean \
+         pressure at a time; asperity follows the path to it. \
+         `studies/src/bin/peers/hardness.py target/release/asperity studies/src/bin/peers/hardness.csv` solves them again.\n\n\
+         | nodes | H/(E* h′) | mean pressure/H | in contact | yielded | other nodes in contact | other nodes yielded | greatest difference of pressures/H |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for line in TAMAAS.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        if let [nodes, _, ratio, share, contact, yielded, other, others, difference, ..] = cells[..]
+        {
+            let _ = writeln!(
+                text,
+                "| {nodes}² | {ratio} | {share} | {contact} | {yielded} | {other} | {others} | {difference} |"
+            );
+        }
+    }
+}
