@@ -259,3 +259,134 @@ impl Course {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+
+    /// Two nodes with C = (2, 1; 1, 2), gaps 0 and 1 and these hardnesses, of which none is in contact.
+    fn two(hardness: [f64; 2]) -> Result<Exchange, Error> {
+        let mut schur = Schur::default();
+        schur.resize(2)?;
+        schur.as_mut_slice().copy_from_slice(&[2.0, 1.0, f64::NAN, 2.0]);
+        let watched = [0, 1].map(|k| Watched {
+            node: 7 + k,
+            is_elastic: false,
+            hardness: hardness[k],
+            value: k as f64,
+            rate: -1.0,
+            sums: [3.0, 0.0, 0.0],
+        });
+        let mut window = Exchange::default();
+        let rates = Rates { unit_stiffness: 0.0, closing: 2.0, plastic: [0.0; 2] };
+        window.begin(0.0, &watched, &schur, rates);
+        Ok(window)
+    }
+
+    /// (kind, place, time) of the events.
+    fn found(window: &Exchange) -> Vec<(ContactEvent, usize, f64)> {
+        window.events().iter().map(|event| (event.kind, event.position, event.time)).collect()
+    }
+
+    /// Touch at 0, yield at 3/2, touch at 7/4, yield at 13/4. With one node elastic the other sinks half as fast as the approach;
+    /// with none all gaps close, and overlaps grow, as fast as that.
+    #[test]
+    fn both_kinds_of_events() -> Result<(), Error> {
+        use ContactEvent::{Touch, Yield};
+        let mut window = two([0.75; 2])?;
+        let expected = [
+            (Touch, 0, 0.0, 0.5, 0.5, [0.0, 0.0]),
+            (Yield, 0, 1.5, 0.0, 1.0, [1.0, 0.75]),
+            (Touch, 1, 1.75, 0.5, 0.0, [0.5, 0.375]),
+            (Yield, 1, 3.25, 0.0, 0.0, [2.0, 1.5]),
+        ];
+        for most in [4, 2, 9] {
+            assert_eq!(window.play(f64::INFINITY, 2, most), None);
+            assert_eq!(window.events().len(), most.min(4));
+            for (event, (kind, position, time, unit, closing, plastic)) in
+                window.events().iter().zip(expected)
+            {
+                assert_eq!((event.kind, event.position), (kind, position));
+                let rates = event.rates;
+                let found = [event.time, rates.unit_stiffness, rates.closing];
+                let found = found.into_iter().chain(rates.plastic);
+                for (found, expected) in found.zip([time, unit, closing, plastic[0], plastic[1]]) {
+                    // A few rounding errors of numbers near 1.
+                    assert!((found - expected).abs() < 1e-14, "{kind:?}: {found} {expected}");
+                }
+            }
+        }
+        // One has yielded by 7/4 more, and the other has only just.
+        let gaps: Vec<f64> = window.nodes().map(|(.., [value, _])| value).collect();
+        assert!((gaps[0] + 1.0).abs() < 1e-14 && gaps[1] == 0.0, "{gaps:?}");
+        Ok(())
+    }
+
+    /// Until a horizon, though the first event always counts; not beyond so many that touch; and an infinite hardness is never reached.
+    #[test]
+    fn windows_end() -> Result<(), Error> {
+        let mut window = two([0.75; 2])?;
+        for (horizon, touches, events) in
+            [(1.6, 2, 2), (-1.0, 2, 1), (f64::INFINITY, 1, 1), (f64::INFINITY, 0, 0)]
+        {
+            assert_eq!(window.play(horizon, touches, 9), None);
+            assert_eq!(window.events().len(), events, "{horizon} {touches}");
+        }
+        let mut hard = two([f64::INFINITY; 2])?;
+        assert_eq!(hard.play(f64::INFINITY, 2, 9), None);
+        let touch = ContactEvent::Touch;
+        assert_eq!(found(&hard), [(touch, 0, 0.0), (touch, 1, 2.0)]);
+        Ok(())
+    }
+
+    /// Elastic nodes at equal pressures yield in the order of their indices.
+    #[test]
+    fn ties_are_in_order() -> Result<(), Error> {
+        let mut schur = Schur::default();
+        schur.resize(2)?;
+        // C⁻¹ = (2, −1; −1, 2)/3, of overlaps.
+        schur.as_mut_slice().copy_from_slice(&[-2.0 / 3.0, 1.0 / 3.0, f64::NAN, -2.0 / 3.0]);
+        let watched = [9, 4].map(|node| Watched {
+            node,
+            is_elastic: true,
+            hardness: 1.0,
+            value: 0.5,
+            rate: 0.25,
+            sums: [0.0; SUMS],
+        });
+        let mut window = Exchange::default();
+        let rates = Rates { unit_stiffness: 0.5, closing: 0.0, plastic: [0.0; 2] };
+        window.begin(1.0, &watched, &schur, rates);
+        assert_eq!(window.play(f64::INFINITY, 0, 9), None);
+        assert!(window.events().is_empty());
+        assert_eq!(window.play(f64::INFINITY, 1, 9), None);
+        let places: Vec<usize> = window.events().iter().map(|event| event.position).collect();
+        assert_eq!(places, [1, 0]);
+        assert_eq!(found(&window)[0].2, 2.0);
+        Ok(())
+    }
+
+    /// A node whose pivot is not positive cannot touch.
+    #[test]
+    fn bad_pivots_are_told() -> Result<(), Error> {
+        let mut schur = Schur::default();
+        schur.resize(1)?;
+        schur.as_mut_slice()[0] = -1.0;
+        let watched = Watched {
+            node: 3,
+            is_elastic: false,
+            hardness: 1.0,
+            value: 2.0,
+            rate: -1.0,
+            sums: [0.0; SUMS],
+        };
+        let mut window = Exchange::default();
+        let rates = Rates { unit_stiffness: 0.0, closing: 1.0, plastic: [0.0; 2] };
+        window.begin(0.0, &[watched], &schur, rates);
+        let bad = window.play(f64::INFINITY, 1, 9);
+        assert_eq!(bad, Some(BadPivot { node: 3, time: 2.0, pivot: -1.0 }));
+        assert!(window.events().is_empty());
+        Ok(())
+    }
+}

@@ -97,7 +97,7 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     let chart = Chart {
         title: "Steel, rigid against rough: 256 × 256 nodes to 20 % contact".to_string(),
         x: Axis::logarithmic("load W", "N", 1.0, 1e6),
-        y: Axis::logarithmic("contact area over nominal area", "", 1e-6, 0.3),
+        y: Axis::plain_logarithmic("contact area over nominal area", 1e-5, 0.3),
         series: vec![
             Series::new("elastic", GREY, Style::Line, elastic.iter().map(area)),
             Series::new("hardness 2.5 GPa", BLUE, Style::Line, plastic.iter().map(area)),
