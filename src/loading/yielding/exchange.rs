@@ -302,7 +302,7 @@ mod tests {
             (Yield, 1, 3.25, 0.0, 0.0, [2.0, 1.5]),
         ];
         for most in [4, 2, 9] {
-            assert_eq!(window.play(f64::INFINITY, 2, most), None);
+            assert_eq!(window.play(f64::INFINITY, 3, most), None);
             assert_eq!(window.events().len(), most.min(4));
             for (event, (kind, position, time, unit, closing, plastic)) in
                 window.events().iter().zip(expected)

@@ -92,7 +92,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
     written?;
     assert_eq!(same?.states(), record.states());
 
-    let newer = text.replace("\"version\":1", "\"version\":2");
+    let newer = text.replace("\"version\":1", "\"version\":3");
     let other = text.replace(NAME, "lens prescription");
     let three = |name: &str, values: &mut Vec<f64>| {
         if name == "load" {
@@ -105,7 +105,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
         }
     };
     let cases: [(&str, Change, &str); 5] = [
-        (&newer, &as_it_is, "version 2 is newer than 1, which this program reads"),
+        (&newer, &as_it_is, "version 3 is newer than 2, which this program reads"),
         (&other, &as_it_is, "it holds 'lens prescription'"),
         ("{}", &as_it_is, "its parameters are not understood: missing field `format`"),
         (&text, &three, "member 'load': it has 3 numbers, but there are 4 states"),
