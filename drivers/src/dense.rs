@@ -4,6 +4,9 @@
 //! are `p = C_II⁻¹ (δ e − g_I)` by a Cholesky factor of nalgebra, made afresh for every set. What was found is a state
 //! of contact at the approach δ, and the only one, if no such pressure and no gap elsewhere is negative.
 //!
+//! Nodes that have yielded carry their hardness: `p_I = C_II⁻¹ (δ e − g_I − C_IY H_Y)` on the elastic ones, no pressure above the
+//! hardness, and no gap above zero where a node has yielded.
+//!
 //! # How large an error may be
 //!
 //! A solution by a factor has a residual of some n rounding errors of the numbers that it cancels, the lengths
@@ -15,16 +18,20 @@ use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDispl
 use asperity_testing::dense::{influence_matrix, initial_gap};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::problem::Sample;
+
 /// Rounding errors of a residual, as a multiple of the number of nodes and a constant that stands for those of the convolution
 /// and of the path.
 const ROUNDINGS: f64 = 4.0;
 const ANYWAY: f64 = 16.0;
 
 /// A contact problem in units of its own, so that no product of them overflows: powers of two, which round nothing.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Dense {
     influence: DMatrix<f64>,
     gap: DVector<f64>,
+    /// The greatest pressure of each node, if any is limited.
+    hardness: Option<DVector<f64>>,
     /// Mean of the coefficients where it is arbitrary: the displacement for a unit sum of pressures.
     gauge: Option<f64>,
     /// The gauge of the kernel as it was given: the size of what rounds in its coefficients.
@@ -44,6 +51,15 @@ pub(crate) struct Scalars {
     pub(crate) stiffness: Option<f64>,
     pub(crate) interfacial: Option<f64>,
     pub(crate) energy: f64,
+    pub(crate) plastic: Option<Plastic>,
+}
+
+/// What is lost where nodes have yielded: the sum of their plastic depths and that of depths times hardness, and how much each
+/// grows with the sum of pressures.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plastic {
+    pub(crate) sums: [f64; 2],
+    pub(crate) per_load: [f64; 2],
 }
 
 /// A power of two near a positive number.
@@ -66,11 +82,28 @@ impl Dense {
             gauge,
             given_gauge: gauge.unwrap_or(0.0).abs(),
             gap: DVector::from_vec(initial_gap(heights)) / length,
+            hardness: None,
             influence,
             cell_area: grid.cell_area(),
             length,
             compliance,
         }
+    }
+
+    /// The problem of a sample, with its hardness.
+    pub(crate) fn of_sample(sample: &Sample) -> Self {
+        let mut dense = Self::new(&sample.kernel, sample.surface.matrix());
+        let limits = sample.hardness.as_ref().filter(|map| map.min() < f64::INFINITY);
+        dense.hardness = limits.map(|map| {
+            DVector::from_iterator(map.len(), map.iter().map(|h| dense.own_pressure(*h)))
+        });
+        dense
+    }
+
+    /// The elastic problem of another surface on the same body, in the same units.
+    pub(crate) fn elastic(&self, heights: &DMatrix<f64>) -> Self {
+        let gap = DVector::from_vec(initial_gap(heights)) / self.length;
+        Self { gap, hardness: None, ..self.clone() }
     }
 
     pub(crate) fn nodes(&self) -> usize {
@@ -79,6 +112,11 @@ impl Dense {
 
     pub(crate) fn gap(&self) -> &DVector<f64> {
         &self.gap
+    }
+
+    /// The greatest pressure of each node, if any is limited.
+    pub(crate) fn hardness(&self) -> Option<&DVector<f64>> {
+        self.hardness.as_ref()
     }
 
     /// `C p`, and the greatest of `|C| |p|`, in the gauge of the kernel as it was given if that is more.
@@ -182,14 +220,30 @@ impl Dense {
             stiffness: state.contact_stiffness.map(stiffness),
             interfacial: state.interfacial_stiffness.map(stiffness),
             energy: self.own_length(self.own_pressure(state.energy / self.cell_area)),
+            plastic: state.plastic.map(|plastic| Plastic {
+                sums: [
+                    self.own_length(plastic.volume / self.cell_area),
+                    self.own_length(self.own_pressure(plastic.work / self.cell_area)),
+                ],
+                per_load: [
+                    plastic.volume_per_load / self.compliance,
+                    self.own_length(plastic.work_per_load),
+                ],
+            }),
         }
     }
 
     /// The condition number of the whole matrix in the maximum norm, `None` if it is not positive definite in double
     /// precision.
     pub(crate) fn condition(&self) -> Option<f64> {
+        let [own, inverse] = self.norms()?;
+        Some(own * inverse)
+    }
+
+    /// The norms of the matrix and of its inverse.
+    pub(crate) fn norms(&self) -> Option<[f64; 2]> {
         let inverse = self.influence.clone().cholesky()?.inverse();
-        Some(norm(&self.influence) * norm(&inverse))
+        Some([norm(&self.influence), norm(&inverse)])
     }
 
     /// The rounding errors of n nodes, relative to the lengths that cancel.
@@ -204,18 +258,30 @@ fn norm(matrix: &DMatrix<f64>) -> f64 {
     rows.fold(0.0, f64::max)
 }
 
+/// What has become of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Node {
+    Out,
+    Elastic,
+    Yielded,
+}
+
 /// The equations of one set of nodes in contact.
 pub(crate) struct ContactSet<'a> {
     dense: &'a Dense,
+    /// Those that have not yielded.
     nodes: Vec<usize>,
-    is_in: Vec<bool>,
+    states: Vec<Node>,
+    /// Pressures of those that have, and their displacement.
+    load: DVector<f64>,
+    under_load: DVector<f64>,
     factor: Cholesky<f64, Dyn>,
     /// Gaps in contact that a solution may leave besides rounding, relative to the approach.
     residual: f64,
     /// `‖C_II⁻¹‖`.
     inverse: f64,
     /// `1 + ‖C_OI C_II⁻¹‖`.
-    carried: f64,
+    pub(crate) carried: f64,
     /// `y₂ = C_II⁻¹ e`, by node of the grid, and how fast gaps close.
     pub(crate) rate: DVector<f64>,
     pub(crate) closing: DVector<f64>,
@@ -239,21 +305,38 @@ impl<'a> ContactSet<'a> {
     ///
     /// Gaps in contact may be off by `residual` of the approach besides rounding.
     pub(crate) fn new(dense: &'a Dense, nodes: &[usize], residual: f64) -> Option<Self> {
+        Self::beside(dense, nodes, &[], residual)
+    }
+
+    /// The same beside nodes that have yielded.
+    pub(crate) fn beside(
+        dense: &'a Dense,
+        nodes: &[usize],
+        yielded: &[usize],
+        residual: f64,
+    ) -> Option<Self> {
         let all = dense.nodes();
-        let mut is_in = vec![false; all];
+        let mut states = vec![Node::Out; all];
         for &node in nodes {
-            is_in[node] = true;
+            states[node] = Node::Elastic;
+        }
+        let mut load = DVector::zeros(all);
+        for &node in yielded {
+            states[node] = Node::Yielded;
+            load[node] = dense.hardness.as_ref()?[node];
         }
         let columns = dense.influence.select_columns(nodes);
         let factor = columns.select_rows(nodes).cholesky()?;
         let inverse = factor.inverse();
-        let outside: Vec<usize> = (0..all).filter(|&node| !is_in[node]).collect();
+        let outside: Vec<usize> = (0..all).filter(|&node| states[node] != Node::Elastic).collect();
         let carried = 1.0 + norm(&(columns.select_rows(&outside) * &inverse));
         let ones = DVector::from_element(nodes.len(), 1.0);
         let mut set = Self {
             dense,
             nodes: nodes.to_vec(),
-            is_in,
+            states,
+            under_load: &dense.influence * &load,
+            load,
             factor,
             residual,
             inverse: norm(&inverse),
@@ -281,15 +364,27 @@ impl<'a> ContactSet<'a> {
         field
     }
 
+    /// Whether a node is in contact and has not yielded.
     pub(crate) fn contains(&self, node: usize) -> bool {
-        self.is_in[node]
+        self.states[node] == Node::Elastic
+    }
+
+    pub(crate) fn states(&self) -> &[Node] {
+        &self.states
+    }
+
+    /// All nodes that are there.
+    pub(crate) fn all(&self, state: Node) -> impl Iterator<Item = usize> + '_ {
+        (0..self.states.len()).filter(move |&node| self.states[node] == state)
     }
 
     /// The solution at an approach in the gauge of the kernel.
     pub(crate) fn at(&self, own_approach: f64) -> Instant {
         let dense = self.dense;
-        let rhs = self.nodes.iter().map(|&node| own_approach - dense.gap[node]);
-        let pressure = self.solve(&DVector::from_iterator(self.nodes.len(), rhs));
+        let rhs =
+            self.nodes.iter().map(|&node| own_approach - dense.gap[node] - self.under_load[node]);
+        let rhs = DVector::from_iterator(self.nodes.len(), rhs);
+        let pressure = self.solve(&rhs) + &self.load;
         let (displacement, lengths) = dense.displace(&pressure);
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
         let lengths = own_approach.abs() + dense.gap.max() + lengths;
@@ -305,9 +400,10 @@ impl<'a> ContactSet<'a> {
         }
     }
 
-    /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much.
+    /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much, and the rounding of what yielded nodes carry.
     pub(crate) fn sum_error(&self, gap_error: f64) -> f64 {
-        self.rate.abs().sum() * gap_error
+        let rounding = Dense::rounding(self.dense.nodes());
+        self.rate.abs().sum() * gap_error + rounding * self.load.sum()
     }
 
     /// How far a rate of pressure is off.
@@ -328,16 +424,41 @@ impl<'a> ContactSet<'a> {
 
     /// `dW/dδ` and `−dW/dḡ`, each with its error relative to itself.
     pub(crate) fn stiffnesses(&self) -> [(f64, f64); 2] {
+        if self.nodes.is_empty() {
+            // Nothing is elastic: the load does not change.
+            return [(0.0, 0.0); 2];
+        }
         let stiffness = self.rate.sum();
-        let relative = self.sum_error(self.closing_error) / stiffness.abs();
-        let all = self.dense.nodes();
-        let closing: f64 =
-            (0..all).filter(|&node| !self.is_in[node]).map(|node| self.closing[node]).sum();
-        let closing = closing / all as f64;
+        let relative = self.stiffness_error() / stiffness.abs();
+        let closing: f64 = self.all(Node::Out).map(|node| self.closing[node]).sum();
+        let closing = closing / self.dense.nodes() as f64;
         [
             (stiffness, relative),
             (stiffness / closing, relative + self.closing_error / closing.abs()),
         ]
+    }
+
+    fn stiffness_error(&self) -> f64 {
+        self.rate.abs().sum() * self.closing_error
+    }
+
+    /// What is lost where nodes have yielded, and the errors of it if those of gaps are so large.
+    pub(crate) fn plastic(&self, instant: &Instant, gap_error: f64) -> [Plastic; 2] {
+        let (stiffness, error) = (self.rate.sum(), self.stiffness_error());
+        let [mut found, mut errors] = [Plastic { sums: [0.0; 2], per_load: [0.0; 2] }; 2];
+        for node in self.all(Node::Yielded) {
+            for (k, factor) in [1.0, self.load[node]].into_iter().enumerate() {
+                found.sums[k] -= factor * instant.gap[node];
+                errors.sums[k] += factor * gap_error;
+                if stiffness > 0.0 {
+                    let rate = factor * self.closing[node] / stiffness;
+                    found.per_load[k] += rate;
+                    errors.per_load[k] +=
+                        (factor * self.closing_error + rate.abs() * error) / stiffness;
+                }
+            }
+        }
+        [found, errors]
     }
 
     /// Whether approaches are those of the mean planes, where no distant point stays put.

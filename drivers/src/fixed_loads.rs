@@ -7,6 +7,7 @@ use asperity::{
 use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::judge::{Judge, Settings};
+use crate::kernels;
 use crate::problem::{Drawn, Sample};
 use crate::refusal::Circumstances;
 use crate::variant::{Run, Variant};
@@ -27,7 +28,7 @@ const MOST_NODES: usize = 600;
 /// What is wrong.
 pub fn fixed_loads(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, true)? {
+    let sample = match Sample::draw(&mut draw, kernels::DEFINITE)? {
         Drawn::Sample(sample) => sample,
         Drawn::Refused(verdict) => return verdict,
     };

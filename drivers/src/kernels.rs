@@ -27,8 +27,21 @@ pub(crate) enum Class {
     Random,
 }
 
-/// Kernels whose matrices are positive definite by theory, on any grid that they accept.
-const DEFINITE: [Class; 8] = [
+/// Kernels beside that of a free half-space.
+pub(crate) const ALL: &[Class] = &[
+    Class::FreeTable,
+    Class::Periodic,
+    Class::PeriodicInGauge,
+    Class::Spectral,
+    Class::SpectralInGauge,
+    Class::Exponential,
+    Class::Physical,
+    Class::Arbitrary,
+    Class::Random,
+];
+
+/// Those whose matrices are positive definite by theory, on any grid that they accept.
+pub(crate) const DEFINITE: &[Class] = &[
     Class::FreeTable,
     Class::Periodic,
     Class::PeriodicInGauge,
@@ -39,26 +52,19 @@ const DEFINITE: [Class; 8] = [
     Class::Arbitrary,
 ];
 
+/// Those that promise that contact only grows.
+pub(crate) const GROWING: &[Class] =
+    &[Class::Periodic, Class::PeriodicInGauge, Class::Spectral, Class::SpectralInGauge];
+
 /// A kernel, or why there is none.
 pub(crate) struct Made {
     pub(crate) class: Class,
     pub(crate) kernel: Result<Box<dyn InfluenceKernel + Send + Sync>, Error>,
 }
 
-/// A kernel on `grid` with the modulus `e_star`, of a class that is drawn; definite ones only if that is said.
-pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, definite: bool) -> Made {
-    let all: &[Class] = &[
-        Class::FreeTable,
-        Class::Periodic,
-        Class::PeriodicInGauge,
-        Class::Spectral,
-        Class::SpectralInGauge,
-        Class::Exponential,
-        Class::Physical,
-        Class::Arbitrary,
-        Class::Random,
-    ];
-    let class = draw.one_of(Class::Free, if definite { &DEFINITE } else { all });
+/// A kernel on `grid` with the modulus `e_star`, of a class that is drawn: a free half-space or one of these.
+pub(crate) fn kernel(draw: &mut Draw<'_>, grid: Grid, e_star: f64, others: &[Class]) -> Made {
+    let class = draw.one_of(Class::Free, others);
     Made { class, kernel: make(draw, grid, e_star, class) }
 }
 

@@ -7,6 +7,7 @@
 //! | driver | input | compared with |
 //! |---|---|---|
 //! | [`paths()`] | a surface on a body; how its path is followed | a dense solution at both ends of every interval |
+//! | [`yielding()`] | the same with a hardness | the same, single loads, unloading, a record |
 //! | [`large_contacts()`] | a surface on a half-space, on more nodes | without a factor: the path with one; with one: a dense solution |
 //! | [`fixed_loads()`] | a surface on a body; loads, approaches, areas, mean gaps | dense gaps, and the path |
 //! | [`large_loads()`] | the same on more nodes of a half-space | the same |
@@ -33,6 +34,7 @@ mod surfaces;
 mod variant;
 mod verdict;
 mod walk;
+mod yielding;
 
 pub use fixed_loads::{fixed_loads, large_loads};
 pub use large_contacts::large_contacts;
@@ -40,6 +42,7 @@ pub use parsers::parsers;
 pub use paths::paths;
 pub use records::records;
 pub use verdict::{Tally, Verdict, Violation};
+pub use yielding::yielding;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -47,13 +50,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub type Driver = fn(&[u8]) -> Verdict;
 
 /// All drivers by their names, which are those of the fuzz targets as well.
-pub const DRIVERS: [(&str, Driver); 6] = [
+pub const DRIVERS: [(&str, Driver); 7] = [
     ("fixed_loads", fixed_loads),
     ("large_contacts", large_contacts),
     ("large_loads", large_loads),
     ("parsers", parsers),
     ("paths", paths),
     ("records", records),
+    ("yielding", yielding),
 ];
 
 /// One case of a driver; a panic of the library is a violation as well.

@@ -55,9 +55,12 @@ impl Limit {
         }
     }
 
-    /// Whether a builder has to refuse it with this error, of a surface with this mean gap before it is loaded.
-    pub(crate) fn deserves(self, error: &Error, grid: &Grid, unloaded: f64) -> bool {
+    /// Whether a builder has to refuse it with this error, of a surface with this mean gap before it is loaded and this load under
+    /// which all nodes yield.
+    pub(crate) fn deserves(self, error: &Error, grid: &Grid, unloaded: f64, most: f64) -> bool {
         match (self, error) {
+            // Sums in whichever order.
+            (Self::Load(value), Error::OutOfRange { .. }) => value > most * (1.0 - 1e-13),
             (Self::Load(value) | Self::Approach(value), Error::NotPositive { .. }) => {
                 !(value > 0.0 && value.is_finite())
             }
@@ -96,7 +99,11 @@ impl Limit {
                 last.contact.contact_nodes == nodes_in(fraction)
             }
             (Some(LoadingEnd::Nodes), Self::Nodes(nodes)) => last.contact.contact_nodes == nodes,
+            // Whether others could yield is asked elsewhere.
             (Some(LoadingEnd::FullContact), _) => full,
+            (Some(LoadingEnd::FullyPlastic), _) => {
+                full && last.contact.plastic.is_some_and(|p| p.yielded_nodes == grid.nodes())
+            }
             // Whether anything closes is asked elsewhere.
             (Some(LoadingEnd::NoMoreEvents), _) => !full,
             _ => false,

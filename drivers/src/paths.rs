@@ -6,6 +6,7 @@ use asperity::{ContactGrowth, ContactRule, Error, Grid, InfluenceKernel, Loading
 use crate::compare::{Bounds, same_path};
 use crate::dense::Dense;
 use crate::draw::Draw;
+use crate::kernels;
 use crate::limits::Limit;
 use crate::problem::{Drawn, Sample};
 use crate::refusal::Circumstances;
@@ -28,7 +29,7 @@ const WELL_CONDITIONED: f64 = 1e-9;
 /// What is wrong.
 pub fn paths(bytes: &[u8]) -> Verdict {
     let mut draw = Draw::new(bytes);
-    let sample = match Sample::draw(&mut draw, false)? {
+    let sample = match Sample::draw(&mut draw, kernels::ALL)? {
         Drawn::Sample(sample) => sample,
         Drawn::Refused(verdict) => return verdict,
     };
@@ -36,17 +37,16 @@ pub fn paths(bytes: &[u8]) -> Verdict {
 }
 
 /// A problem, and what is known of it.
-struct Trial<'a> {
-    sample: &'a Sample,
-    grid: Grid,
-    dense: Dense,
-    circumstances: Circumstances,
+pub(crate) struct Trial<'a> {
+    pub(crate) sample: &'a Sample,
+    pub(crate) grid: Grid,
+    pub(crate) dense: Dense,
+    pub(crate) circumstances: Circumstances,
 }
 
 impl<'a> Trial<'a> {
-    fn new(sample: &'a Sample) -> Self {
-        let dense = Dense::new(&sample.kernel, sample.surface.matrix())
-            .in_gauge_of_paths(sample.kernel.contact_growth());
+    pub(crate) fn new(sample: &'a Sample) -> Self {
+        let dense = Dense::of_sample(sample).in_gauge_of_paths(sample.kernel.contact_growth());
         Self {
             sample,
             grid: sample.kernel.grid(),
@@ -55,12 +55,14 @@ impl<'a> Trial<'a> {
         }
     }
 
-    fn run(&self, draw: &mut Draw<'_>) -> Verdict {
+    pub(crate) fn run(&self, draw: &mut Draw<'_>) -> Verdict {
         let reference = Variant::REFERENCE;
         let (mut tally, expected) = self
             .follow(&reference, &[], draw)
             .map_err(|violation| violation.during("by default"))?;
-        let iterations = self.circumstances.error < WELL_CONDITIONED && draw.once_in(2);
+        let is_elastic = self.sample.hardness.is_none();
+        let iterations =
+            is_elastic && self.circumstances.error < WELL_CONDITIONED && draw.once_in(2);
         let mut variant = Variant::draw(draw, iterations);
         let from = match draw.once_in(3) {
             true if variant.rule == ContactRule::FirstContact => draw.whole(0, expected.len()),
@@ -112,8 +114,12 @@ impl<'a> Trial<'a> {
         let mut walk = Walk::new(&self.dense, self.grid, demands);
         walk.skip(earlier)?;
         walk.follow(&states)?;
-        if end == Some(LoadingEnd::NoMoreEvents) {
-            walk.check_no_more_events()?;
+        match end {
+            Some(LoadingEnd::NoMoreEvents) => walk.check_no_more_events()?,
+            Some(LoadingEnd::FullContact | LoadingEnd::FullyPlastic) => {
+                walk.check_nothing_is_left()?;
+            }
+            _ => (),
         }
         let mut tally = walk.tally();
         tally += more;
@@ -165,7 +171,7 @@ impl<'a> Trial<'a> {
     fn judge_refusal(&self, variant: &Variant, error: &Error) -> Verdict {
         let heights = self.sample.surface.matrix();
         let unloaded = heights.map(|height| heights.max() - height).mean();
-        if variant.limit.deserves(error, &self.grid, unloaded) {
+        if variant.limit.deserves(error, &self.grid, unloaded, self.sample.greatest_load()) {
             return Ok(Tally::refusal());
         }
         self.circumstances(variant)
@@ -198,11 +204,16 @@ impl<'a> Trial<'a> {
             walk.skip(&history.events()[..steps])?;
             match path.pressure_at(&state) {
                 Ok(pressure) => {
-                    let gap = path.gap_at(&state);
-                    let gap = gap.map_err(|error| Violation::new(error.to_string()))?;
-                    walk.compare_fields(&state, &pressure, &gap)
-                        .map_err(|violation| violation.during(format!("reading {state:?}")))?;
+                    let failed = |error: Error| Violation::new(error.to_string());
+                    let gap = path.gap_at(&state).map_err(failed)?;
+                    let depth = path.plastic_depth_at(&state).map_err(failed)?;
+                    let context =
+                        |violation: Violation| violation.during(format!("reading {state:?}"));
+                    walk.compare_fields(&state, [&pressure, &gap, &depth]).map_err(context)?;
                     tally += walk.tally();
+                    if self.sample.hardness.is_some() {
+                        tally += self.beside(path, &state, &walk).map_err(context)?;
+                    }
                 }
                 Err(error) => tally += self.circumstances(variant).judge(&error)?,
             }

@@ -1,6 +1,11 @@
 //! Whole contact problems.
 
-use asperity::{Error, Grid, HeightMap, InfluenceKernel, PeriodicBoussinesq};
+use asperity::fixed_load::FixedLoadBuilder;
+use asperity::loading::LoadingBuilder;
+use asperity::{
+    Error, FixedLoadSolver, Grid, HeightMap, InfluenceKernel, LoadingSolver, PeriodicBoussinesq,
+};
+use nalgebra::DMatrix;
 
 use crate::draw::Draw;
 use crate::kernels::{self, Class, Made};
@@ -15,6 +20,8 @@ pub(crate) struct Sample {
     pub(crate) surface: HeightMap,
     pub(crate) kernel: Box<dyn InfluenceKernel + Send + Sync>,
     pub(crate) class: Class,
+    /// The greatest pressure of each node \[Pa\].
+    pub(crate) hardness: Option<DMatrix<f64>>,
 }
 
 /// A problem that was drawn, or what there is to say of it if it was refused.
@@ -24,8 +31,8 @@ pub(crate) enum Drawn {
 }
 
 impl Sample {
-    /// Draws grid, heights and kernel; kernels that are positive definite by theory only if that is said.
-    pub(crate) fn draw(draw: &mut Draw<'_>, definite: bool) -> Result<Drawn, Violation> {
+    /// Draws grid, heights and kernel, that of a free half-space or one of these.
+    pub(crate) fn draw(draw: &mut Draw<'_>, kernels: &[Class]) -> Result<Drawn, Violation> {
         let grid = grid(draw)?;
         // Squares of pressures, and heights squared times modulus times cell, stay within double precision.
         let (height, modulus) = match draw.once_in(4) {
@@ -35,9 +42,9 @@ impl Sample {
         let heights = surfaces::heights(draw, grid.shape()) * height;
         let surface = HeightMap::new(heights)
             .map_err(|error| Violation::new(format!("finite heights were refused: {error}")))?;
-        let Made { class, kernel } = kernels::kernel(draw, grid, modulus, definite);
+        let Made { class, kernel } = kernels::kernel(draw, grid, modulus, kernels);
         match kernel {
-            Ok(kernel) => Ok(Drawn::Sample(Self { surface, kernel, class })),
+            Ok(kernel) => Ok(Drawn::Sample(Self { surface, kernel, class, hardness: None })),
             Err(error) => Ok(Drawn::Refused(judge(&error, &grid, class))),
         }
     }
@@ -53,6 +60,57 @@ impl Sample {
             .map_err(|error| Violation::new(format!("a sensible problem was refused: {error}")))
     }
 
+    /// Draws a hardness, one for all nodes or one for each: from one under which contacts are points to one that no pressure comes
+    /// to, some of them infinite.
+    pub(crate) fn harden(&mut self, draw: &mut Draw<'_>) {
+        let grid = self.kernel.grid();
+        let height = self.surface.peak_to_valley();
+        let height = if height > 0.0 { height } else { grid.dx() };
+        let pressure = height / self.kernel.coefficient(0, 0);
+        let hardness = pressure
+            * match draw.once_in(3) {
+                true => draw.decades(-9.0, -2.0),
+                false => draw.decades(-2.0, 1.0),
+            };
+        let (spread, infinite) = match draw.whole(0, 4) {
+            0..=2 => (0.0, 0.0),
+            3 => (draw.between(0.0, 3.0), 0.0),
+            _ => (draw.between(0.0, 1.0), draw.unit()),
+        };
+        let mut noise = draw.noise();
+        let (nx, ny) = grid.shape();
+        self.hardness = Some(DMatrix::from_fn(nx, ny, |_, _| {
+            let factor = 10_f64.powf(spread * noise());
+            if noise() < infinite { f64::INFINITY } else { hardness * factor }
+        }));
+    }
+
+    /// The path of the problem.
+    pub(crate) fn path(&self) -> LoadingBuilder<'_> {
+        let builder = LoadingSolver::builder(&self.surface, &self.kernel);
+        match &self.hardness {
+            None => builder,
+            Some(map) if map.min() == map.max() => builder.hardness(map.min()),
+            Some(map) => builder.hardness_map(map),
+        }
+    }
+
+    /// Single loads on it.
+    pub(crate) fn single_loads(&self) -> FixedLoadBuilder<'_> {
+        let builder = FixedLoadSolver::builder(&self.surface, &self.kernel);
+        match &self.hardness {
+            None => builder,
+            Some(map) if map.min() == map.max() => builder.hardness(map.min()),
+            Some(map) => builder.hardness_map(map),
+        }
+    }
+
+    /// The load \[N\] under which all nodes yield.
+    pub(crate) fn greatest_load(&self) -> f64 {
+        let hardness = self.hardness.as_ref().map_or(f64::INFINITY, DMatrix::sum);
+        hardness * self.kernel.grid().cell_area()
+    }
+
     /// For messages.
     pub(crate) fn context(&self) -> String {
         let grid = self.kernel.grid();
@@ -60,8 +118,12 @@ impl Sample {
         // Enough to make the case again without its bytes.
         let heights = self.surface.matrix().as_slice();
         let heights = if heights.len() > 20 { &[] } else { heights };
+        let hardness = self.hardness.as_ref().map_or_else(String::new, |map| {
+            let values = if map.len() > 20 { &[] } else { map.as_slice() };
+            format!(", hardness {:e} to {:e} {values:?}", map.min(), map.max())
+        });
         format!(
-            "{:?} on {} x {} nodes of {:e} x {:e}, {peak:e} high {heights:?}",
+            "{:?} on {} x {} nodes of {:e} x {:e}, {peak:e} high {heights:?}{hardness}",
             self.class,
             grid.nx(),
             grid.ny(),
@@ -90,7 +152,8 @@ fn half_space(
         _ => aspect.clamp(1.0 / longest, longest),
     };
     let grid = Grid::new(nx, ny, dx, dx * aspect)?;
-    Ok(Sample { surface, kernel: kernels::make(draw, grid, modulus, class)?, class })
+    let kernel = kernels::make(draw, grid, modulus, class)?;
+    Ok(Sample { surface, kernel, class, hardness: None })
 }
 
 /// A grid: small squares, strips and whatever lies between, with cells from square to 10⁴ times as long as wide.

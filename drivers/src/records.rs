@@ -3,17 +3,17 @@
 use std::io::{Cursor, Read, Write};
 
 use allocation_counter::measure;
+use asperity::Error;
 use asperity::loading::{History, LoadingState};
 use asperity::record::LoadingRecord;
 use asperity::updater::RecursiveCholesky;
-use asperity::{Error, LoadingSolver};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::edits::edit;
-use crate::kernels::Class;
+use crate::kernels::{self, Class};
 use crate::limits::Limit;
 use crate::problem::{Drawn, Sample};
 use crate::refusal::Circumstances;
@@ -45,7 +45,7 @@ pub fn records(bytes: &[u8]) -> Verdict {
     if draw.once_in(4) {
         return read(draw.rest(), &scratch);
     }
-    let sample = match Sample::draw(&mut draw, true)? {
+    let sample = match Sample::draw(&mut draw, kernels::DEFINITE)? {
         Drawn::Sample(sample) => sample,
         Drawn::Refused(verdict) => return verdict,
     };
@@ -53,7 +53,7 @@ pub fn records(bytes: &[u8]) -> Verdict {
 }
 
 /// A record of a true path: the same after it was written, and hostile after it was tampered with.
-fn whole(sample: &Sample, draw: &mut Draw<'_>, scratch: &Scratch) -> Verdict {
+pub(crate) fn whole(sample: &Sample, draw: &mut Draw<'_>, scratch: &Scratch) -> Verdict {
     let Some((record, states)) = record(sample, draw)? else {
         return Ok(Tally::default());
     };
@@ -76,8 +76,7 @@ fn record(
     draw: &mut Draw<'_>,
 ) -> Result<Option<(LoadingRecord, Vec<LoadingState>)>, Violation> {
     let follow = |limit: Limit| -> Result<_, Error> {
-        let builder = LoadingSolver::builder(&sample.surface, &sample.kernel)
-            .updater(RecursiveCholesky::new());
+        let builder = sample.path().updater(RecursiveCholesky::new());
         let mut path = limit.set(builder).build()?;
         let states: Vec<LoadingState> = path.by_ref().collect::<Result<_, _>>()?;
         Ok((path, states))
@@ -115,8 +114,7 @@ fn bring_back(
     states: &[LoadingState],
     draw: &mut Draw<'_>,
 ) -> Verdict {
-    let dense = Dense::new(&sample.kernel, sample.surface.matrix())
-        .in_gauge_of_paths(sample.kernel.contact_growth());
+    let dense = Dense::of_sample(sample).in_gauge_of_paths(sample.kernel.contact_growth());
     let circumstances = Circumstances {
         tolerance: Some(ITERATED),
         ..Circumstances::of(&dense, sample.kernel.contact_growth())
@@ -135,15 +133,15 @@ fn bring_back(
     let replay = record.replay_on(&sample.kernel);
     let mut replay = replay.map_err(|error| Violation::new(format!("no replay: {error}")))?;
     let k = draw.whole(0, last);
-    let fields = replay
-        .pressure_at(&states[k])
-        .and_then(|pressure| Ok((pressure, replay.gap_at(&states[k])?)));
+    let fields = replay.pressure_at(&states[k]).and_then(|pressure| {
+        Ok([pressure, replay.gap_at(&states[k])?, replay.plastic_depth_at(&states[k])?])
+    });
     match fields {
-        Ok((pressure, gap)) => {
+        Ok([pressure, gap, depth]) => {
             let demands = Demands { residual: ITERATED, ..Demands::EXACT };
             let mut walk = Walk::new(&dense, record.grid(), demands);
             walk.skip(&states[..=k])?;
-            walk.compare_fields(&states[k], &pressure, &gap)
+            walk.compare_fields(&states[k], [&pressure, &gap, &depth])
                 .map_err(|violation| violation.during(format!("replay of {:?}", states[k])))?;
             Ok(walk.tally())
         }

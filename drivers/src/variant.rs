@@ -89,9 +89,7 @@ impl Variant {
         &self,
         sample: &'a Sample,
     ) -> Result<LoadingBuilder<'a, Box<dyn LinearUpdater + Send>>, Error> {
-        let builder = LoadingSolver::builder(&sample.surface, &sample.kernel)
-            .updater(self.updater())
-            .rule(self.rule);
+        let builder = sample.path().updater(self.updater()).rule(self.rule);
         let builder = match self.window {
             Some(nodes) => builder.window_size(nodes),
             None => builder,
@@ -99,7 +97,7 @@ impl Variant {
         let builder = match self.solver {
             Solver::Handover(Some(bytes)) => {
                 // What the grid takes is only known of a path.
-                let empty = LoadingSolver::builder(&sample.surface, &sample.kernel).build()?;
+                let empty = sample.path().build()?;
                 builder.memory_budget(empty.bytes() + bytes)
             }
             _ => builder,

@@ -5,12 +5,15 @@
 //! gap there: any other node that touched earlier would overlap at the end of the interval. The solution of a positive
 //! definite complementarity problem is the only one, so that this also fixes the order of events, up to nodes that touch at
 //! the same approach to rounding.
+//!
+//! With a hardness no pressure may exceed it, and where a node has yielded the gap must not be above zero. A node of an event comes
+//! from out of contact to elastic, or from elastic to yielded.
 
 use asperity::loading::ContactEvent;
 use asperity::{Grid, LoadingState};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use crate::dense::{ContactSet, Dense, Instant, Scalars};
+use crate::dense::{ContactSet, Dense, Instant, Node, Scalars};
 use crate::verdict::{Tally, Violation, ensure};
 
 /// Events closer than this, relative to the approach, are simultaneous to the library, the lowest index first.
@@ -35,7 +38,9 @@ pub(crate) struct Walk<'a> {
     dense: &'a Dense,
     grid: Grid,
     demands: Demands,
+    /// Elastic nodes, and yielded ones.
     contact: Vec<usize>,
+    yielded: Vec<usize>,
     last: Option<LoadingState>,
     /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before, whose
     /// errors add up to no more than that, since their ways add up to the approach.
@@ -52,6 +57,7 @@ impl<'a> Walk<'a> {
             grid,
             demands,
             contact: Vec::new(),
+            yielded: Vec::new(),
             last: None,
             gap_error: 0.0,
             tally: Tally::default(),
@@ -80,20 +86,19 @@ impl<'a> Walk<'a> {
         self.tally
     }
 
-    /// The nodes in contact where the walk stands.
+    /// The nodes in contact where the walk stands that have not yielded.
     pub(crate) fn contact(&self) -> &[usize] {
         &self.contact
     }
 
-    /// Compares fields with those of a state on the contact where the walk stands.
+    /// Compares fields with those of a state on the contact where the walk stands: pressures, gaps, plastic depths.
     pub(crate) fn compare_fields(
         &mut self,
         state: &LoadingState,
-        pressure: &DMatrix<f64>,
-        gap: &DMatrix<f64>,
+        [pressure, gap, depth]: [&DMatrix<f64>; 3],
     ) -> Result<(), Violation> {
         let found = self.dense.of(state);
-        let Some((set, instant)) = self.solved(&found) else {
+        let Some((set, instant)) = self.solved(state) else {
             return Ok(());
         };
         self.check_scalars(&found, &set, &instant)?;
@@ -102,9 +107,19 @@ impl<'a> Walk<'a> {
             let own = self.dense.own_pressure(pressure[node]);
             let expected = instant.pressure[node];
             self.tally.close("pressure", own, expected, instant.pressure_error)?;
-            let own = self.dense.own_length(gap[node]);
-            let expected = instant.gap[node];
+            let (own, own_depth) =
+                (self.dense.own_length(gap[node]), self.dense.own_length(depth[node]));
+            let (expected, expected_depth) = match set.states()[node] {
+                Node::Yielded => (0.0, -instant.gap[node]),
+                _ => (instant.gap[node], 0.0),
+            };
+            let yields = set.states()[node] == Node::Yielded;
+            ensure!(
+                if yields { own == 0.0 } else { own_depth == 0.0 },
+                "node {node} has a gap of {own:e} and a plastic depth of {own_depth:e}"
+            );
             self.tally.close("gap", own, expected, instant.gap_error)?;
+            self.tally.close("plastic depth", own_depth, expected_depth, instant.gap_error)?;
         }
         self.tally.checked += 1;
         Ok(())
@@ -114,8 +129,7 @@ impl<'a> Walk<'a> {
     /// contact and gaps elsewhere that are zero to a hundred times the error they may have. All of them, where nothing can be
     /// said.
     pub(crate) fn on_the_edge(&self) -> usize {
-        let state = self.last.as_ref().map(|state| self.dense.of(state));
-        let Some((set, instant)) = state.and_then(|found| self.solved(&found)) else {
+        let Some((set, instant)) = self.last.and_then(|state| self.solved(&state)) else {
             return self.dense.nodes();
         };
         let is_zero = |node: &usize| match set.contains(*node) {
@@ -127,7 +141,7 @@ impl<'a> Walk<'a> {
 
     /// `Ok` if nothing can happen any more: no gap closes, and no pressure falls.
     pub(crate) fn check_no_more_events(&mut self) -> Result<(), Violation> {
-        let Some(set) = ContactSet::new(self.dense, &self.contact, self.demands.residual) else {
+        let Some(set) = self.set() else {
             return Ok(());
         };
         for node in 0..self.dense.nodes() {
@@ -142,6 +156,21 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// `Ok` if no node is left that could touch or yield.
+    pub(crate) fn check_nothing_is_left(&self) -> Result<(), Violation> {
+        let yields = |node: &&usize| {
+            self.dense.hardness().is_some_and(|hardness| hardness[**node].is_finite())
+        };
+        let left = self.contact.iter().find(yields);
+        ensure!(
+            left.is_none() && self.contact.len() + self.yielded.len() == self.dense.nodes(),
+            "node {left:?} may yield, of {} in contact and {} that have yielded",
+            self.contact.len(),
+            self.yielded.len()
+        );
+        Ok(())
+    }
+
     /// Does to the contact what happens at a state; the node, unless nothing happens.
     fn take(&mut self, state: &LoadingState) -> Result<Option<usize>, Violation> {
         let (ix, iy) = state.node;
@@ -151,9 +180,13 @@ impl<'a> Walk<'a> {
         };
         let place = self.contact.iter().position(|&other| other == node);
         match (state.event, place) {
-            (ContactEvent::Touch, None) => self.contact.push(node),
-            (ContactEvent::Release, Some(place)) => {
+            (ContactEvent::Touch, None) if !self.yielded.contains(&node) => self.contact.push(node),
+            (ContactEvent::Release, Some(place)) if self.dense.hardness().is_none() => {
                 self.contact.remove(place);
+            }
+            (ContactEvent::Yield, Some(place)) if self.dense.hardness().is_some() => {
+                self.contact.remove(place);
+                self.yielded.push(node);
             }
             (ContactEvent::Limit, _) => return Ok(None),
             (event, _) => {
@@ -167,7 +200,7 @@ impl<'a> Walk<'a> {
 
     fn step(&mut self, state: &LoadingState) -> Result<(), Violation> {
         let found = self.dense.of(state);
-        let before = self.last.and_then(|_| self.solved(&found));
+        let before = self.last.and_then(|_| self.solved(state));
         let last = self.last;
         let node = self.take(state)?;
         self.check_counts(state)?;
@@ -176,7 +209,12 @@ impl<'a> Walk<'a> {
             self.check_signs(set, instant)?;
             if let Some(node) = node {
                 let size = instant.gap[node].abs();
-                let (what, value, allowed) = if set.contains(node) {
+                let (what, value, allowed) = if state.event == ContactEvent::Yield {
+                    let hardness = self.hardness(node);
+                    let left = hardness - instant.pressure[node];
+                    let allowed = instant.pressure_error + TIE * hardness;
+                    ("pressure missing where a node yields", left, allowed)
+                } else if set.contains(node) {
                     let value = instant.pressure[node];
                     ("pressure of the node that leaves", value, instant.pressure_error)
                 } else {
@@ -197,9 +235,9 @@ impl<'a> Walk<'a> {
             let highest = (0..self.dense.nodes()).find(|&node| self.dense.gap()[node] == 0.0);
             ensure!(node == highest, "the first of the highest nodes is {highest:?}");
         }
-        if let Some((set, instant)) = self.solved(&found) {
+        if let Some((set, instant)) = self.solved(state) {
             self.check_scalars(&found, &set, &instant)?;
-            self.check_stiffnesses(&found, &set)?;
+            self.check_stiffnesses(&found, &set, &instant)?;
             self.check_signs(&set, &instant)?;
             self.tally.checked += 1;
         } else {
@@ -210,18 +248,26 @@ impl<'a> Walk<'a> {
     }
 
     /// The equations of the contact, solved at the approach of a state; `None` where nothing can be said.
-    fn solved(&self, found: &Scalars) -> Option<(ContactSet<'a>, Instant)> {
+    pub(crate) fn solved(&self, state: &LoadingState) -> Option<(ContactSet<'a>, Instant)> {
         if self.blind {
             return None;
         }
-        let set = ContactSet::new(self.dense, &self.contact, self.demands.residual)?;
-        let instant = set.at(found.own_approach);
+        let set = self.set()?;
+        let instant = set.at(self.dense.of(state).own_approach);
         let worst = instant.gap_error.max(set.closing_error);
         (worst <= self.demands.hopeless).then_some((set, instant))
     }
 
+    fn set(&self) -> Option<ContactSet<'a>> {
+        ContactSet::beside(self.dense, &self.contact, &self.yielded, self.demands.residual)
+    }
+
+    fn hardness(&self, node: usize) -> f64 {
+        self.dense.hardness().map_or(f64::INFINITY, |hardness| hardness[node])
+    }
+
     fn check_counts(&self, state: &LoadingState) -> Result<(), Violation> {
-        let nodes = self.contact.len();
+        let nodes = self.contact.len() + self.yielded.len();
         let events = self.last.map_or(0, |last| last.step);
         let expected = match state.event {
             ContactEvent::Limit => events,
@@ -239,6 +285,17 @@ impl<'a> Walk<'a> {
                 && (state.contact.contact_area_fraction - fraction).abs() <= f64::EPSILON,
             "the area is {area:e}, a fraction of {fraction:e}"
         );
+        let yielded = self.yielded.len();
+        let fraction = yielded as f64 / self.grid.nodes() as f64;
+        let is_right = match state.contact.plastic {
+            None => self.dense.hardness().is_none(),
+            Some(plastic) => {
+                self.dense.hardness().is_some()
+                    && plastic.yielded_nodes == yielded
+                    && (plastic.yielded_area_fraction - fraction).abs() <= f64::EPSILON
+            }
+        };
+        ensure!(is_right, "{yielded} nodes have yielded, a fraction of {fraction:e}");
         Ok(())
     }
 
@@ -252,10 +309,17 @@ impl<'a> Walk<'a> {
         let sum = instant.pressure.sum();
         let allowed = set.sum_error(instant.gap_error);
         tally.close("load", found.sum, sum, allowed)?;
-        let gap = instant.gap.mean();
+        let overlap: f64 = set.all(Node::Yielded).map(|node| instant.gap[node]).sum();
+        let gap = instant.gap.mean() - overlap / self.dense.nodes() as f64;
         self.gap_error = self.gap_error.max(instant.gap_error);
         let allowed = self.gap_error + instant.gap_error;
         tally.close("mean gap", found.mean_gap, gap, allowed)?;
+        if let Some(plastic) = found.plastic {
+            let [expected, errors] = set.plastic(instant, allowed);
+            for (k, what) in ["plastic volume", "plastic work"].into_iter().enumerate() {
+                tally.close(what, plastic.sums[k], expected.sums[k], errors.sums[k])?;
+            }
+        }
         let (energy, allowed) = set.energy(instant);
         tally.close("energy", found.energy, energy, allowed)
     }
@@ -264,7 +328,21 @@ impl<'a> Walk<'a> {
         &mut self,
         found: &Scalars,
         set: &ContactSet<'_>,
+        instant: &Instant,
     ) -> Result<(), Violation> {
+        if let Some(plastic) = found.plastic {
+            let [expected, errors] = set.plastic(instant, instant.gap_error);
+            for (k, what) in
+                ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
+            {
+                self.tally.close(
+                    what,
+                    plastic.per_load[k],
+                    expected.per_load[k],
+                    errors.per_load[k],
+                )?;
+            }
+        }
         let [(contact, error), (interfacial, interfacial_error)] = set.stiffnesses();
         match found.stiffness {
             Some(stiffness) => {
@@ -280,7 +358,7 @@ impl<'a> Walk<'a> {
         let Some(stiffness) = found.interfacial else {
             return Err(Violation::new("there is no interfacial stiffness"));
         };
-        if self.contact.len() == self.dense.nodes() {
+        if self.contact.len() + self.yielded.len() == self.dense.nodes() {
             ensure!(
                 stiffness == f64::INFINITY,
                 "in full contact the interfacial stiffness is {stiffness:e}"
@@ -293,17 +371,22 @@ impl<'a> Walk<'a> {
     }
 
     fn check_signs(&mut self, set: &ContactSet<'_>, instant: &Instant) -> Result<(), Violation> {
-        let (inside, outside): (Vec<usize>, Vec<usize>) =
-            (0..self.dense.nodes()).partition(|&node| set.contains(node));
-        let least = |nodes: &[usize], field: &DVector<f64>| {
-            let values = nodes.iter().map(|&node| field[node]);
-            values.fold(f64::INFINITY, f64::min)
-        };
-        let pressure = least(&inside, &instant.pressure);
-        self.tally.not_negative("least pressure", pressure, instant.pressure_error)?;
-        let gap = least(&outside, &instant.gap);
-        let error = instant.gap_error + TIE * instant.lengths;
-        self.tally.not_negative("least gap", gap, error)?;
+        let length = instant.gap_error + TIE * instant.lengths;
+        for (node, state) in set.states().iter().enumerate() {
+            let (pressure, gap) = (instant.pressure[node], instant.gap[node]);
+            match state {
+                Node::Out => self.tally.not_negative("a gap", gap, length)?,
+                Node::Yielded => self.tally.not_negative("a plastic depth", -gap, length)?,
+                Node::Elastic => {
+                    let (error, hardness) = (instant.pressure_error, self.hardness(node));
+                    self.tally.not_negative("a pressure", pressure, error)?;
+                    if hardness.is_finite() {
+                        let error = error + TIE * hardness;
+                        self.tally.not_negative("what a node bears", hardness - pressure, error)?;
+                    }
+                }
+            }
+        }
         Ok(())
     }
 }

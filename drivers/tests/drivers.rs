@@ -81,6 +81,11 @@ fn paths_are_right() -> Result<(), Violation> {
 }
 
 #[test]
+fn yielding_is_right() -> Result<(), Violation> {
+    compared(drive("yielding_is_right", asperity_drivers::yielding, 100, 400)?)
+}
+
+#[test]
 fn large_contacts_are_right() -> Result<(), Violation> {
     compared(drive("large_contacts_are_right", asperity_drivers::large_contacts, 40, 400)?)
 }
