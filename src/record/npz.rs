@@ -173,11 +173,16 @@ impl LoadingRecord {
             return Ok(());
         };
         let patches = PatchHistory::new(&contact, self.kernel.boundary, Connectivity::Four);
-        let mut patches: Vec<PatchState> = patches.collect();
-        // At a limit nothing has happened since the last event.
-        if let Some(last) = patches.last().copied() {
-            patches.resize(self.states().len(), last);
-        }
+        // At a limit, and where a node yields, they are those of the last touch.
+        let mut touched = patches;
+        let mut present = None;
+        let patches = self.states().iter().filter_map(|state| {
+            if state.event == ContactEvent::Touch {
+                present = touched.next();
+            }
+            present
+        });
+        let patches: Vec<PatchState> = patches.collect();
         let count = patches.len();
         archive.integers("patches", count, patches.iter().map(|s| s.patches as i64))?;
         archive.integers("largest_patch", count, patches.iter().map(|s| s.largest as i64))?;

@@ -26,7 +26,7 @@ pub(super) fn draw(
 ) -> Result<PathBuf, Failure> {
     let grid = record.grid();
     let marks = marks(&followed.passages);
-    let states = || record.history().events().iter().zip(&followed.patches);
+    let states = || followed.touches.iter().zip(&followed.patches);
     let reached = states().map(|(state, _)| state.contact.contact_area_fraction);
     let reached = reached.fold(0.0, f64::max);
     let count = followed.patches.len();

@@ -4,11 +4,13 @@ use asperity::patches::{
     Connectivity, MergeTree, PatchHistory, PatchState, Percolation, contact_sequence,
 };
 use asperity::record::LoadingRecord;
-use asperity::{Error, LoadingState};
+use asperity::{ContactEvent, Error, LoadingState};
 
 /// The patches of a path without nodes that leave.
 pub(super) struct Followed {
-    /// One for each event, which are the first states of the record.
+    /// The states at which nodes touch.
+    pub(super) touches: Vec<LoadingState>,
+    /// One for each of them.
     pub(super) patches: Vec<PatchState>,
     pub(super) tree: MergeTree,
     pub(super) passages: [Passage; 4],
@@ -29,17 +31,21 @@ impl Followed {
         let contact = contact_sequence(record.grid(), events)?;
         let boundary = record.kernel().boundary;
         let found = Percolation::of(&contact, boundary, connectivity);
-        let at = |step: usize| record.history().events().get(step.checked_sub(1)?).copied();
+        let touches = record.states().iter().filter(|state| state.event == ContactEvent::Touch);
+        let touches: Vec<LoadingState> = touches.copied().collect();
+        let at = |step: usize| touches.get(step.checked_sub(1)?).copied();
         let passage = |name, step: Option<usize>| Passage { name, state: step.and_then(at) };
+        let passages = [
+            passage("percolates along x", found.contact_x),
+            passage("percolates along y", found.contact_y),
+            passage("seals along x", found.leak_x),
+            passage("seals along y", found.leak_y),
+        ];
         Ok(Self {
+            touches,
             patches: PatchHistory::new(&contact, boundary, connectivity).collect(),
             tree: MergeTree::new(&contact, boundary, connectivity),
-            passages: [
-                passage("percolates along x", found.contact_x),
-                passage("percolates along y", found.contact_y),
-                passage("seals along x", found.leak_x),
-                passage("seals along y", found.leak_y),
-            ],
+            passages,
         })
     }
 }

@@ -10,7 +10,7 @@ use asperity_cli::outcome::{self, Failure};
 
 use super::followed::Followed;
 
-/// One line for each state. At the limit of a path the patches are those of the last event.
+/// One line for each state. At the limit of a path, and where a node yields, the patches are those of the last touch.
 pub(super) fn write(
     record: &LoadingRecord,
     followed: &Followed,
@@ -27,11 +27,17 @@ fn lines(record: &LoadingRecord, followed: &Followed) -> Result<String, fmt::Err
         "step,load,contact_area_fraction,patches,largest_patch,perimeter,corrected_area_fraction,event"
     )?;
     let grid = record.grid();
-    let last = followed.patches.last();
-    let patches = followed.patches.iter().chain(last);
-    for (state, patches) in record.states().iter().zip(patches) {
+    let (mut touched, mut present) = (followed.patches.iter(), None);
+    for state in record.states() {
+        if state.event == ContactEvent::Touch {
+            present = touched.next();
+        }
+        let Some(patches) = present else {
+            continue;
+        };
         let event = match (state.event, patches.event) {
             (ContactEvent::Limit, _) => "limit",
+            (ContactEvent::Yield, _) => "yield",
             (_, PatchEvent::Birth) => "birth",
             (_, PatchEvent::Growth) => "growth",
             (_, PatchEvent::Merge { .. }) => "merge",

@@ -56,8 +56,8 @@ struct Tree<'a> {
 
 impl Tree<'_> {
     fn load(&self, step: usize) -> f64 {
-        let events = self.record.history().events();
-        let state = step.checked_sub(1).and_then(|place| events.get(place));
+        let touches = &self.followed.touches;
+        let state = step.checked_sub(1).and_then(|place| touches.get(place));
         state.map_or(f64::NAN, |state| state.contact.load)
     }
 

@@ -101,7 +101,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
     };
     let event = |name: &str, values: &mut Vec<f64>| {
         if name == "event" {
-            values[1] = 3.0;
+            values[1] = 4.0;
         }
     };
     let cases: [(&str, Change, &str); 5] = [
@@ -109,7 +109,7 @@ fn archives_that_are_no_record_are_refused() -> Result<(), Box<dyn std::error::E
         (&other, &as_it_is, "it holds 'lens prescription'"),
         ("{}", &as_it_is, "its parameters are not understood: missing field `format`"),
         (&text, &three, "member 'load': it has 3 numbers, but there are 4 states"),
-        (&text, &event, "no event is 3"),
+        (&text, &event, "no event is 4"),
     ];
     for (parameters, change, expected) in cases {
         let (written, found) = read(parameters, change);

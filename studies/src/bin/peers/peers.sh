@@ -1,5 +1,6 @@
 #!/bin/sh
-# Solves the problems of the study `peers` with other programs and writes `peers.csv` and `waves.csv`:
+# Solves the problems of the studies `peers` and `yielding` with other programs and writes `peers.csv`, `waves.csv` and
+# `hardness.csv`:
 #
 #     studies/src/bin/peers/peers.sh [DIR]
 #
@@ -9,10 +10,12 @@
 set -e
 dir=${1:-out/peers}
 here=studies/src/bin/peers
+cargo build --release -p asperity-cli
 cargo run --release -p asperity-studies --bin peers -- --write "$dir"
 if [ ! -x "$dir/venv/bin/python" ]; then
     python3 -m venv "$dir/venv"
 fi
 "$dir/venv/bin/pip" install --quiet --requirement "$here/requirements.txt" \
     --config-settings=cmake.define.FETCHCONTENT_SOURCE_DIR_EIGEN3_SRC=/usr/include/eigen3
+"$dir/venv/bin/python" "$here/hardness.py" target/release/asperity "$here/hardness.csv"
 "$dir/venv/bin/python" "$here/peers.py" "$dir" "$here/peers.csv" "$here/waves.csv"

@@ -1,0 +1,135 @@
+//! Paths on which cells yield, and the way back.
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use common::{Scratch, asperity, is_refused, said};
+
+type Done = Result<(), Box<dyn Error>>;
+
+fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    Ok(asperity(folder, &words).output()?)
+}
+
+fn finished(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
+    let done = run(folder, line)?;
+    assert!(done.status.success(), "{line}: {}", said(&done));
+    Ok(said(&done) + &String::from_utf8_lossy(&done.stdout))
+}
+
+/// The cells of a column of a file.
+fn column(file: &Path, name: &str) -> Result<Vec<String>, Box<dyn Error>> {
+    let text = fs::read_to_string(file)?;
+    let mut lines = text.lines();
+    let header = lines.next().ok_or("no header")?;
+    let place = header.split(',').position(|other| other == name);
+    let place = place.ok_or_else(|| format!("no column {name}"))?;
+    Ok(lines.map(|line| line.split(',').nth(place).unwrap_or_default().to_string()).collect())
+}
+
+fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
+}
+
+/// Events of both kinds; the way back begins at the last state, and its surface is one to be read again: pressed by the same load it
+/// is in contact with as many nodes.
+#[test]
+fn cells_yield_and_the_way_back_is_elastic() -> Done {
+    let folder = Scratch::new("hardness")?;
+    let words = finished(
+        &folder.0,
+        "path --nodes 48 --max-area-fraction 0.2 --hardness 250HV --unload --record path.npz --fields npy",
+    )?;
+    assert!(words.contains("hardness   2.644 GPa") && words.contains("unloading:"), "{words}");
+    assert!(!words.contains("metals yield at"), "{words}");
+    let (path, back) = (folder.join("out/path.csv"), folder.join("out/unloading.csv"));
+    let events = column(&path, "event")?;
+    let count = |kind: &str| events.iter().filter(|event| *event == kind).count();
+    assert_eq!((count("touch"), count("touch") + count("yield")), (460, events.len()));
+    assert!(count("yield") > 400, "{}", count("yield"));
+    let yielded = numbers(&path, "yielded_area_fraction")?;
+    let last = *yielded.last().ok_or("no state")?;
+    assert!((last - count("yield") as f64 / 2304.0).abs() < 1e-15);
+    for name in ["load", "approach", "mean_gap"] {
+        let (to, from) = (numbers(&path, name)?, numbers(&back, name)?);
+        let (to, from) = (to[to.len() - 1], from[0]);
+        assert!((from / to - 1.0).abs() < 1e-9, "{name}: {from} {to}");
+    }
+    assert_eq!(numbers(&back, "load")?.last(), Some(&0.0));
+    assert!(folder.join("out/plastic_depth.npy").exists());
+
+    let load = numbers(&path, "load")?;
+    let load = load[load.len() - 1];
+    for file in ["residual_surface.npy", "residual_surface.x3p"] {
+        let sides = if file.ends_with("npy") { "--side 1e-2" } else { "" };
+        let line = format!(
+            "load --surface out/{file} {sides} --material steel --load {load:e} --out again"
+        );
+        finished(&folder.0, &line)?;
+        let nodes = numbers(&folder.join("again/load.csv"), "contact_nodes")?;
+        // Nodes that have yielded carry all the same there, but those that touch at this very load.
+        assert!((nodes[0] - 460.0).abs() <= 2.0, "{nodes:?}");
+    }
+
+    // The record goes on with its hardness, and has patches.
+    let words = finished(&folder.0, "path --resume path.npz --max-area-fraction 0.3 --out more")?;
+    assert!(words.contains("hardness   2.644 GPa, of the record"), "{words}");
+    let more = column(&folder.join("more/path.csv"), "event")?;
+    assert_eq!(more[..events.len()], events);
+    finished(&folder.0, "patches path.npz --out patches")?;
+    let told = column(&folder.join("patches/patches.csv"), "event")?;
+    assert_eq!(told.len(), more.len());
+    assert_eq!(told[1] == "yield", more[1] == "yield");
+    Ok(())
+}
+
+/// A typical value only if it is asked for, and with it the value.
+#[test]
+fn a_typical_hardness_is_said() -> Done {
+    let folder = Scratch::new("yield")?;
+    let line = "path --nodes 32 --max-area-fraction 0.02";
+    let words = finished(&folder.0, &format!("{line} --yield"))?;
+    assert!(words.contains("hardness   2.5 GPa, typical of the material"), "{words}");
+    let words = finished(&folder.0, &format!("{line} --material steel --against copper --yield"))?;
+    assert!(words.contains("hardness   900 MPa, typical"), "{words}");
+    let words = finished(&folder.0, line)?;
+    assert!(!words.contains("hardness   "), "{words}");
+    assert!(words.contains("`--hardness`"), "{words}");
+    for (line, word) in [
+        ("path --nodes 32 --e-star 1e11 --yield", "typical hardness"),
+        ("path --nodes 32 --material rubber --yield", "typical hardness"),
+        ("path --nodes 32 --unload", "--hardness"),
+        ("path --nodes 32 --hardness 1e9 --mean-pressure 1e9", "all nodes yield"),
+        ("path --nodes 32 --hardness 1e9 --updater iterative", "hardness"),
+    ] {
+        is_refused(&run(&folder.0, line)?, &[word]);
+    }
+    for line in ["path --hardness 60HRC", "path --hardness 0", "path --hardness 1e9 --yield"] {
+        assert_eq!(run(&folder.0, line)?.status.code(), Some(2), "{line}");
+    }
+    Ok(())
+}
+
+/// Single loads: the same area as the path has there.
+#[test]
+fn single_loads_have_a_hardness_too() -> Done {
+    let folder = Scratch::new("hard-load")?;
+    finished(&folder.0, "path --nodes 48 --max-load 1000 --yield --record path.npz --fields npy")?;
+    fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let surface = "--surface rough.npy --side 1e-2 --e-star 1 --hardness 0.032";
+    finished(&folder.0, &format!("path {surface} --max-load 5e-8 --out path"))?;
+    let words = finished(&folder.0, &format!("load {surface} --load 5e-8 --out load"))?;
+    assert!(words.contains("nodes have yielded"), "{words}");
+    for name in ["contact_area_fraction", "yielded_area_fraction"] {
+        let path = numbers(&folder.join("path/path.csv"), name)?;
+        let load = numbers(&folder.join("load/load.csv"), name)?;
+        assert_eq!(path.last(), load.first(), "{name}");
+    }
+    Ok(())
+}
