@@ -37,7 +37,8 @@ pub struct ContactState {
     pub interfacial_stiffness: Option<f64>,
     /// Elastic energy `U = ½ ΔA Σ p u` \[J\], which comes back on unloading. Where nothing yields it is `∫ W dδ`.
     pub energy: f64,
-    /// What has yielded, on a path with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one.
+    /// What has yielded, on a path with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one, and at single
+    /// loads, of which [`FixedLoadSolution::plastic`](crate::FixedLoadSolution::plastic) says it.
     pub plastic: Option<PlasticState>,
 }
 

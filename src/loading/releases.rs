@@ -44,9 +44,14 @@ impl Releases {
         self.log.push(release);
     }
 
-    /// Says that the updater does not hold the contact of any state up to the event number `step`.
-    pub(super) fn forget(&mut self, step: usize) {
-        self.prefix_since = step + 1;
+    /// Says that the updater does not hold the contact of any state up to the event number `step`; returns from which on it did.
+    pub(super) fn forget(&mut self, step: usize) -> usize {
+        std::mem::replace(&mut self.prefix_since, step + 1)
+    }
+
+    /// Says again from which state on it does.
+    pub(super) fn remember(&mut self, step: usize) {
+        self.prefix_since = step;
     }
 
     /// The nodes that had yielded after `step` events, in the order in which they did.

@@ -170,7 +170,7 @@ impl LoadingRun {
         }
         self.field.solve(&self.problem, &self.contact, updater, approach)?;
         self.timings.convolution = self.field.time();
-        self.check_closed(approach)
+        self.check_closed(&self.problem, &self.contact, approach)
     }
 
     /// Moves iterations to the present contact at an approach, with a rate that serves over a span.
@@ -185,20 +185,24 @@ impl LoadingRun {
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of
     /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements.
-    fn check_closed(&self, approach: f64) -> Result<(), Error> {
-        let own = self.problem.table().self_influence();
+    pub(super) fn check_closed(
+        &self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+    ) -> Result<(), Error> {
+        let own = problem.table().self_influence();
         let sum = |values: &[f64]| own * values.iter().map(|value| value.abs()).sum::<f64>();
         let Solution { pressure, rate } = self.field.solution();
-        let lengths =
-            [self.problem.greatest_gap() + approach.abs() + sum(pressure), 1.0 + sum(rate)];
-        for &node in self.contact.order() {
-            let left = self.field.left_at(&self.problem, node);
+        let lengths = [problem.greatest_gap() + approach.abs() + sum(pressure), 1.0 + sum(rate)];
+        for &node in contact.order() {
+            let left = self.field.left_at(problem, node);
             for (k, quantity) in ["gap", "rate of the gap"].into_iter().enumerate() {
                 let (value, tolerance) = (left[k], TOLERANCE * lengths[k]);
                 // NaN is none either.
                 let is_closed = value.abs() <= tolerance && tolerance.is_finite();
                 if !is_closed {
-                    let (ix, iy) = self.problem.grid().coordinates(node);
+                    let (ix, iy) = problem.grid().coordinates(node);
                     return Err(Error::Updater(UpdaterError::ContactNotClosed {
                         quantity,
                         ix,

@@ -343,6 +343,7 @@ impl Yielding {
         };
         run.field.place(&trial.contact, solution, approach)?;
         run.timings.convolution = run.field.time();
+        run.check_closed(&trial.problem, &trial.contact, approach)?;
         let until = contradiction(run, plastic, &trial, approach);
         Ok((trial, until.map(|until| end + until)))
     }
@@ -377,6 +378,8 @@ impl Yielding {
     ) -> Result<Arc<Plastic>, Error> {
         let step = run.steps();
         let Trial { contact, problem, displaced, yielded, departures } = trial;
+        // Whatever becomes of the updater, also by a panic: the states so far are known without it.
+        let known = run.releases.forget(step);
         let before = run.contact.order();
         let old = |node: usize| run.contact.contains(node);
         let followed = if yielded.is_empty() {
@@ -398,10 +401,8 @@ impl Yielding {
                 join_all(updater, &problem, &mut kept, &joined, run.memory.left())
             })
         };
-        if let Err(error) = followed {
-            run.releases.forget(step);
-            return Err(run.memory.in_all(error));
-        }
+        followed.map_err(|error| run.memory.in_all(error))?;
+        run.releases.remember(known);
         let plastic = Arc::new(plastic.grown(&yielded, &displaced));
         run.plastic = Some(Arc::clone(&plastic));
         run.problem = problem;

@@ -11,3 +11,4 @@ mod problems;
 mod questions;
 mod refusals;
 mod updater;
+mod yielding;

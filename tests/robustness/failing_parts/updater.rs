@@ -63,6 +63,9 @@ pub(super) fn failing<U: LinearUpdater + 'static>(inner: U, fault: Fault, at: us
         })
 }
 
+/// Methods that answer with numbers.
+const ANSWERS: [&str; 4] = ["solve", "watch", "solve_for", "watch_both"];
+
 /// Counts all calls and spoils one.
 #[derive(Debug)]
 pub(super) struct Strike {
@@ -93,14 +96,15 @@ impl Strike {
             (Fault::PanicBefore | Fault::PanicAfter, _) => true,
             (_, "bytes") => false,
             (Fault::Refuse, _) => true,
-            (Fault::Forget, _) => method != "solve" && method != "watch",
+            (Fault::Forget, _) => !ANSWERS.contains(&method),
             (
                 Fault::Each(Part::Pressure | Part::Rate, _)
                 | Fault::Last(Part::Pressure | Part::Rate, _),
                 _,
-            ) => method == "solve",
-            (Fault::Each(..) | Fault::Last(..), _) => method == "watch",
-            (Fault::Length(_), _) => method == "solve" || method == "watch",
+            ) => method == "solve" || method == "solve_for",
+            (Fault::Each(Part::RowSums, _) | Fault::Last(Part::RowSums, _), _) => method == "watch",
+            (Fault::Each(..) | Fault::Last(..), _) => method == "watch" || method == "watch_both",
+            (Fault::Length(_), _) => ANSWERS.contains(&method) && method != "solve_for",
         };
         let strikes = possible && call == self.at.get();
         if strikes {
@@ -126,7 +130,17 @@ impl Strike {
             _ => call.ask(inner)?,
         }
         match call {
-            Call::Watch { schur, .. } => spoil_schur(self.fault, schur),
+            Call::Watch { schur, .. } | Call::WatchBoth { schur, .. } => {
+                spoil_schur(self.fault, schur);
+            }
+            Call::SolveFor { rhs, .. } if rhs.is_empty() => self.struck.set(None),
+            Call::SolveFor { rhs, .. } => {
+                let mut values: Vec<f64> = rhs.iter().map(|x| x[0]).collect();
+                change(self.fault, &mut values);
+                for (x, value) in rhs.iter_mut().zip(values) {
+                    x[0] = value;
+                }
+            }
             // An empty answer has nothing to spoil.
             Call::Solve { count: 0, .. } if !matches!(self.fault, Fault::Length(1..)) => {
                 self.struck.set(None);
