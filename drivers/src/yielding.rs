@@ -46,8 +46,10 @@ impl Trial<'_> {
     /// A single load, and unloading, beside the state of a path where a walk stands.
     pub(crate) fn beside(&self, path: &mut Path, state: &LoadingState, walk: &Walk<'_>) -> Verdict {
         let mut tally = Tally::default();
-        // On a plateau the load is that of many states.
-        let is_between = |(set, _): &(ContactSet<'_>, Instant)| set.all(Node::Elastic).count() > 0;
+        // On a plateau the load is that of many states, and none is no load.
+        let is_between = |(set, _): &(ContactSet<'_>, Instant)| {
+            state.contact.load > 0.0 && set.all(Node::Elastic).count() > 0
+        };
         let Some((set, instant)) = walk.solved(state).filter(is_between) else {
             return Ok(tally);
         };

@@ -51,6 +51,27 @@ struct Trial {
     departures: Vec<(usize, Left)>,
 }
 
+/// Nodes in contact where a window begins.
+struct Carried {
+    /// How many are elastic, and how many have yielded.
+    nodes: [usize; 2],
+    /// The sum of pressures of those that have yielded, and what all could carry: a load beyond these is rounding.
+    sum: f64,
+    most: f64,
+}
+
+impl Carried {
+    fn of(run: &LoadingRun, plastic: &Plastic) -> Self {
+        let hardness = plastic.hardness().values();
+        let elastic: f64 = run.contact.order().iter().map(|&node| hardness[node]).sum();
+        Self {
+            nodes: [run.contact.len(), plastic.count()],
+            sum: plastic.sum(),
+            most: plastic.sum() + elastic,
+        }
+    }
+}
+
 impl Yielding {
     pub(super) fn new(size: Option<usize>) -> Self {
         Self { size, ..Self::default() }
@@ -100,7 +121,7 @@ impl Yielding {
             bad_pivot = self.window.play(horizon, touches, kept);
             run.timings.events += start.elapsed();
         };
-        let before = [run.contact.len(), plastic.count()];
+        let before = Carried::of(run, &plastic);
         let plastic = self.commit(run, &plastic, updater, trial)?;
         let start = Instant::now();
         let queued = self.enqueue(run, &plastic, before);
@@ -236,10 +257,9 @@ impl Yielding {
         run.check_complement(&watched, &self.schur)?;
 
         // Sums over nodes out of contact and over yielded ones, by reciprocity: what right-hand sides of the same sums answer.
-        let (gaps, row_sums) = (run.problem.initial_gap(), run.problem.row_sums());
-        let surface = plastic.surface().initial_gap();
+        let row_sums = run.problem.row_sums();
         let sums = |node: usize| -> [f64; SUMS] {
-            [row_sums[node], -plastic.unit()[node], surface[node] - gaps[node]]
+            [row_sums[node], -plastic.unit()[node], -plastic.load()[node]]
         };
         let mut solved: Vec<[f64; 2]> =
             order.iter().map(|&node| [sums(node)[0], sums(node)[1]]).collect();
@@ -413,27 +433,18 @@ impl Yielding {
         Ok(plastic)
     }
 
-    /// Turns the events of the window, which began with so many elastic and yielded nodes, into states.
+    /// Turns the events of the window, which began with these nodes in contact, into states.
     fn enqueue(
         &self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        [mut elastic, mut yielded]: [usize; 2],
+        before: Carried,
     ) -> Result<(), Error> {
+        let Carried { nodes: [mut elastic, mut yielded], mut sum, mut most } = before;
         let start = run.scalars.approach();
         let mut step = elastic + 2 * yielded;
         let hardness = plastic.hardness().values();
         let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
-        let later = self.window.events().iter();
-        let later = later.filter(|event| event.kind == ContactEvent::Yield);
-        let mut sum =
-            plastic.sum() - later.map(|event| hardness[nodes[event.position]]).sum::<f64>();
-        // What the nodes in contact could carry: a load beyond it is rounding.
-        let touched = self.window.events().iter();
-        let touched = touched.filter(|event| event.kind == ContactEvent::Touch);
-        let new = touched.map(|event| hardness[nodes[event.position]]).sum::<f64>();
-        let all = run.contact.order().iter().map(|&node| hardness[node]).sum::<f64>();
-        let mut most = all + plastic.sum() - new;
         for event in self.window.events() {
             let node = nodes[event.position];
             run.scalars.advance(start + event.time);

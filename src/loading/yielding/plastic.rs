@@ -18,11 +18,12 @@ pub(in crate::loading) struct Plastic {
     count: usize,
     /// Sum of the pressures of these nodes \[Pa\].
     sum: f64,
-    /// Displacement under a pressure of 1 on them.
-    unit: Vec<f64>,
+    /// What they displace. The gap of the elastic problem contains it as well, but to rounding of heights.
+    displaced: Displaced,
 }
 
 /// What nodes that yield displace.
+#[derive(Debug)]
 pub(super) struct Displaced {
     /// Under their hardness.
     load: Vec<f64>,
@@ -43,14 +44,14 @@ impl Plastic {
             has_yielded,
             count: 0,
             sum: 0.0,
-            unit: nothing,
+            displaced: Displaced { load: nothing.clone(), unit: nothing },
         };
         (none, elastic)
     }
 
     /// Bytes on a grid.
     pub(in crate::loading) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
-        let fields = 8 * size_of::<f64>() + size_of::<bool>();
+        let fields = 9 * size_of::<f64>() + size_of::<bool>();
         grid.nodes() * fields + Convolution::bytes_on(grid, boundary)
     }
 
@@ -79,14 +80,19 @@ impl Plastic {
 
     /// Displacement of all nodes under a pressure of 1 on those that have yielded.
     pub(super) fn unit(&self) -> &[f64] {
-        &self.unit
+        &self.displaced.unit
+    }
+
+    /// The same under their hardness.
+    pub(super) fn load(&self) -> &[f64] {
+        &self.displaced.load
     }
 
     /// What nodes displace when they yield.
     pub(super) fn displaced(&self, nodes: &[usize]) -> Result<Displaced, Error> {
         let hardness = |node: usize| self.hardness.values()[node];
         let displacement = |pressure: &dyn Fn(usize) -> f64| -> Result<Vec<f64>, Error> {
-            let mut field = vec![0.0; self.unit.len()];
+            let mut field = vec![0.0; self.has_yielded.len()];
             for &node in nodes {
                 field[node] = pressure(node);
             }
@@ -95,7 +101,7 @@ impl Plastic {
             Ok(displaced)
         };
         if nodes.is_empty() {
-            let nothing = vec![0.0; self.unit.len()];
+            let nothing = vec![0.0; self.has_yielded.len()];
             return Ok(Displaced { load: nothing.clone(), unit: nothing });
         }
         let load = displacement(&hardness)?;
@@ -119,28 +125,33 @@ impl Plastic {
             has_yielded[node] = true;
             sum += self.hardness.values()[node];
         }
-        let unit = self.unit.iter().zip(&displaced.unit).map(|(unit, more)| unit + more);
+        let add =
+            |before: &[f64], more: &[f64]| before.iter().zip(more).map(|(u, v)| u + v).collect();
+        let before = &self.displaced;
         Self {
             hardness: Arc::clone(&self.hardness),
             surface: Arc::clone(&self.surface),
             has_yielded,
             count: self.count + nodes.len(),
             sum,
-            unit: unit.collect(),
+            displaced: Displaced {
+                load: add(&before.load, &displaced.load),
+                unit: add(&before.unit, &displaced.unit),
+            },
         }
     }
 
     /// The same when these nodes and no others have yielded, and the problem of the elastic ones.
     pub(in crate::loading) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
         let displaced = self.displaced(yielded)?;
-        let nodes = self.unit.len();
+        let nothing = vec![0.0; self.has_yielded.len()];
         let none = Self {
             hardness: Arc::clone(&self.hardness),
             surface: Arc::clone(&self.surface),
-            has_yielded: vec![false; nodes],
+            has_yielded: vec![false; nothing.len()],
             count: 0,
             sum: 0.0,
-            unit: vec![0.0; nodes],
+            displaced: Displaced { load: nothing.clone(), unit: nothing },
         };
         Ok((none.grown(yielded, &displaced), self.elastic(&self.surface, &displaced)))
     }
