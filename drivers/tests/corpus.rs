@@ -80,3 +80,8 @@ fn every_folder_has_a_driver() -> Result<(), Violation> {
     assert!(names.eq(DRIVERS.map(|(name, _)| name)), "{folders:?}");
     Ok(())
 }
+
+#[test]
+fn yielding() -> Result<(), Violation> {
+    replay("yielding")
+}
