@@ -1,7 +1,7 @@
 //! Whole paths on which nodes yield, single loads beside them, and unloading.
 
 use asperity::loading::ContactEvent;
-use asperity::{LoadingSolver, LoadingState};
+use asperity::{Error, LoadingSolver, LoadingState, PeriodicBoussinesq};
 
 use crate::dense::{ContactSet, Instant, Node};
 use crate::draw::Draw;
@@ -103,6 +103,9 @@ impl Trial<'_> {
         let solution = solver.and_then(|mut solver| solver.solve(state.contact.load));
         let solution = match solution {
             Ok(solution) => solution,
+            Err(Error::OutOfRange { value, .. }) if value > PeriodicBoussinesq::MAX_ASPECT => {
+                return Ok(());
+            }
             Err(failure) => {
                 *tally += self.circumstances.judge(&failure)?;
                 return Ok(());
@@ -140,7 +143,7 @@ impl Trial<'_> {
         instant: &Instant,
         tally: &mut Tally,
     ) -> Result<(), Violation> {
-        let failed = |error: asperity::Error| Violation::new(error.to_string());
+        let failed = |error: Error| Violation::new(error.to_string());
         let residual = path.residual_surface_at(state).map_err(failed)?;
         let reloading = LoadingSolver::builder(&residual, &self.sample.kernel);
         let states = reloading

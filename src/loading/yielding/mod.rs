@@ -166,6 +166,9 @@ impl Yielding {
                     let quantity = "rate of the plastic depth";
                     return Err(run.not_monotone(quantity, node, line.closing));
                 }
+                if line.gap > -least_gap {
+                    return Err(run.not_monotone("plastic depth", node, -line.gap));
+                }
                 let hardness = hardness[node];
                 load.add(hardness);
                 energy.add(hardness * (approach - gaps[node] + line.gap));

@@ -127,13 +127,19 @@ impl Strike {
                 let _ = call.ask(inner);
                 resume_unwind(Box::new(()))
             }
-            _ => call.ask(inner)?,
+            _ => {
+                if let Err(error) = call.ask(inner) {
+                    // There is no answer to spoil.
+                    self.struck.set(None);
+                    return Err(error);
+                }
+            }
         }
         match call {
             Call::Watch { schur, .. } | Call::WatchBoth { schur, .. } => {
                 spoil_schur(self.fault, schur);
             }
-            Call::SolveFor { rhs, .. } if rhs.is_empty() => self.struck.set(None),
+            Call::SolveFor { rhs: [], .. } => self.struck.set(None),
             Call::SolveFor { rhs, .. } => {
                 let mut values: Vec<f64> = rhs.iter().map(|x| x[0]).collect();
                 change(self.fault, &mut values);
