@@ -1,6 +1,6 @@
 //! Pressures that end at a hardness: nodes yield, round after round.
 
-use super::level::Level;
+use super::level::{Level, Prescribed};
 use crate::Error;
 use crate::hardness::Hardness;
 
@@ -21,16 +21,16 @@ pub(super) struct Yielded<'a> {
 }
 
 impl<'a> Yielded<'a> {
-    /// None yet. The greatest approach, at which all yield, is max (g + C H).
-    pub(super) fn none(hardness: &'a Hardness, level: &mut Level) -> Result<Self, Error> {
-        let finite =
-            |values: &[f64]| values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
-        let most = finite(hardness.values());
-        let field: Vec<f64> = hardness.values().iter().map(|value| value.min(most)).collect();
-        let displacement = finite(level.operator.apply_field(&field)?).abs();
+    /// None yet.
+    pub(super) fn none(hardness: &'a Hardness, level: &Level, prescribed: Prescribed) -> Self {
         let own_gap = level.gap.clone();
-        let open = 4.0 * (finite(&own_gap) + displacement);
-        Ok(Self { hardness, map: vec![false; own_gap.len()], sum: 0.0, open, own_gap })
+        // Without a mean a node may lie above it. No coefficient of a positive definite matrix exceeds its diagonal.
+        let length = match prescribed {
+            Prescribed::Sum(sum) => level.self_influence * sum,
+            Prescribed::Approach(approach) => approach,
+        };
+        let open = 4.0 * (own_gap.iter().copied().fold(0.0, f64::max) + length);
+        Self { hardness, map: vec![false; own_gap.len()], sum: 0.0, open, own_gap }
     }
 
     /// Sum of the pressures of nodes that have yielded \[Pa\].
@@ -48,7 +48,7 @@ impl<'a> Yielded<'a> {
         let mut load = vec![0.0; self.map.len()];
         let pressures = level.iterate.pressure.iter_mut().zip(self.hardness.values());
         for (node, (pressure, &hardness)) in pressures.enumerate() {
-            if *pressure > hardness {
+            if *pressure > hardness && !self.map[node] {
                 (self.map[node], load[node], *pressure) = (true, hardness, 0.0);
                 self.sum += hardness;
             }

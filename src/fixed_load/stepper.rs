@@ -193,7 +193,7 @@ impl<'a> Stepper<'a> {
         prescribed: Prescribed,
     ) -> Result<(usize, Vec<bool>), Error> {
         self.last = None;
-        let mut yielded = Yielded::none(hardness, &mut self.hierarchy.finest)?;
+        let mut yielded = Yielded::none(hardness, &self.hierarchy.finest, prescribed);
         match self.rounds(&mut yielded, prescribed) {
             Ok(iterations) => Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?)),
             Err(error) => {

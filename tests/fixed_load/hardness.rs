@@ -332,3 +332,33 @@ fn what_is_no_hardness_is_refused() {
     let refused = FixedLoadSolver::builder(&surface, &unknown).hardness(1.0).build();
     assert!(matches!(refused, Err(Error::Kernel(KernelError::GrowthUnknown))), "{refused:?}");
 }
+
+/// Nodes that have yielded stay so where others carry far more, or press them far up: beside one of infinite hardness, and on a periodic
+/// surface whose height is little beside its displacement.
+#[test]
+fn yielded_nodes_stay_yielded() {
+    let two = Grid::new(2, 1, 1.0, 1.0).unwrap();
+    let love = Boussinesq::new(two, 1.0).unwrap();
+    let flat = HeightMap::new(DMatrix::from_row_slice(2, 1, &[0.0, -1e-3])).unwrap();
+    let map = DMatrix::from_row_slice(2, 1, &[1.0, f64::INFINITY]);
+    let row = Grid::new(4, 1, 1.0, 1.0).unwrap();
+    let periodic = PeriodicBoussinesq::new(row, 1.0).unwrap();
+    let wave = HeightMap::new(DMatrix::from_row_slice(4, 1, &[0.0, -1e-3, -2e-3, -1e-3])).unwrap();
+    let cases: [(FixedLoadSolver, f64, &[f64]); 2] = [
+        (
+            FixedLoadSolver::builder(&flat, &love).hardness_map(&map).build().unwrap(),
+            100.0,
+            &[1.0, 99.0],
+        ),
+        (FixedLoadSolver::builder(&wave, &periodic).hardness(1.0).build().unwrap(), 3.9995, &[1.0]),
+    ];
+    for (mut solver, load, expected) in cases {
+        let solution = solver.solve(load).unwrap();
+        assert!((solution.pressure.sum() / load - 1.0).abs() < 1e-12, "{}", solution.pressure);
+        for (found, expected) in solution.pressure.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12 * load, "{}", solution.pressure);
+        }
+        let yielded = solution.plastic.unwrap().yielded_map;
+        assert!(yielded[0] && !yielded[1], "{yielded}");
+    }
+}
