@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::io::read_npy;
 use asperity::kernel::KernelTable;
 use asperity::loading::{History, LoadingBuilder, LoadingEnd};
+#[cfg(feature = "io")]
 use asperity::record::LoadingRecord;
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
@@ -314,6 +315,7 @@ fn paths_end_where_they_are_to_end() {
 }
 
 /// A record of a path under way: read, resumed and replayed it is the path that was not interrupted.
+#[cfg(feature = "io")]
 #[test]
 fn records_of_paths_on_which_nodes_yield() {
     for (name, kernel) in cases() {
