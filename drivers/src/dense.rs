@@ -12,7 +12,8 @@
 //! A solution by a factor has a residual of some n rounding errors of the numbers that it cancels, the lengths
 //! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
 //! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
-//! the very set.
+//! the very set. Where nodes have yielded they are the greatest of all sets before: a window of events is computed from the equations
+//! at its beginning, of more elastic nodes.
 
 use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
 use asperity_testing::dense::{influence_matrix, initial_gap};
@@ -266,6 +267,28 @@ pub(crate) enum Node {
     Yielded,
 }
 
+/// What errors of gaps are carried on by.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Norms {
+    /// `‖C_II⁻¹‖`.
+    inverse: f64,
+    /// `1 + ‖C_OI C_II⁻¹‖`.
+    pub(crate) carried: f64,
+    /// `Σ |y₂|`.
+    rate: f64,
+}
+
+impl Norms {
+    /// The greater of each.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            inverse: self.inverse.max(other.inverse),
+            carried: self.carried.max(other.carried),
+            rate: self.rate.max(other.rate),
+        }
+    }
+}
+
 /// The equations of one set of nodes in contact.
 pub(crate) struct ContactSet<'a> {
     dense: &'a Dense,
@@ -278,10 +301,7 @@ pub(crate) struct ContactSet<'a> {
     factor: Cholesky<f64, Dyn>,
     /// Gaps in contact that a solution may leave besides rounding, relative to the approach.
     residual: f64,
-    /// `‖C_II⁻¹‖`.
-    inverse: f64,
-    /// `1 + ‖C_OI C_II⁻¹‖`.
-    pub(crate) carried: f64,
+    pub(crate) norms: Norms,
     /// `y₂ = C_II⁻¹ e`, by node of the grid, and how fast gaps close.
     pub(crate) rate: DVector<f64>,
     pub(crate) closing: DVector<f64>,
@@ -305,15 +325,15 @@ impl<'a> ContactSet<'a> {
     ///
     /// Gaps in contact may be off by `residual` of the approach besides rounding.
     pub(crate) fn new(dense: &'a Dense, nodes: &[usize], residual: f64) -> Option<Self> {
-        Self::beside(dense, nodes, &[], residual)
+        Self::beside(dense, [nodes, &[]], residual, Norms::default())
     }
 
-    /// The same beside nodes that have yielded.
+    /// The same beside nodes that have yielded, with norms that are no less than those of sets before.
     pub(crate) fn beside(
         dense: &'a Dense,
-        nodes: &[usize],
-        yielded: &[usize],
+        [nodes, yielded]: [&[usize]; 2],
         residual: f64,
+        before: Norms,
     ) -> Option<Self> {
         let all = dense.nodes();
         let mut states = vec![Node::Out; all];
@@ -339,8 +359,7 @@ impl<'a> ContactSet<'a> {
             load,
             factor,
             residual,
-            inverse: norm(&inverse),
-            carried,
+            norms: Norms { inverse: norm(&inverse), carried, rate: 0.0 },
             rate: DVector::zeros(0),
             closing: DVector::zeros(0),
             closing_error: 0.0,
@@ -348,7 +367,9 @@ impl<'a> ContactSet<'a> {
         let rate = set.solve(&ones);
         let (displacement, lengths) = dense.displace(&rate);
         let lengths = 1.0 + lengths;
-        set.closing_error = set.carried * (lengths * Dense::rounding(all) + residual);
+        set.norms.rate = rate.abs().sum();
+        set.norms = set.norms.max(before);
+        set.closing_error = set.norms.carried * (lengths * Dense::rounding(all) + residual);
         set.closing = displacement.map(|u| 1.0 - u);
         set.rate = rate;
         Some(set)
@@ -389,26 +410,26 @@ impl<'a> ContactSet<'a> {
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
         let lengths = own_approach.abs() + dense.gap.max() + lengths;
         let residual = self.residual * own_approach.abs();
-        let gap_error = self.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
+        let gap_error = self.norms.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
         Instant {
             pressure,
             displacement,
             gap,
             lengths,
             gap_error,
-            pressure_error: self.inverse * gap_error,
+            pressure_error: self.norms.inverse * gap_error,
         }
     }
 
     /// How far the sum of pressures is off where gaps are: `Σ |y₂|` times as much, and the rounding of what yielded nodes carry.
     pub(crate) fn sum_error(&self, gap_error: f64) -> f64 {
         let rounding = Dense::rounding(self.dense.nodes());
-        self.rate.abs().sum() * gap_error + rounding * self.load.sum()
+        self.norms.rate * gap_error + rounding * self.load.sum()
     }
 
     /// How far a rate of pressure is off.
     pub(crate) fn rate_error(&self) -> f64 {
-        self.inverse * self.closing_error
+        self.norms.inverse * self.closing_error
     }
 
     /// The elastic energy, of the mean planes where the mean displacement is arbitrary, and its error.
@@ -439,7 +460,7 @@ impl<'a> ContactSet<'a> {
     }
 
     fn stiffness_error(&self) -> f64 {
-        self.rate.abs().sum() * self.closing_error
+        self.norms.rate * self.closing_error
     }
 
     /// What is lost where nodes have yielded, and the errors of it if those of gaps are so large.

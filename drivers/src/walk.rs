@@ -13,7 +13,7 @@ use asperity::loading::ContactEvent;
 use asperity::{Grid, LoadingState};
 use nalgebra::DMatrix;
 
-use crate::dense::{ContactSet, Dense, Instant, Node, Scalars};
+use crate::dense::{ContactSet, Dense, Instant, Node, Norms, Scalars};
 use crate::verdict::{Tally, Violation, ensure};
 
 /// Events closer than this, relative to the approach, are simultaneous to the library, the lowest index first.
@@ -45,6 +45,8 @@ pub(crate) struct Walk<'a> {
     /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before, whose
     /// errors add up to no more than that, since their ways add up to the approach.
     gap_error: f64,
+    /// The greatest norms so far, with a hardness.
+    norms: Norms,
     tally: Tally,
     /// Whether the matrix of the contact was too ill-conditioned once: nothing was looked at from there on.
     blind: bool,
@@ -60,6 +62,7 @@ impl<'a> Walk<'a> {
             yielded: Vec::new(),
             last: None,
             gap_error: 0.0,
+            norms: Norms::default(),
             tally: Tally::default(),
             blind: false,
         }
@@ -77,6 +80,11 @@ impl<'a> Walk<'a> {
     pub(crate) fn skip(&mut self, states: &[LoadingState]) -> Result<(), Violation> {
         for state in states {
             self.take(state)?;
+            if self.dense.hardness().is_some()
+                && let Some(set) = self.set()
+            {
+                self.norms = set.norms;
+            }
             self.last = Some(*state);
         }
         Ok(())
@@ -240,6 +248,9 @@ impl<'a> Walk<'a> {
             self.check_stiffnesses(&found, &set, &instant)?;
             self.check_signs(&set, &instant)?;
             self.tally.checked += 1;
+            if self.dense.hardness().is_some() {
+                self.norms = set.norms;
+            }
         } else {
             self.blind = true;
         }
@@ -259,7 +270,8 @@ impl<'a> Walk<'a> {
     }
 
     fn set(&self) -> Option<ContactSet<'a>> {
-        ContactSet::beside(self.dense, &self.contact, &self.yielded, self.demands.residual)
+        let nodes = [&self.contact[..], &self.yielded[..]];
+        ContactSet::beside(self.dense, nodes, self.demands.residual, self.norms)
     }
 
     fn hardness(&self, node: usize) -> f64 {

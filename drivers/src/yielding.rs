@@ -126,7 +126,7 @@ impl Trial<'_> {
         tally.close("approach", single.own_approach, found.own_approach, 2.0 * error)?;
         if let Some(plastic) = &solution.plastic {
             let volume = plastic.volume / self.grid.cell_area();
-            let [expected, errors] = set.plastic(instant, 2.0 * set.carried * error);
+            let [expected, errors] = set.plastic(instant, 2.0 * set.norms.carried * error);
             let volume = self.dense.own_length(volume);
             tally.close("plastic volume", volume, expected.sums[0], errors.sums[0])?;
         }
@@ -167,7 +167,7 @@ impl Trial<'_> {
             return Ok(());
         };
         // What the heights are off by, and what rounds.
-        let error = again.carried * instant.gap_error + reloaded.gap_error;
+        let error = again.norms.carried * instant.gap_error + reloaded.gap_error;
         if last.event != ContactEvent::Limit || !self.is_clear(set, instant, error) {
             return Ok(());
         }

@@ -125,6 +125,14 @@ impl LoadingRun {
         self.contact.len() + self.plastic.as_ref().map_or(0, |plastic| plastic.count())
     }
 
+    /// Whether a node in contact has a hardness that it can come to.
+    pub(super) fn may_yield(&self) -> bool {
+        self.plastic.as_ref().is_some_and(|plastic| {
+            let hardness = plastic.hardness().values();
+            self.contact.order().iter().any(|&node| hardness[node].is_finite())
+        })
+    }
+
     /// Lets the nodes that the log says had yielded after `step` events have done so.
     pub(super) fn yield_at(&mut self, step: usize) -> Result<(), Error> {
         let yielded: Vec<usize> = self.releases.yielded_at(step).collect();

@@ -110,7 +110,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             let has_yielded = self.run.plastic.as_ref().map_or(0, |plastic| plastic.count());
             self.end = Some(if has_yielded == self.run.problem.grid().nodes() {
                 LoadingEnd::FullyPlastic
-            } else if nodes == self.run.problem.grid().nodes() {
+            } else if nodes == self.run.problem.grid().nodes() && !self.run.may_yield() {
                 if self.limits.ends_before_full_contact() {
                     log::warn!(
                         "full contact before the load, approach or mean gap at which the path was to end"

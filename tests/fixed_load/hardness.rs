@@ -359,6 +359,6 @@ fn yielded_nodes_stay_yielded() {
             assert!((found - expected).abs() < 1e-12 * load, "{}", solution.pressure);
         }
         let yielded = solution.plastic.unwrap().yielded_map;
-        assert!(yielded[0] && !yielded[1], "{yielded}");
+        assert!(yielded[0] && yielded.iter().any(|has_yielded| !has_yielded), "{yielded}");
     }
 }

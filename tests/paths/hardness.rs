@@ -314,6 +314,24 @@ fn paths_end_where_they_are_to_end() {
     }
 }
 
+/// A path to full contact ends there, though nodes would yield behind it; one to the infinite hardness of the rest is at its end.
+#[test]
+fn full_contact_is_an_end_if_nothing_yields() {
+    let square = Grid::new(3, 3, 1.0, 1.0).unwrap();
+    let kernel = Boussinesq::new(square, 1.0).unwrap();
+    let flat = HeightMap::new(DMatrix::zeros(3, 3)).unwrap();
+    let builder = || LoadingSolver::builder(&flat, &kernel).hardness(1.0);
+    for (builder, end) in [
+        (builder().max_area_fraction(1.0), LoadingEnd::AreaFraction),
+        (builder().max_nodes(9), LoadingEnd::Nodes),
+        (builder().hardness(f64::INFINITY).max_nodes(9), LoadingEnd::FullContact),
+    ] {
+        let mut path = builder.build().unwrap();
+        assert_eq!(path.by_ref().count(), 9);
+        assert_eq!(path.end(), Some(end));
+    }
+}
+
 /// A record of a path under way: read, resumed and replayed it is the path that was not interrupted.
 #[cfg(feature = "io")]
 #[test]
