@@ -35,6 +35,7 @@
 //! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
+//! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
 //! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
@@ -85,6 +86,7 @@ mod hardness;
 pub mod kernel;
 mod krylov;
 pub mod loading;
+pub mod material;
 mod memory;
 pub mod patches;
 mod problem;

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use asperity::material::Material as Known;
 use asperity::{composite_modulus, plane_strain_modulus};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -121,10 +122,15 @@ struct Material {
 }
 
 impl Material {
-    const STEEL: Self = Self::named(MATERIALS[0]);
+    const STEEL: Self = Self::named(&Known::STEEL);
 
-    const fn named((name, e, nu, hardness): (&'static str, f64, f64, Option<f64>)) -> Self {
-        Self { name: Some(name), e, nu, hardness }
+    const fn named(known: &Known) -> Self {
+        Self {
+            name: Some(known.name),
+            e: known.youngs_modulus,
+            nu: known.poissons_ratio,
+            hardness: known.hardness,
+        }
     }
 }
 
@@ -139,41 +145,18 @@ impl fmt::Display for Material {
     }
 }
 
-/// Typical values at room temperature: Young's modulus, Poisson's ratio, hardness. Those of an alloy or a polymer vary: for results that matter they are given
-/// as numbers.
-const MATERIALS: [(&str, f64, f64, Option<f64>); 18] = [
-    ("steel", 210e9, 0.3, Some(2.5e9)),
-    ("stainless-steel", 195e9, 0.29, Some(2.0e9)),
-    ("cast-iron", 110e9, 0.26, Some(2.0e9)),
-    ("aluminium", 70e9, 0.33, Some(1.0e9)),
-    ("copper", 125e9, 0.34, Some(0.9e9)),
-    ("brass", 105e9, 0.34, Some(1.3e9)),
-    ("bronze", 110e9, 0.34, Some(1.2e9)),
-    ("titanium", 115e9, 0.33, Some(3.4e9)),
-    ("tungsten-carbide", 620e9, 0.22, Some(16e9)),
-    ("gold", 78e9, 0.42, Some(0.5e9)),
-    ("silver", 83e9, 0.37, Some(0.6e9)),
-    ("alumina", 370e9, 0.22, Some(16e9)),
-    ("glass", 70e9, 0.22, Some(5.5e9)),
-    ("fused-silica", 72e9, 0.17, Some(9e9)),
-    ("pmma", 3e9, 0.37, Some(0.25e9)),
-    ("polycarbonate", 2.4e9, 0.37, Some(0.15e9)),
-    ("ptfe", 0.5e9, 0.46, Some(0.03e9)),
-    ("rubber", 2e6, 0.5, None),
-];
-
 impl FromStr for Material {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some(named) = MATERIALS.iter().find(|(name, ..)| *name == text) {
-            return Ok(Self::named(*named));
+        if let Some(known) = Known::named(text) {
+            return Ok(Self::named(known));
         }
         let number = |text: &str| text.trim().parse::<f64>().ok();
         match text.split_once(',').map(|(e, nu)| (number(e), number(nu))) {
             Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu, hardness: None }),
             _ => {
-                let names: Vec<&str> = MATERIALS.iter().map(|(name, ..)| *name).collect();
+                let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
                 Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))
             }
         }
@@ -237,7 +220,7 @@ mod tests {
 
     #[test]
     fn every_named_material_exists() {
-        for (name, ..) in MATERIALS {
+        for Known { name, .. } in Known::ALL {
             assert!(matches!(modulus(name, Some("steel")), Ok(Some(_))), "{name}");
         }
     }

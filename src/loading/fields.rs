@@ -247,13 +247,33 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
-        let (contact, yielded) = (self.contact_map(), self.yielded_map());
         let pressure = self.pressure()?;
+        self.certify(&pressure, self.state)
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
+        let pressure = self.pressure_at(state)?;
+        self.certify(&pressure, Some(*state))
+    }
+
+    /// How well a pressure fulfils the conditions of contact at a state.
+    fn certify(
+        &mut self,
+        pressure: &DMatrix<f64>,
+        state: Option<LoadingState>,
+    ) -> Result<Certificate, Error> {
+        let step = state.map_or(0, |state| state.step);
+        let (contact, yielded) = (self.map_of(step), self.yielded_by(step));
         let excess = self.run.plastic.as_ref().map(|plastic| {
             let parts = pressure.iter().zip(plastic.hardness().values());
             parts.map(|(p, hardness)| p / hardness - 1.0).fold(-1.0, f64::max)
         });
-        let state = self.state.map(|state| state.contact);
+        let state = state.map(|state| state.contact);
         let run = &mut self.run;
         let gap: &[f64] = match &run.plastic {
             Some(plastic) => plastic.surface().initial_gap(),

@@ -289,6 +289,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         })
     }
 
+    /// Number of states that are computed and not yielded yet: as long as there are any, the next one costs nothing.
+    #[doc(hidden)] // for the package of Python in this repository
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.run.queue.len()
+    }
+
     /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the
     /// present state.
     #[must_use]
