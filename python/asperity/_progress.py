@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from importlib import import_module
 from typing import Any
 
 from asperity._asperity import State
@@ -17,17 +18,17 @@ class Bar:
         self._last = 0.0
         self._shown = False
         try:
-            from tqdm.auto import tqdm
+            tqdm = import_module("tqdm.auto")
         except ImportError:
             return
         style = "{l_bar}{bar}| {elapsed}{postfix}"
-        self._bar = tqdm(total=100.0, bar_format=style, leave=False)
+        self._bar = tqdm.tqdm(total=100.0, bar_format=style, leave=False)
 
     def __call__(self, done: float, state: State) -> None:
         words = f"{state.contact_nodes} nodes, W = {state.load:.3e} N"
         if self._bar is not None:
-            self._bar.set_postfix_str(words, refresh=False)
-            self._bar.update(100.0 * done - self._bar.n)
+            self._bar.n = 100.0 * done
+            self._bar.set_postfix_str(words)
         elif time.monotonic() - self._last >= 1.0:
             self._last = time.monotonic()
             self._shown = True

@@ -8,7 +8,7 @@ library, and `error.numbers` holds all attributes. A node has `row` and `column`
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 __all__ = [
     "ArrayError",
@@ -51,9 +51,9 @@ class AsperityError(ValueError):
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (type(self), self.message, self.kind, self.numbers)
 
-    if TYPE_CHECKING:
-        # Which numbers there are depends on the kind.
-        def __getattr__(self, name: str) -> Any: ...
+    def __getattr__(self, name: str) -> Any:
+        # Only asked for what is not there. Which numbers are depends on the kind: type checkers let all pass.
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
 
 class ArrayError(AsperityError, TypeError):

@@ -34,7 +34,8 @@ impl<'py> Found<'py> {
         let numpy = py.import(intern!(py, "numpy"))?;
         let masked = numpy.getattr(intern!(py, "ma"))?;
         let is_masked = masked.call_method1(intern!(py, "isMaskedArray"), (value,))?.is_truthy()?;
-        let array = if is_masked { value.clone() } else { numpy.call_method1("asarray", (value,))? };
+        let array =
+            if is_masked { value.clone() } else { numpy.call_method1("asarray", (value,))? };
         let dtype = array.getattr(intern!(py, "dtype"))?;
         let letter: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
         let shape: Vec<usize> = array.getattr(intern!(py, "shape"))?.extract()?;

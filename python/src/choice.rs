@@ -19,8 +19,7 @@ pub(crate) fn axis(word: &str) -> Fallible<Axis> {
 }
 
 pub(crate) fn trend(word: &str) -> Fallible<Trend> {
-    let choices =
-        [("mean", Trend::Mean), ("plane", Trend::Plane), ("quadratic", Trend::Quadratic)];
+    let choices = [("mean", Trend::Mean), ("plane", Trend::Plane), ("quadratic", Trend::Quadratic)];
     choose("trend", word, &choices)
 }
 
@@ -29,8 +28,7 @@ pub(crate) fn filter(word: &str) -> Fallible<Filter> {
 }
 
 pub(crate) fn interpolation(word: &str) -> Fallible<Interpolation> {
-    let choices =
-        [("fourier", Interpolation::Fourier), ("bilinear", Interpolation::Bilinear)];
+    let choices = [("fourier", Interpolation::Fourier), ("bilinear", Interpolation::Bilinear)];
     choose("method", word, &choices)
 }
 

@@ -47,10 +47,7 @@ fn made(count: usize) -> Fallible<Arc<ThreadPool>> {
 }
 
 /// Does work without the lock of the interpreter, so that other threads of Python go on.
-pub(crate) fn detached<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce() -> T + Send,
-) -> Fallible<T> {
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> Fallible<T> {
     let pool = pool(py)?;
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| pool.install(work))));
     done.map_err(|payload| Failure::of_panic(&*payload))

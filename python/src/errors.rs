@@ -306,7 +306,9 @@ fn of_surface(error: &SurfaceError) -> Described {
         SurfaceError::CutoffBelowGrid { wavelength, shortest } => {
             (VALUE, "CutoffBelowGrid", numbers![wavelength, shortest])
         }
-        SurfaceError::NoWaves { shortest, longest } => (VALUE, "NoWaves", numbers![shortest, longest]),
+        SurfaceError::NoWaves { shortest, longest } => {
+            (VALUE, "NoWaves", numbers![shortest, longest])
+        }
         SurfaceError::TooFewWaves { found, needed } => {
             (VALUE, "TooFewWaves", numbers![found, needed])
         }

@@ -342,6 +342,12 @@ impl History {
         self.states().len()
     }
 
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let places = builtins.getattr("range")?.call1((slf.get().states().len(),))?;
+        Ok(builtins.getattr("map")?.call1((slf.getattr("__getitem__")?, places))?)
+    }
+
     fn __getitem__(&self, index: isize) -> Fallible<State> {
         let count = self.states().len();
         let place = if index < 0 { index + count as isize } else { index };
@@ -372,10 +378,7 @@ impl History {
 }
 
 /// All that there is of some states, in arrays.
-pub(crate) fn table<'py>(
-    py: Python<'py>,
-    states: &[LoadingState],
-) -> Fallible<Bound<'py, PyDict>> {
+pub(crate) fn table<'py>(py: Python<'py>, states: &[LoadingState]) -> Fallible<Bound<'py, PyDict>> {
     let table = PyDict::new(py);
     let wholes = |get: fn(&LoadingState) -> usize| {
         column(py, states.iter().map(|state| get(state) as i64).collect())
@@ -401,10 +404,7 @@ pub(crate) fn table<'py>(
 
 /// The states of a table.
 fn states(table: &Bound<'_, PyDict>) -> Fallible<Vec<LoadingState>> {
-    fn values<T: numpy::Element + Copy>(
-        table: &Bound<'_, PyDict>,
-        name: &str,
-    ) -> Fallible<Vec<T>> {
+    fn values<T: numpy::Element + Copy>(table: &Bound<'_, PyDict>, name: &str) -> Fallible<Vec<T>> {
         let column = table.get_item(name)?;
         let column = column.ok_or_else(|| Failure::arguments(format!("no column {name}")))?;
         let column: PyReadonlyArray1<'_, T> = column.extract().map_err(PyErr::from)?;

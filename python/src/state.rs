@@ -209,6 +209,6 @@ impl State {
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("EVENTS", EVENTS)?;
+    module.add("EVENTS", PyTuple::new(module.py(), EVENTS)?)?;
     module.add_class::<State>()
 }

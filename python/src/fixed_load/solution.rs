@@ -124,7 +124,7 @@ impl Solution {
         self.state().energy
     }
 
-    /// Pressure [Pa].
+    /// Pressure [Pa], zero out of contact.
     #[getter]
     fn pressure<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray2<f64>>> {
         copy(py, &self.solution.pressure)

@@ -54,7 +54,11 @@ pub(crate) struct PatchAnalysis {
 ///     Of the kind ``"NodeLeaves"`` for a path on which a node leaves the contact: there is no order of contact then.
 #[pyfunction]
 #[pyo3(signature = (path, *, connectivity=8))]
-fn patches(py: Python<'_>, path: &Bound<'_, PyAny>, connectivity: usize) -> Fallible<PatchAnalysis> {
+fn patches(
+    py: Python<'_>,
+    path: &Bound<'_, PyAny>,
+    connectivity: usize,
+) -> Fallible<PatchAnalysis> {
     let connectivity = self::connectivity(connectivity)?;
     let (history, setting) = if let Ok(path) = path.cast::<LoadingPath>() {
         let history = path.get().history_now(py);
@@ -109,9 +113,8 @@ impl PatchAnalysis {
         py: Python<'py>,
         found: &Percolation,
     ) -> Fallible<Bound<'py, PyAny>> {
-        let state = |nodes: Option<usize>| {
-            nodes.and_then(|nodes| self.touched(nodes)).map(State::new)
-        };
+        let state =
+            |nodes: Option<usize>| nodes.and_then(|nodes| self.touched(nodes)).map(State::new);
         result!(py, "Percolation", {
             contact_x: state(found.contact_x),
             contact_y: state(found.contact_y),

@@ -66,13 +66,7 @@ fn of_pressure<'py>(
     bins: Option<usize>,
     per_decade: Option<usize>,
 ) -> Fallible<Bound<'py, PyAny>> {
-    distribution(
-        py,
-        (pressure, "pressure"),
-        contact_map,
-        (bins, per_decade),
-        pressure_distribution,
-    )
+    distribution(py, (pressure, "pressure"), contact_map, (bins, per_decade), pressure_distribution)
 }
 
 /// The distribution of the gap over the nodes out of contact.

@@ -45,7 +45,8 @@ pub(super) fn unload(path: &Bound<'_, LoadingPath>) -> Fallible<Unloading> {
     let touch = -map.max_height();
     let Setting { grid, boundary, .. } = this.setting;
     let states = if load > 0.0 {
-        let solver = detached(py, || LoadingSolver::builder(&map, &kernel).max_load(load).build())??;
+        let solver =
+            detached(py, || LoadingSolver::builder(&map, &kernel).max_load(load).build())??;
         let unloading = LoadingPath::new(super::Inner::live(solver), this.e_star);
         unloading.run(py, None, false)?;
         unloading.history_now(py).history

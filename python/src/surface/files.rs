@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::io::{self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_x3p};
+use asperity::io::{
+    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_x3p,
+};
 use asperity::nalgebra::DMatrix;
 use asperity::{FileError, Grid};
 use pyo3::prelude::*;

@@ -265,12 +265,7 @@ impl Surface {
     /// -------
     /// Surface
     #[pyo3(signature = (rows=None, columns=None))]
-    fn crop(
-        &self,
-        py: Python<'_>,
-        rows: Option<Range>,
-        columns: Option<Range>,
-    ) -> Fallible<Self> {
+    fn crop(&self, py: Python<'_>, rows: Option<Range>, columns: Option<Range>) -> Fallible<Self> {
         let of = |range: Option<Range>, all: usize| match range {
             Some(Range::Pair((start, end))) => start..end,
             None => 0..all,

@@ -57,10 +57,9 @@ fn of_array(found: Found<'_>, size: &Lengths, unit: f64) -> Fallible<Surface> {
     let shape @ (rows, columns) = found.rows_and_columns()?;
     if is_empty(&found) {
         // The engine's words for it.
-        return Err(grid(shape, (1.0, 1.0)).err().map_or_else(
-            || Failure::arguments("there are no heights"),
-            Failure::from,
-        ));
+        return Err(grid(shape, (1.0, 1.0))
+            .err()
+            .map_or_else(|| Failure::arguments("there are no heights"), Failure::from));
     }
     let (x, y) = size.x_and_y();
     let y = y.unwrap_or(x / columns as f64 * rows as f64);
@@ -77,9 +76,10 @@ fn of_array(found: Found<'_>, size: &Lengths, unit: f64) -> Fallible<Surface> {
 fn of_topography(topography: &Bound<'_, PyAny>) -> Fallible<Surface> {
     let py = topography.py();
     let found = Found::of(&topography.call_method0("heights")?, "heights()", Kind::Real)?;
-    let sizes: Vec<f64> = topography.getattr("physical_sizes")?.extract().map_err(|_| {
-        Failure::arguments("the topography does not know its physical_sizes")
-    })?;
+    let sizes: Vec<f64> = topography
+        .getattr("physical_sizes")?
+        .extract()
+        .map_err(|_| Failure::arguments("the topography does not know its physical_sizes"))?;
     let [x, y] = sizes[..] else {
         return Err(Failure::arguments(format!(
             "a topography must have two physical_sizes, and this one has {}",

@@ -22,10 +22,7 @@ pub(super) fn trend<'py>(
     })
 }
 
-pub(super) fn moments<'py>(
-    py: Python<'py>,
-    surface: &Topography,
-) -> Fallible<Bound<'py, PyAny>> {
+pub(super) fn moments<'py>(py: Python<'py>, surface: &Topography) -> Fallible<Bound<'py, PyAny>> {
     let moments = detached(py, || surface.spectral_moments())?;
     result!(py, "SpectralMoments", {
         m0: moments.m0(),
@@ -84,9 +81,7 @@ pub(super) fn fit_self_affine<'py>(
     surface: &Topography,
 ) -> Fallible<Bound<'py, PyAny>> {
     let fit = detached(py, || surface.fit_self_affine())??;
-    let one = |estimate: Estimate| {
-        result!(py, "Estimate", { value: estimate.value, standard_error: estimate.standard_error })
-    };
+    let one = |estimate: Estimate| result!(py, "Estimate", { value: estimate.value, standard_error: estimate.standard_error });
     let perhaps = |estimate: Option<Estimate>| estimate.map(one).transpose();
     result!(py, "SelfAffineFit", {
         hurst: one(fit.hurst)?,
