@@ -96,8 +96,7 @@ impl<'py> Found<'py> {
     /// The field of these numbers.
     pub(crate) fn field(&self) -> Fallible<DMatrix<f64>> {
         let (rows, columns) = self.rows_and_columns()?;
-        let array: PyReadonlyArray2<'_, f64> =
-            self.in_order("float64")?.extract().map_err(PyErr::from)?;
+        let array: PyReadonlyArray2<'_, f64> = self.in_order("float64")?.extract()?;
         Ok(DMatrix::from_vec(columns, rows, values(array.as_slice())?))
     }
 
@@ -112,8 +111,7 @@ impl<'py> Found<'py> {
     pub(crate) fn map_on(&self, grid: &Grid) -> Fallible<DMatrix<bool>> {
         let (rows, columns) = self.rows_and_columns()?;
         grid.check_shape((columns, rows))?;
-        let array: PyReadonlyArray2<'_, bool> =
-            self.in_order("bool")?.extract().map_err(PyErr::from)?;
+        let array: PyReadonlyArray2<'_, bool> = self.in_order("bool")?.extract()?;
         Ok(DMatrix::from_vec(columns, rows, values(array.as_slice())?))
     }
 
@@ -122,8 +120,7 @@ impl<'py> Found<'py> {
         if self.shape.len() != 1 {
             return Err(self.wrong_shape("one dimension"));
         }
-        let array: PyReadonlyArray1<'_, f64> =
-            self.in_order("float64")?.extract().map_err(PyErr::from)?;
+        let array: PyReadonlyArray1<'_, f64> = self.in_order("float64")?.extract()?;
         values(array.as_slice())
     }
 

@@ -91,8 +91,7 @@ impl From<Failure> for PyErr {
         Python::attach(|py| {
             raise(py, class, kind, &message, numbers).unwrap_or_else(|error| {
                 // Without the module of the exceptions, as while the interpreter ends.
-                let error = PyRuntimeError::new_err(format!("{message} ({error})"));
-                error
+                PyRuntimeError::new_err(format!("{message} ({error})"))
             })
         })
     }

@@ -407,7 +407,7 @@ fn states(table: &Bound<'_, PyDict>) -> Fallible<Vec<LoadingState>> {
     fn values<T: numpy::Element + Copy>(table: &Bound<'_, PyDict>, name: &str) -> Fallible<Vec<T>> {
         let column = table.get_item(name)?;
         let column = column.ok_or_else(|| Failure::arguments(format!("no column {name}")))?;
-        let column: PyReadonlyArray1<'_, T> = column.extract().map_err(PyErr::from)?;
+        let column: PyReadonlyArray1<'_, T> = column.extract()?;
         column.to_vec().map_err(|error| Failure::arguments(error.to_string()))
     }
     let wholes = |name: &str| values::<i64>(table, name);
