@@ -45,6 +45,6 @@ left.plot(history.mean_pressure / E_STAR, 100 * history.area_fraction, color=BLU
 left.plot(pressures / E_STAR, 100 * np.array(areas), "o", color=ORANGE, label="tamaas: one solution each")
 left.set(xlabel="p̄ / E*", ylabel="contact area (%)", title="contact area")
 left.legend(loc="lower right")
-right.loglog(pressures / E_STAR, differences, "o", color=ORANGE)
+right.semilogy(pressures / E_STAR, differences, "o", color=ORANGE)
 right.set(xlabel="p̄ / E*", ylabel="greatest difference / greatest pressure", title="pressures", ylim=(1e-15, 1e-7))
 save(figure, output("python_beside_tamaas.png"))

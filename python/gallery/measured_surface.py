@@ -16,11 +16,11 @@ import asperity as asp
 FILE = Path(__file__).resolve().parents[2] / "tests" / "data" / "selfaffine_128.npy"
 
 # A .npy file has neither size nor unit; those of instruments do. Holes are filled, and a tilt is taken off.
-surface = asp.read(FILE, size=1e-2, height_unit="m").fill_missing().level("plane")
+surface = asp.read(FILE, size=(1e-2, 1e-2), height_unit="m").fill_missing().level("plane")
 print(f"{surface}, Sq {surface.sq * 1e6:.1f} um, rms gradient {surface.rms_gradient:.3f}")
 
 steel = asp.HalfSpace(asp.composite_modulus("steel", "steel"), boundary="free")
-path = asp.load_path(surface, steel, mean_pressure=50e6)
+path = asp.load_path(surface, steel, mean_pressure=200e6)
 # It is elastic: the greatest pressure is what the warning is about.
 history = path.run(check=False)
 last, pressure = history[-1], path.pressure()

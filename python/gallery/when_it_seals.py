@@ -17,7 +17,7 @@ path = asp.load_path(surface, rubber)
 history = path.run(check=False)
 
 analysis = asp.patches(path)
-seal = analysis.spanning().leak_x
+seal = analysis.percolation().leak_x
 assert seal is not None
 print(f"sealed along x at {seal.area_fraction:.1%} contact, under {seal.mean_pressure / 1e6:.2f} MPa")
 
@@ -36,10 +36,11 @@ left.legend()
 x, y = (1e3 * side for side in surface.size)
 activation = analysis.activation("mean_pressure") / 1e6
 image = right.imshow(activation, extent=(0, x, y, 0), cmap="viridis_r", vmax=2 * seal.mean_pressure / 1e6)
-right.contour(
-    activation <= seal.mean_pressure / 1e6, [0.5], extent=(0, x, 0, y), colors=ORANGE, linewidths=0.8, origin="upper"
-)
-right.set(xlabel="x (mm)", ylabel="y (mm)", title="pressure at which each node touched")
+rows, columns = surface.shape
+centres = (np.arange(columns) + 0.5) * x / columns, (np.arange(rows) + 0.5) * y / rows
+sealed = (activation <= seal.mean_pressure / 1e6).astype(float)
+right.contour(*centres, sealed, [0.5], colors=ORANGE, linewidths=0.8)
+right.set(xlabel="x (mm)", ylabel="y (mm)", title="pressure at which each node touched, and the seal")
 right.grid(visible=False)
 figure.colorbar(image, ax=right, label="mean pressure (MPa)", shrink=0.85)
 save(figure, output("python_when_it_seals.png"))

@@ -215,3 +215,43 @@ def test_the_end_of_the_interpreter() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "done", "")
+
+
+def test_a_sweep_in_two_threads() -> None:
+    """As a generator, a sweep is for one thread at a time: the other one is told."""
+    surface = asp.example_surface(nodes=512)
+    sweep = asp.sweep(surface, asp.HalfSpace(115e9, boundary="free"), [1e4, 2e4], check=False)
+    with ThreadPoolExecutor(2) as threads:
+        both = [threads.submit(next, sweep) for _ in range(2)]
+        refused = [run.exception() for run in both]
+    assert sorted(error is None for error in refused) == [False, True]
+    assert any(isinstance(error, asp.AsperityError) and "another thread" in str(error) for error in refused)
+    assert next(sweep).load == 2e4
+
+
+@pytest.mark.skipif(not POSIX, reason="signals of POSIX")
+def test_handlers_of_signals_may_ask_what_is_under_way(long_path: asp.LoadingPath) -> None:
+    """A handler runs in the middle of a path and of a sweep, in the same thread: nothing is locked then."""
+    surface = asp.example_surface(nodes=512)
+    sweep = asp.sweep(surface, asp.HalfSpace(115e9, boundary="free"), [1e4], check=False)
+    told: list[str] = []
+
+    def in_a_path(number: int, frame: object) -> None:
+        told.append(f"path {len(long_path.history)} {next(long_path).step} {long_path.pressure().max()}")
+
+    def in_a_sweep(number: int, frame: object) -> None:
+        with pytest.raises(asp.AsperityError, match="solving already"):
+            next(sweep)
+        told.append("sweep")
+
+    before = signal.getsignal(signal.SIGUSR1)
+    try:
+        for handler, call in [(in_a_path, lambda: long_path.run(check=False)), (in_a_sweep, lambda: next(sweep))]:
+            signal.signal(signal.SIGUSR1, handler)
+            threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGUSR1)).start()
+            assert call() is not None
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert [words.split()[0] for words in told] == ["path", "sweep"]
+    # The state that the handler took is in the history too.
+    assert len(long_path.history) == int(0.35 * 160 * 160)

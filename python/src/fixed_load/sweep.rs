@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use asperity::fixed_load::FixedLoadSolution;
@@ -59,44 +59,58 @@ impl LoadSweep {
     }
 
     fn __next__(&self, py: Python<'_>) -> Fallible<Option<Solution>> {
-        let mut thread = self.thread.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        if thread.left == 0 {
-            return Ok(None);
+        // Not locked while it waits: a handler of signals may ask for this sweep too.
+        let mut answers = {
+            let mut thread = self.lock(py);
+            if thread.left == 0 {
+                return Ok(None);
+            }
+            if thread.process != std::process::id() {
+                return Err(Failure::arguments(
+                    "a sweep does not go on in a child process, which has none of the threads of its parent: make it there",
+                ));
+            }
+            let Some(answers) = thread.answers.take() else {
+                return Err(Failure::arguments("this sweep is solving already, in another thread"));
+            };
+            if !thread.is_asked {
+                // A thread that has ended answers no more.
+                thread.is_asked = thread.ask.send(()).is_ok();
+            }
+            Some(answers)
+        };
+        let solved = wait(py, &mut answers);
+        {
+            let mut thread = self.lock(py);
+            thread.answers = answers;
+            match &solved {
+                // Interrupted: what is under way comes next.
+                Err(_) => {}
+                Ok(Some(Ok(Ok(_)))) => {
+                    thread.is_asked = false;
+                    thread.left -= 1;
+                }
+                // A sweep ends with its first error.
+                _ => thread.left = 0,
+            }
         }
-        if thread.process != std::process::id() {
-            return Err(Failure::arguments(
-                "a sweep does not go on in a child process, which has none of the threads of its parent: make it there",
-            ));
-        }
-        if !thread.is_asked {
-            // A thread that has ended answers no more.
-            thread.is_asked = thread.ask.send(()).is_ok();
-        }
-        let solved = wait(py, &mut thread.answers)?;
-        thread.is_asked = false;
-        thread.left -= 1;
-        match solved {
+        match solved? {
             Some(Ok(Ok(solution))) => {
-                drop(thread);
                 if let (Some(e_star), None) = (self.e_star, &solution.plastic) {
                     warn_all(py, Warning::of_pressure(solution.max_pressure(), e_star))?;
                 }
                 Ok(Some(Solution::new(solution, self.setting)))
             }
-            Some(Ok(Err(error))) => {
-                // A sweep ends with its first error.
-                thread.left = 0;
-                Err(error.into())
-            }
-            Some(Err(panic)) => {
-                thread.left = 0;
-                Err(Failure::Panic(panic))
-            }
-            None => {
-                thread.left = 0;
-                Ok(None)
-            }
+            Some(Ok(Err(error))) => Err(error.into()),
+            Some(Err(panic)) => Err(Failure::Panic(panic)),
+            None => Ok(None),
         }
+    }
+}
+
+impl LoadSweep {
+    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Thread> {
+        self.thread.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 }
 
