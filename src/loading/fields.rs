@@ -269,10 +269,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ) -> Result<Certificate, Error> {
         let step = state.map_or(0, |state| state.step);
         let (contact, yielded) = (self.map_of(step), self.yielded_by(step));
-        let excess = self.run.plastic.as_ref().map(|plastic| {
-            let parts = pressure.iter().zip(plastic.hardness().values());
-            parts.map(|(p, hardness)| p / hardness - 1.0).fold(-1.0, f64::max)
-        });
         let state = state.map(|state| state.contact);
         let run = &mut self.run;
         let gap: &[f64] = match &run.plastic {
@@ -294,7 +290,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let scale = ErrorLength::new(run.problem.rms_height(), run.problem.table());
         let sum = load / run.problem.grid().cell_area();
         let certificate = Conditions::new(sum, reported, scale).check(nodes);
-        Ok(Certificate { excess_pressure: excess, ..certificate })
+        Ok(match &run.plastic {
+            Some(plastic) => {
+                let hardness = plastic.hardness().values().iter().copied();
+                certificate.with_hardness(pressure.iter().copied().zip(hardness))
+            }
+            None => certificate,
+        })
     }
 
     /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and
@@ -414,6 +416,12 @@ mod tests {
         near(&path.pressure_at(&second)?, [0.25, 0.0, 0.0, 0.0]);
         near(&path.displacement_at(&second)?, [1.0, 0.25, 0.0, 0.0]);
         near(&path.gap_at(&second)?, [0.0, 8.25, 0.0, 8.0]);
+        // As found there: the second node has no pressure yet, and the least gap is 8.
+        let found = path.certificate_at(&second)?;
+        assert!((found.least_gap * found.length - 8.0).abs() < 1e-13, "{found:?}");
+        assert!(found.least_pressure.abs() < 1e-13, "{found:?}");
+        let last = path.present()?;
+        assert_eq!(path.certificate_at(&last)?, path.certificate()?);
         let mut beyond = second;
         beyond.step = 3;
         for refused in [path.contact_map_at(&beyond).err(), path.pressure_at(&beyond).err()] {
