@@ -14,7 +14,9 @@ import pytest
 import asperity as asp
 from asperity import _asperity, errors, results
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+REPOSITORY = Path(__file__).resolve().parents[2]
+# Pages whose Python runs, and how many pieces of it there are at least.
+PAGES = {"python/README.md": 4, "docs/python.md": 4, "docs/from_file_to_contact.md": 1, "docs/metals_that_yield.md": 1}
 
 
 def public() -> Iterator[tuple[str, object]]:
@@ -81,18 +83,22 @@ def test_examples(name: str) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::asperity.AsperityWarning")
-def test_the_page_of_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its Python runs, from the beginning to the end."""
+@pytest.mark.parametrize("page", PAGES)
+def test_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their Python runs, from the beginning to the end."""
     monkeypatch.chdir(tmp_path)
-    asp.example_surface(nodes=64).save("ground.x3p")
-    blocks = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    assert len(blocks) >= 3
+    # A format is known by its content.
+    for name in ["ground.x3p", "ground.sdf"]:
+        asp.example_surface(nodes=64).save("ground.x3p")
+        (tmp_path / name).write_bytes((tmp_path / "ground.x3p").read_bytes())
+    blocks = re.findall(r"```python\n(.*?)```", (REPOSITORY / page).read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) >= PAGES[page]
     scope: dict[str, object] = {}
     for block in blocks:
-        exec(compile(block, str(README), "exec"), scope)
+        exec(compile(block, page, "exec"), scope)
 
 
 def test_the_version_is_that_of_the_workspace() -> None:
-    manifest = (Path(__file__).resolve().parents[2] / "Cargo.toml").read_text(encoding="utf-8")
+    manifest = (REPOSITORY / "Cargo.toml").read_text(encoding="utf-8")
     assert f'version = "{asp.__version__}"' in manifest
     assert _asperity.__version__ == asp.__version__
