@@ -16,6 +16,7 @@ mod reading;
 mod resolution;
 mod room;
 mod settings;
+mod slip;
 mod values;
 
 use std::process::ExitCode;
@@ -47,6 +48,7 @@ enum Command {
     Info(info::Options),
     Gather(gather::Options),
     Patches(patches::Options),
+    Slip(slip::Options),
 }
 
 fn main() -> ExitCode {
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
+        Some(Command::Slip(options)) => slip::run(&options),
     };
     match done.and_then(|()| speech::check()) {
         Ok(()) => ExitCode::SUCCESS,
