@@ -10,6 +10,9 @@ use nalgebra::DMatrix;
 
 use super::joint::Joint;
 
+/// The least work that is told from none in the map, over the greatest.
+const WEAR: f64 = 1e-3;
+
 /// Draws both.
 pub(super) fn draw(joint: &Joint, directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     let failed = |error| Failure::new("cannot compute the maps", error);
@@ -37,34 +40,40 @@ pub(super) fn draw(joint: &Joint, directory: &Path) -> Result<Vec<PathBuf>, Fail
         _ => 4.0 * slipped[(ix, iy)] * limit[(ix, iy)].max(0.0),
     });
     let grid = joint.record.grid();
-    let map = |values, range, label| FieldMap {
+    let map = |values, scale, range, label| FieldMap {
         grid: &grid,
         length_unit: "m",
         values,
         range,
-        scale: Scale::Linear,
+        scale,
         contours: &[],
         label,
     };
-    let stick_map = map(&share, (0.0, 1.0), ("traction / what friction bears (1: slips)", ""))
-        .write(
-            &directory.join("stick_map.png"),
-            &format!(
-                "T = {} under P = {}: {} nodes stick, {} slip",
-                quantity(force, "N", 4),
-                quantity(state.load, "N", 4),
-                state.stick_nodes,
-                state.slipping_nodes
-            ),
-        )?;
-    let greatest = work.iter().copied().filter(|work| !work.is_nan()).fold(0.0, f64::max);
-    let wear = map(&work, (0.0, greatest), ("friction work of a cycle", "J/m²")).write(
-        &directory.join("wear_map.png"),
+    let label = ("traction over the limit of friction", "1 = slips");
+    let stick_map = map(&share, Scale::Linear, (0.0, 1.0), label).write(
+        &directory.join("stick_map.png"),
         &format!(
-            "a cycle of T = {} loses {}",
+            "T = {} under P = {}: {} nodes stick, {} slip",
             quantity(force, "N", 4),
-            quantity(joint.cycle.dissipation, "J", 4)
+            quantity(state.load, "N", 4),
+            state.stick_nodes,
+            state.slipping_nodes
         ),
     )?;
-    Ok(vec![stick_map, wear])
+    let mut maps = vec![stick_map];
+    let greatest = work.iter().copied().filter(|work| !work.is_nan()).fold(0.0, f64::max);
+    // Where nothing slips there is no wear.
+    if greatest > 0.0 {
+        let label = ("friction work of a cycle", "J/m²");
+        let range = (WEAR * greatest, greatest);
+        maps.push(map(&work, Scale::Logarithmic, range, label).write(
+            &directory.join("wear_map.png"),
+            &format!(
+                "a cycle of T = {} loses {}",
+                quantity(force, "N", 4),
+                quantity(joint.cycle.dissipation, "J", 4)
+            ),
+        )?);
+    }
+    Ok(maps)
 }
