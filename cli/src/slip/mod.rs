@@ -15,8 +15,7 @@ use std::path::{Path, PathBuf};
 use asperity::bed::Bed;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{Failure, Outcome};
-use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
 use crate::elasticity::Material;
@@ -85,6 +84,9 @@ pub(crate) struct Options {
 
 /// Reads the record, says what the tangential load does, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let file = options.record.display();
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
@@ -94,17 +96,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let sheared =
         options.history.as_deref().map(|name| Sheared::follow(&joint, name)).transpose()?;
     if options.json {
-        say!("{}", words::object(&joint, sheared.as_ref()));
-    } else {
-        words::print(&joint, sheared.as_ref());
+        answer!("{}", words::object(&joint, sheared.as_ref()));
     }
+    words::print(&joint, sheared.as_ref());
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
         (None, false) => PathBuf::from("out"),
         (None, true) => return Ok(()),
     };
     let outcome = write(&joint, sheared.as_ref(), &directory)?;
-    if options.json { outcome.finish_quietly() } else { outcome.finish() }
+    outcome.finish()
 }
 
 fn write(joint: &Joint, sheared: Option<&Sheared>, directory: &Path) -> Result<Outcome, Failure> {
