@@ -36,6 +36,8 @@
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
+//! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
+//! | superpose increments of a path | [`bed`] |
 //! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
@@ -76,6 +78,7 @@
 
 #![warn(missing_debug_implementations)]
 
+pub mod bed;
 mod cell_response;
 pub mod contact;
 pub mod convolution;
@@ -94,6 +97,7 @@ pub mod record;
 pub mod reference;
 #[cfg(test)]
 mod send_and_sync;
+pub mod slip;
 #[cfg(test)]
 mod test_chain;
 pub mod updater;
@@ -106,7 +110,7 @@ pub use asperity_surfaces::{
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{Error, KernelError, UpdaterError};
+pub use error::{BedError, Error, KernelError, SlipError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,

@@ -1,6 +1,7 @@
 //! All types of this crate can be sent to other threads and shared between them; of those with parameters, where these can. The
 //! builders cannot: they borrow a surface and a kernel that need not. What is asserted here holds if it compiles.
 
+use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
@@ -16,13 +17,19 @@ use crate::patches::{
 };
 use crate::record::{KernelRecord, LoadingRecord, Settings};
 use crate::reference::{
-    AreaLoadLaw, CircularPunch, Cone, DoubleWave, HertzEllipse, HertzLine, HertzSphere, Westergaard,
+    AreaLoadLaw, CircularPunch, Cone, DoubleWave, HertzEllipse, HertzLine, HertzSphere, SphereSlip,
+    Westergaard,
+};
+use crate::slip::{
+    Friction, JenkinsElement, PartialSlip, SlipCycle, SlipHistory, SlipState, SlipZone,
 };
 use crate::surface::{HeightMap, SelfAffine, Topography};
 use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
-use crate::{Error, FileError, Grid, KernelError, Problem, UpdaterError, Warning};
+use crate::{
+    BedError, Error, FileError, Grid, KernelError, Problem, SlipError, UpdaterError, Warning,
+};
 
 /// Compiles for types that can be sent and shared.
 const fn asserted<T: Send + Sync>() {}
@@ -31,7 +38,8 @@ macro_rules! send_and_sync {
     ($($t:ty),+ $(,)?) => { const _: () = { $(asserted::<$t>();)+ }; };
 }
 
-send_and_sync!(Grid, Problem, Warning, Error, FileError, KernelError, UpdaterError);
+send_and_sync!(Grid, Problem, Warning);
+send_and_sync!(Error, FileError, BedError, KernelError, SlipError, UpdaterError);
 send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
 send_and_sync!(
     FixedLoadSolution,
@@ -80,6 +88,16 @@ send_and_sync!(
     Percolation,
     Perimeter,
 );
+send_and_sync!(Bed<'static>, BedState, Piece, Spring, Superposed, Superposition);
+send_and_sync!(
+    Friction,
+    JenkinsElement,
+    PartialSlip<'static>,
+    SlipCycle,
+    SlipHistory<'static>,
+    SlipState,
+    SlipZone,
+);
 send_and_sync!(KernelRecord, LoadingRecord, Settings);
 send_and_sync!(
     AreaLoadLaw,
@@ -89,6 +107,7 @@ send_and_sync!(
     HertzEllipse,
     HertzLine,
     HertzSphere,
+    SphereSlip,
     Westergaard,
 );
 send_and_sync!(HeightMap, SelfAffine, Topography);

@@ -90,7 +90,7 @@ impl Elasticity {
 }
 
 impl Bodies {
-    fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
+    pub(crate) fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
         let (e_star, against) = match second {
             Some(second) => {
                 (composite_modulus((first.e, first.nu), (second.e, second.nu)), second.to_string())
@@ -111,7 +111,7 @@ impl Bodies {
 
 /// A body, with its name if it was given by name.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Material {
+pub(crate) struct Material {
     name: Option<&'static str>,
     /// Young's modulus \[Pa\].
     e: f64,
@@ -123,6 +123,11 @@ struct Material {
 
 impl Material {
     const STEEL: Self = Self::named(&Known::STEEL);
+
+    /// Young's modulus \[Pa\] and Poisson's ratio.
+    pub(crate) fn elastic(&self) -> (f64, f64) {
+        (self.e, self.nu)
+    }
 
     const fn named(known: &Known) -> Self {
         Self {

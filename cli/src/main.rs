@@ -17,6 +17,7 @@ mod resolution;
 mod room;
 mod settings;
 mod shell;
+mod slip;
 mod values;
 
 use std::process::ExitCode;
@@ -57,6 +58,7 @@ enum Command {
     Info(info::Options),
     Gather(gather::Options),
     Patches(patches::Options),
+    Slip(slip::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
 }
@@ -79,6 +81,7 @@ fn main() -> ExitCode {
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
+        Some(Command::Slip(options)) => slip::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),
     };

@@ -1,12 +1,16 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
+mod bed;
 mod kernel;
+mod slip;
 mod updater;
 
 use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
+pub use bed::BedError;
 pub use kernel::KernelError;
+pub use slip::SlipError;
 pub use updater::UpdaterError;
 
 /// What went wrong, with the numbers that say so.
@@ -271,6 +275,14 @@ pub enum Error {
     /// An updater that cannot do what the path needs, or answers something else.
     #[error(transparent)]
     Updater(#[from] UpdaterError),
+
+    /// A path whose increments cannot be superposed, or that ends before what is asked of it.
+    #[error(transparent)]
+    Bed(#[from] BedError),
+
+    /// A tangential load that friction does not bear.
+    #[error(transparent)]
+    Slip(#[from] SlipError),
 
     /// A surface, a grid or a map that is not what it should be.
     #[error(transparent)]

@@ -17,6 +17,7 @@
 //! | cone | [`Cone`] |
 //! | flat punches | [`CircularPunch`], [`SQUARE_PUNCH_STIFFNESS`] |
 //! | wavy surfaces | [`Westergaard`], [`DoubleWave`] |
+//! | sphere under a tangential load | [`SphereSlip`] |
 //! | area of rough contacts, and its pressures | [`AreaLoadLaw`] |
 //! | electrical and thermal contact conductance | [`contact_conductance`] |
 
@@ -73,6 +74,7 @@ mod hertz_ellipse;
 mod hertz_line;
 mod hertz_sphere;
 mod punch;
+mod sphere_slip;
 mod westergaard;
 
 pub use area_load::AreaLoadLaw;
@@ -83,6 +85,7 @@ pub use hertz_ellipse::HertzEllipse;
 pub use hertz_line::HertzLine;
 pub use hertz_sphere::HertzSphere;
 pub use punch::{CircularPunch, SQUARE_PUNCH_STIFFNESS};
+pub use sphere_slip::SphereSlip;
 pub use westergaard::Westergaard;
 
 /// Zero for a negative value. Unlike `f64::max`, it lets NaN through.

@@ -1,0 +1,380 @@
+//! Any history of the load and of the tangential load.
+
+use nalgebra::DMatrix;
+
+use super::Friction;
+use super::state::{SlipState, borne};
+use crate::bed::{Bed, BedState, Superposition};
+use crate::updater::LinearUpdater;
+use crate::{Error, LoadingSolver, SlipError};
+
+/// A contact under any history of the load P and the tangential load T, by steps that are linear in both.
+///
+/// The traction is `q = ∫ λ(s) dp(s)` with a ratio λ between −μ and μ that is constant in pieces of the load s from 0 to P. A step
+/// changes the pieces at the top: where T changes fast, a piece of ±μ, the slip zone, eats those below it; where P grows and T
+/// follows slowly, a piece of the ratio dT/dP comes on top of them; where P falls, the top is cut off (Jäger, *A New Principle in
+/// Contact Mechanics*, J. Tribol. 120 (1998) 677; Aleshin, Bou Matar & Van Den Abeele, Int. J. Solids Struct. 74 (2015) 145). At
+/// constant P this is Masing's rule: loops that close are forgotten.
+///
+/// A step takes O(log N) for each piece that it ends, of a path of N states.
+///
+/// ```
+/// use asperity::bed::Bed;
+/// use asperity::loading::History;
+/// use asperity::slip::{Friction, SlipHistory};
+/// use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+/// let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space)
+///     .max_load(500.0)
+///     .build()?;
+/// let history: History = path.by_ref().collect::<Result<_, _>>()?;
+/// let bed = Bed::new(&history)?;
+///
+/// let mut joint = SlipHistory::new(&bed, Friction::new(0.3, 1.2)?);
+/// joint.to(400.0, 0.0)?;
+/// joint.to(400.0, 60.0)?; // at constant load
+/// let loaded = joint.to(300.0, -20.0)?; // both at once
+/// println!("{} m, {} J lost so far", loaded.displacement, joint.dissipation());
+/// assert!(joint.to(300.0, 91.0).is_err()); // friction bears 90 N
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct SlipHistory<'a> {
+    bed: &'a Bed<'a>,
+    friction: Friction,
+    load: BedState,
+    pieces: Vec<Piece>,
+    dissipation: f64,
+}
+
+/// A piece of one ratio, from a load of the path to the start of the next piece, or to the present load.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    start: BedState,
+    ratio: f64,
+    /// ∫ λ ds, ∫ λ dδ and −∫ λ dḡ over the pieces below.
+    below: [f64; 3],
+}
+
+impl Piece {
+    /// The same integrals up to a state in or at the end of this piece.
+    fn up_to(&self, end: &BedState) -> [f64; 3] {
+        let start = &self.start;
+        let changes =
+            [end.load - start.load, end.approach - start.approach, start.mean_gap - end.mean_gap];
+        [0, 1, 2].map(|k| self.below[k] + self.ratio * changes[k])
+    }
+}
+
+/// How a step ends, or a part of one.
+struct Part {
+    /// The load there.
+    load: f64,
+    /// The front of the slip zone there.
+    front: f64,
+}
+
+/// Ratios that differ by less are the same: dT/dP is a quotient of differences.
+const SAME_RATIO: f64 = 1e-12;
+
+/// Pieces shorter than this part of the load are what rounding leaves of a loop that closes.
+const SAME_LOAD: f64 = 1e-14;
+
+/// Where a front stops that would get so far: at the lower end of the piece below it, if it reaches that or nearly does.
+fn stop(reach: f64, below: &Piece, load: f64) -> f64 {
+    let lowest = below.start.load;
+    if reach <= lowest + SAME_LOAD * load { lowest } else { reach }
+}
+
+impl<'a> SlipHistory<'a> {
+    /// An unloaded contact.
+    #[must_use]
+    pub fn new(bed: &'a Bed<'a>, friction: Friction) -> Self {
+        let load = bed.first();
+        Self { bed, friction, load, pieces: Vec::new(), dissipation: 0.0 }
+    }
+
+    /// To a load P and a tangential load T \[N\], along a straight line in both; returns the state there.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for what is not finite, and for a negative load; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore)
+    /// for a load that the path has not reached; [`SlipError::JointSlides`] for |T| > μP, and [`SlipError::StaysAtLimit`] if |T| = μP
+    /// all along the step while P changes: the displacement is unknown then. The history is as before after an error.
+    pub fn to(&mut self, load: f64, tangential_load: f64) -> Result<SlipState, Error> {
+        let target = self.bed.at_load(load)?;
+        let force = borne(&self.friction, load, tangential_load)?;
+        let before = self.load.load;
+        if load == before {
+            self.turn(force)?;
+            return Ok(self.state());
+        }
+        let slope = self.snapped((force - self.force()) / (load - before));
+        if self.stays_at_limit(slope) {
+            return Err(SlipError::StaysAtLimit { from: before, to: load }.into());
+        }
+        if load > before {
+            self.press(target, slope)?;
+        } else {
+            self.relieve(target, slope)?;
+        }
+        Ok(self.state())
+    }
+
+    /// The present state.
+    #[must_use]
+    pub fn state(&self) -> SlipState {
+        let [force, shift, gap] = self.sums();
+        let ratio = self.friction.compliance_ratio();
+        let values = [force, ratio * shift, ratio * gap];
+        let stick = match self.pieces.last() {
+            Some(top) if self.is_limit(top.ratio) => &top.start,
+            _ => &self.load,
+        };
+        SlipState::new(self.bed, &self.friction, &self.load, stick, values)
+    }
+
+    /// Energy lost so far \[J\]: the work of friction, which never falls.
+    #[must_use]
+    pub fn dissipation(&self) -> f64 {
+        self.dissipation
+    }
+
+    /// The traction as a superposition of increments of the path, with the ratios λ as weights.
+    ///
+    /// # Errors
+    ///
+    /// None, of a history that was made by this crate.
+    pub fn superposition(&self) -> Result<Superposition, Error> {
+        let ends = self.pieces.iter().skip(1).map(|piece| piece.start.load);
+        let ends = ends.chain([self.load.load]);
+        Superposition::new(ends.zip(self.pieces.iter().map(|piece| piece.ratio)))
+    }
+
+    /// Tangential elastic energy that is stored \[J\].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::superposition`].
+    pub fn stored_energy(&self) -> Result<f64, Error> {
+        let scalars = self.superposition()?.scalars(self.bed)?;
+        Ok(self.friction.compliance_ratio() * scalars.energy)
+    }
+
+    /// Traction \[Pa\]: a field of the path for each piece.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Superposition::pressure`].
+    pub fn traction<U: LinearUpdater>(
+        &self,
+        path: &mut LoadingSolver<U>,
+    ) -> Result<DMatrix<f64>, Error> {
+        self.superposition()?.pressure(self.bed, path)
+    }
+
+    fn sums(&self) -> [f64; 3] {
+        self.pieces.last().map_or([0.0; 3], |top| top.up_to(&self.load))
+    }
+
+    fn force(&self) -> f64 {
+        self.sums()[0]
+    }
+
+    fn is_limit(&self, ratio: f64) -> bool {
+        ratio.abs() == self.friction.coefficient()
+    }
+
+    /// A slope that is the ratio at the top, or the limit, to rounding.
+    fn snapped(&self, slope: f64) -> f64 {
+        let limit = self.friction.coefficient();
+        let top = self.pieces.last().map(|piece| piece.ratio);
+        let known = top.into_iter().chain([limit, -limit]);
+        let mut near = known.filter(|ratio| (slope - ratio).abs() <= SAME_RATIO * limit);
+        near.next().unwrap_or(slope)
+    }
+
+    /// Whether friction is at its limit all over the contact now and throughout the step.
+    fn stays_at_limit(&self, slope: f64) -> bool {
+        let is_limit = self.is_limit(slope);
+        match self.pieces.as_slice() {
+            // From no load: P and T grow together.
+            [] => is_limit,
+            [all] => is_limit && slope == all.ratio,
+            _ => false,
+        }
+    }
+
+    /// T to a value at constant load: slip spreads inwards, one piece at a time.
+    fn turn(&mut self, force: f64) -> Result<(), Error> {
+        let change = force - self.force();
+        if change == 0.0 || self.load.load == 0.0 {
+            return Ok(());
+        }
+        let top = change.signum() * self.friction.coefficient();
+        let load = self.load.load;
+        loop {
+            let change = force - self.force();
+            let Some((front, below)) = self.front(top).filter(|_| change * top > 0.0) else {
+                return Ok(());
+            };
+            let reach = front.load - change / (top - below.ratio);
+            let end = Part { load, front: stop(reach, &below, load) };
+            self.slide(top, &below, &front, end)?;
+            if reach > below.start.load - SAME_LOAD * load {
+                return Ok(());
+            }
+        }
+    }
+
+    /// P grows.
+    fn press(&mut self, target: BedState, slope: f64) -> Result<(), Error> {
+        let limit = self.friction.coefficient();
+        if slope.abs() <= limit {
+            self.push(self.load, slope);
+            self.load = target;
+            return Ok(());
+        }
+        // Slip from the edge, and the front recedes.
+        let top = slope.signum() * limit;
+        while self.load.load < target.load {
+            let Some((front, below)) = self.front(top) else {
+                self.replace(top, self.bed.first(), target);
+                return Ok(());
+            };
+            let rate = (slope - top) / (top - below.ratio);
+            let lowest = below.start.load;
+            let load = (self.load.load + (front.load - lowest) / rate).min(target.load);
+            let end = if load < target.load {
+                Part { load, front: lowest }
+            } else {
+                let reach = front.load - rate * (load - self.load.load);
+                Part { load, front: stop(reach, &below, load) }
+            };
+            self.slide(top, &below, &front, end)?;
+        }
+        Ok(())
+    }
+
+    /// P falls.
+    fn relieve(&mut self, target: BedState, slope: f64) -> Result<(), Error> {
+        let limit = self.friction.coefficient();
+        while self.load.load > target.load {
+            let Some(last) = self.pieces.last().copied() else {
+                self.load = target;
+                return Ok(());
+            };
+            if last.ratio == slope {
+                // Unloading retraces: nothing slips.
+                self.cut(self.bed.at_load(target.load.max(last.start.load))?);
+                continue;
+            }
+            // The present slip zone goes on, unless T falls faster than its limit.
+            let goes_on = self.is_limit(last.ratio) && last.ratio * slope <= limit * limit;
+            let top = if goes_on { last.ratio } else { limit * (last.ratio - slope).signum() };
+            let Some((front, below)) = self.front(top) else {
+                self.cut(target);
+                return Ok(());
+            };
+            // How fast the front falls with the load.
+            let rate = (top - slope) / (top - below.ratio);
+            let (now, lowest) = (self.load.load, below.start.load);
+            let eaten = now - (front.load - lowest) / rate;
+            // Where the load has reached the front, the slip zone is gone.
+            let gone = if rate < 1.0 { now - (now - front.load) / (1.0 - rate) } else { 0.0 };
+            let gone = gone.min(front.load);
+            let load = target.load.max(eaten).max(gone).min(now);
+            let reach = if load == eaten {
+                lowest
+            } else if load == gone {
+                load
+            } else {
+                stop(front.load - rate * (now - load), &below, load)
+            };
+            self.slide(top, &below, &front, Part { load, front: reach.min(load) })?;
+        }
+        Ok(())
+    }
+
+    /// The front of a slip zone of the ratio `top`, and the piece below it; `None` if the zone is the whole contact.
+    fn front(&self, top: f64) -> Option<(BedState, Piece)> {
+        let (last, others) = self.pieces.split_last()?;
+        if last.ratio == top {
+            return others.last().map(|below| (last.start, *below));
+        }
+        Some((self.load, *last))
+    }
+
+    /// A part of a step in which the front of the slip zone moves through one piece.
+    fn slide(&mut self, top: f64, below: &Piece, front: &BedState, end: Part) -> Result<(), Error> {
+        let load = self.bed.at_load(end.load)?;
+        let reached = self.bed.at_load(end.front)?;
+        let work = friction_work([&self.load, &load], [front, &reached]);
+        let scale = self.friction.displacement_per_approach() * (top - below.ratio).abs();
+        self.dissipation += scale * work;
+        self.replace(top, reached, load);
+        Ok(())
+    }
+
+    /// One ratio from `start` to `load`, in place of all that lies beyond `start`.
+    fn replace(&mut self, top: f64, start: BedState, load: BedState) {
+        self.cut(start);
+        if load.load > start.load {
+            self.push(start, top);
+        }
+        self.load = load;
+    }
+
+    /// Takes off what lies beyond a load, which becomes the present one.
+    fn cut(&mut self, load: BedState) {
+        while self.pieces.last().is_some_and(|piece| piece.start.load >= load.load) {
+            self.pieces.pop();
+        }
+        self.load = load;
+    }
+
+    /// A piece on top of the others, which end at its start.
+    fn push(&mut self, start: BedState, ratio: f64) {
+        match self.pieces.last() {
+            Some(last) if last.ratio == ratio => (),
+            Some(last) => self.pieces.push(Piece { start, ratio, below: last.up_to(&start) }),
+            None => self.pieces.push(Piece { start, ratio, below: [0.0; 3] }),
+        }
+    }
+}
+
+/// Σ p r₂ ΔA dδ(s) over the way of a front, from s₀ down to s₁ while the load goes from P₀ to P₁ in proportion:
+/// ```math
+/// \int_{s_1}^{s_0} \left[ (P - s)\, \mathrm{d}\delta(s) - (\delta(P) - \delta(s))\, \mathrm{d}s \right] \ge 0
+/// ```
+/// times κ|Δλ| and the coefficient it is the work of friction: nodes beyond the front slip by κ|Δλ| r₂ dδ under μp.
+fn friction_work([p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
+    let (loads, approaches) = (s0.load - s1.load, s0.approach - s1.approach);
+    if loads <= 0.0 {
+        return 0.0;
+    }
+    let fixed = (p0.load - s0.load) * approaches - (p0.approach - s0.approach) * loads;
+    let (above, under) = (before_end(s1, s0), loads * approaches - before_end(s1, s0));
+    // P(s) moves: dP/ds = change/(s₁ − s₀).
+    let change = p1.load - p0.load;
+    let moving = if change == 0.0 {
+        0.0
+    } else {
+        let [low, high] = if change < 0.0 { [p1, p0] } else { [p0, p1] };
+        let all = (high.load - low.load) * (high.approach - low.approach);
+        let carried =
+            if change < 0.0 { all - before_end(low, high) } else { before_end(low, high) };
+        change / loads * above - carried * (loads / change)
+    };
+    (fixed + above - under + moving).max(0.0)
+}
+
+/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁, by the energy ∫ s dδ: differences, which rounding does not leave where the integral can be.
+fn before_end(start: &BedState, end: &BedState) -> f64 {
+    let (loads, approaches) = (end.load - start.load, end.approach - start.approach);
+    let rest = end.load * approaches - (end.energy - start.energy);
+    rest.clamp(0.0, (loads * approaches).max(0.0))
+}
