@@ -8,6 +8,7 @@ use crate::kernel::{
     Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
+use crate::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
 use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingSolver, LoadingState};
 use crate::patches::{
     Bins, Branch, Connectivity, Constriction, ContactEdge, FieldDistribution, Histogram, MergeTree,
@@ -81,6 +82,7 @@ send_and_sync!(
     Perimeter,
 );
 send_and_sync!(KernelRecord, LoadingRecord, Settings);
+send_and_sync!(CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal);
 send_and_sync!(
     AreaLoadLaw,
     CircularPunch,
