@@ -10,11 +10,15 @@ use crate::Error;
 /// Rounding loses some 10⁻¹⁶ of the flow through each face, and the flow passes some N to 5 N faces along the N nodes from edge to edge: 10⁻¹² on
 /// 4096 of them.
 const LOST: f64 = 1e-11;
-/// Greatest change of a pressure by the last correction, over the pressure drop: what hangs on a weak channel alone loses little, wherever its
-/// pressure is.
-const SETTLED: f64 = 1e-9;
-/// Residual of a correction, relative to what it is to correct.
+/// Greatest change of a pressure that a further correction would bring, over the pressure drop: what hangs on a weak channel alone loses
+/// little, wherever its pressure is. A correction reduces errors of all kinds by about as much as the residual: this is what multigrid does.
+const SETTLED: f64 = 1e-10;
+/// Least residual of a correction, relative to what it is to correct: as far as it can be followed in double precision.
 const CORRECTED: f64 = 1e-8;
+/// A correction leaves less than may be lost, so that it is the last one.
+const LESS: f64 = 0.1;
+/// Greatest residual of a correction.
+const LARGEST: f64 = 1e-2;
 /// Most iterations of a correction, and most corrections: a flow of 10⁻¹⁸⁰ of what flows at the open edge takes some 25 of them.
 const ITERATIONS: usize = 400;
 const CORRECTIONS: usize = 60;
@@ -24,8 +28,8 @@ const IDLE: usize = 3;
 /// Pressures, relative to the pressure drop, and what flows, relative to the conductance of a square of the greatest gap.
 #[derive(Debug)]
 pub(super) struct Flow {
-    /// Of each flowing node, by its place among them: a sum of two numbers, so that small differences of large pressures are not lost.
-    pressures: Vec<[f64; 2]>,
+    /// Of each flowing node, by its place among them: a sum of three numbers, so that small differences of large pressures are not lost.
+    pressures: Vec<[f64; 3]>,
     /// The place of each node of the grid among those that flow.
     numbers: Vec<u32>,
     /// What flows from edge to edge.
@@ -45,7 +49,7 @@ impl Flow {
         }
         let mut hierarchy = Hierarchy::new(graph(network, flowing, &numbers));
         let mut flow = Self {
-            pressures: vec![[0.0; 2]; flowing.len()],
+            pressures: vec![[0.0; 3]; flowing.len()],
             numbers,
             rate: 0.0,
             lost: f64::INFINITY,
@@ -54,26 +58,23 @@ impl Flow {
         let mut residual = vec![0.0; flowing.len()];
         let mut correction = vec![0.0; flowing.len()];
         let (mut idle, mut change) = (0, f64::INFINITY);
+        let mut least = f64::INFINITY;
         for _ in 0..CORRECTIONS {
-            let rate = flow.residuals(network, flowing, &mut residual);
-            let lost = size(&residual) / rate.abs();
-            if lost < flow.lost {
-                idle = 0;
-                flow.lost = lost;
-                flow.rate = rate;
-            } else {
-                idle += 1;
-            }
-            if lost <= LOST && rate > 0.0 && change <= SETTLED {
-                flow.lost = lost;
-                flow.rate = rate;
+            flow.rate = flow.residuals(network, flowing, &mut residual);
+            let remains = size(&residual);
+            flow.lost = remains / flow.rate.abs();
+            if flow.lost <= LOST && flow.rate > 0.0 && change <= SETTLED {
                 return Ok(flow);
             }
-            if idle == IDLE || !size(&residual).is_finite() {
+            idle = if remains < 0.5 * least { 0 } else { idle + 1 };
+            least = remains.min(least);
+            if idle == IDLE || !remains.is_finite() {
                 break;
             }
-            flow.iterations += correct(&mut hierarchy, &mut residual, &mut correction);
-            change = correction.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let enough = LESS * LOST * flow.rate.abs() / remains;
+            let reduction = enough.clamp(CORRECTED, LARGEST);
+            flow.iterations += correct(&mut hierarchy, (&mut residual, reduction), &mut correction);
+            change = reduction * correction.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             for (pressure, correction) in flow.pressures.iter_mut().zip(&correction) {
                 *pressure = sum(*pressure, *correction);
             }
@@ -107,22 +108,19 @@ impl Flow {
         node: usize,
         (face, beyond): (usize, Beyond),
     ) -> f64 {
-        let [high, low] = self.pressure(node);
+        let own = self.pressure(node);
         let drop = match beyond {
             Beyond::Wall => return 0.0,
-            Beyond::Inlet => (high - 1.0) + low,
-            Beyond::Outlet => high + low,
+            Beyond::Inlet => difference(own, [1.0, 0.0, 0.0]),
+            Beyond::Outlet => difference(own, [0.0; 3]),
             Beyond::Node(other) if network.places[other] != Place::Flowing => return 0.0,
-            Beyond::Node(other) => {
-                let [other_high, other_low] = self.pressure(other);
-                (high - other_high) + (low - other_low)
-            }
+            Beyond::Node(other) => difference(own, self.pressure(other)),
         };
         network.conductance(node, face, beyond) * drop
     }
 
     /// The pressure of a flowing node, as a sum.
-    pub(super) fn pressure(&self, node: usize) -> [f64; 2] {
+    pub(super) fn pressure(&self, node: usize) -> [f64; 3] {
         self.pressures.get(self.numbers[node] as usize).copied().unwrap_or_default()
     }
 }
@@ -151,13 +149,17 @@ fn graph(network: &Network, flowing: &[usize], numbers: &[u32]) -> Graph {
 
 /// Solves for a correction by flexible conjugate gradients, as well as the residual can be followed; returns the number of iterations.
 /// What is left of the residual takes its place.
-fn correct(hierarchy: &mut Hierarchy, residual: &mut [f64], x: &mut [f64]) -> usize {
+fn correct(
+    hierarchy: &mut Hierarchy,
+    (residual, reduction): (&mut [f64], f64),
+    x: &mut [f64],
+) -> usize {
     let n = residual.len();
     let (mut direction, mut product, mut z) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     x.fill(0.0);
     let first = size(residual);
     for iteration in 0..ITERATIONS {
-        if size(residual) <= CORRECTED * first {
+        if size(residual) <= reduction * first {
             return iteration;
         }
         hierarchy.precondition(residual, &mut z);
@@ -166,7 +168,7 @@ fn correct(hierarchy: &mut Hierarchy, residual: &mut [f64], x: &mut [f64]) -> us
         for (direction, z) in direction.iter_mut().zip(&z) {
             *direction = z - along * *direction;
         }
-        hierarchy.graph().apply(&direction, &mut product);
+        hierarchy.matrix().apply(&direction, &mut product);
         let step = quotient(dot(&direction, residual), dot(&direction, &product));
         add(x, step, &direction);
         add(residual, -step, &product);
@@ -174,16 +176,30 @@ fn correct(hierarchy: &mut Hierarchy, residual: &mut [f64], x: &mut [f64]) -> us
     ITERATIONS
 }
 
-/// A sum of two numbers and one more, the first of which is the sum rounded.
-fn sum([high, low]: [f64; 2], more: f64) -> [f64; 2] {
-    // Knuth's: what rounding takes from a sum is a number again.
-    let exact = |a: f64, b: f64| {
-        let sum = a + b;
-        let part = sum - a;
-        [sum, (a - (sum - part)) + (b - part)]
-    };
-    let [total, rest] = exact(high, more);
-    exact(total, low + rest)
+/// A sum of two numbers, and what rounding takes from it: both together are exact (Knuth).
+fn exact(a: f64, b: f64) -> [f64; 2] {
+    let sum = a + b;
+    let part = sum - a;
+    [sum, (a - (sum - part)) + (b - part)]
+}
+
+/// A sum of three numbers and one more, each small beside the one before it.
+fn sum([high, middle, low]: [f64; 3], more: f64) -> [f64; 3] {
+    let [high, rest] = exact(high, more);
+    let [middle, more_rest] = exact(middle, rest);
+    let low = low + more_rest;
+    let [middle, low] = exact(middle, low);
+    let [high, middle] = exact(high, middle);
+    let [middle, low] = exact(middle, low);
+    [high, middle, low]
+}
+
+/// The difference of two sums, to rounding of the difference of their last numbers and of itself.
+fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [high, rest] = exact(a[0], -b[0]);
+    let [middle, more_rest] = exact(a[1], -b[1]);
+    let [high, last_rest] = exact(high, middle);
+    high + (rest + last_rest + (more_rest + (a[2] - b[2])))
 }
 
 #[cfg(test)]
@@ -192,10 +208,13 @@ mod tests {
 
     #[test]
     fn sums_keep_what_rounding_takes() {
-        let mut total = [1.0, 0.0];
-        for more in [1e-20, 1e-30, -1.0] {
-            total = sum(total, more);
-        }
-        assert_eq!(total[0] + total[1], 1e-20 + 1e-30);
+        let total = |all: &[f64]| all.iter().fold([0.0; 3], |total, more| sum(total, *more));
+        assert_eq!(total(&[1.0, 1e-20, 1e-38, -1.0])[0], 1e-20);
+        let (first, second) = (total(&[1.0, 1e-20, 3e-38]), total(&[1.0, 1e-20, 1e-38]));
+        // Of 1e-38 the last number keeps all, and its rounding.
+        assert!((difference(first, second) / 2e-38 - 1.0).abs() < 1e-14);
+        assert_eq!(difference(first, [1.0, 0.0, 0.0]), 1e-20);
+        assert_eq!(difference(second, first), -difference(first, second));
+        assert_eq!(difference(first, first), 0.0);
     }
 }

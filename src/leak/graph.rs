@@ -59,37 +59,6 @@ impl Graph {
         self.diagonal[node]
     }
 
-    /// `product = A x`.
-    pub(super) fn apply(&self, x: &[f64], product: &mut [f64]) {
-        for (node, product) in product.iter_mut().enumerate() {
-            let own = x[node];
-            let flows = self.edges(node).map(|(other, weight)| weight * (own - x[other]));
-            *product = self.ground[node] * own + flows.sum::<f64>();
-        }
-    }
-
-    /// Sweeps forwards from zero: the lower triangle of A, inverted. `residual` becomes what is left of `b`.
-    pub(super) fn sweep_forwards(&self, b: &[f64], x: &mut [f64], residual: &mut [f64]) {
-        for node in 0..self.len() {
-            let before = self.edges(node).filter(|(other, _)| *other < node);
-            let inflow: f64 = before.map(|(other, weight)| weight * x[other]).sum();
-            x[node] = (b[node] + inflow) / self.diagonal[node];
-        }
-        // Nodes before are up to date when a node is: what is left comes from those behind it.
-        for (node, residual) in residual.iter_mut().enumerate() {
-            let behind = self.edges(node).filter(|(other, _)| *other > node);
-            *residual = behind.map(|(other, weight)| weight * x[other]).sum();
-        }
-    }
-
-    /// Sweeps backwards over what there is: the transpose of a sweep forwards.
-    pub(super) fn sweep_backwards(&self, b: &[f64], x: &mut [f64]) {
-        for node in (0..self.len()).rev() {
-            let inflow: f64 = self.edges(node).map(|(other, weight)| weight * x[other]).sum();
-            x[node] = (b[node] + inflow) / self.diagonal[node];
-        }
-    }
-
     /// The graph of groups of nodes, `groups` of them: conductances between groups are the sums of those between their nodes.
     pub(super) fn grouped(&self, group_of: &[u32], groups: usize) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); groups];
@@ -161,6 +130,87 @@ impl Graph {
     }
 }
 
+/// The same as a matrix to calculate with: each edge once, at the later one of its nodes. What flows through it is taken from one node and
+/// given to the other.
+#[derive(Debug, Clone)]
+pub(super) struct Matrix {
+    start: Vec<usize>,
+    /// The earlier node of each edge.
+    earlier: Vec<u32>,
+    weights: Vec<f64>,
+    ground: Vec<f64>,
+    /// Reciprocals of the diagonal.
+    inverses: Vec<f64>,
+}
+
+impl Matrix {
+    pub(super) fn new(graph: &Graph) -> Self {
+        let mut matrix = Self {
+            start: vec![0],
+            earlier: Vec::new(),
+            weights: Vec::new(),
+            ground: graph.ground.clone(),
+            inverses: graph.diagonal.iter().map(|diagonal| 1.0 / diagonal).collect(),
+        };
+        for node in 0..graph.len() {
+            for (other, weight) in graph.edges(node).filter(|(other, _)| *other < node) {
+                matrix.earlier.push(other as u32);
+                matrix.weights.push(weight);
+            }
+            matrix.start.push(matrix.earlier.len());
+        }
+        matrix
+    }
+
+    /// Edges to earlier nodes.
+    fn edges(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let all = self.start[node]..self.start[node + 1];
+        let earlier = self.earlier[all.clone()].iter().map(|&other| other as usize);
+        earlier.zip(self.weights[all].iter().copied())
+    }
+
+    /// `product = A x`.
+    pub(super) fn apply(&self, x: &[f64], product: &mut [f64]) {
+        for node in 0..x.len() {
+            let own = x[node];
+            let mut sum = self.ground[node] * own;
+            for (other, weight) in self.edges(node) {
+                let flow = weight * (own - x[other]);
+                sum += flow;
+                product[other] -= flow;
+            }
+            product[node] = sum;
+        }
+    }
+
+    /// Sweeps forwards from zero: the lower triangle of A, inverted. `residual` becomes what is left of `b`: nodes before are up to date when
+    /// a node is, so that it comes from those behind it.
+    pub(super) fn sweep_forwards(&self, b: &[f64], x: &mut [f64], residual: &mut [f64]) {
+        for node in 0..x.len() {
+            let inflow: f64 = self.edges(node).map(|(other, weight)| weight * x[other]).sum();
+            let value = (b[node] + inflow) * self.inverses[node];
+            x[node] = value;
+            residual[node] = 0.0;
+            for (other, weight) in self.edges(node) {
+                residual[other] += weight * value;
+            }
+        }
+    }
+
+    /// Sweeps backwards over what there is: the transpose of a sweep forwards. `inflow` is overwritten.
+    pub(super) fn sweep_backwards(&self, b: &[f64], x: &mut [f64], inflow: &mut [f64]) {
+        inflow.copy_from_slice(b);
+        for node in (0..x.len()).rev() {
+            let before: f64 = self.edges(node).map(|(other, weight)| weight * x[other]).sum();
+            let value = (inflow[node] + before) * self.inverses[node];
+            x[node] = value;
+            for (other, weight) in self.edges(node) {
+                inflow[other] += weight * value;
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -198,7 +248,7 @@ mod tests {
         graph.push(0.0, [(0, 2.0), (2, 3.0)].into_iter());
         graph.push(4.0, [(0, 5.0), (1, 3.0)].into_iter());
         let (x, mut b, mut found) = ([1.0, -2.0, 3.0], [0.0; 3], [0.0; 3]);
-        graph.apply(&x, &mut b);
+        Matrix::new(&graph).apply(&x, &mut b);
         // By hand: 1 + 2·3 − 5·2, −2·3 − 3·5, 12 + 5·2 + 3·5.
         assert_eq!(b, [-3.0, -21.0, 37.0]);
         graph.eliminate(&b, &mut found);
@@ -220,15 +270,15 @@ mod tests {
     /// A sweep forwards leaves the residual that it says, and both sweeps together are symmetric.
     #[test]
     fn sweeps_are_each_others_transposes() {
-        let graph = chain();
+        let matrix = Matrix::new(&chain());
         let both = |b: [f64; 4]| {
             let (mut x, mut residual, mut product) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-            graph.sweep_forwards(&b, &mut x, &mut residual);
-            graph.apply(&x, &mut product);
+            matrix.sweep_forwards(&b, &mut x, &mut residual);
+            matrix.apply(&x, &mut product);
             for node in 0..4 {
                 assert!((b[node] - product[node] - residual[node]).abs() < 1e-15);
             }
-            graph.sweep_backwards(&b, &mut x);
+            matrix.sweep_backwards(&b, &mut x, &mut residual);
             x
         };
         let units = [0, 1, 2, 3].map(|node| {

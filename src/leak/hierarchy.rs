@@ -5,7 +5,7 @@
 //! next one (a K-cycle), with which the number of iterations does not grow with the grid: Notay, Electron. Trans. Numer. Anal. 37
 //! (2010) 123; Napov and Notay, SIAM J. Sci. Comput. 34 (2012) A1079.
 
-use super::graph::Graph;
+use super::graph::{Graph, Matrix};
 
 /// Nodes of a graph that is solved by elimination.
 const SMALLEST: usize = 24;
@@ -20,10 +20,10 @@ const TWICE: f64 = 0.375;
 /// A second step is left out if the first has reduced the residual to this share.
 const REDUCED: f64 = 0.25;
 
-/// A graph, how it is grouped, and vectors to work with.
+/// The matrix of a graph, how its nodes are grouped, and vectors to work with.
 #[derive(Debug)]
 struct Level {
-    graph: Graph,
+    matrix: Matrix,
     /// The group of each node; none on the last level.
     group_of: Vec<u32>,
     /// How often the next level is visited from here.
@@ -38,7 +38,7 @@ struct Level {
 }
 
 impl Level {
-    fn new(graph: Graph) -> Self {
+    fn new(graph: &Graph) -> Self {
         let vector = || vec![0.0; graph.len()];
         let pair = || [vector(), vector()];
         Self {
@@ -49,7 +49,7 @@ impl Level {
             second: pair(),
             b: vector(),
             x: vector(),
-            graph,
+            matrix: Matrix::new(graph),
         }
     }
 }
@@ -58,53 +58,57 @@ impl Level {
 #[derive(Debug)]
 pub(super) struct Hierarchy {
     levels: Vec<Level>,
+    /// The graph of the last one.
+    last: Graph,
 }
 
 impl Hierarchy {
     pub(super) fn new(graph: Graph) -> Self {
-        let mut levels = vec![Level::new(graph)];
-        while let Some(last) = levels.last_mut()
-            && last.graph.len() > SMALLEST
-        {
-            let (group_of, coarse) = coarsen(&last.graph);
+        let mut levels = vec![Level::new(&graph)];
+        let mut last = graph;
+        while last.len() > SMALLEST {
+            let (group_of, coarse) = coarsen(&last);
             // What can be grouped no more is left to the sweeps.
-            if 10 * coarse.len() > 9 * last.graph.len() {
+            if 10 * coarse.len() > 9 * last.len() {
                 break;
             }
             let size = |graph: &Graph| (graph.len() + graph.edge_ends()) as f64;
-            last.visits = if size(&coarse) <= TWICE * size(&last.graph) { 2 } else { 1 };
-            last.group_of = group_of;
-            levels.push(Level::new(coarse));
+            if let Some(level) = levels.last_mut() {
+                level.visits = if size(&coarse) <= TWICE * size(&last) { 2 } else { 1 };
+                level.group_of = group_of;
+            }
+            levels.push(Level::new(&coarse));
+            last = coarse;
         }
-        Self { levels }
+        Self { levels, last }
     }
 
-    /// The graph itself.
-    pub(super) fn graph(&self) -> &Graph {
-        &self.levels[0].graph
+    /// The matrix of the graph itself.
+    pub(super) fn matrix(&self) -> &Matrix {
+        &self.levels[0].matrix
     }
 
     /// An approximate solution of `A x = b`.
     pub(super) fn precondition(&mut self, b: &[f64], x: &mut [f64]) {
-        cycle(&mut self.levels, b, x);
+        cycle(&mut self.levels, &self.last, b, x);
     }
 }
 
 /// One cycle from a level down to the last one, and back.
-fn cycle(levels: &mut [Level], b: &[f64], x: &mut [f64]) {
+fn cycle(levels: &mut [Level], last: &Graph, b: &[f64], x: &mut [f64]) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;
     };
     let Some(next) = coarser.first_mut() else {
-        if level.graph.len() <= SMALLEST {
-            level.graph.eliminate(b, x);
+        if last.len() <= SMALLEST {
+            last.eliminate(b, x);
         } else {
-            level.graph.sweep_forwards(b, x, &mut level.residual);
-            level.graph.sweep_backwards(b, x);
+            level.matrix.sweep_forwards(b, x, &mut level.residual);
+            level.matrix.sweep_backwards(b, x, &mut level.residual);
         }
         return;
     };
-    level.graph.sweep_forwards(b, x, &mut level.residual);
+    level.matrix.sweep_forwards(b, x, &mut level.residual);
     let mut coarse_b = std::mem::take(&mut next.b);
     let mut coarse_x = std::mem::take(&mut next.x);
     coarse_b.fill(0.0);
@@ -112,9 +116,9 @@ fn cycle(levels: &mut [Level], b: &[f64], x: &mut [f64]) {
         coarse_b[*group as usize] += residual;
     }
     if level.visits == 2 && coarser.len() > 1 {
-        two_steps(coarser, &mut coarse_b, &mut coarse_x);
+        two_steps(coarser, last, &mut coarse_b, &mut coarse_x);
     } else {
-        cycle(coarser, &coarse_b, &mut coarse_x);
+        cycle(coarser, last, &coarse_b, &mut coarse_x);
     }
     for (x, group) in x.iter_mut().zip(&level.group_of) {
         *x += coarse_x[*group as usize];
@@ -123,18 +127,18 @@ fn cycle(levels: &mut [Level], b: &[f64], x: &mut [f64]) {
         next.b = coarse_b;
         next.x = coarse_x;
     }
-    level.graph.sweep_backwards(b, x);
+    level.matrix.sweep_backwards(b, x, &mut level.residual);
 }
 
 /// Up to two steps of conjugate gradients on the first of these levels, from zero; the residual takes the place of `b`.
-fn two_steps(levels: &mut [Level], b: &mut [f64], x: &mut [f64]) {
+fn two_steps(levels: &mut [Level], last: &Graph, b: &mut [f64], x: &mut [f64]) {
     let Some(level) = levels.first_mut() else {
         return;
     };
     let [mut c, mut v] = std::mem::take(&mut level.first);
     let [mut d, mut w] = std::mem::take(&mut level.second);
-    cycle(levels, b, &mut c);
-    levels[0].graph.apply(&c, &mut v);
+    cycle(levels, last, b, &mut c);
+    levels[0].matrix.apply(&c, &mut v);
     let (curvature, slope) = (dot(&c, &v), dot(&c, b));
     let step = quotient(slope, curvature);
     let before = size(b);
@@ -143,8 +147,8 @@ fn two_steps(levels: &mut [Level], b: &mut [f64], x: &mut [f64]) {
         x.copy_from_slice(&c);
         x.iter_mut().for_each(|x| *x *= step);
     } else {
-        cycle(levels, b, &mut d);
-        levels[0].graph.apply(&d, &mut w);
+        cycle(levels, last, b, &mut d);
+        levels[0].matrix.apply(&d, &mut w);
         // The second direction without its part along the first.
         let along = quotient(dot(&d, &v), curvature);
         let second = quotient(dot(&d, b), dot(&d, &w) - along * along * curvature);
@@ -179,16 +183,23 @@ pub(super) fn quotient(slope: f64, curvature: f64) -> f64 {
 
 /// Groups in pairs twice.
 fn coarsen(graph: &Graph) -> (Vec<u32>, Graph) {
-    let (first, groups) = paired(graph);
+    let diagonals: Vec<f64> = (0..graph.len()).map(|node| graph.diagonal(node)).collect();
+    let (first, groups) = paired(graph, &diagonals);
     let pairs = graph.grouped(&first, groups);
-    let (second, groups) = paired(&pairs);
+    // The smoother is that of the graph: it does nothing for what the strong edge of a pair holds together.
+    let mut sums = vec![0.0; groups];
+    for (pair, diagonal) in first.iter().zip(&diagonals) {
+        sums[*pair as usize] += diagonal;
+    }
+    let (second, groups) = paired(&pairs, &sums);
     let coarse = pairs.grouped(&second, groups);
     let group_of = first.iter().map(|&pair| second[pair as usize]).collect();
     (group_of, coarse)
 }
 
-/// Pairs each node with the neighbour with which it makes the best pair; returns the group of each node, and their number.
-fn paired(graph: &Graph) -> (Vec<u32>, usize) {
+/// Pairs each node with the neighbour with which it makes the best pair, for a smoother with these diagonals; returns the group of each
+/// node, and their number.
+fn paired(graph: &Graph, diagonals: &[f64]) -> (Vec<u32>, usize) {
     const NONE: u32 = u32::MAX;
     let mut group_of = vec![NONE; graph.len()];
     let mut groups = 0;
@@ -200,7 +211,10 @@ fn paired(graph: &Graph) -> (Vec<u32>, usize) {
         let mut strongest: Option<(f64, usize)> = None;
         for (other, weight) in graph.edges(node) {
             if group_of[other] == NONE {
-                let quality = quality(graph, node, other, weight);
+                // How much more than the edge the smoother sees in a difference of both nodes.
+                let smoothed = 2.0 * in_series(diagonals[node], diagonals[other]);
+                let held = weight + in_series(graph.ground[node], graph.ground[other]);
+                let quality = smoothed / held;
                 if best.is_none_or(|(least, _)| quality < least) {
                     best = Some((quality, other));
                 }
@@ -216,7 +230,7 @@ fn paired(graph: &Graph) -> (Vec<u32>, usize) {
                 groups += 1;
             }
             (_, Some((weight, other)))
-                if group_of[other] != NONE && weight >= STRONG * graph.diagonal(node) =>
+                if group_of[other] != NONE && weight >= STRONG * diagonals[node] =>
             {
                 group_of[node] = group_of[other];
             }
@@ -229,14 +243,10 @@ fn paired(graph: &Graph) -> (Vec<u32>, usize) {
     (group_of, groups as usize)
 }
 
-/// How much worse than the smoother alone one value for both nodes can be.
-fn quality(graph: &Graph, node: usize, other: usize, weight: f64) -> f64 {
-    let in_series = |a: f64, b: f64| {
-        let (less, more) = if a < b { (a, b) } else { (b, a) };
-        if less > 0.0 { less / (1.0 + less / more) } else { 0.0 }
-    };
-    let smoothed = 2.0 * in_series(graph.diagonal(node), graph.diagonal(other));
-    smoothed / (weight + in_series(graph.ground[node], graph.ground[other]))
+/// Two conductances one behind the other.
+fn in_series(a: f64, b: f64) -> f64 {
+    let (less, more) = if a < b { (a, b) } else { (b, a) };
+    if less > 0.0 { less / (1.0 + less / more) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -270,15 +280,13 @@ mod tests {
     #[test]
     fn levels_shrink_and_keep_their_ground() {
         let all = Hierarchy::new(lattice(40));
-        let grounds = all.levels.iter().map(|level| level.graph.ground.iter().sum::<f64>());
-        let grounds: Vec<f64> = grounds.collect();
-        for (pair, ground) in all.levels.windows(2).zip(&grounds) {
+        for pair in all.levels.windows(2) {
             let [fine, coarse] = pair else { continue };
-            assert!(coarse.graph.len() * 2 < fine.graph.len());
-            assert!((ground / grounds[0] - 1.0).abs() < 1e-13);
+            assert!(coarse.x.len() * 2 < fine.x.len());
         }
-        assert!(all.levels.len() > 3);
-        assert!(all.levels.last().is_some_and(|level| level.graph.len() <= SMALLEST));
+        let ground = |graph: &Graph| graph.ground.iter().sum::<f64>();
+        assert!((ground(&all.last) / ground(&lattice(40)) - 1.0).abs() < 1e-13);
+        assert!(all.levels.len() > 3 && all.last.len() <= SMALLEST);
     }
 
     /// A star of leaves that only hang on one node: all of it is one group.
@@ -300,16 +308,16 @@ mod tests {
     #[test]
     fn a_cycle_is_a_good_solution() {
         let mut all = Hierarchy::new(lattice(40));
-        let n = all.graph().len();
+        let n = 1600;
         let b: Vec<f64> = (0..n).map(|k| ((k * 7919) % 101) as f64 - 50.0).collect();
         let (mut x, mut product) = (vec![0.0; n], vec![0.0; n]);
         all.precondition(&b, &mut x);
-        all.graph().apply(&x, &mut product);
+        all.matrix().apply(&x, &mut product);
         // The energy that one step along x gains, of the most that there is to gain, the energy of the solution.
         let step = dot(&b, &x) / dot(&x, &product);
         let gained = step * dot(&b, &x);
         let mut exact = vec![0.0; n];
-        all.graph().eliminate(&b, &mut exact);
+        lattice(40).eliminate(&b, &mut exact);
         let share = gained / dot(&b, &exact);
         assert!((0.5..=1.0).contains(&share), "{share}");
     }

@@ -169,8 +169,8 @@ impl Flows<'_> {
             }
             leak.sections[place + 1] += out[BEHIND] * scale;
             self.across_flow += 0.5 * (out[RIGHT] - out[LEFT]);
-            let [high, low] = self.flow.pressure(node);
-            leak.pressure.as_mut_slice()[node] = (high + low) * seal.pressure_drop();
+            let [pressure, ..] = self.flow.pressure(node);
+            leak.pressure.as_mut_slice()[node] = pressure * seal.pressure_drop();
             // The mean of both faces, over their width.
             let flux = [
                 0.5 * (out[BEHIND] - out[0]) * (scale / across),
