@@ -8,6 +8,7 @@ mod ensemble;
 mod gather;
 mod hardness;
 mod info;
+mod leak;
 mod load;
 mod patches;
 mod path;
@@ -47,6 +48,7 @@ enum Command {
     Info(info::Options),
     Gather(gather::Options),
     Patches(patches::Options),
+    Leak(leak::Options),
 }
 
 fn main() -> ExitCode {
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
+        Some(Command::Leak(options)) => leak::run(&options),
     };
     match done.and_then(|()| speech::check()) {
         Ok(()) => ExitCode::SUCCESS,

@@ -61,13 +61,13 @@ impl Seal {
     /// The leak through a gap \[m\], where nothing flows through nodes in contact. The sides are open to each other on a periodic
     /// boundary, and closed on a free one.
     ///
-    /// A gap that is not positive is closed as well, and so is one below 10⁻⁶⁰ of the greatest. It takes some 2 s and 250 MB on
+    /// A gap that is not positive is closed as well, and so is one below 10⁻¹² of the greatest. It takes some 2 s and 150 MB on
     /// 512 × 512 nodes.
     ///
     /// # Errors
     ///
     /// [`Error::GridMismatch`] for a field of another shape; [`Error::FieldNotFinite`]; [`Error::OutOfRange`] for nodes out of contact that
-    /// overlap by more than 10⁻⁴ of the greatest gap, for cells more than 10⁶⁰ times as long as wide, and for leak rates
+    /// overlap by more than 10⁻⁴ of the greatest gap, for cells more than 10⁶ times as long as wide, and for leak rates
     /// that over- or underflow; [`Error::NotPositive`] for such a conductivity; [`Error::NoConvergence`].
     pub fn leak(
         &self,

@@ -60,7 +60,7 @@ fn rates_beyond_numbers_are_refused() {
     };
     for (viscosity, drop, gap) in [
         (1.0, 1.0, 1e-110),
-        (1.0, 1.0, 1e103),
+        (1.0, 1.0, 1e104),
         (1e-300, 1e300, 1.0),
         (1e300, 1e-300, 1.0),
         (1e-3, 1.0, 1e300),
@@ -80,7 +80,7 @@ fn rates_beyond_numbers_are_refused() {
     }
 }
 
-/// A throat of 10⁻⁵⁰ of the greatest gap leaks 10⁻¹⁵⁰ of a square; one of 10⁻⁷⁰ counts as closed. Long cells too.
+/// A throat of 10⁻¹¹ of the greatest gap leaks 10⁻³³ of a square; one of 10⁻¹³ counts as closed. Long cells too.
 #[test]
 fn gaps_that_are_far_apart() {
     let with_throat = |throat: f64, aspect: f64| {
@@ -91,11 +91,11 @@ fn gaps_that_are_far_apart() {
         });
         leak(&gap, &Grid::new(7, 5, 1.0, aspect).unwrap(), Boundary::Free, Axis::X)
     };
-    for aspect in [1.0, 1e-6, 1e6] {
-        let found = with_throat(1e-50, aspect).unwrap();
-        // All other cells together are no more than 10⁻¹³⁰ of its resistance.
-        assert!((found.leak_rate / (1e-150 * aspect) - 1.0).abs() < 2e-11, "{found:?}");
+    for aspect in [1.0, 1e-3, 1e3] {
+        let found = with_throat(1e-11, aspect).unwrap();
+        // All other cells together are no more than 10⁻²⁰ of its resistance.
+        assert!((found.leak_rate / (1e-33 * aspect) - 1.0).abs() < 2e-11, "{found:?}");
     }
-    assert!(with_throat(1e-70, 1.0).unwrap().is_closed());
-    assert!(matches!(with_throat(1.0, 1e-70), Err(Error::OutOfRange { .. })));
+    assert!(with_throat(1e-13, 1.0).unwrap().is_closed());
+    assert!(matches!(with_throat(1.0, 1e-7), Err(Error::OutOfRange { .. })));
 }
