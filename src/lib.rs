@@ -32,6 +32,7 @@
 //! | solve for one load, or for a sweep of loads | [`FixedLoadSolver`] |
 //! | contact patches, percolation, leakage, distributions | [`patches`] |
 //! | how much leaks through the gap | [`leak`] |
+//! | contact conductance, tables for finite elements | [`joint`] |
 //! | read the file of an instrument | [`io::read_surface`], [`surface::Topography`] |
 //! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
@@ -83,6 +84,7 @@ mod elasticity;
 mod error;
 pub mod fixed_load;
 mod hardness;
+pub mod joint;
 pub mod kernel;
 mod krylov;
 pub mod leak;

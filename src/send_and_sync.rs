@@ -4,6 +4,9 @@
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
+use crate::joint::{
+    Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable,
+};
 use crate::kernel::{
     Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
@@ -82,6 +85,7 @@ send_and_sync!(
     Perimeter,
 );
 send_and_sync!(KernelRecord, LoadingRecord, Settings);
+send_and_sync!(Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable);
 send_and_sync!(CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal);
 send_and_sync!(
     AreaLoadLaw,
