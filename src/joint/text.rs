@@ -44,7 +44,7 @@ impl InterfaceTable {
             format!("interface law of a rough surface by asperity {}, in SI units", env!("CARGO_PKG_VERSION")),
             "overclosure: what the mean gap has closed since first touch; all quantities per nominal area".to_string(),
             format!(
-                "{} rows; linear interpolation is within {} of all states of the path, below a thousandth of the greatest pressure within that of the thousandth",
+                "{} rows; pressures between them err by at most {:e} of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs",
                 self.rows().len(),
                 self.tolerance()
             ),

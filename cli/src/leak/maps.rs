@@ -6,7 +6,7 @@ use asperity::LoadingState;
 use asperity::leak::{Leak, Seal};
 use asperity::record::LoadingRecord;
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
 
 /// Decades of the flux that are shown.
@@ -23,10 +23,10 @@ pub(super) fn draw(
 ) -> Result<Vec<PathBuf>, Failure> {
     let grid = &record.grid();
     let caption = format!(
-        "W = {}, A/A₀ = {:.2} %, leak rate {}",
+        "W = {}, A/A₀ = {:.2} %, leak rate {} m³/s",
         quantity(state.contact.load, "N", 4),
         100.0 * state.contact.contact_area_fraction,
-        quantity(leak.leak_rate, "m³/s", 4)
+        scientific(leak.leak_rate, 4)
     );
     let drop = seal.pressure_drop();
     let lines: Vec<f64> = (1..=LINES).map(|k| drop * k as f64 / (LINES + 1) as f64).collect();

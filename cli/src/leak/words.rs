@@ -4,7 +4,7 @@ use asperity::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
 use asperity::{Boundary, LoadingState};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{quantity, scientific};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
@@ -99,7 +99,7 @@ pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
         say!("{at}: no channel leads along {}, and the leak rate is 0", axis(seal));
         return;
     };
-    say!("{at}: leak rate {}", quantity(leak.leak_rate, "m³/s", 4));
+    say!("{at}: leak rate {} m³/s", scientific(leak.leak_rate, 4));
     say!(
         "  narrowest at node ({}, {}), where the gap is {}: {:.1} % of the pressure drop at its cell, {:.1} % of the power in the 9 x 9 cells about it",
         narrowest.node.0,
