@@ -31,6 +31,8 @@
 //! | follow the loading path | [`LoadingSolver`], an iterator of [`LoadingState`]; [`loading::History`] reads it at any load |
 //! | solve for one load, or for a sweep of loads | [`FixedLoadSolver`] |
 //! | contact patches, percolation, leakage, distributions | [`patches`] |
+//! | how much leaks through the gap | [`leak`] |
+//! | contact conductance, tables for finite elements | [`joint`] |
 //! | read the file of an instrument | [`io::read_surface`], [`surface::Topography`] |
 //! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
@@ -86,8 +88,10 @@ mod elasticity;
 mod error;
 pub mod fixed_load;
 mod hardness;
+pub mod joint;
 pub mod kernel;
 mod krylov;
+pub mod leak;
 pub mod loading;
 pub mod material;
 mod memory;

@@ -8,6 +8,7 @@ mod ensemble;
 mod gather;
 mod hardness;
 mod info;
+mod leak;
 mod load;
 mod patches;
 mod path;
@@ -59,6 +60,7 @@ enum Command {
     Gather(gather::Options),
     Patches(patches::Options),
     Slip(slip::Options),
+    Leak(leak::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
 }
@@ -82,6 +84,7 @@ fn main() -> ExitCode {
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
+        Some(Command::Leak(options)) => leak::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),
     };

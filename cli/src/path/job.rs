@@ -222,6 +222,11 @@ impl Job {
         self.bodies.e_star
     }
 
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
+    pub(super) fn elastic(&self) -> &[[f64; 2]] {
+        &self.bodies.elastic
+    }
+
     pub(super) fn boundary(&self) -> Boundary {
         boundary(self.periodic)
     }

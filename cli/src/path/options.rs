@@ -10,6 +10,7 @@ use asperity_cli::outcome::Failure;
 use clap::{ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
+use super::joint::Joint;
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::hardness::{GreatestPressure, Hardness};
@@ -102,6 +103,9 @@ pub(crate) struct Options {
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(super) memory_budget: Option<usize>,
+
+    #[command(flatten)]
+    pub(super) joint: Joint,
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
