@@ -3,6 +3,7 @@
 mod advice;
 mod columns;
 mod contact_map;
+mod creep;
 mod elasticity;
 mod ensemble;
 mod gather;
@@ -47,6 +48,7 @@ enum Command {
     Info(info::Options),
     Gather(gather::Options),
     Patches(patches::Options),
+    Creep(creep::Options),
 }
 
 fn main() -> ExitCode {
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
+        Some(Command::Creep(options)) => creep::run(&options),
     };
     match done.and_then(|()| speech::check()) {
         Ok(()) => ExitCode::SUCCESS,

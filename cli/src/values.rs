@@ -44,7 +44,7 @@ const BRINELL: f64 = 9.80665e6 / 0.9635;
 /// The same under a Vickers pyramid, whose faces stand 68° from its axis.
 const VICKERS: f64 = 9.80665e6 / 0.92718;
 
-fn number(text: &str) -> Result<f64, String> {
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())
 }
 

@@ -4,8 +4,8 @@ use crate::Error;
 
 /// A load \[N\] or an approach \[m\] over time \[s\]: linear between corners, and held behind the last.
 ///
-/// A corner given twice at one time is a jump. Before the first corner the quantity is 0, so that a first corner at another value
-/// is a jump too.
+/// Two corners at one time are a jump; of more than two at one time the first and the last count, for what happens in no time at all
+/// leaves no trace. Before the first corner the quantity is 0, so that a first corner at another value is a jump too.
 ///
 /// ```
 /// use asperity::creep::Corners;
@@ -153,6 +153,12 @@ impl Corners {
             let expected = "a rate that double precision can hold";
             Error::require("change from corner to corner", rate, rate.is_finite(), expected)?;
         }
+        let at_once = self.corners.iter().rev().take_while(|corner| corner.0 == time).count();
+        let is_first = at_once == self.corners.len();
+        // The value before the first corner, 0, is a corner too.
+        if at_once + usize::from(is_first) >= 2 {
+            self.corners.pop();
+        }
         self.corners.push((time, value));
         Ok(())
     }
@@ -175,18 +181,27 @@ mod tests {
     }
 
     #[test]
+    fn what_happens_at_once_is_one_jump() -> Result<(), Error> {
+        let x =
+            Corners::new([(0.0, 5.0), (0.0, 3.0), (1.0, 4.0), (1.0, 0.0), (1.0, 9.0), (1.0, 2.0)])?;
+        assert_eq!(x.corners(), [(0.0, 3.0), (1.0, 4.0), (1.0, 2.0)]);
+        assert_eq!(Corners::step(7.0)?.corners(), [(0.0, 7.0)]);
+        Ok(())
+    }
+
+    #[test]
     fn cycles_come_back_to_their_mean() -> Result<(), Error> {
         let x = Corners::step(5.0)?.cycles(2.0, 4.0, 3, 4)?;
         let expected = [(1.0, 7.0), (2.0, 5.0), (3.0, 3.0), (4.0, 5.0)];
-        assert_eq!(x.corners().len(), 14);
-        for (found, expected) in x.corners()[2..6].iter().zip(expected) {
+        assert_eq!(x.corners().len(), 13);
+        for (found, expected) in x.corners()[1..5].iter().zip(expected) {
             // The sine of π is 1e-16.
             assert!(
                 (found.0, (found.1 - expected.1).abs() < 1e-15) == (expected.0, true),
                 "{found:?}"
             );
         }
-        assert_eq!(x.corners()[13], (12.0, 5.0));
+        assert_eq!(x.corners()[12], (12.0, 5.0));
         Ok(())
     }
 

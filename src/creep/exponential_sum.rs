@@ -41,6 +41,9 @@ impl ExponentialSum {
 
     /// The first z up to `end` from which on the sum is negative, by more than rounding.
     ///
+    /// Numbers so far apart that bounds overflow have no answer: then the first interval without one counts as negative, since
+    /// that is what is refused.
+    ///
     /// Intervals are halved until bounds of the function, its derivative or its second derivative decide: until it has one
     /// sign, is monotone, convex or concave. Roots are then between ends of different sign.
     pub(super) fn first_negative(&self, end: f64) -> Option<f64> {
@@ -48,7 +51,12 @@ impl ExponentialSum {
         let all = [self.clone(), first.derivative(), first];
         let [function, second, first] = &all;
         let mut waiting = vec![(0.0, end)];
+        let mut looked_at = 0;
         while let Some((from, to)) = waiting.pop() {
+            looked_at += 1;
+            if looked_at > MOST_INTERVALS {
+                return Some(from);
+            }
             match function.decide(first, second, from, to) {
                 Some(None) => (),
                 Some(found) => return found,
@@ -90,6 +98,9 @@ impl ExponentialSum {
         None
     }
 }
+
+/// Some ten for each of a hundred terms over hundreds of decades.
+const MOST_INTERVALS: usize = 100_000;
 
 /// Whether two numbers are next to each other, or as good as.
 fn is_no_interval(from: f64, to: f64) -> bool {

@@ -167,13 +167,14 @@ impl<'a> Growth<'a> {
             let after = load.response(Place { corner, since: 0.0 }).0;
             // Up to a jump.
             loop {
-                let end = knots.get(knot + 1).copied().unwrap_or(f64::INFINITY);
-                let jump = (after.min(end) - reached).max(0.0);
+                let next = knots.get(knot + 1).copied().filter(|next| *next <= after);
+                let up_to = next.unwrap_or(after);
                 if load.jump(corner) > 0.0 {
+                    let jump = (up_to - reached).max(0.0);
                     visit(Stretch { knot, corner, from: 0.0, to: 0.0, jump });
                 }
-                reached = reached.max(after.min(end));
-                if end > after {
+                reached = reached.max(up_to);
+                if next.is_none() {
                     break;
                 }
                 knot += 1;

@@ -145,6 +145,9 @@ impl<'a> Creep<'a> {
     #[must_use]
     pub fn time_of(&self, effective_load: f64) -> Option<f64> {
         let until = self.recession.map_or(f64::INFINITY, |recession| recession.time);
+        if !(effective_load >= 0.0) {
+            return None;
+        }
         let knots = [0.0, effective_load];
         let times = Growth::new(&knots, self.growth.load().clone()).times(until);
         times.get(1).copied()
@@ -154,7 +157,7 @@ impl<'a> Creep<'a> {
     /// each: [`Superposition::pressure`] makes the field of it.
     ///
     /// With as many pieces as the path has states it is exact. Each piece takes a field of the path; twenty leave some 10⁻³ of the
-    /// greatest pressure, and a quarter of it each time their number is doubled.
+    /// greatest pressure, and a third of it or less each time their number is doubled.
     ///
     /// # Errors
     ///

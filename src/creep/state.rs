@@ -55,20 +55,24 @@ impl CreepState {
 
 /// Increments (load of the path at the end, weight) as some pieces of one weight each, the mean over the loads in it.
 ///
-/// Weights change by about the same from piece to piece, so that a load that was put on at once is one piece. If there are no more
-/// increments than pieces, they stay as they are.
+/// What a piece leaves out goes with the product of its load and of the change of the weight in it. Their sum is least if
+/// it is the same in all pieces: ends are equally far apart in the measure ∫ √(dφ dW). A load that was put on at once is one
+/// piece. If there are no more increments than pieces, they stay as they are.
 pub(super) fn in_pieces(increments: &[(f64, f64)], pieces: usize) -> Result<Superposition, Error> {
     let expected = "at least 1";
     Error::require("number of pieces", pieces as f64, pieces > 0, expected)?;
+    let starts = std::iter::once(0.0).chain(increments.iter().map(|increment| increment.0));
+    let lengths: Vec<f64> = increments.iter().zip(starts).map(|(i, start)| i.0 - start).collect();
     let steps = || {
-        increments.windows(2).map(|pair| {
+        increments.windows(2).zip(lengths.windows(2)).map(|(pair, length)| {
             // Where nothing is carried between two knots of one load there is no weight.
-            let is_none = pair[1].0 == pair[0].0;
-            if is_none { 0.0 } else { (pair[1].1 - pair[0].1).abs() }
+            let is_none = length[0] <= 0.0 || length[1] <= 0.0;
+            let mean = 0.5 * (length[0] + length[1]);
+            if is_none { 0.0 } else { ((pair[1].1 - pair[0].1).abs() * mean).sqrt() }
         })
     };
     let variation: f64 = steps().sum();
-    if increments.len() <= pieces || variation == 0.0 {
+    if increments.len() <= pieces {
         return Superposition::new(increments.iter().copied());
     }
     let mut merged: Vec<(f64, f64)> = Vec::with_capacity(pieces + 1);
@@ -77,8 +81,9 @@ pub(super) fn in_pieces(increments: &[(f64, f64)], pieces: usize) -> Result<Supe
     let changes = std::iter::once(0.0).chain(steps());
     for (&(end, weight), change) in increments.iter().zip(changes) {
         passed += change;
-        // At rounding the last is no bin of its own.
-        let place = ((passed / variation * pieces as f64) as usize).min(pieces - 1);
+        // Weights that are all the same are one piece; at rounding the last is no bin of its own.
+        let part = if variation > 0.0 { passed / variation } else { 0.0 };
+        let place = ((part * pieces as f64) as usize).min(pieces - 1);
         if place > bin && load > start {
             merged.push((load, carried / (load - start)));
             (start, carried) = (load, 0.0);

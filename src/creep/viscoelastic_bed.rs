@@ -177,7 +177,7 @@ impl<'a> ViscoelasticBed<'a> {
         self.steps += 1;
         if !self.attempt(duration, control)? {
             let before = self.memory();
-            self.halve(duration, control, 0).inspect_err(|_| self.restore(before))?;
+            self.in_parts(duration, control).inspect_err(|_| self.restore(before))?;
         }
         Ok(self.state)
     }
@@ -225,23 +225,37 @@ impl<'a> ViscoelasticBed<'a> {
             + self.prony.fluidity() * self.integrals[element]
     }
 
-    /// The step as two of half its length, and those likewise where pressures would be negative.
-    fn halve(&mut self, duration: f64, control: Control, depth: u32) -> Result<(), Error> {
-        let (time, start) = (self.state.time, self.state);
-        let half = 0.5 * duration;
-        if depth >= MOST_HALVINGS || half == 0.0 {
-            return Err(CreepError::StepFails { time, step: duration }.into());
-        }
-        self.halvings += 1;
-        let middle = match control {
-            Control::Load(load) => Control::Load(0.5 * (start.load + load)),
-            Control::Approach(approach) => Control::Approach(0.5 * (start.approach + approach)),
+    /// The step in parts, each half as long as it was where pressures would be negative.
+    fn in_parts(&mut self, duration: f64, control: Control) -> Result<(), Error> {
+        let start = self.state;
+        let (from, to) = match control {
+            Control::Load(load) => (start.load, load),
+            Control::Approach(approach) => (start.approach, approach),
         };
-        for control in [middle, control] {
-            if !self.attempt(half, control)? {
-                self.halve(half, control, depth + 1)?;
+        // Parts that are left to do, the next one last, each as two fractions of the step.
+        let mut left = vec![(0.0, 1.0)];
+        let mut parts = 0;
+        while let Some((begin, end)) = left.pop() {
+            parts += 1;
+            let middle: f64 = 0.5 * (begin + end);
+            let value = from + end * (to - from);
+            let control = match control {
+                _ if end == 1.0 => control,
+                Control::Load(_) => Control::Load(value),
+                Control::Approach(_) => Control::Approach(value),
+            };
+            if parts > 1 && self.attempt((end - begin) * duration, control)? {
+                continue;
             }
+            if parts > MOST_PARTS || middle <= begin || middle >= end {
+                let step = (end - begin) * duration;
+                return Err(CreepError::StepFails { time: self.state.time, step }.into());
+            }
+            self.halvings += 1;
+            left.push((middle, end));
+            left.push((begin, middle));
         }
+        self.state.time = start.time + duration;
         Ok(())
     }
 
@@ -292,6 +306,9 @@ impl<'a> ViscoelasticBed<'a> {
     }
 
     fn front_of_load(&self, step: &Step, load: f64) -> Option<Front> {
+        if load == 0.0 {
+            return Some(Front { element: 0, force: 0.0, separation: 0.0 });
+        }
         let mut left = load;
         let known = self.forces.len();
         for element in 0..known {
@@ -451,5 +468,5 @@ fn elements(bed: &Bed) -> Vec<Element> {
 
 /// A compression is a sum of some positive numbers up to 1, which have been renewed in every step.
 const ROUNDING: f64 = 1e-12;
-/// A step of all of a history of 10⁶ shortest relaxation times is then a millionth of the shortest.
-const MOST_HALVINGS: u32 = 40;
+/// Parts of a step: then it is far longer than is of use.
+const MOST_PARTS: usize = 20_000;

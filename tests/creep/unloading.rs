@@ -53,7 +53,7 @@ fn contact_is_that_of_an_earlier_time() {
                     expected.contact.contact_nodes,
                     "{time}"
                 );
-                assert_eq!(expected.contact_time < recession.time, time > recession.time);
+                assert_eq!(expected.contact_time < time, time > recession.time);
                 let naive = bed.at_load(creep.effective_load(time)).unwrap().contact_nodes;
                 println!(
                     "{time}: {} nodes, {naive} at the effective load",
