@@ -84,6 +84,7 @@ pub mod bed;
 mod cell_response;
 pub mod contact;
 pub mod convolution;
+pub mod creep;
 mod elasticity;
 mod error;
 pub mod fixed_load;
@@ -114,7 +115,7 @@ pub use asperity_surfaces::{
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{BedError, Error, KernelError, SlipError, UpdaterError};
+pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,

@@ -40,7 +40,7 @@ pub(crate) fn hardness(text: &str) -> Result<f64, String> {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())
 }
 

@@ -1,6 +1,7 @@
 //! Every way in which this crate can refuse an input or fail to answer.
 
 mod bed;
+mod creep;
 mod kernel;
 mod slip;
 mod updater;
@@ -9,6 +10,7 @@ use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
 pub use bed::BedError;
+pub use creep::CreepError;
 pub use kernel::KernelError;
 pub use slip::SlipError;
 pub use updater::UpdaterError;
@@ -279,6 +281,10 @@ pub enum Error {
     /// A path whose increments cannot be superposed, or that ends before what is asked of it.
     #[error(transparent)]
     Bed(#[from] BedError),
+
+    /// A viscoelastic contact that has no answer.
+    #[error(transparent)]
+    Creep(#[from] CreepError),
 
     /// A tangential load that friction does not bear.
     #[error(transparent)]

@@ -17,7 +17,7 @@ use asperity::updater::ConjugateGradient;
 use asperity::{LoadingSolver, LoadingState};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
-use asperity_cli::{panel, say};
+use asperity_cli::{answer, panel, speech};
 use clap::{Args, ValueEnum};
 
 use crate::values::positive;
@@ -133,6 +133,9 @@ impl Work {
 
 /// Reads the record, computes the leaks, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     if options.states == 1 || (options.states == 0 && options.load.is_empty()) {
         return Err(Failure::request(
             "--states takes 0, with a --load, or at least 2 states: the first and the last one that leaks",
@@ -144,19 +147,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let out = &options.out;
     std::fs::create_dir_all(out)
         .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
-    if !options.json {
-        words::print_seal(&work.record, &work.seal);
-    }
+    words::print_seal(&work.record, &work.seal);
 
     let mut outcome = Outcome::default();
     let mut documents = Vec::new();
     if options.states > 0 {
         let curve = work.curve(options.states)?;
-        if options.json {
-            documents.extend(curve.points.iter().map(words::point));
-        } else {
-            words::print_curve(&curve, &work.record);
-        }
+        documents.extend(curve.points.iter().map(words::point));
+        words::print_curve(&curve, &work.record);
         outcome.written(table::write(&curve, &out.join("leak.csv")));
         match charts::draw(&curve, &out.join("leak.png")) {
             Ok(drawn) => drawn.into_iter().for_each(|name| outcome.written(Ok(name))),
@@ -170,9 +168,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     for (k, state) in drawn.iter().enumerate() {
         match work.leak(state) {
             Ok(leak) => {
-                if !options.json {
-                    words::print_leak(state, &leak, &work.seal);
-                } else if !options.load.is_empty() {
+                words::print_leak(state, &leak, &work.seal);
+                if !options.load.is_empty() {
                     documents.push(words::leak(state, &leak));
                 }
                 outcome.all_written(maps::draw(&work.record, (state, &leak), &work.seal, (out, k)));
@@ -181,11 +178,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
     }
-    if !options.json {
-        return outcome.finish();
+    if options.json
+        && let Some(document) = words::document(documents)
+    {
+        answer!("{document}");
     }
-    if let Some(document) = words::document(documents) {
-        say!("{document}");
-    }
-    outcome.finish_on_stderr()
+    outcome.finish()
 }

@@ -12,7 +12,7 @@ use asperity_cli::outcome::Failure;
 
 /// How fields are written.
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum Format {
+pub(crate) enum Format {
     /// pressure.npy and gap.npy, for numpy.load: [ix, iy]
     Npy,
     /// pressure.gsf and gap.gsf, for Gwyddion
@@ -22,10 +22,10 @@ pub(super) enum Format {
 }
 
 /// Pressure and gap, and with a hardness the plastic depth.
-pub(super) type Fields = Vec<(&'static str, DMatrix<f64>)>;
+pub(crate) type Fields = Vec<(&'static str, DMatrix<f64>)>;
 
 /// Those of the present state.
-pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
+pub(crate) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     let failed = |error| Failure::new("cannot compute the fields of the last state", error);
     let mut fields = vec![
         ("pressure", solver.pressure().map_err(failed)?),
@@ -38,7 +38,7 @@ pub(super) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
 }
 
 /// Writes fields into a directory; returns the names of the files.
-pub(super) fn write(
+pub(crate) fn write(
     fields: &Fields,
     grid: &Grid,
     format: Format,

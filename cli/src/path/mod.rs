@@ -6,7 +6,7 @@
 //! `path.csv` are written, and the exit code is 130.
 
 mod curves;
-mod fields;
+pub(crate) mod fields;
 mod follow;
 mod interrupt;
 mod job;

@@ -1,0 +1,103 @@
+//! `creep.png`: contact over time.
+
+use std::path::{Path, PathBuf};
+
+use asperity::creep::CreepState;
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
+use asperity_cli::outcome::Failure;
+
+use super::followed::Followed;
+use super::passages::Passage;
+
+type Quantity = fn(&CreepState) -> f64;
+
+/// Draws area, mean gap, approach and load over the logarithm of time; the state just after t = 0 is at the left end.
+pub(super) fn draw(
+    followed: &Followed,
+    passages: &[Passage],
+    name: &Path,
+) -> Result<PathBuf, Failure> {
+    let states = &followed.states;
+    let positive = || states.iter().map(|state| state.time).filter(|time| *time > 0.0);
+    let last = positive().fold(0.0, f64::max);
+    let first = positive().fold(f64::INFINITY, f64::min);
+    if !(first < last) {
+        return Err(Failure::request("there is nothing to draw over time: all states are at one"));
+    }
+    let shown: Vec<(f64, &CreepState)> = states
+        .iter()
+        .filter(|state| state.time >= 0.0)
+        .map(|state| (state.time.max(first), state))
+        .collect();
+    let curve = |quantity: Quantity, name: &str, colour, style| {
+        Series::new(name, colour, style, shown.iter().map(|(t, state)| (*t, quantity(state))))
+    };
+    let range = |quantity: Quantity| {
+        let all = states.iter().map(quantity);
+        all.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let marks = |from: f64, to: f64, named: bool| -> Vec<Series> {
+        let colours = [ORANGE, GREEN, PURPLE, GREY];
+        let seen = passages.iter().zip(colours).filter_map(|(passage, colour)| {
+            let time = passage.time?.max(first);
+            let name = if named { passage.name } else { "" };
+            Some(Series::new(name, colour, Style::Dashed, [(time, from), (time, to)]))
+        });
+        seen.collect()
+    };
+    let time = || Axis::logarithmic("time", "s", first, last);
+    let chart = |title: &str, y: Axis, series: Vec<Series>, legend| Chart {
+        title: title.to_string(),
+        x: time(),
+        y,
+        series,
+        legend,
+    };
+    let area: Quantity = |state| state.contact_area_fraction;
+    let gap: Quantity = |state| state.mean_gap;
+    let approach: Quantity = |state| state.approach;
+    let (load, effective): (Quantity, Quantity) =
+        (|state| state.load, |state| state.effective_load);
+
+    let (_, largest) = range(area);
+    let with_marks = |from: f64, to: f64, named, quantity| {
+        let mut series = marks(from, to, named);
+        series.push(curve(quantity, "", BLUE, Style::Line));
+        series
+    };
+    let (narrowest, widest) = range(gap);
+    let (least, most) = range(approach);
+    let (_, heaviest) = range(load);
+    let (_, most_effective) = range(effective);
+    let charts = [
+        chart(
+            "contact area",
+            Axis::plain("contact area / nominal area", 0.0, 1.1 * largest),
+            with_marks(0.0, largest, true, area),
+            Corner::TopLeft,
+        ),
+        chart(
+            "mean gap",
+            Axis::linear("mean gap", "m", narrowest, widest).with_room(0.05, 0.05),
+            with_marks(narrowest, widest, false, gap),
+            Corner::TopRight,
+        ),
+        chart(
+            "approach",
+            Axis::linear("approach", "m", least.min(0.0), most).with_room(0.0, 0.05),
+            vec![curve(approach, "", BLUE, Style::Line)],
+            Corner::BottomRight,
+        ),
+        chart(
+            "load, and the elastic load of the same contact while it grows",
+            Axis::linear("load", "N", 0.0, heaviest.max(most_effective)).with_room(0.0, 0.15),
+            vec![
+                curve(load, "load", BLUE, Style::Line),
+                curve(effective, "effective load", ORANGE, Style::Dashed),
+            ],
+            Corner::TopLeft,
+        ),
+    ];
+    chart::draw(&charts, 2, name)
+}

@@ -1,0 +1,248 @@
+//! The states over time, in closed form or in steps.
+
+use std::path::Path;
+
+use asperity::bed::{Bed, Superposition};
+use asperity::creep::{Course, Creep, CreepState, Relaxation, ViscoelasticBed};
+use asperity::record::LoadingRecord;
+use asperity::{BedError, CreepError, Error, LoadingState};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+
+use super::course::Task;
+use crate::path::fields::Fields;
+
+/// A history that has been followed.
+pub(super) struct Followed<'a> {
+    pub(super) states: Vec<CreepState>,
+    pub(super) method: Method,
+    /// When each state of the path was reached for the first time.
+    pub(super) times: Vec<f64>,
+    /// When contact recedes for the first time.
+    pub(super) recedes: Option<f64>,
+    /// Until when the path is enough, if it is not to the end.
+    pub(super) enough_until: Option<f64>,
+    solution: Solution<'a>,
+}
+
+/// How the states were found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Method {
+    ClosedForm,
+    Steps {
+        count: usize,
+        halvings: usize,
+        /// Of approach and area, relative to their greatest: a third of what steps twice as long change.
+        error: f64,
+    },
+}
+
+/// What the last fields are made of.
+enum Solution<'a> {
+    Creep(Creep<'a>),
+    Relaxation(Relaxation<'a>),
+    Bed(Box<ViscoelasticBed<'a>>),
+}
+
+/// States up to some time.
+struct Part {
+    states: Vec<CreepState>,
+    /// That the path ended before the last, and when, if that is known.
+    enough_until: Option<Option<f64>>,
+}
+
+impl<'a> Followed<'a> {
+    pub(super) fn new(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Failure> {
+        Self::along(bed, task).map_err(|error| Failure::new("cannot follow the history", error))
+    }
+
+    fn along(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Error> {
+        let times = task.steps.times(&task.prony, task.course.corners(), task.end)?;
+        let (solution, recedes, knots) = match &task.course {
+            Course::Load(load) => {
+                let creep = Creep::new(bed, &task.prony, load)?;
+                let recedes = creep.recession().map(|recession| recession.time);
+                let knots = creep.times();
+                (Solution::Creep(creep), recedes, knots)
+            }
+            Course::Approach(approach) => {
+                let relaxation = Relaxation::new(bed, &task.prony, approach)?;
+                let (recedes, knots) = (relaxation.recession(), relaxation.times());
+                (Solution::Relaxation(relaxation), recedes, knots)
+            }
+        };
+        let recedes = recedes.filter(|time| *time < task.end);
+        if recedes.is_some() {
+            return Self::stepped(bed, task, &times, (recedes, knots));
+        }
+        let Part { states, enough_until } = match &solution {
+            Solution::Creep(creep) => grown(&times, |time| creep.at(time))?,
+            Solution::Relaxation(relaxation) => grown(&times, |time| relaxation.at(time))?,
+            Solution::Bed(_) => Part { states: Vec::new(), enough_until: None },
+        };
+        // The approach of a path ends with its last knot.
+        let enough_until =
+            enough_until.map(|until| until.or(knots.last().copied()).unwrap_or_default());
+        let until = enough_until.unwrap_or(task.end);
+        let times = knots.into_iter().filter(|time| *time <= until).collect();
+        Ok(Self { states, method: Method::ClosedForm, times, recedes, enough_until, solution })
+    }
+
+    /// In steps, and once more in steps twice as long.
+    fn stepped(
+        bed: &'a Bed<'a>,
+        task: &Task,
+        times: &[f64],
+        (recedes, knots): (Option<f64>, Vec<f64>),
+    ) -> Result<Self, Error> {
+        let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let mut fine: Vec<f64> = Vec::with_capacity(2 * times.len());
+        for (time, middle) in times.iter().zip(middles.map(Some).chain([None])) {
+            fine.push(*time);
+            fine.extend(middle);
+        }
+        let mut contact = ViscoelasticBed::new(bed, &task.prony)?;
+        let Part { states, enough_until } = through(&mut contact, &task.course, &fine)?;
+        let mut coarse = ViscoelasticBed::new(bed, &task.prony)?;
+        let rough = through(&mut coarse, &task.course, times)?.states;
+        let mut reached = knots;
+        for state in &states {
+            // First to touch in this step.
+            reached.resize(reached.len().max(state.contact_nodes), state.time);
+        }
+        let count = states.len();
+        let states: Vec<CreepState> = states.into_iter().step_by(2).collect();
+        let error = difference(&states, &rough) / 3.0;
+        Ok(Self {
+            states,
+            method: Method::Steps { count, halvings: contact.halvings(), error },
+            times: reached,
+            recedes,
+            enough_until: enough_until.map(Option::unwrap_or_default),
+            solution: Solution::Bed(Box::new(contact)),
+        })
+    }
+
+    /// `Ok` if the path was long enough.
+    pub(super) fn whole(&self, task: &Task, record: &Path) -> Result<(), Failure> {
+        let Some(until) = self.enough_until else {
+            return Ok(());
+        };
+        let file = record.display();
+        let further = match &self.solution {
+            Solution::Creep(creep) => format!("--max-load {:.4e}", creep.effective_load(task.end)),
+            _ => "--max-load with a greater load".to_string(),
+        };
+        Err(Failure::request(format!(
+            "the path is enough until t = {}, and not to {}",
+            quantity(until, "s", 4),
+            quantity(task.end, "s", 4)
+        ))
+        .with_advice(&format!(
+            "`asperity path --resume {file} --record {file} {further}` takes it further"
+        )))
+    }
+
+    /// Pressure and gap of the last state.
+    pub(super) fn fields(
+        &self,
+        record: &LoadingRecord,
+        bed: &Bed,
+        pieces: u32,
+    ) -> Result<Fields, Failure> {
+        let failed = |error| Failure::new("cannot compute the fields of the last state", error);
+        let made = self.last_fields(record, bed, pieces as usize);
+        made.map_err(failed)
+    }
+
+    fn last_fields(
+        &self,
+        record: &LoadingRecord,
+        bed: &Bed,
+        pieces: usize,
+    ) -> Result<Fields, Error> {
+        let mut path = record.replay()?;
+        let Some(last) = self.states.last() else {
+            return Ok(Vec::new());
+        };
+        let of_path = |pressure: Superposition, state: LoadingState| (pressure, Some(state));
+        let (pressure, state) = match &self.solution {
+            Solution::Creep(creep) => {
+                of_path(creep.pressure(last.time, pieces)?, creep.path_state(last.time)?)
+            }
+            Solution::Relaxation(relaxation) => {
+                let state = relaxation.path_state(last.time)?;
+                of_path(relaxation.pressure(last.time, pieces)?, state)
+            }
+            Solution::Bed(contact) => (contact.pressure(pieces)?, None),
+        };
+        let pressure = pressure.pressure(bed, &mut path)?;
+        let gap = match (state, &self.solution) {
+            (Some(state), _) => {
+                let apart = (-last.approach).max(0.0);
+                path.gap_at(&state)?.map(|gap| gap + apart)
+            }
+            (None, Solution::Bed(contact)) => {
+                let mut gap = contact.compression(pieces)?.displacement(bed, &mut path)?;
+                for (value, initial) in gap.iter_mut().zip(path.problem().initial_gap()) {
+                    // Pieces leave an error that is no overlap.
+                    *value = (initial + *value - last.approach).max(0.0);
+                }
+                let touching = record.history().events().iter().take(last.contact_nodes);
+                for state in touching {
+                    gap[state.node] = 0.0;
+                }
+                gap
+            }
+            (None, _) => return Ok(vec![("pressure", pressure)]),
+        };
+        Ok(vec![("pressure", pressure), ("gap", gap)])
+    }
+}
+
+/// The states up to where the path ends; when that is, if the error says so.
+fn grown(times: &[f64], at: impl Fn(f64) -> Result<CreepState, Error>) -> Result<Part, Error> {
+    let mut states = Vec::with_capacity(times.len());
+    for &time in times {
+        match at(time) {
+            Ok(state) => states.push(state),
+            Err(Error::Creep(CreepError::PathEnds { until, .. })) => {
+                return Ok(Part { states, enough_until: Some(Some(until)) });
+            }
+            Err(Error::Bed(BedError::PathEndsBefore { .. })) => {
+                return Ok(Part { states, enough_until: Some(None) });
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Part { states, enough_until: None })
+}
+
+/// The same by the bed.
+fn through(contact: &mut ViscoelasticBed, course: &Course, times: &[f64]) -> Result<Part, Error> {
+    let mut states: Vec<CreepState> = Vec::with_capacity(times.len());
+    for &time in times {
+        match contact.follow(course, &[time]) {
+            Ok(now) => states.extend(now),
+            Err(Error::Creep(CreepError::BedEnds { .. })) => {
+                let until = states.last().map(|state| state.time);
+                return Ok(Part { states, enough_until: Some(until) });
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Part { states, enough_until: None })
+}
+
+/// The greatest difference of approaches and areas at the same times, over the greatest of each.
+fn difference(states: &[CreepState], others: &[CreepState]) -> f64 {
+    let quantities: [fn(&CreepState) -> f64; 2] =
+        [|state| state.approach, |state| state.contact_area_fraction];
+    let of = |quantity: &fn(&CreepState) -> f64| {
+        let pairs = states.iter().zip(others);
+        let error = pairs.map(|(a, b)| (quantity(a) - quantity(b)).abs()).fold(0.0, f64::max);
+        let greatest = states.iter().map(|state| quantity(state).abs()).fold(0.0, f64::max);
+        if greatest > 0.0 { error / greatest } else { 0.0 }
+    };
+    quantities.iter().map(of).fold(0.0, f64::max)
+}

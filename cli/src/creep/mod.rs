@@ -1,0 +1,79 @@
+//! `asperity creep`: viscoelastic bodies, from the record of an elastic path.
+//!
+//! Prints how contact grows over time and when it percolates and seals, and writes `creep.csv`, `creep.png`,
+//! `touch_times.png`, and for a load that is held `cycles.csv` and `cycles.png`.
+
+mod charts;
+mod course;
+mod cycles;
+mod followed;
+mod object;
+mod options;
+mod passages;
+mod table;
+mod touch_times;
+mod words;
+
+use asperity::bed::Bed;
+use asperity::record::LoadingRecord;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::{answer, panel, speech};
+
+use crate::path::fields;
+use course::Task;
+use cycles::Sweep;
+use followed::Followed;
+pub(crate) use options::Options;
+use passages::Passage;
+
+/// Reads the record, follows the history on it, says what happens, and writes the files.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
+    let file = options.record.display();
+    let record = LoadingRecord::read_npz(&options.record)
+        .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
+    let failed = |error| Failure::new("cannot let this contact creep", error);
+    let task = Task::new(options)?;
+    let bed = Bed::of(&record).map_err(failed)?;
+    let followed = Followed::new(&bed, &task)?;
+    let passages = Passage::all(&record, &followed, options.connectivity()).map_err(failed)?;
+    let sweep = match &task.cycles {
+        Some(cycles) => Some(Sweep::new(&record, &task, cycles)),
+        None => None,
+    };
+    if options.json {
+        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
+    }
+    words::print(options, &task, &followed, &passages, sweep.as_ref());
+    let directory = match (&options.out, options.json) {
+        (Some(directory), _) => directory.clone(),
+        (None, false) => "out".into(),
+        (None, true) => return followed.whole(&task, &options.record),
+    };
+    panel::register_font()?;
+    std::fs::create_dir_all(&directory)
+        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    let mut outcome = Outcome::default();
+    outcome.written(table::write(&followed, &directory.join("creep.csv")));
+    outcome.written(charts::draw(&followed, &passages, &directory.join("creep.png")));
+    if let Some(drawn) = touch_times::draw(&record, &followed, &directory) {
+        outcome.written(drawn);
+    }
+    if let Some(Ok(sweep)) = &sweep {
+        outcome.written(sweep.write(&directory.join("cycles.csv")));
+        outcome.written(sweep.draw(&directory.join("cycles.png")));
+    }
+    if let Some(format) = options.fields {
+        let found = followed.fields(&record, &bed, options.pieces);
+        match found {
+            Ok(found) => {
+                outcome.all_written(fields::write(&found, &record.grid(), format, &directory));
+            }
+            Err(failure) => outcome.note(Err(failure)),
+        }
+    }
+    outcome.note(followed.whole(&task, &options.record));
+    outcome.finish()
+}

@@ -1,0 +1,156 @@
+//! What is printed.
+
+use asperity::creep::{Course, CreepState};
+use asperity::{CreepError, Error};
+use asperity_cli::number::{quantity, significant};
+use asperity_cli::say;
+
+use super::Options;
+use super::course::Task;
+use super::cycles::Sweep;
+use super::followed::{Followed, Method};
+use super::passages::Passage;
+
+/// About as many lines as a table has.
+const LINES: usize = 10;
+
+pub(super) fn print(
+    options: &Options,
+    task: &Task,
+    followed: &Followed,
+    passages: &[Passage],
+    sweep: Option<&Result<Sweep, Error>>,
+) {
+    bodies(task);
+    course(options, task);
+    method(followed);
+    table(&followed.states);
+    for passage in passages {
+        match passage.time {
+            Some(time) => say!("{:18} from t = {} on", passage.name, quantity(time, "s", 4)),
+            None => say!("{:18} not in this time", passage.name),
+        }
+    }
+    if followed.recedes.is_some() {
+        say!("(for the first time: contact that recedes opens again)");
+    }
+    if let Some(sweep) = sweep {
+        cycles(sweep);
+    }
+}
+
+fn bodies(task: &Task) {
+    let term = |time: f64, share: f64| format!("{share} in {}", quantity(time, "s", 4));
+    let terms = task.prony.relaxation_terms().iter().map(|t| term(t.time, t.amount));
+    let terms: Vec<String> = terms.collect();
+    let left = match task.prony.equilibrium_modulus() {
+        0.0 => "nothing is left in the end: the bodies flow".to_string(),
+        left => format!("{:.4} of it is left in the end", left),
+    };
+    match terms.len() {
+        0 => say!("bodies     elastic: no part of the modulus relaxes"),
+        _ => say!("bodies     of the modulus E* of the path relax {}; {left}", terms.join(", ")),
+    }
+}
+
+fn course(options: &Options, task: &Task) {
+    let put_on = match options.ramp {
+        Some(duration) => format!("within {}", quantity(duration, "s", 4)),
+        None => "at once".to_string(),
+    };
+    let end = quantity(task.end, "s", 4);
+    match (options.load, options.approach, &options.history) {
+        (Some(load), _, _) => {
+            say!(
+                "history    load of {} put on {put_on} and held, to {end}",
+                quantity(load, "N", 4)
+            );
+        }
+        (_, Some(approach), _) => {
+            let approach = quantity(approach, "m", 4);
+            say!("history    approach of {approach} taken {put_on} and held, to {end}");
+        }
+        (_, _, Some(file)) => {
+            let what = match task.course {
+                Course::Load(_) => "load",
+                Course::Approach(_) => "approach",
+            };
+            let corners = task.course.corners().corners().len();
+            say!("history    {what} with {corners} corners from {}, to {end}", file.display());
+        }
+        _ => (),
+    }
+}
+
+fn method(followed: &Followed) {
+    match (followed.method, followed.recedes) {
+        (Method::Steps { count, halvings, error }, Some(recedes)) => {
+            say!(
+                "contact    recedes from t = {} on: the bed of the path is stepped in time",
+                quantity(recedes, "s", 4)
+            );
+            let halved = match halvings {
+                0 => String::new(),
+                some => format!(", {some} of them halved"),
+            };
+            say!(
+                "steps      {count}{halved}; they leave an error of about {} of the greatest approach and area",
+                significant(error, 1)
+            );
+        }
+        _ => say!(
+            "contact    never recedes: it is that of the path at the effective load, in closed form"
+        ),
+    }
+    say!();
+}
+
+fn table(states: &[CreepState]) {
+    say!("      time  effective       load      area  approach  mean gap");
+    say!("         s          N          N         %        µm        µm");
+    let every = states.len().div_ceil(LINES).max(1);
+    let last = states.len().saturating_sub(1);
+    for (_, state) in states.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last) {
+        say!(
+            "{:>10} {:>10} {:>10} {:>9} {:>9} {:>9}",
+            significant(state.time, 4),
+            significant(state.effective_load, 4),
+            significant(state.load, 4),
+            significant(100.0 * state.contact_area_fraction, 4),
+            significant(1e6 * state.approach, 4),
+            significant(1e6 * state.mean_gap, 4)
+        );
+    }
+    say!();
+    say!("effective: the elastic load of the same contact, as long as it grows");
+    say!();
+}
+
+fn cycles(sweep: &Result<Sweep, Error>) {
+    say!();
+    match sweep {
+        Ok(sweep) => {
+            let Some(worst) = sweep.worst() else {
+                say!("cycles     elastic bodies lose nothing");
+                return;
+            };
+            say!(
+                "cycles     of ±{} around the load lose most at {}: {}, loss factor {}",
+                quantity(worst.amplitude, "N", 3),
+                quantity(1.0 / worst.period, "Hz", 2),
+                quantity(worst.dissipated, "J", 3),
+                significant(worst.loss_factor, 3)
+            );
+            if sweep.is_coarse() {
+                say!(
+                    "warning: only {} nodes join and leave in such a cycle; the part of the loss that is theirs depends on the grid",
+                    sweep.moving_nodes
+                );
+            }
+        }
+        Err(Error::Creep(CreepError::NoSteadyCycle { .. })) => {
+            say!("cycles     none are steady, for the bodies flow");
+        }
+        Err(error) => say!("cycles     not drawn: {error}"),
+    }
+}

@@ -1,0 +1,158 @@
+//! Histories for the bed: of load or of approach, and the times at which to step through them.
+
+use super::corners::Corners;
+use super::prony::Prony;
+use super::state::CreepState;
+use super::viscoelastic_bed::{Control, ViscoelasticBed};
+use crate::Error;
+
+/// What is given over time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Course {
+    /// The load \[N\].
+    Load(Corners),
+    /// The approach \[m\].
+    Approach(Corners),
+}
+
+impl Course {
+    /// Its corners.
+    #[must_use]
+    pub fn corners(&self) -> &Corners {
+        match self {
+            Self::Load(corners) | Self::Approach(corners) => corners,
+        }
+    }
+
+    fn control(&self, value: f64) -> Control {
+        match self {
+            Self::Load(_) => Control::Load(value),
+            Self::Approach(_) => Control::Approach(value),
+        }
+    }
+}
+
+/// How steps are spread over time: short behind each corner, and longer from step to step, as the memory of the corner fades.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steps {
+    /// The first step behind a corner, over the shortest relaxation time.
+    pub first: f64,
+    /// The length of a step over that of the step before.
+    pub growth: f64,
+    /// The least number of steps from corner to corner.
+    pub least: usize,
+}
+
+impl Default for Steps {
+    /// Errors of some 10⁻⁴ of the approach.
+    fn default() -> Self {
+        Self { first: 0.02, growth: 1.06, least: 60 }
+    }
+}
+
+impl Steps {
+    /// Steps half as long, everywhere: what they change is three times the error that is left.
+    #[must_use]
+    pub fn halved(self) -> Self {
+        Self { first: 0.5 * self.first, growth: self.growth.sqrt(), least: 2 * self.least }
+    }
+
+    /// The times of the steps from the first corner to `end`, all corners up to there among them. A jump has its time once.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for steps that are not positive, a growth below 1, and an end that is not finite.
+    pub fn times(&self, prony: &Prony, corners: &Corners, end: f64) -> Result<Vec<f64>, Error> {
+        Error::require_positive("first step over the shortest relaxation time", self.first)?;
+        let is_so = self.growth >= 1.0 && self.growth.is_finite();
+        Error::require("growth of steps", self.growth, is_so, "at least 1 and finite")?;
+        Error::require("end of a history", end, end.is_finite(), "finite")?;
+        let mut times = Vec::new();
+        let shortest = prony.relaxation_terms().first().map(|term| term.time);
+        let mut corners = corners.corners().iter().map(|corner| corner.0).peekable();
+        let mut now = corners.next().unwrap_or(0.0);
+        if now > end {
+            return Ok(vec![end]);
+        }
+        times.push(now);
+        while now < end {
+            let until = corners.next().unwrap_or(end).min(end);
+            let length = until - now;
+            if length <= 0.0 {
+                continue;
+            }
+            // A body that does not creep needs none but for its curve.
+            let mut step = self.first * shortest.unwrap_or(length);
+            let start = now;
+            let longest = length / self.least.max(1) as f64;
+            loop {
+                let next = now + step.min(longest);
+                // A last step that is hardly one belongs to the one before.
+                if next >= until - 0.3 * step.min(longest) || next <= now {
+                    break;
+                }
+                times.push(next);
+                now = next;
+                step *= self.growth;
+            }
+            debug_assert!(now >= start);
+            times.push(until);
+            now = until;
+        }
+        Ok(times)
+    }
+}
+
+impl ViscoelasticBed<'_> {
+    /// Follows a history, and returns the states at some times, ascending, each just after a jump there. Corners on the way are steps of
+    /// their own; else the steps are from time to time.
+    ///
+    /// A bed that has made no step yet begins with the history. Another one goes on with it from its present time, at which
+    /// corners have been passed.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for times that fall, and those of [`step`](Self::step).
+    pub fn follow(&mut self, course: &Course, times: &[f64]) -> Result<Vec<CreepState>, Error> {
+        let corners = course.corners().corners();
+        let (Some(&(begin, _)), Some(&first)) = (corners.first(), times.first()) else {
+            return Ok(Vec::new());
+        };
+        Error::require("time of a state", first, first.is_finite(), "finite")?;
+        let mut next = if self.begin_at(begin.min(first)) {
+            // Unloaded up to the first corner.
+            if first >= begin {
+                self.step(0.0, course.control(0.0))?;
+            }
+            0
+        } else {
+            let now = self.state().time;
+            corners.partition_point(|corner| corner.0 <= now)
+        };
+        let mut states = Vec::with_capacity(times.len());
+        for &time in times {
+            while let Some(&(at, value)) = corners.get(next).filter(|corner| corner.0 <= time) {
+                self.to(at, course.control(value))?;
+                next += 1;
+            }
+            let state = if self.state().time < time || next == 0 {
+                self.to(time, course.control(course.corners().value_at(time)))?
+            } else {
+                self.state()
+            };
+            let is_next = state.time <= time;
+            Error::require("time of a state", time, is_next, "no earlier than the one before")?;
+            states.push(state);
+        }
+        Ok(states)
+    }
+
+    /// In one step to a time, which the state then has to the last digit.
+    fn to(&mut self, time: f64, control: Control) -> Result<CreepState, Error> {
+        let duration = time - self.state().time;
+        let expected = "no earlier than the one before";
+        Error::require("time of a step", time, duration >= 0.0, expected)?;
+        self.step(duration, control)?;
+        Ok(self.set_time(time))
+    }
+}

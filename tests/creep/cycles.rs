@@ -1,0 +1,149 @@
+//! Cycles of load and the energy that they cost.
+
+use asperity::bed::Bed;
+use asperity::creep::{Control, CycleSettings, Prony, ViscoelasticBed};
+use asperity::loading::History;
+use asperity::{
+    Boussinesq, ContactEvent, ContactState, CreepError, Error, Grid, LoadingSolver, LoadingState,
+};
+use proptest::prelude::*;
+
+use crate::stepping::rough;
+
+/// A flat punch: one element, linear. The loss of a standard linear solid in closed form, with the phase of its complex compliance.
+#[test]
+fn a_linear_contact_loses_what_its_compliance_says() {
+    let grid = Grid::square(2, 1.0).unwrap();
+    let stiffness = 10.0;
+    let state = |k: usize, load: f64| {
+        let mut contact = ContactState::new(&grid, k, load / stiffness, load, 10.0 - load / 40.0);
+        contact.contact_stiffness = Some(stiffness);
+        contact.interfacial_stiffness = Some(40.0);
+        LoadingState::new(k, ContactEvent::Touch, (k - 1, 0), contact)
+    };
+    let history: History = [state(1, 0.0), state(2, 1e6)].into_iter().collect();
+    let bed = Bed::new(&history).unwrap();
+    let body = Prony::shares(&[(0.3, 0.6)]).unwrap();
+    let (tau, j) = (body.creep_terms()[0].time, body.creep_terms()[0].amount);
+    for period in [0.1, 1.0, 5.0, 100.0] {
+        let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+        contact.settle(5.0).unwrap();
+        let settings = CycleSettings { steps: 400, tolerance: 1e-12, most: 400 };
+        let cycle = contact.cycle(5.0, 2.0, period, settings).unwrap();
+        let omega = std::f64::consts::TAU / period;
+        let lag = omega * tau;
+        // J* = 1 + j/(1 + iωτ): D = π a² J''/K, and the amplitude a |J*|/K.
+        let (real, imaginary) = (1.0 + j / (1.0 + lag * lag), j * lag / (1.0 + lag * lag));
+        let lost = std::f64::consts::PI * 4.0 * imaginary / stiffness;
+        let amplitude = 2.0 * real.hypot(imaginary) / stiffness;
+        // 400 straight pieces in place of a sine: (2π/400)²/6, and the extremes lie between steps.
+        assert!(
+            (cycle.dissipated / lost - 1.0).abs() < 1e-4,
+            "{period}: {} {lost}",
+            cycle.dissipated
+        );
+        assert!((cycle.approach_amplitude / amplitude - 1.0).abs() < 1e-4, "{period}");
+        assert!(cycle.change.abs() <= 1e-12, "{cycle:?}");
+        let tangent = imaginary / real.hypot(imaginary);
+        assert!((cycle.loss_factor / tangent - 1.0).abs() < 2e-4);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    /// No steady cycle of any body on any rough surface gives energy, and steps half as long lose the same.
+    #[test]
+    fn no_cycle_gives_energy(
+        seed in 0..1000_u64,
+        terms in prop::collection::vec((-2.0..1.0_f64, 0.05..0.3_f64), 1..3),
+        part in 0.05..1.0_f64,
+        period in -2.0..2.0_f64,
+    ) {
+        let grid = Grid::square(10, 1.0).unwrap();
+        let half_space = Boussinesq::new(grid, 1.0).unwrap();
+        let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
+        let history: History = path.collect::<Result<_, _>>().unwrap();
+        let bed = Bed::new(&history).unwrap();
+        let terms: Vec<_> = terms.iter().map(|t| (10_f64.powf(t.0), t.1)).collect();
+        let body = Prony::shares(&terms).unwrap();
+        let load = 0.1 * bed.last_load();
+        let lost = [64, 128].map(|steps| {
+            let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+            contact.settle(load).unwrap();
+            let settings = CycleSettings { steps, tolerance: 1e-4, most: 200 };
+            let cycle = contact.cycle(load, part * load, 10_f64.powf(period), settings).unwrap();
+            (cycle.dissipated, cycle.amplitude * cycle.approach_amplitude)
+        });
+        let scale = lost[1].1;
+        prop_assert!(lost[0].0 >= -1e-3 * scale && lost[1].0 >= -1e-3 * scale, "{:?}", lost);
+        // Within what is left of transients and of steps.
+        prop_assert!((lost[0].0 - lost[1].0).abs() < 0.02 * scale, "{:?}", lost);
+    }
+
+    /// Whatever the history from rest and back to rest: work that is done is not negative.
+    #[test]
+    fn no_history_from_rest_gives_work(
+        seed in 0..1000_u64,
+        loads in prop::collection::vec(0.0..0.3_f64, 1..30),
+        duration in -3.0..1.0_f64,
+    ) {
+        let grid = Grid::square(10, 1.0).unwrap();
+        let half_space = Boussinesq::new(grid, 1.0).unwrap();
+        let path = LoadingSolver::builder(&rough(&grid, seed), &half_space).build().unwrap();
+        let history: History = path.collect::<Result<_, _>>().unwrap();
+        let bed = Bed::new(&history).unwrap();
+        let body = Prony::shares(&[(0.1, 0.5), (1.0, 0.3)]).unwrap();
+        let mut contact = ViscoelasticBed::new(&bed, &body).unwrap();
+        let (mut work, mut put_in, mut before) = (0.0, 0.0, contact.state());
+        for load in loads.into_iter().chain([0.0]) {
+            for part in [0.5, 1.0] {
+                let load = before.load + part * (load * bed.last_load() - before.load);
+                let state = contact.step(10_f64.powf(duration), Control::Load(load)).unwrap();
+                let done = 0.5 * (state.load + before.load) * (state.approach - before.approach);
+                work += done;
+                put_in += done.abs();
+                before = state;
+            }
+        }
+        prop_assert!(work >= -1e-12 * put_in, "{} of {}", work, put_in);
+    }
+}
+
+#[test]
+fn cycles_that_are_none_are_refused() {
+    let grid = Grid::square(8, 1.0).unwrap();
+    let half_space = Boussinesq::new(grid, 1.0).unwrap();
+    let path = LoadingSolver::builder(&rough(&grid, 1), &half_space).build().unwrap();
+    let history: History = path.collect::<Result<_, _>>().unwrap();
+    let bed = Bed::new(&history).unwrap();
+    let fluid = Prony::shares(&[(1.0, 1.0)]).unwrap();
+    let mut flows = ViscoelasticBed::new(&bed, &fluid).unwrap();
+    let load = 0.1 * bed.last_load();
+    for refused in
+        [flows.settle(load).err(), flows.cycle(load, load, 1.0, CycleSettings::default()).err()]
+    {
+        assert!(matches!(refused, Some(Error::Creep(CreepError::NoSteadyCycle { .. }))));
+    }
+    let solid = Prony::shares(&[(1.0, 0.5)]).unwrap();
+    let mut contact = ViscoelasticBed::new(&bed, &solid).unwrap();
+    let settings = CycleSettings::default();
+    for (mean, amplitude, period, settings) in [
+        (load, 2.0 * load, 1.0, settings),
+        (load, 0.0, 1.0, settings),
+        (load, f64::NAN, 1.0, settings),
+        (load, load, -1.0, settings),
+        (f64::INFINITY, load, 1.0, settings),
+        (load, load, 1.0, CycleSettings { steps: 7, ..settings }),
+        (load, load, 1.0, CycleSettings { most: 0, ..settings }),
+    ] {
+        let refused = contact.cycle(mean, amplitude, period, settings);
+        assert!(
+            matches!(refused, Err(Error::OutOfRange { .. } | Error::NotPositive { .. })),
+            "{refused:?}"
+        );
+    }
+    // The path ends.
+    let refused = contact.cycle(0.9 * bed.last_load(), 0.5 * bed.last_load(), 1.0, settings);
+    assert!(refused.is_ok(), "full contact goes on: {refused:?}");
+}
