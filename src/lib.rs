@@ -35,7 +35,7 @@
 //! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
@@ -107,7 +107,7 @@ pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{Error, KernelError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
-    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};

@@ -8,6 +8,7 @@ mod ensemble;
 mod gather;
 mod hardness;
 mod info;
+mod layers;
 mod load;
 mod patches;
 mod path;

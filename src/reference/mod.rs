@@ -17,6 +17,7 @@
 //! | cone | [`Cone`] |
 //! | flat punches | [`CircularPunch`], [`SQUARE_PUNCH_STIFFNESS`] |
 //! | wavy surfaces | [`Westergaard`], [`DoubleWave`] |
+//! | thin layers, waves on a layer | [`ThinLayer`], [`layer_compliance`] |
 //! | area of rough contacts, and its pressures | [`AreaLoadLaw`] |
 //! | electrical and thermal contact conductance | [`contact_conductance`] |
 
@@ -72,6 +73,7 @@ mod elliptic;
 mod hertz_ellipse;
 mod hertz_line;
 mod hertz_sphere;
+mod layer;
 mod punch;
 mod westergaard;
 
@@ -82,6 +84,7 @@ pub use double_wave::DoubleWave;
 pub use hertz_ellipse::HertzEllipse;
 pub use hertz_line::HertzLine;
 pub use hertz_sphere::HertzSphere;
+pub use layer::{ThinLayer, layer_compliance};
 pub use punch::{CircularPunch, SQUARE_PUNCH_STIFFNESS};
 pub use westergaard::Westergaard;
 
