@@ -40,7 +40,7 @@
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | superpose increments of a path | [`bed`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
@@ -118,7 +118,7 @@ pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
-    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};

@@ -9,6 +9,7 @@ mod ensemble;
 mod gather;
 mod hardness;
 mod info;
+mod layers;
 mod leak;
 mod load;
 mod patches;
