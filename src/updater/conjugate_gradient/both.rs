@@ -111,13 +111,12 @@ impl Both {
         Some(places)
     }
 
-    /// Pressures and overlaps of the unknown nodes that change their displacements, or pressures, by `rhs`. `None` if there are none.
-    fn answer<const N: usize>(
-        &self,
-        unknown: &[usize],
-        rhs: &[[f64; N]],
-    ) -> Option<Vec<[f64; N]>> {
+    /// Pressures and overlaps of the unknown nodes that change their displacements, or pressures, by `rhs`; `None` if no numbers do.
+    fn answer<const N: usize>(&self, unknown: &[usize], rhs: &[[f64; N]]) -> Option<Vec<[f64; N]>> {
         let size = unknown.len();
+        if size == 0 {
+            return Some(Vec::new());
+        }
         // Pressures and lengths have units of their own.
         let unit: Vec<f64> = unknown
             .iter()
@@ -207,9 +206,8 @@ impl Both {
         let Some(Places { unknown, .. }) = self.places(change) else {
             return;
         };
-        let near = |local: &Local| {
-            equilibrium.left_near_in(problem, local, |node| contact.contains(node))
-        };
+        let near =
+            |local: &Local| equilibrium.left_near_in(problem, local, |node| contact.contains(node));
         let near: Vec<[f64; 2]> = self.locals.iter().map(near).collect();
         let left = |&place: &usize| {
             let own = if self.is_outside(place) {

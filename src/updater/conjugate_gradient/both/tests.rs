@@ -148,7 +148,8 @@ fn proposals_beside_few_nodes_are_exact() -> Result<(), Error> {
                     continue;
                 }
                 for part in [0..outside.len(), outside.len()..sums.len()] {
-                    let most = sums[part.clone()].iter().map(|s| s[which].abs()).fold(0.0, f64::max);
+                    let most =
+                        sums[part.clone()].iter().map(|s| s[which].abs()).fold(0.0, f64::max);
                     for k in part {
                         let error = (found.sums[k][which] - sums[k][which]).abs();
                         assert!(error < 1e-2 * most, "{which} {k}: {error:e} of {most:e}");
@@ -207,7 +208,8 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
         let beside = before.beside(&problem, None);
         updater.propose_both(&elastic, &contact, proposed, &beside, &mut schur)?;
         // At the end, and in between.
-        let end = (vec![nodes[60], nodes[62], nodes[61]], vec![nodes[5], nodes[9], nodes[64]], 12.5);
+        let end =
+            (vec![nodes[60], nodes[62], nodes[61]], vec![nodes[5], nodes[9], nodes[64]], 12.5);
         let between = (vec![nodes[60]], vec![nodes[5]], 12.25);
         for (joined, yields, approach) in [end.clone(), between, end] {
             let yielded: Vec<(usize, f64)> = yields.iter().map(|&node| (node, 0.8)).collect();

@@ -194,8 +194,7 @@ impl Solutions {
         let before = from.load_at(approach);
         // In terms of the problem before, whose nodes were not a load yet.
         let overlap_before = |node: usize| overlap(node) + behind.load[node];
-        let (mut start, way) =
-            both.carried(problem, &before, passage.change(), overlap_before);
+        let (mut start, way) = both.carried(problem, &before, passage.change(), overlap_before);
         let is_in_window = way != 0.0 && aim != Aim::Exact;
         let carried = is_in_window.then(|| {
             let mut carried = start.clone();
@@ -204,6 +203,12 @@ impl Solutions {
         });
         if !wants_rate {
             self.instants.complete(way, &mut start);
+            // What was left out of nodes that join later only is not in contact yet.
+            for (node, value) in start.iter_mut().enumerate() {
+                if !contact.contains(node) {
+                    *value = 0.0;
+                }
+            }
             passage.fixed.iter().for_each(|&(node, pressure)| start[node] = pressure);
         }
         let mut base = self.solver.moved(&before, start)?;
