@@ -84,12 +84,12 @@ fn word<T: PartialEq>(choices: &[(&'static str, T)], choice: &T) -> &'static str
 
 impl HalfSpace {
     /// A half-space of the engine.
-    pub(crate) fn of_origin(origin: kernel::KernelOrigin) -> Option<Self> {
+    pub(crate) fn of_origin(origin: &kernel::KernelOrigin) -> Option<Self> {
         use kernel::KernelOrigin as Origin;
         let (body, e_star) = match origin {
-            Origin::Boussinesq { e_star } => (Body::Free, e_star),
-            Origin::PeriodicBoussinesq { e_star } => (Body::Love, e_star),
-            Origin::Spectral { e_star } => (Body::Spectral, e_star),
+            Origin::Boussinesq { e_star } => (Body::Free, *e_star),
+            Origin::PeriodicBoussinesq { e_star } => (Body::Love, *e_star),
+            Origin::Spectral { e_star } => (Body::Spectral, *e_star),
             _ => return None,
         };
         Some(Self { body, e_star: Some(e_star) })

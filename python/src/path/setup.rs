@@ -176,7 +176,7 @@ fn open(
 ) -> Fallible<LoadingPath> {
     let updater = choose("updater", updater, &Updater::WORDS)?;
     let record = detached(py, || LoadingRecord::read_npz(path))??;
-    let found = HalfSpace::of_origin(record.kernel().origin);
+    let found = HalfSpace::of_origin(&record.kernel().origin);
     let body = match (&half_space, &found) {
         (Some(given), None) => &**given,
         (None, Some(found)) => found,
