@@ -133,6 +133,18 @@ impl LoadingRun {
         })
     }
 
+    /// The first node that has yet to touch, or to come to its hardness; `None` at the end of the path.
+    pub(super) fn waiting(&self) -> Option<usize> {
+        let mut nodes = 0..self.problem.grid().nodes();
+        nodes.find(|&node| {
+            let plastic = self.plastic.as_ref();
+            if self.contact.contains(node) {
+                return plastic.is_some_and(|p| p.hardness().values()[node].is_finite());
+            }
+            !plastic.is_some_and(|plastic| plastic.has_yielded(node))
+        })
+    }
+
     /// Lets the nodes that the log says had yielded after `step` events have done so.
     pub(super) fn yield_at(&mut self, step: usize) -> Result<(), Error> {
         let yielded: Vec<usize> = self.releases.yielded_at(step).collect();

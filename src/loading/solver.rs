@@ -148,7 +148,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
             _ if is_enough => Ok(()),
             (Procedure::Yielding(yielding, _), Phase::Factor { updater, .. }) => {
-                self.failure = yielding.produce(run, updater, limit)?;
+                let failure = yielding.produce(run, updater, limit)?;
+                if let Some(node) = run.waiting().filter(|_| run.queue.is_empty()) {
+                    let stopped = || run.not_monotone("rate of a gap or a pressure", node, 0.0);
+                    return Err(failure.unwrap_or_else(stopped));
+                }
+                self.failure = failure;
                 Ok(())
             }
             (Procedure::Yielding(_, refined), Phase::Iterations(iterations)) => {

@@ -81,7 +81,7 @@ impl Plastic {
         self.sum
     }
 
-    pub(super) fn has_yielded(&self, node: usize) -> bool {
+    pub(in crate::loading) fn has_yielded(&self, node: usize) -> bool {
         self.has_yielded[node]
     }
 
