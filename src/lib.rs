@@ -140,3 +140,8 @@ struct FromFileToContact;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/metals_that_yield.md")]
 struct MetalsThatYield;
+
+/// The same of the page on joints.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/joints_that_slip.md")]
+struct JointsThatSlip;

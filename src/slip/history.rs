@@ -13,7 +13,7 @@ use crate::{Error, LoadingSolver, SlipError};
 /// The traction is `q = ∫ λ(s) dp(s)` with a ratio λ between −μ and μ that is constant in pieces of the load s from 0 to P. A step
 /// changes the pieces at the top: where T changes fast, a piece of ±μ, the slip zone, eats those below it; where P grows and T
 /// follows slowly, a piece of the ratio dT/dP comes on top of them; where P falls, the top is cut off (Jäger, *A New Principle in
-/// Contact Mechanics*, J. Tribol. 120 (1998) 677; Aleshin, Bou Matar & Van Den Abeele, Int. J. Solids Struct. 74 (2015) 145). At
+/// Contact Mechanics*, J. Tribol. 120 (1998) 677; Aleshin, Bou Matar & Van Den Abeele, Int. J. Solids Struct. 60–61 (2015) 84). At
 /// constant P this is Masing's rule: loops that close are forgotten.
 ///
 /// A step takes O(log N) for each piece that it ends, of a path of N states.

@@ -38,19 +38,23 @@ pub(super) fn draw(joint: &Joint, name: &Path) -> Result<PathBuf, Failure> {
 fn loops(joint: &Joint) -> Chart {
     let (limit, far) = (joint.slip.sliding_load(), joint.slip.sliding_displacement());
     let colours = [BLUE, ORANGE, GREEN, PURPLE];
-    let loops = LOOPS.iter().zip(colours).filter_map(|(share, colour)| {
+    let branch = |share: f64, sign: f64| -> Option<Vec<(f64, f64)>> {
         let amplitude = share * limit;
         let end = joint.slip.monotone(amplitude).ok()?;
-        let branch: Vec<(f64, f64)> = (0..=HALF)
-            .filter_map(|k| {
-                let down = 2.0 * amplitude * k as f64 / HALF as f64;
-                let half = joint.slip.monotone(0.5 * down).ok()?;
-                Some((end.displacement - 2.0 * half.displacement, amplitude - down))
-            })
-            .collect();
-        let back = branch.iter().map(|(x, y)| (-x, -y));
-        let points: Vec<_> = branch.iter().copied().chain(back).collect();
-        Some(Series::new(format!("{share} μP"), colour, Style::Line, points))
+        let points = (0..=HALF).filter_map(|k| {
+            let down = 2.0 * amplitude * k as f64 / HALF as f64;
+            let half = joint.slip.monotone(0.5 * down).ok()?;
+            Some((sign * (end.displacement - 2.0 * half.displacement), sign * (amplitude - down)))
+        });
+        Some(points.collect())
+    };
+    // Each way alone: a thick line that comes back on itself would be drawn with holes.
+    let loops = LOOPS.iter().zip(colours).flat_map(|(share, colour)| {
+        let names = [format!("{share} μP"), String::new()];
+        let ways = names.into_iter().zip([1.0, -1.0]).filter_map(move |(name, sign)| {
+            Some(Series::new(name, colour, Style::Line, branch(*share, sign)?))
+        });
+        ways.collect::<Vec<_>>()
     });
     let first = joint.loading.iter().map(|state| (state.displacement, state.tangential_load));
     let first = Series::new("first loading", GREY, Style::Dashed, first);
@@ -190,18 +194,19 @@ fn distribution(joint: &Joint) -> Option<Chart> {
 /// Draws a history: T against U, and both loads row by row.
 pub(super) fn draw_history(sheared: &Sheared, name: &Path) -> Result<PathBuf, Failure> {
     let most = |of: &dyn Fn(&SlipState) -> f64| {
-        sheared.curve.iter().map(|state| of(state).abs()).fold(f64::MIN_POSITIVE, f64::max)
+        sheared.ways.iter().flatten().map(|state| of(state).abs()).fold(f64::MIN_POSITIVE, f64::max)
     };
     let shift = most(&|state| state.displacement);
     let (force, load) = (most(&|state| state.tangential_load), most(&|state| state.load));
-    let path = |of: &dyn Fn(&SlipState) -> (f64, f64)| -> Vec<(f64, f64)> {
-        sheared.curve.iter().map(of).collect()
+    // One by one: a thick line that comes back on itself would be drawn with holes.
+    let lines = |of: &dyn Fn(&SlipState) -> (f64, f64)| -> Vec<Series> {
+        let line = |way: &Vec<SlipState>| Series::new("", BLUE, Style::Line, way.iter().map(of));
+        sheared.ways.iter().map(line).collect()
     };
-    let curve = path(&|state| (state.displacement, state.tangential_load));
-    let loads = path(&|state| (state.load, state.tangential_load));
+    let curve = lines(&|state| (state.displacement, state.tangential_load));
+    let loads = lines(&|state| (state.load, state.tangential_load));
     let lost: Vec<(f64, f64)> =
         (1..).map(f64::from).zip(sheared.rows.iter().map(|row| row.1)).collect();
-    let line = |points| vec![Series::new("", BLUE, Style::Line, points)];
     let tangential = || Axis::linear("tangential load T", "N", -1.06 * force, 1.06 * force);
     let legend = Corner::TopLeft;
     let charts = [
@@ -209,21 +214,21 @@ pub(super) fn draw_history(sheared: &Sheared, name: &Path) -> Result<PathBuf, Fa
             title: "history".to_string(),
             x: Axis::linear("displacement U", "m", -1.06 * shift, 1.06 * shift),
             y: tangential(),
-            series: line(curve),
+            series: curve,
             legend,
         },
         Chart {
             title: "loads".to_string(),
             x: Axis::linear("load P", "N", 0.0, 1.06 * load),
             y: tangential(),
-            series: line(loads),
+            series: loads,
             legend,
         },
         Chart {
             title: "energy lost".to_string(),
             x: Axis::plain("row", 0.0, sheared.rows.len() as f64 + 0.5),
             y: Axis::linear("dissipation", "J", 0.0, 1.06 * sheared.dissipation()),
-            series: line(lost),
+            series: vec![Series::new("", BLUE, Style::Line, lost)],
             legend,
         },
     ];

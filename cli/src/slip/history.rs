@@ -14,8 +14,8 @@ const BETWEEN: usize = 24;
 pub(super) struct Sheared {
     /// At each row, with the energy lost so far.
     pub(super) rows: Vec<(SlipState, f64)>,
-    /// The same with states in between.
-    pub(super) curve: Vec<SlipState>,
+    /// The way to each row, from the one before.
+    pub(super) ways: Vec<Vec<SlipState>>,
 }
 
 impl Sheared {
@@ -26,10 +26,11 @@ impl Sheared {
         let steps = rows(&text)
             .map_err(|wrong| Failure::request(format!("cannot use {}: {wrong}", name.display())))?;
         let mut history = SlipHistory::new(joint.slip.bed(), joint.slip.friction());
-        let (mut rows, mut curve) = (Vec::new(), Vec::new());
+        let (mut rows, mut ways) = (Vec::new(), Vec::new());
         let mut from = (0.0, 0.0);
         for (line, load, force) in steps {
             let failed = |error| Failure::new(format!("line {line} of {}", name.display()), error);
+            let mut way = vec![history.state()];
             // In parts, which change nothing.
             for part in 1..=BETWEEN {
                 let share = part as f64 / BETWEEN as f64;
@@ -37,12 +38,13 @@ impl Sheared {
                     |a: f64, b: f64| if part == BETWEEN { b } else { a + share * (b - a) };
                 let to = (between(from.0, load), between(from.1, force));
                 let state = history.to(to.0, to.1).map_err(failed)?;
-                curve.push(state);
+                way.push(state);
             }
+            ways.push(way);
             rows.push((history.state(), history.dissipation()));
             from = (load, force);
         }
-        Ok(Self { rows, curve })
+        Ok(Self { rows, ways })
     }
 
     /// Energy lost in all \[J\].

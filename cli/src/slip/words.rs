@@ -99,6 +99,6 @@ pub(super) fn print(joint: &Joint, sheared: Option<&Sheared>) {
         );
     }
     for warning in &joint.warnings {
-        say!("warning: {warning}");
+        eprintln!("warning: {warning}");
     }
 }
