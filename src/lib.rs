@@ -129,3 +129,8 @@ struct Readme;
 #[cfg(all(doctest, feature = "io"))]
 #[doc = include_str!("../docs/from_file_to_contact.md")]
 struct FromFileToContact;
+
+/// The same of the page on metals.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/metals_that_yield.md")]
+struct MetalsThatYield;

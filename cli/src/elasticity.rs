@@ -89,7 +89,7 @@ impl Elasticity {
 }
 
 impl Bodies {
-    fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
+    pub(crate) fn between(first: Material, second: Option<Material>) -> Result<Self, Failure> {
         let (e_star, against) = match second {
             Some(second) => {
                 (composite_modulus((first.e, first.nu), (second.e, second.nu)), second.to_string())
@@ -110,7 +110,7 @@ impl Bodies {
 
 /// A body, with its name if it was given by name.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Material {
+pub(crate) struct Material {
     name: Option<&'static str>,
     /// Young's modulus \[Pa\].
     e: f64,
@@ -122,6 +122,11 @@ struct Material {
 
 impl Material {
     const STEEL: Self = Self::named(MATERIALS[0]);
+
+    /// Young's modulus \[Pa\] and Poisson's ratio.
+    pub(crate) fn elastic(&self) -> (f64, f64) {
+        (self.e, self.nu)
+    }
 
     const fn named((name, e, nu, hardness): (&'static str, f64, f64, Option<f64>)) -> Self {
         Self { name: Some(name), e, nu, hardness }

@@ -12,7 +12,7 @@ pub mod panel;
 pub mod picture;
 pub mod speech;
 
-/// Prints a line, see [`speech`].
+/// Prints a line for people on stdout, see [`speech`].
 #[macro_export]
 macro_rules! say {
     () => {
@@ -20,5 +20,21 @@ macro_rules! say {
     };
     ($($text:tt)*) => {
         $crate::speech::print(format_args!($($text)*))
+    };
+}
+
+/// Prints a line for programs on stdout, see [`speech`].
+#[macro_export]
+macro_rules! answer {
+    ($($text:tt)*) => {
+        $crate::speech::answer(format_args!($($text)*))
+    };
+}
+
+/// Prints a line for people on stderr, see [`speech`].
+#[macro_export]
+macro_rules! note {
+    ($($text:tt)*) => {
+        $crate::speech::note(format_args!($($text)*))
     };
 }

@@ -10,8 +10,9 @@ use asperity::{FixedLoadSolver, Grid, InfluenceKernel, Warning};
 use asperity_cli::half_space::{Periodic, half_space};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_cli::{panel, say};
+use asperity_cli::{answer, note, panel, speech};
 use clap::Args;
+use serde_json::{Map, Value, json};
 
 use crate::advice;
 use crate::contact_map::draw as draw_map;
@@ -60,6 +61,11 @@ pub(crate) struct Options {
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     memory_budget: Option<usize>,
 
+    /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv, iterations and
+    /// seconds (SI units; null where there is no number)
+    #[arg(long)]
+    json: bool,
+
     /// Directory for pressure_K.npy and gap_K.npy, where K counts the loads from 0
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
@@ -93,12 +99,15 @@ impl Loads {
 
 /// Solves for each load in turn.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
     let hardness = options.hardness.of(&options.elasticity)?;
-    eprintln!("bodies     {bodies}");
+    note!("bodies     {bodies}");
     if let Some(hardness) = hardness {
-        eprintln!("hardness   {hardness}");
+        note!("hardness   {hardness}");
     }
     let warnings = Warning::of_surface(&surface).into_iter();
     for warning in warnings.chain(Warning::of_modulus(bodies.e_star)) {
@@ -124,7 +133,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut solver = builder
         .build()
         .map_err(|error| room::failure("cannot set up the solver".to_string(), error, check))?;
-    eprintln!(
+    note!(
         "{nx} x {ny} nodes, set up in {:.3} s, {} MB",
         start.elapsed().as_secs_f64(),
         solver.bytes() / 1_000_000
@@ -138,8 +147,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let loads = options.loads.on(grid.nominal_area());
     let mut outcome = Outcome::default();
     let mut table = format!("{}\n", COLUMNS.join(","));
+    let mut states = Vec::new();
     for (k, &load) in loads.iter().enumerate() {
-        eprintln!("load {} of {}: {}", k + 1, loads.len(), quantity(load, "N", 6));
+        note!("load {} of {}: {}", k + 1, loads.len(), quantity(load, "N", 6));
         let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
             let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
             let resolution = resolution
@@ -147,7 +157,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             let numbers = numbers(&solution, &resolution, &grid);
             // Writing to a text cannot fail.
             let _ = writeln!(table, "{}", numbers.join(","));
-            print_line(&numbers, &solution, effort.0);
+            let answer = answer(&numbers, &solution, effort.0);
+            if options.json {
+                states.push(object(&answer));
+            } else {
+                answer!("{}", line(&answer));
+            }
             print_words(&solution, &resolution, bodies.e_star, effort.1);
             Ok(solution)
         });
@@ -174,6 +189,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     if table.lines().count() > 1 {
         outcome.written(outcome::write(&options.out.join("load.csv"), table));
+    }
+    if options.json {
+        answer!("{}", json!({ "states": states }));
     }
     outcome.finish_on_stderr()
 }
@@ -236,11 +254,32 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
     ]
 }
 
-/// The line for programs.
-fn print_line(numbers: &[String; 13], solution: &FixedLoadSolution, seconds: f64) {
-    let named = COLUMNS.iter().zip(numbers);
-    let named: Vec<String> = named.map(|(name, number)| format!("{name}={number}")).collect();
-    say!("{} iterations={} seconds={seconds:.6}", named.join(" "), solution.effort.iterations,);
+/// Names and numbers for programs.
+fn answer(
+    numbers: &[String; 13],
+    solution: &FixedLoadSolution,
+    seconds: f64,
+) -> Vec<(&'static str, String)> {
+    let effort = [
+        ("iterations", solution.effort.iterations.to_string()),
+        ("seconds", format!("{seconds:.6}")),
+    ];
+    COLUMNS.into_iter().zip(numbers.iter().cloned()).chain(effort).collect()
+}
+
+/// As a line.
+fn line(answer: &[(&str, String)]) -> String {
+    let named = answer.iter().map(|(name, number)| format!("{name}={number}"));
+    named.collect::<Vec<_>>().join(" ")
+}
+
+/// As an object; what is no number is null.
+fn object(answer: &[(&str, String)]) -> Value {
+    let named = answer.iter().map(|(name, number)| {
+        let number = number.parse().map_or(Value::Null, |number: f64| json!(number));
+        ((*name).to_string(), number)
+    });
+    Value::Object(named.collect::<Map<_, _>>())
 }
 
 /// The lines for people.
@@ -252,11 +291,11 @@ fn print_words(
 ) {
     let state = solution.state;
     let greatest = solution.max_pressure();
-    eprintln!(
+    note!(
         "  contact {:.4} % of the nominal area, {resolution}",
         100.0 * state.contact_area_fraction
     );
-    eprintln!(
+    note!(
         "  mean pressure {}, greatest pressure {}, mean gap {}, approach {}",
         quantity(state.mean_pressure(), "Pa", 4),
         quantity(greatest, "Pa", 4),
@@ -268,12 +307,12 @@ fn print_words(
         ("interfacial stiffness", state.interfacial_stiffness),
     ] {
         if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.is_finite()) {
-            eprintln!("  {name} {}", quantity(stiffness, "N/m", 4));
+            note!("  {name} {}", quantity(stiffness, "N/m", 4));
         }
     }
     let gap = |relative: f64| quantity(relative * solution.certificate.length, "m", 2);
     let least = solution.certificate.least_gap;
-    eprintln!(
+    note!(
         "  residuals: gap in contact {}{}",
         gap(solution.certificate.greatest_contact_gap),
         // There is none in full contact.
@@ -282,12 +321,13 @@ fn print_words(
             false => String::new(),
         }
     );
-    eprintln!(
+    note!(
         "  {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more for the stiffness",
-        solution.effort.convolutions, solution.effort.coarse_convolutions,
+        solution.effort.convolutions,
+        solution.effort.coarse_convolutions,
     );
     if let Some(plastic) = &solution.plastic {
-        eprintln!(
+        note!(
             "  {} nodes have yielded, plastic volume {}, energy lost {}",
             plastic.yielded_nodes(),
             quantity(plastic.volume, "m³", 4),
@@ -302,7 +342,7 @@ fn print_words(
         eprintln!("warning: {}", advice::told(&warning));
     }
     if state.contact_area_fraction == 1.0 {
-        eprintln!("note: the contact is full; beyond full contact only the pressure changes");
+        note!("note: the contact is full; beyond full contact only the pressure changes");
     }
 }
 

@@ -17,12 +17,15 @@ mod reading;
 mod resolution;
 mod room;
 mod settings;
+mod shell;
+mod slip;
 mod values;
 
 use std::process::ExitCode;
 
-use asperity_cli::speech;
-use clap::{Parser, Subcommand};
+use asperity_cli::outcome::Failure;
+use asperity_cli::{say, speech};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single loads.
 ///
@@ -35,11 +38,19 @@ use clap::{Parser, Subcommand};
 /// own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help` lists
 /// the options of that command; the other commands have such a list too. All numbers are in SI units.
 #[derive(Debug, Parser)]
-#[command(name = "asperity", version, disable_help_subcommand = true)]
+#[command(name = "asperity", version, disable_help_subcommand = true, after_help = EXIT_CODES)]
 struct Arguments {
+    /// Leave out descriptions, tables and progress
+    #[arg(short, long, global = true)]
+    quiet: bool,
+
     #[command(subcommand)]
     command: Option<Command>,
 }
+
+/// What the program ends with.
+const EXIT_CODES: &str = "Exit codes: 0: done; 1: an error, and what was computed before it is written; 2: wrong arguments; \
+    130: interrupted by Ctrl-C or SIGTERM, and the path so far is saved.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -49,6 +60,9 @@ enum Command {
     Gather(gather::Options),
     Patches(patches::Options),
     Creep(creep::Options),
+    Slip(slip::Options),
+    Completions(shell::Completions),
+    Manual(shell::Manual),
 }
 
 fn main() -> ExitCode {
@@ -59,14 +73,20 @@ fn main() -> ExitCode {
         }
         error.exit()
     });
+    if arguments.quiet {
+        speech::be_quiet();
+    }
     let done = match arguments.command {
-        None => path::run(&path::Options::parse_from(["asperity path"])),
+        None => example(),
         Some(Command::Path(options)) => path::run(&options),
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Creep(options)) => creep::run(&options),
+        Some(Command::Slip(options)) => slip::run(&options),
+        Some(Command::Completions(options)) => options.print(Arguments::command()),
+        Some(Command::Manual(options)) => options.print(Arguments::command()),
     };
     match done.and_then(|()| speech::check()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -77,10 +97,17 @@ fn main() -> ExitCode {
     }
 }
 
+/// The main job on a generated surface, and what to do next.
+fn example() -> Result<(), Failure> {
+    path::run(&path::Options::parse_from(["asperity path"]))?;
+    say!(
+        "\nnext: `asperity info FILE` describes your surface; `asperity path --help` lists the options of this command"
+    );
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use asperity::io::write_whole;
 use asperity::{FileError, SurfaceError};
 
-use crate::say;
+use crate::{note, say};
 
 /// An error with what could not be done because of it.
 pub struct Failure {
@@ -153,7 +153,7 @@ impl Outcome {
         }
     }
 
-    /// Prints the files; reports all failures but the first, which it returns.
+    /// Prints the files, unless people want none; reports all failures but the first, which it returns.
     pub fn finish(self) -> Result<(), Failure> {
         say!();
         for file in &self.files {
@@ -165,7 +165,7 @@ impl Outcome {
     /// The same where stdout is for programs.
     pub fn finish_on_stderr(self) -> Result<(), Failure> {
         for file in &self.files {
-            eprintln!("wrote {}", file.display());
+            note!("wrote {}", file.display());
         }
         self.finish_quietly()
     }

@@ -10,7 +10,7 @@ const MODEL: &str = "The model is linear elastic, without friction and without a
 const LEFT_OUT: [(&[&str], &str); 8] = [
     (
         &["friction", "shear", "tangential", "slip", "stick"],
-        "the contact is frictionless, and the load normal",
+        "the contact is frictionless here, and the load normal; `asperity slip` shears the path of a record",
     ),
     (
         &["plastic", "hardness", "yield"],

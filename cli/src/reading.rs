@@ -5,6 +5,7 @@ use std::path::Path;
 use asperity::SurfaceError;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
 use asperity::surface::{Topography, Trend};
+use asperity_cli::note;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::{Args, ValueEnum};
@@ -127,18 +128,18 @@ impl Reading {
     pub(crate) fn surface(&self, file: &Path) -> Result<Topography, Failure> {
         let failed = |error| Failure::new(format!("cannot use {}", file.display()), error);
         let mut measured = self.measured(file)?;
-        eprintln!("file       {measured}");
+        note!("file       {measured}");
         for note in &measured.notes {
-            eprintln!("note: {note}");
+            note!("note: {note}");
         }
         if measured.missing > 0 && self.fill {
             let missing = measured.missing;
             measured = measured.fill_missing().map_err(failed)?;
-            eprintln!("filled     {missing} nodes, interpolated from the nodes around them");
+            note!("filled     {missing} nodes, interpolated from the nodes around them");
         }
         let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();
-        eprintln!("tilt       {sx:.2e} along x, {sy:.2e} along y");
+        note!("tilt       {sx:.2e} along x, {sy:.2e} along y");
         self.prepare(surface).map_err(failed)
     }
 
@@ -152,7 +153,7 @@ impl Reading {
         let mut surface = surface;
         if let Some(level) = self.level {
             let levelled = surface.level(level.into())?;
-            eprintln!(
+            note!(
                 "levelled   Sq {} before, {} now",
                 quantity(surface.map().rms_height(), "m", 5),
                 quantity(levelled.map().rms_height(), "m", 5)
@@ -160,7 +161,7 @@ impl Reading {
             surface = levelled;
         }
         if self.invert {
-            eprintln!("inverted   peaks are now valleys");
+            note!("inverted   peaks are now valleys");
             surface = surface.invert();
         }
         Ok(surface)

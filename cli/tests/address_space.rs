@@ -96,3 +96,21 @@ fn what_fits_the_budget_runs() -> Done {
     assert!((1000..4000).contains(&states.lines().count()));
     Ok(())
 }
+
+/// Without `--memory-budget` the limit of the address space is known: the error names a budget below it, and nothing is aborted.
+#[test]
+fn the_default_budget_knows_the_limit() -> Done {
+    let folder = Scratch::new("space-default")?;
+    for periodic in ["", "--periodic love", "--periodic spectral"] {
+        let done = run(&folder.0, 3000, &format!("path --nodes 6000 {periodic}"))?;
+        is_refused(&done, &["the budget is 2.2 GB", "the largest square grid that fits"]);
+    }
+    // 288 MB of heights are read before the memory of the solver is counted.
+    flat(&folder.join("6000.npy"), 6000)?;
+    let line = "load --surface 6000.npy --side 1e-3 --e-star 1e9 --load 1";
+    is_refused(&run(&folder.0, 3000, line)?, &["the budget is 2.2 GB", "the largest square grid"]);
+    // What fits below it runs to its end.
+    let done = run(&folder.0, 1000, "path --nodes 64 --max-area-fraction 0.9")?;
+    assert!(done.status.success(), "{}", said(&done));
+    Ok(())
+}

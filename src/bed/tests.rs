@@ -70,7 +70,7 @@ fn a_superposition_of_two_increments() -> Result<(), Error> {
 /// Scalars of superpositions of many pieces are those of their fields, on a free and on a periodic half-space.
 #[test]
 fn scalars_are_those_of_the_fields() -> Result<(), Error> {
-    let grid = Grid::square(16, 1e-3)?;
+    let grid = Grid::square(16, 6.25e-4)?;
     let kernels: [&dyn InfluenceKernel; 2] =
         [&Boussinesq::new(grid, 1e9)?, &PeriodicBoussinesq::new(grid, 1e9)?];
     for kernel in kernels {
@@ -109,7 +109,7 @@ fn scalars_are_those_of_the_fields() -> Result<(), Error> {
 /// The energy of knots is that of the path, and all of it is read as the history reads it.
 #[test]
 fn a_bed_reads_what_its_history_reads() -> Result<(), Error> {
-    let kernel = Boussinesq::new(Grid::square(24, 1e-3)?, 1e9)?;
+    let kernel = Boussinesq::new(Grid::square(24, 9.375e-4)?, 1e9)?;
     let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(2), &kernel)
         .max_area_fraction(0.4)
         .build()?;

@@ -32,6 +32,14 @@ pub struct Certificate {
     pub length: f64,
 }
 
+impl Certificate {
+    /// With what (pressure, hardness) of every node say.
+    pub(crate) fn with_hardness(self, nodes: impl Iterator<Item = (f64, f64)>) -> Self {
+        let excess = nodes.map(|(pressure, hardness)| pressure / hardness - 1.0);
+        Self { excess_pressure: Some(excess.fold(-1.0, f64::max)), ..self }
+    }
+}
+
 /// A number that may be infinite, as `None` in formats without infinity, such as JSON.
 #[cfg(feature = "serde")]
 mod unbounded {

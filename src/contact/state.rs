@@ -37,8 +37,8 @@ pub struct ContactState {
     pub interfacial_stiffness: Option<f64>,
     /// Elastic energy `U = ½ ΔA Σ p u` \[J\], which comes back on unloading. Where nothing yields it is `∫ W dδ`.
     pub energy: f64,
-    /// What has yielded, on a path with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one, and at single
-    /// loads, of which [`FixedLoadSolution::plastic`](crate::FixedLoadSolution::plastic) says it.
+    /// What has yielded, with a [hardness](crate::loading::LoadingBuilder::hardness); `None` without one. A single load gives its fields
+    /// too ([`FixedLoadSolution::plastic`](crate::FixedLoadSolution::plastic)).
     pub plastic: Option<PlasticState>,
 }
 
@@ -55,7 +55,8 @@ pub struct PlasticState {
     pub volume: f64,
     /// Energy that is lost, `ΔA Σ H v` \[J\].
     pub work: f64,
-    /// dV/dW on further loading \[m³/N\]; 0 on a plateau, where no node is elastic and the load does not change.
+    /// dV/dW on further loading \[m³/N\]; 0 on a plateau, where no node is elastic and the load does not change, and of a single
+    /// load for which stiffnesses were not asked.
     pub volume_per_load: f64,
     /// The same of the work \[m\].
     pub work_per_load: f64,

@@ -33,6 +33,23 @@ impl<'a> Yielded<'a> {
         Self { hardness, map: vec![false; own_gap.len()], sum: 0.0, open, own_gap }
     }
 
+    /// Those of an earlier state of the level, which a greater load or approach has as well. The level's problem becomes that of the
+    /// others, whose pressures stay within their hardness.
+    pub(super) fn resume(
+        hardness: &'a Hardness,
+        level: &mut Level,
+        prescribed: Prescribed,
+        earlier: &[bool],
+    ) -> Result<Self, Error> {
+        let mut yielded = Self::none(hardness, level, prescribed);
+        let pressures = level.iterate.pressure.iter_mut().zip(hardness.values());
+        for ((pressure, &hardness), &has_yielded) in pressures.zip(earlier) {
+            *pressure = if has_yielded { f64::INFINITY } else { pressure.clamp(0.0, hardness) };
+        }
+        yielded.grow(level)?;
+        Ok(yielded)
+    }
+
     /// Sum of the pressures of nodes that have yielded \[Pa\].
     pub(super) fn sum(&self) -> f64 {
         self.sum

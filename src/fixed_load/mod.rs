@@ -29,7 +29,7 @@
 //!
 //! # Metals that yield
 //!
-//! With [`FixedLoadBuilder::hardness`] no pressure exceeds the hardness H (Almqvist et al., J. Mech. Phys. Solids 55 (2007) 1744:
+//! With [`FixedLoadBuilder::hardness`] no pressure exceeds the hardness H (Almqvist et al., Tribology International 40 (2007) 574:
 //! elastic–perfectly plastic contact): the bounds are `0 ≤ p ≤ H`, and where `p = H` the surfaces overlap elastically by the
 //! plastic depth, which stays in the surface. Nodes that yield are a load on the others, whose problem is the elastic one with the
 //! initial gap `g + C H`; rounds of elastic solutions, each with the nodes above H yielded, end at the solution. The model has

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::level::Level;
-use crate::contact::{Certificate, Conditions, ContactState};
+use crate::contact::{Certificate, Conditions, ContactState, PlasticState};
 use crate::krylov::{dot, sum, sum_over};
 use crate::{Error, Grid, HeightMap};
 
@@ -62,6 +62,18 @@ impl Plastic {
     #[must_use]
     pub fn yielded_nodes(&self) -> usize {
         self.yielded_map.iter().filter(|has_yielded| **has_yielded).count()
+    }
+
+    /// The scalars; rates are those of a tangent.
+    fn state(&self, grid: &Grid) -> PlasticState {
+        PlasticState {
+            yielded_nodes: self.yielded_nodes(),
+            yielded_area_fraction: self.yielded_nodes() as f64 / grid.nodes() as f64,
+            volume: self.volume,
+            work: self.work,
+            volume_per_load: 0.0,
+            work_per_load: 0.0,
+        }
     }
 
     fn new(grid: &Grid, pressure: &[f64], yielded: &[bool], depth: Vec<f64>) -> Self {
@@ -136,12 +148,12 @@ impl FixedLoadSolution {
     /// The solution that `level` holds, without stiffnesses; its load is `load` if that was
     /// prescribed, else that of the pressure.
     ///
-    /// Nodes that have yielded overlap by their plastic depth, which is no gap.
+    /// With a hardness, that of each node and which have yielded. These overlap by their plastic depth, which is no gap.
     pub(super) fn of(
         level: &Level,
         load: Option<f64>,
         effort: SolverEffort,
-        yielded: Option<&[bool]>,
+        yielded: Option<(&[f64], &[bool])>,
     ) -> Self {
         let (nx, ny) = level.grid.shape();
         let nodes = level.grid.nodes();
@@ -149,7 +161,7 @@ impl FixedLoadSolution {
         let (approach, total_gap) = (level.iterate.approach, &level.iterate.total_gap);
         let pressure = DMatrix::from_column_slice(nx, ny, &level.iterate.pressure);
         let mut gap = DMatrix::from_iterator(nx, ny, total_gap.iter().map(|c| c - approach));
-        let plastic = yielded.map(|yielded| {
+        let plastic = yielded.map(|(_, yielded)| {
             let mut depth = vec![0.0; nodes];
             for ((depth, gap), has_yielded) in depth.iter_mut().zip(&mut gap).zip(yielded) {
                 if *has_yielded {
@@ -179,11 +191,17 @@ impl FixedLoadSolution {
             contact_stiffness: None,
             interfacial_stiffness: None,
             energy: 0.5 * cell_area * dot(p, displacement.as_slice()),
-            plastic: None,
+            plastic: plastic.as_ref().map(|plastic| plastic.state(&level.grid)),
         };
         let conditions = Conditions::new(load / cell_area, approach, level.scale);
         let certificate =
             conditions.check((0..nodes).map(|node| (p[node], gaps[node], in_contact[node])));
+        let certificate = match yielded {
+            Some((hardness, _)) => {
+                certificate.with_hardness(p.iter().copied().zip(hardness.iter().copied()))
+            }
+            None => certificate,
+        };
         Self {
             state,
             pressure,

@@ -14,6 +14,9 @@ use crate::hardness::Hardness;
 use crate::parallel::inside;
 use crate::{Error, Grid};
 
+/// The part of a load that is rounding: where elastic nodes carry no more, the load is that of a plateau.
+const NO_REST: f64 = 1e-12;
+
 /// Solves for one state after the other: from the last one if it is near, else from coarser grids.
 #[derive(Debug)]
 pub(super) struct Stepper<'a> {
@@ -23,6 +26,8 @@ pub(super) struct Stepper<'a> {
     continuation: Continuation,
     /// The state that the finest grid holds, if it holds one.
     last: Option<ContactState>,
+    /// The nodes that have yielded there; none without a hardness.
+    yielded: Vec<bool>,
 }
 
 impl<'a> Stepper<'a> {
@@ -34,7 +39,8 @@ impl<'a> Stepper<'a> {
     ) -> Self {
         // What was spent before, if that ended with an error, is no part of the next solution.
         hierarchy.take_convolutions();
-        Self { settings, hierarchy, hardness, continuation: Continuation::default(), last: None }
+        let continuation = Continuation::default();
+        Self { settings, hierarchy, hardness, continuation, last: None, yielded: Vec::new() }
     }
 
     /// Begins at a solution.
@@ -51,8 +57,8 @@ impl<'a> Stepper<'a> {
     ) -> Result<Self, Error> {
         let finest = &mut hierarchy.finest;
         check(solution, &finest.grid)?;
-        if hardness.is_some() || solution.plastic.is_some() {
-            // Nodes that have yielded may not have at the next load.
+        let yielded = solution.plastic.as_ref().map(|plastic| plastic.yielded_map.as_slice());
+        if !matches_hardness(solution, yielded, hardness) {
             return Ok(Self::new(settings, hierarchy, hardness));
         }
         let iterate = &mut finest.iterate;
@@ -62,7 +68,8 @@ impl<'a> Stepper<'a> {
         for (total_gap, (gap, displacement)) in iterate.total_gap.iter_mut().zip(gaps) {
             *total_gap = gap + displacement;
         }
-        let mut stepper = Self::new(settings, hierarchy, None);
+        let mut stepper = Self::new(settings, hierarchy, hardness);
+        stepper.yielded = yielded.unwrap_or_default().to_vec();
         let tangent = Tangent::of(&mut stepper.hierarchy.finest, solution)?;
         stepper.continuation = Continuation::new(tangent);
         stepper.last = Some(solution.state);
@@ -166,8 +173,9 @@ impl<'a> Stepper<'a> {
         load: Option<f64>,
     ) -> Result<FixedLoadSolution, Error> {
         if let Some(hardness) = self.hardness {
-            let (iterations, yielded) = self.yield_to(hardness, prescribed)?;
-            return self.solution(load, iterations, Some(&yielded));
+            let (iterations, yielded) = self.yield_to(hardness, prescribed, sum)?;
+            self.yielded = yielded;
+            return self.solution(load, iterations);
         }
         // After an error the finest grid holds no state.
         let is_near = self.last.take().is_some() && Continuation::reaches(self.finest(), sum);
@@ -183,18 +191,34 @@ impl<'a> Stepper<'a> {
         } else {
             self.solve_afresh(prescribed)?
         };
-        self.solution(load, iterations, None)
+        self.solution(load, iterations)
     }
 
     /// Contact with a hardness: the number of iterations, and which nodes have yielded.
     fn yield_to(
         &mut self,
-        hardness: &Hardness,
+        hardness: &'a Hardness,
         prescribed: Prescribed,
+        sum: f64,
     ) -> Result<(usize, Vec<bool>), Error> {
-        self.last = None;
+        if let Some(mut yielded) = self.yielded_before(hardness, prescribed, sum)? {
+            match self.rounds(&mut yielded, prescribed, None) {
+                Ok(iterations) => {
+                    return Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?));
+                }
+                Err(error) => {
+                    yielded.abandon(&mut self.hierarchy.finest);
+                    if !matches!(error, Error::NoConvergence { .. }) {
+                        return Err(error);
+                    }
+                }
+            }
+        }
         let mut yielded = Yielded::none(hardness, &self.hierarchy.finest, prescribed);
-        match self.rounds(&mut yielded, prescribed) {
+        let rounds = self
+            .solve_afresh(prescribed)
+            .and_then(|iterations| self.rounds(&mut yielded, prescribed, Some(iterations)));
+        match rounds {
             Ok(iterations) => Ok((iterations, yielded.finish(&mut self.hierarchy.finest)?)),
             Err(error) => {
                 yielded.abandon(&mut self.hierarchy.finest);
@@ -203,14 +227,51 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Elastic solutions, until no more node yields.
+    /// The nodes that had yielded at the last state, with its pressures moved to the sum `sum` on the finest grid. `None` if there is
+    /// no such state near, or if load or approach fall: then nodes that had yielded may be elastic.
+    fn yielded_before(
+        &mut self,
+        hardness: &'a Hardness,
+        prescribed: Prescribed,
+        sum: f64,
+    ) -> Result<Option<Yielded<'a>>, Error> {
+        // After an error the finest grid holds no state.
+        let (last, earlier) = (self.last.take(), std::mem::take(&mut self.yielded));
+        let grows = last.is_some_and(|last| match prescribed {
+            Prescribed::Sum(sum) => sum * self.finest().grid.cell_area() >= last.load,
+            Prescribed::Approach(approach) => approach >= last.approach,
+        });
+        if !(grows && Continuation::reaches(self.finest(), sum)) {
+            return Ok(None);
+        }
+        self.continuation.predict(&mut self.hierarchy.finest, sum);
+        let finest = &mut self.hierarchy.finest;
+        let yielded = Yielded::resume(hardness, finest, prescribed, &earlier)?;
+        if let Prescribed::Sum(sum) = prescribed
+            && sum - yielded.sum() <= NO_REST * sum
+        {
+            yielded.abandon(finest);
+            return Ok(None);
+        }
+        Ok(Some(yielded))
+    }
+
+    /// Elastic solutions of the nodes that have not yielded, until no more does, behind the first one if that took so many iterations.
     fn rounds(
         &mut self,
         yielded: &mut Yielded<'_>,
         prescribed: Prescribed,
+        first: Option<usize>,
     ) -> Result<usize, Error> {
-        let mut iterations = self.solve_afresh(prescribed)?;
-        while yielded.grow(&mut self.hierarchy.finest)? && !yielded.is_everywhere() {
+        let mut iterations = first.unwrap_or_default();
+        let mut is_solved = first.is_some();
+        loop {
+            if is_solved && !yielded.grow(&mut self.hierarchy.finest)? {
+                return Ok(iterations);
+            }
+            if yielded.is_everywhere() {
+                return Ok(iterations);
+            }
             let rest = match prescribed {
                 Prescribed::Sum(sum) => Prescribed::Sum(sum - yielded.sum()),
                 approach @ Prescribed::Approach(_) => approach,
@@ -221,12 +282,12 @@ impl<'a> Stepper<'a> {
             {
                 // All that is in contact has yielded.
                 finest.iterate.pressure.fill(0.0);
-                break;
+                return Ok(iterations);
             }
             scale(&mut finest.iterate.pressure, rest);
             iterations += self.solve(rest, false)?;
+            is_solved = true;
         }
-        Ok(iterations)
     }
 
     /// The solution that the finest grid holds, after so many iterations.
@@ -234,12 +295,12 @@ impl<'a> Stepper<'a> {
         &mut self,
         load: Option<f64>,
         iterations: usize,
-        yielded: Option<&[bool]>,
     ) -> Result<FixedLoadSolution, Error> {
         let (convolutions, coarse_convolutions) = self.hierarchy.take_convolutions();
         let effort =
             SolverEffort { iterations, stiffness_iterations: 0, convolutions, coarse_convolutions };
         let finest = &mut self.hierarchy.finest;
+        let yielded = self.hardness.map(|hardness| (hardness.values(), &self.yielded[..]));
         let mut solution = FixedLoadSolution::of(finest, load, effort, yielded);
         if self.settings.stiffness {
             let tangent = &mut self.continuation.tangent;
@@ -249,6 +310,20 @@ impl<'a> Stepper<'a> {
         self.last = Some(solution.state);
         Ok(solution)
     }
+}
+
+/// Whether a solution, in which nodes may have yielded, can be one with a hardness.
+fn matches_hardness(
+    solution: &FixedLoadSolution,
+    yielded: Option<&[bool]>,
+    hardness: Option<&Hardness>,
+) -> bool {
+    let (Some(yielded), Some(hardness)) = (yielded, hardness) else {
+        return yielded.is_none() && hardness.is_none();
+    };
+    let nodes = yielded.iter().zip(&solution.pressure).zip(hardness.values());
+    yielded.len() == solution.pressure.len()
+        && nodes.into_iter().all(|((has_yielded, p), h)| !has_yielded || p == h)
 }
 
 /// `Ok` if this can be a solution on `grid`: its fields are public.

@@ -87,6 +87,14 @@ impl Tangent {
             Some(_) => None,
         };
         solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
+        if let (Some(state), Some(plastic)) = (&mut solution.state.plastic, &solution.plastic) {
+            let yielded = plastic.yielded_map.as_slice();
+            let sinks = |node: usize| if yielded[node] { 1.0 - displacement[node] } else { 0.0 };
+            let pressure = solution.pressure.as_slice();
+            state.volume_per_load = sum_over(nodes, sinks) / solved.unit_unit;
+            state.work_per_load =
+                sum_over(nodes, |node| pressure[node] * sinks(node)) / solved.unit_unit;
+        }
         solution.effort.stiffness_iterations = solved.iterations;
         solution.effort.convolutions += level.operator.take_convolutions();
         Ok(())

@@ -206,8 +206,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         self
     }
 
-    /// Limits the pressure to a hardness H \[Pa\]: elastic–perfectly plastic contact (Almqvist et al., J. Mech. Phys. Solids 55
-    /// (2007) 1744). A node whose pressure rises to H *yields*, a state of its own ([`ContactEvent::Yield`]): from then on it carries
+    /// Limits the pressure to a hardness H \[Pa\]: elastic–perfectly plastic contact (Almqvist et al., Tribology
+    /// International 40 (2007) 574). A node whose pressure rises to H *yields*, a state of its own ([`ContactEvent::Yield`]): from then on it carries
     /// H, stays in contact, and loses as much of its height as it would overlap. The path goes on behind full contact until all nodes
     /// have yielded, under the load H A, unless a limit ends it; no load limit may be as great as that. Infinity limits nothing.
     ///

@@ -249,10 +249,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
         let (contact, yielded) = (self.contact_map(), self.yielded_map());
         let pressure = self.pressure()?;
-        let excess = self.run.plastic.as_ref().map(|plastic| {
-            let parts = pressure.iter().zip(plastic.hardness().values());
-            parts.map(|(p, hardness)| p / hardness - 1.0).fold(-1.0, f64::max)
-        });
         let state = self.state.map(|state| state.contact);
         let run = &mut self.run;
         let gap: &[f64] = match &run.plastic {
@@ -274,7 +270,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let scale = ErrorLength::new(run.problem.rms_height(), run.problem.table());
         let sum = load / run.problem.grid().cell_area();
         let certificate = Conditions::new(sum, reported, scale).check(nodes);
-        Ok(Certificate { excess_pressure: excess, ..certificate })
+        Ok(match &run.plastic {
+            Some(plastic) => {
+                let hardness = plastic.hardness().values().iter().copied();
+                certificate.with_hardness(pressure.iter().copied().zip(hardness))
+            }
+            None => certificate,
+        })
     }
 
     /// `Ok` if the present state fulfils the conditions of contact as well as the solution of this path can: load, pressures and

@@ -80,6 +80,15 @@ struct Part {
 /// Ratios that differ by less are the same: dT/dP is a quotient of differences.
 const SAME_RATIO: f64 = 1e-12;
 
+/// Pieces shorter than this part of the load are what rounding leaves of a loop that closes.
+const SAME_LOAD: f64 = 1e-14;
+
+/// Where a front stops that would get so far: at the lower end of the piece below it, if it reaches that or nearly does.
+fn stop(reach: f64, below: &Piece, load: f64) -> f64 {
+    let lowest = below.start.load;
+    if reach <= lowest + SAME_LOAD * load { lowest } else { reach }
+}
+
 impl<'a> SlipHistory<'a> {
     /// An unloaded contact.
     #[must_use]
@@ -213,10 +222,9 @@ impl<'a> SlipHistory<'a> {
                 return Ok(());
             };
             let reach = front.load - change / (top - below.ratio);
-            let end = Part { load, front: reach.max(below.start.load) };
-            let is_done = reach > below.start.load;
+            let end = Part { load, front: stop(reach, &below, load) };
             self.slide(top, &below, &front, end)?;
-            if is_done {
+            if reach > below.start.load - SAME_LOAD * load {
                 return Ok(());
             }
         }
@@ -243,7 +251,8 @@ impl<'a> SlipHistory<'a> {
             let end = if load < target.load {
                 Part { load, front: lowest }
             } else {
-                Part { load, front: (front.load - rate * (load - self.load.load)).max(lowest) }
+                let reach = front.load - rate * (load - self.load.load);
+                Part { load, front: stop(reach, &below, load) }
             };
             self.slide(top, &below, &front, end)?;
         }
@@ -283,7 +292,7 @@ impl<'a> SlipHistory<'a> {
             } else if load == gone {
                 load
             } else {
-                (front.load - rate * (now - load)).max(lowest)
+                stop(front.load - rate * (now - load), &below, load)
             };
             self.slide(top, &below, &front, Part { load, front: reach.min(load) })?;
         }
@@ -347,17 +356,25 @@ fn friction_work([p0, p1]: [&BedState; 2], [s0, s1]: [&BedState; 2]) -> f64 {
     if loads <= 0.0 {
         return 0.0;
     }
-    // ∫ (s₀ − s) dδ and ∫ (s − s₁) dδ, by the energy ∫ s dδ.
-    let energy = s0.energy - s1.energy;
-    let (above, under) = (s0.load * approaches - energy, energy - s1.load * approaches);
     let fixed = (p0.load - s0.load) * approaches - (p0.approach - s0.approach) * loads;
-    let change = p1.load - p0.load;
+    let (above, under) = (before_end(s1, s0), loads * approaches - before_end(s1, s0));
     // P(s) moves: dP/ds = change/(s₁ − s₀).
+    let change = p1.load - p0.load;
     let moving = if change == 0.0 {
         0.0
     } else {
-        let carried = (p0.energy - p1.energy) - p1.load * (p0.approach - p1.approach);
-        change / loads * above - carried * loads / change
+        let [low, high] = if change < 0.0 { [p1, p0] } else { [p0, p1] };
+        let all = (high.load - low.load) * (high.approach - low.approach);
+        let carried =
+            if change < 0.0 { all - before_end(low, high) } else { before_end(low, high) };
+        change / loads * above - carried * (loads / change)
     };
     (fixed + above - under + moving).max(0.0)
+}
+
+/// ∫ (s₁ − s) dδ(s) from s₀ up to s₁, by the energy ∫ s dδ: differences, which rounding does not leave where the integral can be.
+fn before_end(start: &BedState, end: &BedState) -> f64 {
+    let (loads, approaches) = (end.load - start.load, end.approach - start.approach);
+    let rest = end.load * approaches - (end.energy - start.energy);
+    rest.clamp(0.0, (loads * approaches).max(0.0))
 }

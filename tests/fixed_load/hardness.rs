@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::io::read_npy;
 use asperity::kernel::KernelTable;
-use asperity::surface::{FlatPunch, HeightMap, Paraboloid};
+use asperity::surface::{Amplitude, FlatPunch, HeightMap, Paraboloid, SelfAffine};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver,
     Grid, InfluenceKernel, KernelError, PeriodicBoussinesq, Spectral,
@@ -278,6 +278,104 @@ fn targets_and_sweeps() {
             solution.plastic.map(|p| p.yielded_map)
         );
         assert_eq!(swept.len(), 3);
+    }
+}
+
+/// A sweep starts each load at the nodes that yielded at the one before, as long as loads grow, and comes to the states of loads on
+/// their own: with stiffnesses and without, and from a solution given.
+#[test]
+fn sweeps_go_on_from_what_has_yielded() {
+    for (name, kernel) in kernels() {
+        let heights = surface(name);
+        let builder =
+            || FixedLoadSolver::builder(&heights, &*kernel).hardness(HARDNESS).tolerance(1e-10);
+        let events = events(name);
+        let first = events[120].load;
+        let loads: Vec<f64> = [1.0, 1.0, 1.2, 1.4, 1.5, 2.9, 1.1, 1.2].map(|f| f * first).to_vec();
+        for stiffness in [true, false] {
+            let mut solver = builder().stiffness(stiffness).build().unwrap();
+            let mut alone = builder().stiffness(stiffness).build().unwrap();
+            let swept: Vec<_> = solver
+                .sweep(loads.iter().map(|&load| ContactTarget::Load(load)))
+                .map(Result::unwrap)
+                .collect();
+            let mut earlier: Option<FixedLoadSolution> = None;
+            for (&load, found) in loads.iter().zip(&swept) {
+                let expected = alone.solve(load).unwrap();
+                let context = format!("{name} at {load}");
+                conditions(found, &context);
+                let from = earlier.map(|earlier| alone.solve_from(&earlier, load).unwrap());
+                for found in from.iter().chain([found]) {
+                    assert_eq!(found.contact_map, expected.contact_map, "{context}");
+                    let [a, b] = [found, &expected].map(|s| s.plastic.clone().unwrap());
+                    assert_eq!(a.yielded_map, b.yielded_map, "{context}");
+                    // Gaps are right to 1e-10 of the approach.
+                    let length = 1e-8 * expected.certificate.length;
+                    near(found.state.approach, expected.state.approach, length, &context);
+                    near(found.state.load, load, 1e-12 * load, &context);
+                    assert!(found.certificate.excess_pressure.unwrap().abs() <= 1e-15);
+                    let [a, b] = [found, &expected].map(|s| s.state.plastic.unwrap());
+                    assert_eq!(a.yielded_nodes, b.yielded_nodes);
+                    if stiffness {
+                        near(a.work_per_load / b.work_per_load, 1.0, 1e-6, &context);
+                    }
+                }
+                earlier = Some(expected);
+            }
+        }
+    }
+}
+
+/// A load near the last one costs less than one on its own: in convolutions, which count the same on every machine.
+#[test]
+fn near_loads_cost_less() {
+    let half_space = Boussinesq::new(Grid::square(64, 1e-3).unwrap(), 230e9).unwrap();
+    let surface = SelfAffine::new(0.8, 2.5e-4, 6.25e-5, Amplitude::RmsHeight(1e-6), 3).unwrap();
+    let mut solver = FixedLoadSolver::builder(&surface, &half_space)
+        .hardness(HARDNESS)
+        .stiffness(false)
+        .build()
+        .unwrap();
+    let loads: Vec<f64> = (0..10).map(|k| 100.0 * 1.1_f64.powi(k)).collect();
+    let convolutions = |solution: &FixedLoadSolution| {
+        solution.effort.convolutions as f64 + solution.effort.coarse_convolutions
+    };
+    let swept: f64 = solver
+        .sweep(loads.iter().map(|&load| ContactTarget::Load(load)))
+        .map(|solution| convolutions(&solution.unwrap()))
+        .sum();
+    let alone: f64 = loads.iter().map(|&load| convolutions(&solver.solve(load).unwrap())).sum();
+    println!("{swept} convolutions in a sweep, {alone} one by one");
+    assert!(swept < 0.8 * alone, "{swept} {alone}");
+}
+
+/// The volume that yields on further loading is the difference between two states with the same sets.
+#[test]
+fn plastic_rates_are_derivatives() {
+    for (name, kernel) in kernels() {
+        let heights = surface(name);
+        let mut solver = FixedLoadSolver::builder(&heights, &*kernel)
+            .hardness(HARDNESS)
+            .tolerance(1e-11)
+            .build()
+            .unwrap();
+        let events = events(name);
+        let mut compared = 0;
+        for k in (100..250).step_by(11) {
+            let (from, to) = (events[k].load, events[k + 1].load);
+            if to - from < 1e-4 * to {
+                continue;
+            }
+            let at = |part: f64| from + part * (to - from);
+            let [a, b] = [0.2, 0.8].map(|part| solver.solve(at(part)).unwrap().state);
+            let [va, vb] = [a, b].map(|state| state.plastic.unwrap());
+            // Gaps to 1e-11 of the approach, over 1e-4 of it, on at most all nodes; both have the same sets.
+            let length = 1e-9 * b.approach * grid().nominal_area();
+            near(vb.volume - va.volume, va.volume_per_load * (b.load - a.load), length, name);
+            near(vb.work - va.work, va.work_per_load * (b.load - a.load), HARDNESS * length, name);
+            compared += 1;
+        }
+        assert!(compared > 3, "{name}: {compared}");
     }
 }
 

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{answer, say, speech};
 use clap::Args;
+use serde_json::{Map, Value, json};
 
 use crate::settings::Settings;
 use table::Table;
@@ -28,6 +29,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 60)]
     loads: usize,
 
+    /// Print one JSON object instead: paths, load, and mean and std of each column at each load (null where there is none)
+    #[arg(long)]
+    json: bool,
+
     /// Directory for the files, made if it is not there [default: DIR]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -35,6 +40,9 @@ pub(crate) struct Options {
 
 /// Reads all paths, and writes what they have in common.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let files = paths(&options.directory)?;
     check_alike(&files)?;
     let tables = files.iter().map(|file| Table::read(file));
@@ -50,6 +58,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
     say!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
+    if options.json {
+        answer!("{}", object(&rows, tables.len()));
+    }
     let out = options.out.as_ref().unwrap_or(&options.directory);
     fs::create_dir_all(out)
         .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
@@ -123,6 +134,20 @@ impl Row {
         };
         Self { load, columns: (0..table::COLUMNS.len()).map(column).collect() }
     }
+}
+
+/// For programs.
+fn object(rows: &[Row], paths: usize) -> Value {
+    let column = |k: usize| {
+        let mean: Vec<f64> = rows.iter().map(|row| row.columns[k].0).collect();
+        let spread: Vec<f64> = rows.iter().map(|row| row.columns[k].1).collect();
+        json!({ "mean": mean, "std": spread })
+    };
+    let columns = table::COLUMNS.iter().enumerate();
+    let columns: Map<_, _> =
+        columns.map(|(k, (name, _))| ((*name).to_string(), column(k))).collect();
+    let loads: Vec<f64> = rows.iter().map(|row| row.load).collect();
+    json!({ "paths": paths, "load": loads, "columns": columns })
 }
 
 /// One line for each load.

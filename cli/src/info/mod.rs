@@ -13,7 +13,7 @@ use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{answer, say, speech};
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -49,10 +49,13 @@ pub(crate) struct Options {
 
 /// Reads the file, says what is in it, and draws it.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let measured = options.reading.measured(&options.file)?;
     let whole = Whole::of(&measured, &options.reading)?;
     if options.json {
-        say!("{}", object(&measured, &whole));
+        answer!("{}", object(&measured, &whole));
     } else {
         print(options, &measured, &whole)?;
     }
@@ -67,9 +70,6 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     outcome.written(picture::map(&whole, &directory));
     outcome.written(picture::statistics(&whole, &directory));
-    if options.json {
-        return outcome.finish_quietly();
-    }
     outcome.finish()
 }
 

@@ -20,6 +20,8 @@ pub(super) struct Followed {
 pub(super) struct Passage {
     /// What holds from this state on, in few words.
     pub(super) name: &'static str,
+    /// The same for programs.
+    pub(super) key: &'static str,
     pub(super) state: Option<LoadingState>,
 }
 
@@ -34,12 +36,15 @@ impl Followed {
         let touches = record.states().iter().filter(|state| state.event == ContactEvent::Touch);
         let touches: Vec<LoadingState> = touches.copied().collect();
         let at = |step: usize| touches.get(step.checked_sub(1)?).copied();
-        let passage = |name, step: Option<usize>| Passage { name, state: step.and_then(at) };
+        let passage = |name, key, step: Option<usize>| {
+            let state = step.and_then(at);
+            Passage { name, key, state }
+        };
         let passages = [
-            passage("percolates along x", found.contact_x),
-            passage("percolates along y", found.contact_y),
-            passage("seals along x", found.leak_x),
-            passage("seals along y", found.leak_y),
+            passage("percolates along x", "percolates_x", found.contact_x),
+            passage("percolates along y", "percolates_y", found.contact_y),
+            passage("seals along x", "seals_x", found.leak_x),
+            passage("seals along y", "seals_y", found.leak_y),
         ];
         Ok(Self {
             touches,

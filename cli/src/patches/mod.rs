@@ -9,6 +9,7 @@ mod charts;
 mod distributions;
 mod followed;
 mod moment;
+mod object;
 mod table;
 mod tree;
 mod tree_layout;
@@ -20,7 +21,7 @@ use asperity::patches::Connectivity;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{answer, say, speech};
 use clap::Args;
 
 use crate::values::{fraction, positive};
@@ -51,6 +52,11 @@ pub(crate) struct Options {
     #[arg(long)]
     corners: bool,
 
+    /// Print one JSON object instead: percolates_x, percolates_y, seals_x and seals_y (the state from which on that holds, or null),
+    /// state, patches, largest_patch, channel_x and channel_y (the narrowest place of the widest channel, or null); SI units
+    #[arg(long)]
+    json: bool,
+
     /// Directory for the files, created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -64,6 +70,9 @@ impl Options {
 
 /// Reads the record, says what is in it, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let file = options.record.display();
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
@@ -98,6 +107,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outcome.written(activation::draw(&record, &out.join("activation.png")));
     match Moment::new(&record, state, connectivity) {
         Ok(moment) => {
+            if options.json {
+                let object = object::of(&record, followed.as_ref().ok(), &moment, connectivity);
+                let failed = |error| Failure::new("cannot find the channels", error);
+                answer!("{}", object.map_err(failed)?);
+            }
             words::print_moment(&moment);
             let channels = words::print_channels(&record, &moment, connectivity);
             outcome.note(channels.map_err(|error| Failure::new("cannot find the channels", error)));

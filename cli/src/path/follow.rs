@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use asperity::patches::ContactEdge;
 use asperity::{ContactEvent, LoadingState};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt::Interrupt;
 use super::job::Job;
@@ -17,6 +17,7 @@ use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
+use asperity_cli::speech;
 
 /// States between two looks at the progress bar and two visits to the disk.
 const STRIDE: usize = 64;
@@ -60,6 +61,9 @@ impl Followed {
             ProgressStyle::with_template("{wide_bar:.blue} {percent:>3} %  {elapsed}  {msg}")
         {
             bar.set_style(style.progress_chars("━╸─"));
+        }
+        if speech::is_quiet() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut ended = Ok(());

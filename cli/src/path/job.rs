@@ -24,6 +24,7 @@ use crate::elasticity::Bodies;
 use crate::ensemble::Expected;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary, half_space};
+use asperity_cli::note;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
@@ -126,7 +127,7 @@ impl Job {
             (None, None) => Some(file.to_path_buf()),
         };
         if let (Some(_), Some(last)) = (passed, record.states().last()) {
-            eprintln!(
+            note!(
                 "note: {} continues to {}; the requested target lies before that and is read from it",
                 file.display(),
                 quantity(last.contact.load, "N", 4)

@@ -11,6 +11,7 @@ mod follow;
 mod interrupt;
 mod job;
 mod map;
+mod object;
 mod options;
 mod parts;
 mod progress;
@@ -26,8 +27,7 @@ use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
 use asperity::{LoadingSolver, LoadingState};
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{note, panel, say, speech};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
@@ -43,6 +43,9 @@ type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 
 /// Follows one path, or that of each seed.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let interrupt = Interrupt::listen()?;
     if options.ensemble.seeds.is_none() {
         return follow_one(options, &interrupt)?.finish();
@@ -96,7 +99,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
             "--unload needs --hardness or --yield: elastic contact goes back through the same states",
         ));
     }
-    eprint!("{job}");
+    note!("{}", job.to_string().trim_end());
     for warning in job.warnings() {
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
@@ -150,6 +153,9 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
         outcome.written(kept);
     }
     outcome.note(table::print(&job, &mut solver, &states, seconds));
+    if options.json {
+        outcome.note(object::print(&job, &mut solver, &states, seconds));
+    }
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));
     }

@@ -106,6 +106,11 @@ pub(crate) struct Options {
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
 
+    /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure and
+    /// warnings (SI units; null where there is no number); one line for each seed
+    #[arg(long)]
+    pub(super) json: bool,
+
     /// Directory for the files, created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(super) out: PathBuf,

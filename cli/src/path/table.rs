@@ -10,7 +10,7 @@ use crate::columns::{Column, print as print_columns};
 use crate::resolution::Resolution;
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
-use asperity_cli::say;
+use asperity_cli::{say, speech};
 
 /// Loads of the rows, as fractions of the last.
 const LOADS: [f64; 10] = [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -22,7 +22,7 @@ pub(super) fn print(
     states: &[LoadingState],
     seconds: f64,
 ) -> Result<(), Failure> {
-    let Some(last) = states.last() else {
+    let Some(last) = states.last().filter(|_| !speech::is_quiet()) else {
         return Ok(());
     };
     say!("{} states in {seconds:.2} s", states.len());
@@ -65,7 +65,7 @@ pub(super) fn print(
 }
 
 /// The corrected contact area \[m²\] after each event.
-fn corrected_areas(job: &Job, states: &[LoadingState]) -> Result<Vec<f64>, Error> {
+pub(super) fn corrected_areas(job: &Job, states: &[LoadingState]) -> Result<Vec<f64>, Error> {
     let mut edge = ContactEdge::new(job.grid(), job.boundary());
     let events = states.iter().map(|state| {
         edge.follow(state.event, state.node)?;
@@ -156,7 +156,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 }
 
 /// What looks wrong with the end of the path.
-fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
+pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
     let pressure = solver
         .max_pressure()
         .map_err(|error| Failure::new("cannot compute the pressure of the last state", error))?;
@@ -185,7 +185,7 @@ fn rows(states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
 }
 
 /// Why a path has ended, in words.
-fn reason(end: LoadingEnd) -> &'static str {
+pub(super) fn reason(end: LoadingEnd) -> &'static str {
     match end {
         LoadingEnd::FullContact => "full contact",
         LoadingEnd::FullyPlastic => "all cells have yielded",

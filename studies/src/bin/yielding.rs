@@ -1,4 +1,4 @@
-//! Contact with a hardness: the path of metals beside the elastic one, a sphere, and tamaas' solver with a ceiling.
+//! Contact with a hardness: the path of metals beside the elastic one, a sphere, and tamaas' solver with a limit of pressure.
 //!
 //! ```text
 //! cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md
@@ -57,7 +57,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     panel::register_font()?;
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
-    let mut text = String::from("# Contact with a hardness\n");
+    let mut text = String::from("## Contact with a hardness\n");
     let pictures = metals(&options.out, &mut text)?;
     sphere(&mut text).map_err(failed)?;
     tamaas(&mut text);
@@ -161,7 +161,7 @@ fn sphere(text: &mut String) -> Result<(), Error> {
     let load = std::f64::consts::PI.powi(3) * f64::powi(hardness, 3) / 6.0;
     let beyond = [(1.2, 1.31208), (1.5, 1.81525), (2.0, 2.72037), (3.0, 4.69615)];
     text.push_str(
-        "\n## A rigid sphere\n\nThe first node yields at the approach δ_y = R (πH/2E*)² under W_y = π³R²H³/6E*² (Hertz). Beyond, the \
+        "\n### A rigid sphere\n\nThe first node yields at the approach δ_y = R (πH/2E*)² under W_y = π³R²H³/6E*² (Hertz). Beyond, the \
          contact has no closed form; the loads are those of 800 rings of exact influence, extrapolated (R = 1, E* = 1, H = 0.1). \
          Errors fall with the square of the cell, less evenly where few cells are elastic.\n\n\
          | nodes | δ_y found / exact | W/W_y at δ = 1.2 δ_y | 1.5 δ_y | 2 δ_y | 3 δ_y |\n|---|---|---|---|---|---|\n",
@@ -195,7 +195,7 @@ fn sphere(text: &mut String) -> Result<(), Error> {
 /// What tamaas' solver finds.
 fn tamaas(text: &mut String) {
     text.push_str(
-        "\n## tamaas with a ceiling\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a periodic half-space, one mean \
+        "\n### tamaas with a limit of pressure\n\n`KatoSaturated` of tamaas 2.9 with a tolerance of 10⁻¹², on a periodic half-space, one mean \
          pressure at a time; asperity follows the path to it. \
          `studies/src/bin/peers/hardness.py target/release/asperity studies/src/bin/peers/hardness.csv` solves them again.\n\n\
          | nodes | H/(E* h′) | mean pressure/H | in contact | yielded | other nodes in contact | other nodes yielded | greatest difference of pressures/H |\n\

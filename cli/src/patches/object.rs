@@ -1,0 +1,52 @@
+//! What is printed for programs.
+
+use asperity::patches::{Connectivity, constriction};
+use asperity::record::LoadingRecord;
+use asperity::surface::Axis;
+use asperity::{Error, LoadingState};
+use serde_json::{Value, json};
+
+use super::followed::Followed;
+use super::moment::Moment;
+
+/// Percolation and sealing if patches could be followed, and one state with its patches and channels.
+pub(super) fn of(
+    record: &LoadingRecord,
+    followed: Option<&Followed>,
+    moment: &Moment,
+    connectivity: Connectivity,
+) -> Result<Value, Error> {
+    let mut object = json!({
+        "states": record.states().len(),
+        "state": state(&moment.state),
+        "patches": moment.patches.len(),
+        "largest_patch": moment.patches.first().map(|(patch, carried)| json!({
+            "nodes": patch.nodes,
+            "area": patch.area,
+            "load": carried.load,
+            "mean_pressure": carried.mean_pressure,
+        })),
+    });
+    for passage in followed.iter().flat_map(|followed| &followed.passages) {
+        object[passage.key] = json!(passage.state.as_ref().map(state));
+    }
+    let on = (&record.grid(), record.kernel().boundary);
+    for (name, axis) in [("channel_x", Axis::X), ("channel_y", Axis::Y)] {
+        let narrowest = constriction(&moment.gap, &moment.contact_map, on, connectivity, axis)?;
+        object[name] = json!(
+            narrowest
+                .map(|place| json!({ "node": [place.node.0, place.node.1], "gap": place.gap }))
+        );
+    }
+    Ok(object)
+}
+
+fn state(state: &LoadingState) -> Value {
+    json!({
+        "step": state.step,
+        "load": state.contact.load,
+        "mean_pressure": state.contact.mean_pressure(),
+        "contact_area_fraction": state.contact.contact_area_fraction,
+        "mean_gap": state.contact.mean_gap,
+    })
+}

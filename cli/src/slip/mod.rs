@@ -1,0 +1,127 @@
+//! `asperity slip`: what a tangential load does to the contact of a record.
+//!
+//! Prints the state under the load and the cycle, and writes `slip.csv`, `cycles.csv`, `iwan.csv`, `slip.png`, `stick_map.png` and
+//! `wear_map.png`; with `--history` also `history.csv` and `history.png`.
+
+mod charts;
+mod history;
+mod joint;
+mod maps;
+mod table;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+use asperity::bed::Bed;
+use asperity::record::LoadingRecord;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::{answer, panel, speech};
+use clap::{ArgGroup, Args};
+
+use crate::elasticity::Material;
+use crate::values::positive;
+use history::Sheared;
+use joint::Joint;
+
+/// Partial slip of a recorded contact under a tangential load: stiffness, dissipation, and which nodes slip
+///
+/// The joint is pressed with a load and sheared with a tangential load between -T and T. Nodes slip where the traction reaches the
+/// friction limit, long before the joint slides as a whole. All of it follows from the path, without another solution; only the
+/// maps take three fields of it.
+///
+/// Writes slip.csv (the first loading), cycles.csv (dissipation, stiffness and loss factor against amplitude), iwan.csv (the joint
+/// as elements of a spring and a slider), slip.png, stick_map.png and wear_map.png.
+///
+/// The theory is exact for bodies of one material, or of Poisson's ratio 1/2 against a rigid one, but for some per cent of the
+/// stiffness; see docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("compliance").required(true).args(["compliance_ratio", "material"])))]
+pub(crate) struct Options {
+    /// File that `asperity path --record` has written
+    #[arg(value_name = "FILE.npz")]
+    record: PathBuf,
+
+    /// Coefficient of friction
+    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = positive)]
+    friction: f64,
+
+    /// Load that presses the joint [default: that of the last state]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    load: Option<f64>,
+
+    /// Tangential load T, and amplitude of the cycle [default: half of what friction bears]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    amplitude: Option<f64>,
+
+    /// Ratio of the tangential to the normal compliance of the bodies, E*/G*: (2 - ν)/(2 (1 - ν)) of one material
+    #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive)]
+    compliance_ratio: Option<f64>,
+
+    /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3)
+    #[arg(long, value_name = "NAME|E,NU")]
+    material: Option<Material>,
+
+    /// The other body [default: rigid]
+    #[arg(long, value_name = "NAME|E,NU", requires = "material")]
+    against: Option<Material>,
+
+    /// Table of loads and tangential loads, with the columns load,tangential_load: the joint follows straight lines between them,
+    /// from no load on. Writes history.csv and history.png
+    #[arg(long, value_name = "FILE.csv")]
+    history: Option<PathBuf>,
+
+    /// Print one JSON object with load, tangential_load, displacement, interfacial_displacement, stick_area, slip_area,
+    /// stick_nodes, slipping_nodes, tangential_stiffness, dissipation, secant_stiffness, loss_factor, sliding_load, sliding_displacement,
+    /// friction, compliance_ratio, dundurs_beta, history_dissipation and warnings (SI units; null where unknown), and write files
+    /// only if --out is given
+    #[arg(long)]
+    json: bool,
+
+    /// Directory for the files, created if it does not exist [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Reads the record, says what the tangential load does, and writes the files.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
+    let file = options.record.display();
+    let record = LoadingRecord::read_npz(&options.record)
+        .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
+    let bed = Bed::of(&record)
+        .map_err(|error| Failure::new(format!("cannot shear the path of {file}"), error))?;
+    let joint = Joint::new(&bed, &record, options)?;
+    let sheared =
+        options.history.as_deref().map(|name| Sheared::follow(&joint, name)).transpose()?;
+    if options.json {
+        answer!("{}", words::object(&joint, sheared.as_ref()));
+    }
+    words::print(&joint, sheared.as_ref());
+    let directory = match (&options.out, options.json) {
+        (Some(directory), _) => directory.clone(),
+        (None, false) => PathBuf::from("out"),
+        (None, true) => return Ok(()),
+    };
+    let outcome = write(&joint, sheared.as_ref(), &directory)?;
+    outcome.finish()
+}
+
+fn write(joint: &Joint, sheared: Option<&Sheared>, directory: &Path) -> Result<Outcome, Failure> {
+    panel::register_font()?;
+    std::fs::create_dir_all(directory)
+        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    let mut outcome = Outcome::default();
+    let place = |name: &str| directory.join(name);
+    outcome.written(table::loading(joint, &place("slip.csv")));
+    outcome.written(table::cycles(joint, &place("cycles.csv")));
+    outcome.written(table::elements(joint, &place("iwan.csv")));
+    outcome.written(charts::draw(joint, &place("slip.png")));
+    if let Some(sheared) = sheared {
+        outcome.written(table::history(sheared, &place("history.csv")));
+        outcome.written(charts::draw_history(sheared, &place("history.png")));
+    }
+    outcome.all_written(maps::draw(joint, directory));
+    Ok(outcome)
+}

@@ -1,0 +1,212 @@
+//! The joint as elements of Jenkins, each with a spring and a slider of its own: another description of the same thing, for any
+//! history of approach and displacement.
+
+use asperity::bed::{Bed, BedState};
+use asperity::slip::{Friction, PartialSlip, SlipHistory};
+use asperity::{Boussinesq, Grid, InfluenceKernel, PeriodicBoussinesq};
+use asperity_testing::close::relative;
+use proptest::prelude::*;
+
+use crate::joints::rough_path;
+
+/// A spring in a gap with a slider: normal force k_n (δ − gap), tangential one at most μ times that.
+struct Element {
+    stiffness: f64,
+    gap: f64,
+    /// Tangential force.
+    force: f64,
+}
+
+/// Independent elements under a common approach and a common displacement, both linear in a step.
+struct Elements {
+    elements: Vec<Element>,
+    friction: Friction,
+    approach: f64,
+    displacement: f64,
+    dissipation: f64,
+}
+
+impl Elements {
+    fn new(bed: &Bed, friction: Friction) -> Self {
+        let elements = bed.springs().map(|spring| Element {
+            stiffness: spring.stiffness,
+            gap: spring.gap,
+            force: 0.0,
+        });
+        Self {
+            elements: elements.collect(),
+            friction,
+            approach: 0.0,
+            displacement: 0.0,
+            dissipation: 0.0,
+        }
+    }
+
+    /// Returns the tangential force.
+    fn to(&mut self, approach: f64, displacement: f64) -> f64 {
+        let (mu, ratio) = (self.friction.coefficient(), self.friction.compliance_ratio());
+        let (rise, shift) = (approach - self.approach, displacement - self.displacement);
+        let mut sum = 0.0;
+        for element in &mut self.elements {
+            let [before, now] = [self.approach, approach]
+                .map(|a| mu * element.stiffness * (a - element.gap).max(0.0));
+            // An element that touches within the step is dragged for the rest of it.
+            let part =
+                if rise > 0.0 { ((approach - element.gap) / rise).clamp(0.0, 1.0) } else { 1.0 };
+            let dragged = element.force + element.stiffness / ratio * part * shift;
+            let force = dragged.clamp(-now, now);
+            // What the slider gives way, under a limit that changes linearly.
+            let slip = (dragged - force) / (element.stiffness / ratio);
+            self.dissipation += 0.5 * (before + now) * slip.abs();
+            element.force = force;
+            sum += force;
+        }
+        (self.approach, self.displacement) = (approach, displacement);
+        sum
+    }
+}
+
+/// Both descriptions through corners (P, T), stopping at the events on the way; how far tangential loads differ over μP, and
+/// dissipations over the whole.
+fn compare(bed: &Bed, friction: Friction, corners: &[(f64, f64)], fine: usize) -> (f64, f64) {
+    let mut joint = SlipHistory::new(bed, friction);
+    let mut elements = Elements::new(bed, friction);
+    let mut at = (0.0_f64, 0.0_f64);
+    let mut worst = 0.0_f64;
+    let greatest = corners.iter().fold(0.0_f64, |most, corner| most.max(corner.0));
+    for &(load, force) in corners {
+        let (least, most) = (at.0.min(load), at.0.max(load));
+        let mut stops: Vec<f64> = bed
+            .loads()
+            .iter()
+            .copied()
+            .filter(|knot| (least..most).contains(knot))
+            .chain([least, most])
+            .collect();
+        stops.sort_by(f64::total_cmp);
+        if load < at.0 {
+            stops.reverse();
+        }
+        let mut shares: Vec<f64> = if load == at.0 {
+            vec![0.0, 1.0]
+        } else {
+            stops.iter().map(|stop| (stop - at.0) / (load - at.0)).collect()
+        };
+        shares.dedup();
+        for ends in shares.windows(2) {
+            for part in 1..=fine {
+                let share = ends[0] + (ends[1] - ends[0]) * part as f64 / fine as f64;
+                let (p, t) = (at.0 + share * (load - at.0), at.1 + share * (force - at.1));
+                let state = joint.to(p, t).unwrap();
+                let approach = bed.at_load(p).unwrap().approach;
+                let sum = elements.to(approach, state.displacement);
+                worst = worst.max((sum - t).abs() / (friction.coefficient() * greatest));
+            }
+        }
+        at = (load, force);
+    }
+    let lost = joint.dissipation();
+    // Where hardly anything is lost, a part of all that could be.
+    let all = bed.at_load(greatest).unwrap().energy * friction.coefficient().powi(2);
+    let scale = lost.max(1e-2 * all);
+    (worst, (elements.dissipation - lost).abs() / scale)
+}
+
+fn kernels() -> [Box<dyn InfluenceKernel>; 2] {
+    let grid = Grid::new(16, 14, 1.0, 2.0).unwrap();
+    [
+        Box::new(Boussinesq::new(grid, 3.0).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid, 3.0).unwrap()),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Random histories of both loads, on a free and on a periodic half-space.
+    #[test]
+    fn random_histories_are_those_of_the_elements(
+        seed in 0_u64..1000,
+        steps in prop::collection::vec((0.05..1.0_f64, -0.97..0.97_f64, any::<bool>()), 2..12),
+    ) {
+        for kernel in kernels() {
+            let (_, history) = rough_path(kernel.as_ref(), seed, 0.6);
+            let bed = Bed::new(&history).unwrap();
+            let friction = Friction::new(0.35, 1.25).unwrap();
+            let mut load = 0.5 * bed.last_load();
+            let corners: Vec<(f64, f64)> = steps.iter().map(|&(p, t, moves)| {
+                if moves {
+                    load = p * bed.last_load();
+                }
+                (load, 0.35 * load * t)
+            }).collect();
+            let mut all = vec![(0.5 * bed.last_load(), 0.0)];
+            all.extend(corners);
+            let (force, lost) = compare(&bed, friction, &all, 1);
+            // Sums over 134 elements, through up to 1000 steps.
+            prop_assert!(force < 1e-11, "{force:e}");
+            // Where the load changes the elements' own account is of second order in the step.
+            prop_assert!(lost < 0.05, "{lost:e}");
+        }
+    }
+}
+
+/// At constant load the account of the elements is exact, and where the load changes it converges to the joint's by the second order.
+#[test]
+fn dissipations_converge_to_the_joint_s() {
+    let [kernel, _] = kernels();
+    let (_, history) = rough_path(kernel.as_ref(), 5, 0.6);
+    let bed = Bed::new(&history).unwrap();
+    let friction = Friction::new(0.35, 1.25).unwrap();
+    let (load, limit) = (0.6 * bed.last_load(), 0.35 * 0.6 * bed.last_load());
+    let constant = [(load, 0.0), (load, 0.9 * limit), (load, -0.7 * limit), (load, 0.2 * limit)];
+    let (_, lost) = compare(&bed, friction, &constant, 1);
+    assert!(lost < 1e-12, "{lost:e}");
+    let both = [
+        (load, 0.0),
+        (1.4 * load, 0.9 * limit),
+        (0.7 * load, -0.5 * limit),
+        (0.8 * load, 0.6 * limit),
+        (0.4 * load, 0.0),
+    ];
+    let errors = [1, 2, 4].map(|fine| compare(&bed, friction, &both, fine).1);
+    assert!(errors[2] < 2e-3, "{errors:?}");
+    for pair in errors.windows(2) {
+        // 4 for steps that are small against the distance of events.
+        assert!(pair[0] / pair[1] > 2.5, "{errors:?}");
+    }
+}
+
+/// Their sums are the stiffness and the limit of friction, and their losses those of the cycle.
+#[test]
+fn elements_add_up_to_the_joint() {
+    for kernel in kernels() {
+        let (_, history) = rough_path(kernel.as_ref(), 3, 0.7);
+        let bed = Bed::new(&history).unwrap();
+        let friction = Friction::new(0.2, 1.1).unwrap();
+        let load = 0.8 * bed.last_load();
+        let joint = PartialSlip::new(&bed, load, friction).unwrap();
+        let elements: Vec<_> = joint.jenkins_elements().collect();
+        let BedState { contact_nodes, stiffness, .. } = joint.preload();
+        assert_eq!(elements.len(), contact_nodes);
+        assert!(elements.iter().all(|element| element.stiffness > 0.0));
+        let sum: f64 = elements.iter().map(|element| element.stiffness).sum();
+        // Sums of 150 terms of one sign, made of differences of stiffnesses.
+        assert!(relative(sum, stiffness / 1.1) < 1e-12);
+        let sum: f64 = elements.iter().map(|element| element.slip_force()).sum();
+        assert!(relative(sum, joint.sliding_load()) < 1e-12);
+        for share in [0.05, 0.2, 0.5, 0.9, 1.0] {
+            let cycle = joint.cycle(share * joint.sliding_load()).unwrap();
+            let lost: f64 =
+                elements.iter().map(|element| element.dissipation(cycle.displacement)).sum();
+            let slips = elements
+                .iter()
+                .filter(|e| e.slip_displacement <= (1.0 + 1e-12) * cycle.displacement);
+            assert_eq!(slips.count(), cycle.slipping_nodes);
+            // Rounding of the approach times the amplitude.
+            let rounding = 1e-14 * cycle.amplitude * joint.sliding_displacement();
+            let error = (lost - cycle.dissipation).abs();
+            assert!(error < rounding, "{share}: {error:e} of {lost:e}");
+        }
+    }
+}

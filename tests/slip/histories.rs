@@ -1,0 +1,280 @@
+//! What any history of both loads fulfils.
+
+use asperity::bed::Bed;
+use asperity::loading::History;
+use asperity::slip::{Friction, PartialSlip, SlipHistory, SlipState, SlipZone};
+use asperity::{Boussinesq, Grid, LoadingSolver, PeriodicBoussinesq};
+use asperity_testing::close::relative;
+use proptest::prelude::*;
+
+use crate::joints::rough_path;
+
+const MU: f64 = 0.4;
+
+fn path(seed: u64) -> (LoadingSolver, History) {
+    rough_path(&Boussinesq::new(Grid::new(16, 12, 1.0, 1.5).unwrap(), 2.0).unwrap(), seed, 0.7)
+}
+
+fn friction() -> Friction {
+    Friction::new(MU, 1.2).unwrap()
+}
+
+/// Steps of a history: a share of the last load, and one of what friction bears there. Some leave the load as it is.
+fn steps() -> impl Strategy<Value = Vec<(f64, f64)>> {
+    let load = prop_oneof![3 => (0.02..1.0_f64).prop_map(Some), 2 => Just(None)];
+    prop::collection::vec((load, -0.99..0.99_f64), 1..25).prop_map(|steps| {
+        let mut load = 0.6;
+        let steps = steps.into_iter().map(move |(next, force)| {
+            load = next.unwrap_or(load);
+            (load, force)
+        });
+        std::iter::once((0.6, 0.0)).chain(steps).collect()
+    })
+}
+
+fn assert_same(a: &SlipState, b: &SlipState, tolerance: f64, scale: [f64; 2]) {
+    let context = format!("{a:?} {b:?}");
+    assert!((a.tangential_load - b.tangential_load).abs() <= tolerance * scale[0], "{context}");
+    assert!((a.displacement - b.displacement).abs() <= tolerance * scale[1], "{context}");
+    let interfacial = (a.interfacial_displacement - b.interfacial_displacement).abs();
+    assert!(interfacial <= tolerance * scale[1], "{context}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// The tangential load is the one asked for; energy that is lost never comes back, and what is neither lost nor stored has
+    /// been done by T; ratios stay within friction.
+    #[test]
+    fn loads_and_energies_add_up(seed in 0_u64..8, steps in steps()) {
+        let (_, history) = path(seed);
+        let bed = Bed::new(&history).unwrap();
+        let top = bed.at_load(bed.last_load()).unwrap();
+        let mut joint = SlipHistory::new(&bed, friction());
+        let (mut lost, mut work) = (0.0, 0.0);
+        let mut last = joint.state();
+        let scale = MU * top.load;
+        for (load, force) in steps {
+            let (load, force) = (load * top.load, MU * force * load * top.load);
+            // In parts, for the work of T: to the second order in them.
+            let parts = 64;
+            let from = (last.load, last.tangential_load);
+            for part in 1..=parts {
+                let share = f64::from(part) / f64::from(parts);
+                let between = |a: f64, b: f64| a + share * (b - a);
+                let state = joint.to(between(from.0, load), between(from.1, force)).unwrap();
+                let mean = 0.5 * (state.tangential_load + last.tangential_load);
+                work += mean * (state.displacement - last.displacement);
+                prop_assert!(joint.dissipation() >= lost);
+                lost = joint.dissipation();
+                last = state;
+            }
+            prop_assert!((last.tangential_load - force).abs() < 1e-13 * scale);
+            prop_assert!(last.stick_load <= last.load);
+            prop_assert_eq!(last.stick_nodes + last.slipping_nodes, bed.at_load(load).unwrap().contact_nodes);
+            let superposition = joint.superposition().unwrap();
+            prop_assert!(superposition.pieces().iter().all(|piece| piece.weight.abs() <= MU));
+            let scalars = superposition.scalars(&bed).unwrap();
+            prop_assert!((scalars.load - force).abs() < 1e-13 * scale);
+            prop_assert!((1.2 * scalars.approach - last.displacement).abs() < 1e-13 * top.approach);
+            let stored = joint.stored_energy().unwrap();
+            prop_assert!(stored >= -1e-15 * scale * top.approach);
+            // 64 parts of a step, and up to 25 steps, of curves that bend at events.
+            prop_assert!((work - stored - lost).abs() < 2e-3 * scale * MU * top.approach, "{} {} {}", work, stored, lost);
+        }
+    }
+
+    /// One step is the same as many along the same line.
+    #[test]
+    fn parts_of_a_step_change_nothing(seed in 0_u64..8, steps in steps(), parts in 2_usize..9) {
+        let (_, history) = path(seed);
+        let bed = Bed::new(&history).unwrap();
+        let top = bed.at_load(bed.last_load()).unwrap();
+        let (mut whole, mut divided) = (SlipHistory::new(&bed, friction()), SlipHistory::new(&bed, friction()));
+        let mut from = (0.0, 0.0);
+        let mut lost = 0.0;
+        for (load, force) in steps {
+            let to = (load * top.load, MU * force * load * top.load);
+            let state = whole.to(to.0, to.1).unwrap();
+            let mut last = divided.state();
+            for part in 1..=parts {
+                let share = part as f64 / parts as f64;
+                last = divided.to(from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1)).unwrap();
+            }
+            // The last part ends where the step does.
+            last = divided.to(to.0, to.1).unwrap_or(last);
+            assert_same(&state, &last, 1e-11, [top.load, top.approach]);
+            lost = whole.dissipation();
+            // Differences of energies, as large as μ² W δ.
+            let error = (lost - divided.dissipation()).abs();
+            prop_assert!(error < 1e-10 * top.load * top.approach, "{} {}", lost, divided.dissipation());
+            from = to;
+        }
+        prop_assert!(lost >= 0.0);
+    }
+
+    /// A loop of T that closes at constant load leaves no trace but what it has cost.
+    #[test]
+    fn closed_loops_are_forgotten(
+        seed in 0_u64..8,
+        steps in steps(),
+        depths in prop::collection::vec(0.1..0.9_f64, 1..8),
+    ) {
+        let (_, history) = path(seed);
+        let bed = Bed::new(&history).unwrap();
+        let top = bed.at_load(bed.last_load()).unwrap();
+        let mut joint = SlipHistory::new(&bed, friction());
+        for (load, force) in steps {
+            joint.to(load * top.load, MU * force * load * top.load).unwrap();
+        }
+        // On to a point from which T turns; a loop from there is closed if it does not reach below the slip zone.
+        let load = joint.state().load;
+        let force = 0.5 * (joint.state().tangential_load + MU * load);
+        let front = joint.to(load, force).unwrap().stick_load;
+        let before = joint.clone();
+        let mut turns = vec![force, force - 1.9 * MU * (load - front)];
+        for depth in depths {
+            let (last, inner) = (turns[turns.len() - 2], turns[turns.len() - 1]);
+            turns.push(inner + depth * (last - inner));
+        }
+        let closing: Vec<f64> = turns.iter().rev().copied().collect();
+        for force in turns.into_iter().chain(closing) {
+            joint.to(load, force).unwrap();
+        }
+        assert_same(&joint.state(), &before.state(), 1e-12, [top.load, top.approach]);
+        let pieces = |joint: &SlipHistory| joint.superposition().unwrap().pieces().len();
+        prop_assert_eq!(pieces(&joint), pieces(&before));
+        prop_assert!(joint.dissipation() >= before.dissipation());
+        // And it goes on as it would have done.
+        let (mut a, mut b) = (joint.clone(), before.clone());
+        let on = 0.5 * (force + MU * load);
+        assert_same(&a.to(load, on).unwrap(), &b.to(load, on).unwrap(), 1e-12, [top.load, top.approach]);
+    }
+}
+
+/// Masing: a branch behind a turn is the first loading, twice as large in both directions.
+#[test]
+fn branches_are_the_first_loading_doubled() {
+    let (_, history) = path(1);
+    let bed = Bed::new(&history).unwrap();
+    let load = 0.8 * bed.last_load();
+    let joint = PartialSlip::new(&bed, load, friction()).unwrap();
+    let limit = joint.sliding_load();
+    let mut history = SlipHistory::new(&bed, friction());
+    history.to(load, 0.0).unwrap();
+    let turn = history.to(load, 0.85 * limit).unwrap();
+    let first = joint.monotone(0.85 * limit).unwrap();
+    assert_same(&turn, &first, 1e-13, [limit, first.displacement]);
+    assert_eq!((turn.stick_nodes, turn.slipping_nodes), (first.stick_nodes, first.slipping_nodes));
+    for share in [0.8, 0.5, 0.0, -0.4, -0.85] {
+        let branch = history.to(load, share * limit).unwrap();
+        let half = joint.monotone(0.5 * (0.85 - share) * limit).unwrap();
+        let expected = turn.displacement - 2.0 * half.displacement;
+        assert!((branch.displacement - expected).abs() < 1e-13 * turn.displacement, "{share}");
+        assert!(relative(branch.tangential_stiffness, half.tangential_stiffness) < 1e-13);
+        assert_eq!(branch.stick_nodes, half.stick_nodes);
+    }
+}
+
+/// The loop of a history loses what `cycle` says, a quarter of it at first, and so does the sum over nodes.
+#[test]
+fn cycles_are_those_of_histories_and_of_nodes() {
+    let grid = Grid::new(16, 12, 1.0, 1.5).unwrap();
+    for kernel in [
+        &Boussinesq::new(grid, 2.0).unwrap() as &dyn asperity::InfluenceKernel,
+        &PeriodicBoussinesq::new(grid, 2.0).unwrap(),
+    ] {
+        let (mut path, history) = rough_path(kernel, 2, 0.7);
+        let bed = Bed::new(&history).unwrap();
+        let load = 0.7 * bed.last_load();
+        let joint = PartialSlip::new(&bed, load, friction()).unwrap();
+        for share in [0.05, 0.2, 0.5, 0.8, 0.95, 1.0] {
+            let amplitude = share * joint.sliding_load();
+            let cycle = joint.cycle(amplitude).unwrap();
+            let mut history = SlipHistory::new(&bed, friction());
+            history.to(load, 0.0).unwrap();
+            history.to(load, amplitude).unwrap();
+            let first = history.dissipation();
+            // Differences of energies up to that of the preload.
+            let rounding = 1e-14 * joint.sliding_load() * joint.sliding_displacement();
+            let error = (4.0 * first - cycle.dissipation).abs();
+            assert!(error < rounding, "{share}: {error:e}");
+            history.to(load, -amplitude).unwrap();
+            let back = history.to(load, amplitude).unwrap();
+            let error = (history.dissipation() - first - cycle.dissipation).abs();
+            assert!(error < rounding, "{share}: {error:e}");
+            assert!(relative(back.displacement, cycle.displacement) < 1e-12);
+            assert!(relative(cycle.secant_stiffness, amplitude / cycle.displacement) < 1e-15);
+            let same = joint.cycle_of_displacement(cycle.displacement).unwrap();
+            assert!((same.dissipation - cycle.dissipation).abs() < rounding);
+            assert!(relative(same.amplitude, amplitude) < 1e-12);
+
+            let work = joint.friction_work(&mut path, amplitude).unwrap();
+            let sum = work.sum() * grid.cell_area();
+            // Gaps of the path are right to 1e-14 of the greatest, which is ten times the approach.
+            let error = (sum - cycle.dissipation).abs();
+            assert!(error < 100.0 * rounding, "{share}: {error:e}");
+
+            let (traction, slip) = (
+                joint.traction(&mut path, -amplitude).unwrap(),
+                joint.slip(&mut path, -amplitude).unwrap(),
+            );
+            let zones = joint.zones(&path, -amplitude).unwrap();
+            assert!(relative(traction.sum() * grid.cell_area(), -amplitude) < 1e-12);
+            let pressure = path.pressure_at(&bed.path_state(load).unwrap()).unwrap();
+            let greatest = pressure.max();
+            let mut counts = [0; 3];
+            for (node, zone) in zones.iter().enumerate() {
+                let (q, p, slip) = (traction[node], pressure[node], slip[node]);
+                match zone {
+                    SlipZone::Open => assert_eq!((q, slip), (0.0, 0.0)),
+                    SlipZone::Stick => assert!(slip == 0.0 && -q <= MU * p + 1e-12 * greatest),
+                    SlipZone::Slip => {
+                        assert!(slip <= 0.0 && (q + MU * p).abs() <= 1e-12 * greatest)
+                    }
+                    _ => unreachable!("three zones"),
+                }
+                counts[*zone as usize] += 1;
+            }
+            let state = joint.monotone(-amplitude).unwrap();
+            assert_eq!(counts[1..], [state.stick_nodes, state.slipping_nodes]);
+            assert!(relative(state.slip_area, counts[2] as f64 * grid.cell_area()) < 1e-12);
+        }
+        // Beyond sliding.
+        let (limit, shift) = (joint.sliding_load(), joint.sliding_displacement());
+        let [at, beyond] =
+            [1.0, 1.5].map(|part| joint.cycle_of_displacement(part * shift).unwrap());
+        assert!(relative(at.dissipation, joint.cycle(limit).unwrap().dissipation) < 1e-12);
+        let more = 4.0 * limit * 0.5 * shift;
+        assert!(relative(beyond.dissipation, at.dissipation + more) < 1e-14);
+        assert!(relative(beyond.secant_stiffness, limit / (1.5 * shift)) < 1e-14);
+    }
+}
+
+/// Loads that grow in proportion lose nothing, come back as they went, and leave nothing without load.
+#[test]
+fn proportional_loading_does_not_slip() {
+    let (_, history) = path(4);
+    let bed = Bed::new(&history).unwrap();
+    let top = bed.at_load(0.9 * bed.last_load()).unwrap();
+    let mut joint = SlipHistory::new(&bed, friction());
+    for share in [0.3, 1.0, 0.4, 0.9] {
+        let load = share * top.load;
+        let state = joint.to(load, 0.2 * load).unwrap();
+        let expected = 1.2 * 0.2 * bed.at_load(load).unwrap().approach;
+        assert!(relative(state.displacement, expected) < 1e-13);
+        assert_eq!((joint.dissipation(), state.slipping_nodes), (0.0, 0));
+        assert_eq!(joint.superposition().unwrap().pieces().len(), 1);
+    }
+    let apart = joint.to(0.0, 0.0).unwrap();
+    assert_eq!((apart.tangential_load, apart.displacement, joint.dissipation()), (0.0, 0.0, 0.0));
+    assert!(joint.superposition().unwrap().pieces().is_empty());
+    // What is lost on the way to no load is lost for good, and the next loading is as new.
+    joint.to(top.load, 0.0).unwrap();
+    joint.to(top.load, 0.3 * top.load).unwrap();
+    joint.to(0.0, 0.0).unwrap();
+    let lost = joint.dissipation();
+    assert!(lost > 0.0);
+    joint.to(top.load, 0.0).unwrap();
+    assert_eq!((joint.state().displacement, joint.dissipation()), (0.0, lost));
+}

@@ -1,0 +1,149 @@
+//! What cannot be answered is refused, with the numbers.
+
+use asperity::bed::Bed;
+use asperity::loading::History;
+use asperity::slip::{Friction, PartialSlip, SlipHistory};
+use asperity::{BedError, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, SlipError};
+use asperity_testing::surfaces::rough;
+
+use crate::joints::rough_path;
+
+fn path() -> (LoadingSolver, History) {
+    rough_path(&Boussinesq::new(Grid::square(12, 1.0).unwrap(), 1.0).unwrap(), 1, 0.5)
+}
+
+const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+#[test]
+fn sliding_and_loads_beyond_the_path() {
+    let (_, history) = path();
+    let bed = Bed::new(&history).unwrap();
+    let friction = Friction::new(0.5, 1.0).unwrap();
+    let last = bed.last_load();
+    let beyond = PartialSlip::new(&bed, 1.01 * last, friction);
+    assert!(matches!(beyond, Err(Error::Bed(BedError::PathEndsBefore { end, .. })) if end == last));
+    for bad in BAD.into_iter().chain([0.0, -1.0]) {
+        assert!(matches!(PartialSlip::new(&bed, bad, friction), Err(Error::NotPositive { .. })));
+    }
+    let joint = PartialSlip::new(&bed, last, friction).unwrap();
+    let limit = joint.sliding_load();
+    for force in [1.01 * limit, -1.01 * limit] {
+        let refused = joint.monotone(force);
+        assert!(
+            matches!(refused, Err(Error::Slip(SlipError::JointSlides { tangential_load, load, limit: most })) if (tangential_load, load, most) == (force, last, limit)),
+            "{refused:?}"
+        );
+    }
+    for bad in BAD {
+        assert!(matches!(joint.monotone(bad), Err(Error::OutOfRange { .. })));
+        assert!(matches!(joint.cycle(bad), Err(Error::NotPositive { .. })));
+        assert!(matches!(joint.cycle_of_displacement(bad), Err(Error::NotPositive { .. })));
+    }
+    for bad in [0.0, -0.1 * limit] {
+        assert!(matches!(joint.cycle(bad), Err(Error::NotPositive { .. })));
+        assert!(matches!(joint.cycle_of_displacement(bad), Err(Error::NotPositive { .. })));
+    }
+    // The limit itself, and what rounding makes of it.
+    for force in [limit, limit * (1.0 + 1e-13), -limit] {
+        let state = joint.monotone(force).unwrap();
+        assert_eq!((state.stick_load, state.stick_nodes), (0.0, 0));
+        assert_eq!(state.displacement.abs(), joint.sliding_displacement());
+    }
+    // No load too small, none between events special.
+    for load in [1e-300, 1e-12 * last, bed.loads()[3], last] {
+        let joint = PartialSlip::new(&bed, load, friction).unwrap();
+        for share in [1e-9, 0.3, 1.0] {
+            let cycle = joint.cycle(share * joint.sliding_load());
+            assert!(cycle.is_ok_and(|cycle| cycle.dissipation >= 0.0), "{load} {share}");
+        }
+    }
+}
+
+/// A refused step leaves the history as it was.
+#[test]
+fn histories_that_slide() {
+    let (_, history) = path();
+    let bed = Bed::new(&history).unwrap();
+    let mut joint = SlipHistory::new(&bed, Friction::new(0.5, 1.0).unwrap());
+    let last = bed.last_load();
+    // From no load along the limit.
+    let refused = joint.to(last, 0.5 * last);
+    assert!(
+        matches!(refused, Err(Error::Slip(SlipError::StaysAtLimit { from: 0.0, .. }))),
+        "{refused:?}"
+    );
+    joint.to(0.8 * last, 0.0).unwrap();
+    joint.to(0.8 * last, 0.3 * last).unwrap();
+    let before = joint.state();
+    for (load, force) in
+        [(0.8 * last, 0.41 * last), (0.5 * last, 0.3 * last), (0.5 * last, -0.26 * last)]
+    {
+        let refused = joint.to(load, force);
+        assert!(matches!(refused, Err(Error::Slip(SlipError::JointSlides { .. }))), "{refused:?}");
+    }
+    let refused = joint.to(1.1 * last, 0.0);
+    assert!(matches!(refused, Err(Error::Bed(BedError::PathEndsBefore { .. }))), "{refused:?}");
+    for bad in BAD {
+        assert!(matches!(joint.to(bad, 0.0), Err(Error::OutOfRange { .. })));
+        assert!(matches!(joint.to(last, bad), Err(Error::OutOfRange { .. })));
+    }
+    assert!(matches!(joint.to(-1.0, 0.0), Err(Error::OutOfRange { .. })));
+    assert!(matches!(joint.to(0.0, 1e-9), Err(Error::Slip(SlipError::JointSlides { .. }))));
+    assert_eq!(joint.state(), before);
+    // At the limit, and along it with less load: any displacement would do.
+    joint.to(0.8 * last, 0.4 * last).unwrap();
+    for load in [0.6 * last, 0.9 * last, 0.0] {
+        let refused = joint.to(load, 0.5 * load);
+        assert!(
+            matches!(refused, Err(Error::Slip(SlipError::StaysAtLimit { .. }))),
+            "{load}: {refused:?}"
+        );
+    }
+    // Away from it the joint rests again, with more load or less of T.
+    let mut relieved = joint.clone();
+    assert!(joint.to(0.9 * last, 0.4 * last).unwrap().stick_nodes > 0);
+    assert!(relieved.to(0.6 * last, 0.1 * last).unwrap().stick_nodes > 0);
+    // And on to no load at all.
+    let apart = relieved.to(0.0, 0.0).unwrap();
+    assert_eq!((apart.displacement, apart.tangential_load), (0.0, 0.0));
+}
+
+/// Without a factor the approach of events is an estimate: a dissipation is refused where it would be made of its errors.
+#[test]
+fn dissipations_within_the_error_of_the_path() {
+    let (_, history) = path();
+    let error = 1e-3 * history.states().last().unwrap().contact.approach;
+    let estimated: History = history
+        .states()
+        .iter()
+        .map(|state| {
+            let mut state = *state;
+            state.approach_error = error;
+            state
+        })
+        .collect();
+    let bed = Bed::new(&estimated).unwrap();
+    let joint = PartialSlip::new(&bed, bed.last_load(), Friction::new(0.5, 1.0).unwrap()).unwrap();
+    let limit = joint.sliding_load();
+    let refused = joint.cycle(5e-3 * limit);
+    assert!(
+        matches!(refused, Err(Error::Slip(SlipError::WithinPathError { change, approach_error })) if approach_error == error && change < 10.0 * error),
+        "{refused:?}"
+    );
+    assert!(joint.cycle(0.2 * limit).is_ok());
+    assert!(joint.monotone(5e-3 * limit).is_ok());
+}
+
+/// A path on which nodes yield has no such increments.
+#[test]
+fn paths_that_yield() {
+    let kernel = Boussinesq::new(Grid::square(12, 1.0).unwrap(), 1.0).unwrap();
+    let surface = rough(&kernel.grid(), 1);
+    let path = LoadingSolver::builder(&surface, &kernel).hardness(0.05).max_area_fraction(0.3);
+    let history: History = path.build().unwrap().map(Result::unwrap).collect();
+    let refused = Bed::new(&history);
+    assert!(matches!(
+        refused,
+        Err(Error::Bed(BedError::NotElasticGrowth { happens: "yields", .. }))
+    ));
+}
