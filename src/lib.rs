@@ -31,13 +31,16 @@
 //! | follow the loading path | [`LoadingSolver`], an iterator of [`LoadingState`]; [`loading::History`] reads it at any load |
 //! | solve for one load, or for a sweep of loads | [`FixedLoadSolver`] |
 //! | contact patches, percolation, leakage, distributions | [`patches`] |
+//! | how much leaks through the gap | [`leak`] |
+//! | contact conductance, tables for finite elements | [`joint`] |
 //! | read the file of an instrument | [`io::read_surface`], [`surface::Topography`] |
 //! | use heights from a matrix or a formula | [`HeightMap`], the trait [`Surface`] |
 //! | generate surfaces and simple shapes | [`SelfAffine`], [`surface`] |
 //! | save a path and continue it | [`record`] |
+//! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | superpose increments of a path | [`bed`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`KernelTable`] for layers |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
@@ -86,9 +89,12 @@ mod elasticity;
 mod error;
 pub mod fixed_load;
 mod hardness;
+pub mod joint;
 pub mod kernel;
 mod krylov;
+pub mod leak;
 pub mod loading;
+pub mod material;
 mod memory;
 pub mod patches;
 mod problem;
@@ -112,7 +118,7 @@ pub use elasticity::{composite_modulus, plane_strain_modulus};
 pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
-    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, MeanDisplacement,
+    Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};

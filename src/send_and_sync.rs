@@ -5,10 +5,14 @@ use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
 use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
+use crate::joint::{
+    Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable,
+};
 use crate::kernel::{
     Boundary, Boussinesq, ContactGrowth, KernelOrigin, KernelReport, KernelTable, MeanDisplacement,
     PeriodicBoussinesq, Spectral,
 };
+use crate::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
 use crate::loading::{ContactEvent, ContactRule, History, LoadingEnd, LoadingSolver, LoadingState};
 use crate::patches::{
     Bins, Branch, Connectivity, Constriction, ContactEdge, FieldDistribution, Histogram, MergeTree,
@@ -99,6 +103,8 @@ send_and_sync!(
     SlipZone,
 );
 send_and_sync!(KernelRecord, LoadingRecord, Settings);
+send_and_sync!(Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable);
+send_and_sync!(CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal);
 send_and_sync!(
     AreaLoadLaw,
     CircularPunch,

@@ -31,6 +31,15 @@ impl Column {
         Self::made(name, (scale, unit.to_string()), values)
     }
 
+    /// In the unit itself, whatever the powers of ten: for what spans many decades.
+    pub(crate) fn plain(
+        name: &'static str,
+        unit: &str,
+        values: impl Iterator<Item = f64> + Clone,
+    ) -> Self {
+        Self::made(name, (1.0, unit.to_string()), values)
+    }
+
     /// A fraction.
     pub(crate) fn percent(name: &'static str, values: impl Iterator<Item = f64>) -> Self {
         Self::made(name, (0.01, "%".to_string()), values)

@@ -3,11 +3,15 @@
 use std::fmt;
 use std::str::FromStr;
 
-use asperity::{composite_modulus, plane_strain_modulus};
+use asperity::kernel::{KernelOrigin, LayeredBody};
+use asperity::material::Material as Known;
+use asperity::{Error, Grid, InfluenceKernel, composite_modulus, plane_strain_modulus};
+use asperity_cli::half_space::{Periodic, half_space, layered};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
+use crate::layers::{BaseArgument, LayerArgument, described};
 use crate::values::positive;
 
 /// How stiff the two bodies are.
@@ -23,8 +27,17 @@ pub(crate) struct Elasticity {
     material: Option<Material>,
 
     /// The other body [default: rigid]
-    #[arg(long, value_name = "NAME|E,NU", requires = "material")]
+    #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     against: Option<Material>,
+
+    /// A layer of one body, in place of --material: Young's modulus in Pa, Poisson's ratio and thickness in metres, 450e9,0.25,5e-6, or
+    /// a name and the thickness, gold,2e-6; may be given several times, from the surface downwards
+    #[arg(long, value_name = "E,NU,H|NAME,H", allow_negative_numbers = true, conflicts_with_all = ["e_star", "material"], requires = "base")]
+    layer: Vec<LayerArgument>,
+
+    /// What the layers are bonded to: rigid, or an elastic half-space
+    #[arg(long, value_name = "rigid|NAME|E,NU", requires = "layer")]
+    base: Option<BaseArgument>,
 }
 
 /// The two bodies in words, and their composite modulus.
@@ -33,25 +46,88 @@ pub(crate) struct Bodies {
     pub(crate) e_star: f64,
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic one that is known.
     pub(crate) elastic: Vec<[f64; 2]>,
+    /// One of them if it has layers; E* is then the one that short waves see.
+    pub(crate) layered: Option<LayeredBody>,
     words: String,
 }
 
 impl Bodies {
     /// Bodies of which only E* is known, and where from.
     pub(crate) fn of_modulus(e_star: f64, source: &str) -> Self {
-        Self { e_star, elastic: Vec::new(), words: source.to_string() }
+        Self { e_star, elastic: Vec::new(), layered: None, words: source.to_string() }
+    }
+
+    /// A body with layers.
+    fn of_layers(body: LayeredBody) -> Self {
+        Self {
+            e_star: body.surface_modulus(),
+            elastic: Vec::new(),
+            words: described(&body),
+            layered: Some(body),
+        }
+    }
+
+    /// Those of a record, and how it repeats.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::ForeignKernel`] if it is of others.
+    pub(crate) fn of_record(origin: &KernelOrigin) -> Result<(Option<Periodic>, Self), Error> {
+        let plain = |e_star: &f64| Self::of_modulus(*e_star, "composite modulus of the record");
+        let layers = |body: &LayeredBody| Self::of_layers(body.clone());
+        let (love, spectral) = (Some(Periodic::Love), Some(Periodic::Spectral));
+        match origin {
+            KernelOrigin::Boussinesq { e_star } => Ok((None, plain(e_star))),
+            KernelOrigin::PeriodicBoussinesq { e_star } => Ok((love, plain(e_star))),
+            KernelOrigin::Spectral { e_star } => Ok((spectral, plain(e_star))),
+            KernelOrigin::Layered { body } => Ok((None, layers(body))),
+            KernelOrigin::PeriodicLayered { body } => Ok((love, layers(body))),
+            KernelOrigin::SpectralLayered { body } => Ok((spectral, layers(body))),
+            _ => Err(Error::ForeignKernel),
+        }
+    }
+
+    /// How they answer on a grid.
+    ///
+    /// # Errors
+    ///
+    /// Those of the kernels.
+    pub(crate) fn kernel(
+        &self,
+        periodic: Option<Periodic>,
+        grid: Grid,
+    ) -> Result<Box<dyn InfluenceKernel>, Error> {
+        match &self.layered {
+            None => half_space(periodic, grid, self.e_star),
+            Some(body) => layered(periodic, grid, body),
+        }
     }
 }
 
 impl fmt::Display for Bodies {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: E* {}", self.words, quantity(self.e_star, "Pa", 4))
+        write!(f, "{}: E* {}", self.words, quantity(self.e_star, "Pa", 4))?;
+        if self.layered.is_some() { write!(f, " of the surface") } else { Ok(()) }
     }
 }
 
 impl Elasticity {
     /// The bodies, `None` if nothing was said of them.
     fn given(&self) -> Result<Option<Bodies>, Failure> {
+        if let Some(BaseArgument(base)) = self.base {
+            let layers: Vec<_> = self.layer.iter().map(|layer| layer.0).collect();
+            let other = self.against.map(|other| plane_strain_modulus(other.e, other.nu));
+            let body =
+                LayeredBody::new(&layers, base).and_then(|body| match other.transpose()? {
+                    Some(e_star) => body.against(e_star),
+                    None => Ok(body),
+                });
+            let body = body.map_err(|error| Failure::new("invalid layers", error))?;
+            return Ok(Some(Bodies::of_layers(body)));
+        }
+        if self.against.is_some() && self.material.is_none() {
+            return Err(Failure::request("--against needs --material, or --layer and --base"));
+        }
         let Some(first) = self.material else {
             let alone = |e_star| Bodies::of_modulus(e_star, "composite modulus as given");
             return Ok(self.e_star.map(alone));
@@ -74,7 +150,7 @@ impl Elasticity {
     /// A typical hardness \[Pa\] of the softer body that is named, of steel if nothing was said; `None` where none is known.
     pub(crate) fn typical_hardness(&self) -> Option<f64> {
         let named = match (self.e_star, self.material) {
-            (None, None) => [Some(Material::STEEL), None],
+            (None, None) if self.base.is_none() => [Some(Material::STEEL), None],
             _ => [self.material, self.against],
         };
         named.into_iter().flatten().filter_map(|body| body.hardness).reduce(f64::min)
@@ -83,7 +159,9 @@ impl Elasticity {
     /// The bodies, without which no measured surface can be pressed.
     pub(crate) fn required(&self) -> Result<Bodies, Failure> {
         self.given()?.ok_or_else(|| {
-            Failure::request("how stiff are the bodies? Give --e-star or --material")
+            Failure::request(
+                "how stiff are the bodies? Give --e-star or --material, or --layer and --base",
+            )
         })
     }
 }
@@ -103,6 +181,7 @@ impl Bodies {
                 .flatten()
                 .map(|material| [material.e, material.nu])
                 .collect(),
+            layered: None,
             words: format!("{first} against {against}"),
         })
     }
@@ -121,15 +200,20 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    const STEEL: Self = Self::named(MATERIALS[0]);
+    const STEEL: Self = Self::named(&Known::STEEL);
 
     /// Young's modulus \[Pa\] and Poisson's ratio.
     pub(crate) fn elastic(&self) -> (f64, f64) {
         (self.e, self.nu)
     }
 
-    const fn named((name, e, nu, hardness): (&'static str, f64, f64, Option<f64>)) -> Self {
-        Self { name: Some(name), e, nu, hardness }
+    const fn named(known: &Known) -> Self {
+        Self {
+            name: Some(known.name),
+            e: known.youngs_modulus,
+            nu: known.poissons_ratio,
+            hardness: known.hardness,
+        }
     }
 }
 
@@ -144,41 +228,18 @@ impl fmt::Display for Material {
     }
 }
 
-/// Typical values at room temperature: Young's modulus, Poisson's ratio, hardness. Those of an alloy or a polymer vary: for results that matter they are given
-/// as numbers.
-const MATERIALS: [(&str, f64, f64, Option<f64>); 18] = [
-    ("steel", 210e9, 0.3, Some(2.5e9)),
-    ("stainless-steel", 195e9, 0.29, Some(2.0e9)),
-    ("cast-iron", 110e9, 0.26, Some(2.0e9)),
-    ("aluminium", 70e9, 0.33, Some(1.0e9)),
-    ("copper", 125e9, 0.34, Some(0.9e9)),
-    ("brass", 105e9, 0.34, Some(1.3e9)),
-    ("bronze", 110e9, 0.34, Some(1.2e9)),
-    ("titanium", 115e9, 0.33, Some(3.4e9)),
-    ("tungsten-carbide", 620e9, 0.22, Some(16e9)),
-    ("gold", 78e9, 0.42, Some(0.5e9)),
-    ("silver", 83e9, 0.37, Some(0.6e9)),
-    ("alumina", 370e9, 0.22, Some(16e9)),
-    ("glass", 70e9, 0.22, Some(5.5e9)),
-    ("fused-silica", 72e9, 0.17, Some(9e9)),
-    ("pmma", 3e9, 0.37, Some(0.25e9)),
-    ("polycarbonate", 2.4e9, 0.37, Some(0.15e9)),
-    ("ptfe", 0.5e9, 0.46, Some(0.03e9)),
-    ("rubber", 2e6, 0.5, None),
-];
-
 impl FromStr for Material {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some(named) = MATERIALS.iter().find(|(name, ..)| *name == text) {
-            return Ok(Self::named(*named));
+        if let Some(known) = Known::named(text) {
+            return Ok(Self::named(known));
         }
         let number = |text: &str| text.trim().parse::<f64>().ok();
         match text.split_once(',').map(|(e, nu)| (number(e), number(nu))) {
             Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu, hardness: None }),
             _ => {
-                let names: Vec<&str> = MATERIALS.iter().map(|(name, ..)| *name).collect();
+                let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
                 Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))
             }
         }
@@ -189,11 +250,44 @@ impl FromStr for Material {
 mod tests {
     use super::*;
 
+    fn nothing() -> Elasticity {
+        Elasticity { e_star: None, material: None, against: None, layer: Vec::new(), base: None }
+    }
+
+    /// Layers against a rigid body and an elastic one; other bodies have none.
+    #[test]
+    fn layers_make_a_body() -> Result<(), String> {
+        let elasticity = |against: Option<&str>| -> Result<Elasticity, String> {
+            Ok(Elasticity {
+                layer: vec!["3e6,0.5,1e-3".parse()?],
+                base: Some("rigid".parse()?),
+                against: against.map(str::parse).transpose()?,
+                ..nothing()
+            })
+        };
+        let bodies = elasticity(None)?.required().map_err(|_| "refused")?;
+        assert_eq!(
+            bodies.to_string(),
+            "1 mm of E = 3 MPa, ν = 0.50 on a rigid base against rigid: E* 4 MPa of the surface"
+        );
+        assert!(elasticity(None)?.typical_hardness().is_none());
+        let pair = elasticity(Some("3e6,0.5"))?.required().map_err(|_| "refused")?;
+        assert_eq!(pair.e_star, 2e6);
+        let alone = Elasticity { against: Some("steel".parse()?), ..nothing() };
+        assert!(alone.or_steel().is_err());
+        for bad in ["0,0.3,1e-3", "1,0.6,1e-3", "1,0.3,0", "1,0.3,-1e-6", "1,0.3,nan"] {
+            let refused = Elasticity { layer: vec![bad.parse()?], ..elasticity(None)? };
+            assert!(refused.required().is_err(), "{bad}");
+        }
+        Ok(())
+    }
+
     fn modulus(material: &str, against: Option<&str>) -> Result<Option<f64>, String> {
         let elasticity = Elasticity {
             e_star: None,
             material: Some(material.parse()?),
             against: against.map(str::parse).transpose()?,
+            ..nothing()
         };
         let bodies = elasticity.given().map_err(|_| "refused".to_string())?;
         Ok(bodies.map(|bodies| bodies.e_star))
@@ -214,6 +308,7 @@ mod tests {
                 e_star: None,
                 material: Some(material.parse()?),
                 against: against.map(str::parse).transpose()?,
+                ..nothing()
             };
             let bodies = elasticity.required().map_err(|_| "refused")?;
             Ok(bodies.to_string())
@@ -224,11 +319,11 @@ mod tests {
             said("70e9,0.33", Some("rubber"))?,
             "E = 70 GPa, ν = 0.33 against rubber (2 MPa, 0.50): E* 2.667 MPa"
         );
-        let nothing = |e_star| Elasticity { e_star, material: None, against: None };
-        let assumed = nothing(None).or_steel().map_err(|_| "refused")?;
+        let only = |e_star| Elasticity { e_star, ..nothing() };
+        let assumed = nothing().or_steel().map_err(|_| "refused")?;
         assert_eq!(assumed.to_string(), format!("assumed: {steel}"));
-        assert!(nothing(None).required().is_err());
-        let given = nothing(Some(115e9)).or_steel().map_err(|_| "refused")?;
+        assert!(nothing().required().is_err());
+        let given = only(Some(115e9)).or_steel().map_err(|_| "refused")?;
         assert_eq!(given.to_string(), "composite modulus as given: E* 115 GPa");
         Ok(())
     }
@@ -242,7 +337,7 @@ mod tests {
 
     #[test]
     fn every_named_material_exists() {
-        for (name, ..) in MATERIALS {
+        for Known { name, .. } in Known::ALL {
             assert!(matches!(modulus(name, Some("steel")), Ok(Some(_))), "{name}");
         }
     }

@@ -1,5 +1,6 @@
 //! The half-space that the command line asks for.
 
+use asperity::kernel::{Layered, LayeredBody};
 use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, PeriodicBoussinesq, Spectral};
 use clap::ValueEnum;
 
@@ -41,4 +42,18 @@ pub fn half_space(
         Some(Periodic::Love) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
         Some(Periodic::Spectral) => Box::new(Spectral::new(grid, e_star)?),
     })
+}
+
+/// A body with layers, likewise.
+pub fn layered(
+    periodic: Option<Periodic>,
+    grid: Grid,
+    body: &LayeredBody,
+) -> Result<Box<dyn InfluenceKernel>, Error> {
+    let body = body.clone();
+    Ok(Box::new(match periodic {
+        None => Layered::free(grid, body)?,
+        Some(Periodic::Love) => Layered::periodic(grid, body)?,
+        Some(Periodic::Spectral) => Layered::spectral(grid, body)?,
+    }))
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
 use asperity::{FixedLoadSolver, Grid, InfluenceKernel, Warning};
-use asperity_cli::half_space::{Periodic, half_space};
+use asperity_cli::half_space::Periodic;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, speech};
@@ -116,7 +116,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let grid = *surface.grid();
     let (nx, ny) = grid.shape();
     let start = Instant::now();
-    let half_space = half_space(options.periodic, grid, bodies.e_star)
+    let half_space = bodies
+        .kernel(options.periodic, grid)
         .map_err(|error| Failure::new("cannot make the half-space", error))?;
     let check = |grid: &Grid| {
         FixedLoadSolver::check_room(grid, half_space.boundary(), options.memory_budget)

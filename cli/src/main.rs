@@ -9,6 +9,8 @@ mod ensemble;
 mod gather;
 mod hardness;
 mod info;
+mod layers;
+mod leak;
 mod load;
 mod patches;
 mod path;
@@ -61,6 +63,8 @@ enum Command {
     Patches(patches::Options),
     Creep(creep::Options),
     Slip(slip::Options),
+    Leak(leak::Options),
+    Creep(creep::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
 }
@@ -85,6 +89,8 @@ fn main() -> ExitCode {
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
+        Some(Command::Leak(options)) => leak::run(&options),
+        Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),
     };

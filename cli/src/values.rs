@@ -1,5 +1,7 @@
 //! Numbers on the command line, refused where they make no sense.
 
+use asperity::material::{BRINELL, VICKERS};
+
 /// A length or a modulus.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let value = number(text)?;
@@ -37,12 +39,6 @@ pub(crate) fn hardness(text: &str) -> Result<f64, String> {
         positive(text)
     }
 }
-
-/// Mean pressure \[Pa\] under a ball per Brinell number: kilograms-force per square millimetre of the surface of the indentation, of
-/// which 0.964 lies in the plane at its usual width of 0.375 diameters.
-const BRINELL: f64 = 9.80665e6 / 0.9635;
-/// The same under a Vickers pyramid, whose faces stand 68° from its axis.
-const VICKERS: f64 = 9.80665e6 / 0.92718;
 
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())

@@ -1,5 +1,8 @@
 //! Gauss-Legendre rules on [−1, 1]: the positive nodes with their weights, rounded from 50 digits.
 
+pub(super) const FOUR: [(f64, f64); 2] =
+    [(0.3399810435848563, 0.6521451548625461), (0.8611363115940526, 0.34785484513745385)];
+
 pub(super) const SIX: [(f64, f64); 3] = [
     (0.2386191860831969, 0.46791393457269104),
     (0.6612093864662645, 0.3607615730481386),
@@ -50,7 +53,7 @@ mod tests {
 
     #[test]
     fn gauss_rules_integrate_polynomials_exactly() {
-        let rules: [&[(f64, f64)]; 5] = [&SIX, &EIGHT, &TEN, &FOURTEEN, &TWENTY];
+        let rules: [&[(f64, f64)]; 6] = [&FOUR, &SIX, &EIGHT, &TEN, &FOURTEEN, &TWENTY];
         for rule in rules {
             // n points are exact up to degree 2n − 1; odd powers vanish by symmetry.
             for degree in (0..4 * rule.len()).step_by(2) {

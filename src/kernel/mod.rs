@@ -5,7 +5,8 @@
 //! | [`Boussinesq`] | free | exact for uniform pressure on each cell |
 //! | [`PeriodicBoussinesq`] | periodic | exact for uniform pressure on each cell |
 //! | [`Spectral`] | periodic | the waves of the grid only, as in spectral codes |
-//! | [`KernelTable`] | either | given by coefficients, or by a symbol: layers, graded bodies |
+//! | [`Layered`] | either | coats, thin and graded bodies: a [`LayeredBody`] |
+//! | [`KernelTable`] | either | given by coefficients, or by a symbol |
 //!
 //! A body of your own implements [`InfluenceKernel`]; [`check()`] tests what it promises.
 
@@ -16,6 +17,7 @@ mod gauge;
 mod gauss;
 mod growth;
 mod influence;
+mod layered;
 mod mean;
 mod origin;
 mod periodic;
@@ -27,6 +29,7 @@ pub use check::{KernelReport, check};
 pub(crate) use gauge::Gauge;
 pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
+pub use layered::{Base, Layer, Layered, LayeredBody};
 pub use mean::MeanDisplacement;
 pub use origin::KernelOrigin;
 pub(crate) use periodic::check_periodic_cells;

@@ -1,7 +1,9 @@
 //! The parameters of a kernel.
 
+use super::LayeredBody;
+
 /// The parameters of a kernel besides its grid: enough to make one of this crate again, in another process.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum KernelOrigin {
@@ -19,6 +21,21 @@ pub enum KernelOrigin {
     Spectral {
         /// Composite modulus \[Pa\].
         e_star: f64,
+    },
+    /// [`Layered::free`](super::Layered::free).
+    Layered {
+        /// The body.
+        body: LayeredBody,
+    },
+    /// [`Layered::periodic`](super::Layered::periodic).
+    PeriodicLayered {
+        /// The body.
+        body: LayeredBody,
+    },
+    /// [`Layered::spectral`](super::Layered::spectral).
+    SpectralLayered {
+        /// The body.
+        body: LayeredBody,
     },
     /// A kernel that is not of this crate, or a table of coefficients.
     Other,

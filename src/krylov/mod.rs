@@ -23,6 +23,5 @@ pub(crate) use pcg::worst;
 pub(crate) use pcg::{Equation, Field, LinearSystem};
 pub(crate) use preconditioner::Preconditioner;
 pub(crate) use sparse_inverse::SparseInverse;
-#[cfg(test)]
 pub(crate) use tuning::SINGLE;
 pub(crate) use vector::{Value, add_scaled, dot, greatest, sum, sum_over};

@@ -52,6 +52,11 @@ impl NodeSet {
         &self.nodes
     }
 
+    /// Whether a node of the grid is one of them.
+    pub(crate) fn contains(&self, node: usize) -> bool {
+        self.places[node] != Self::NONE
+    }
+
     /// For each node of the grid its place among [`Self::nodes`], or [`Self::NONE`].
     pub(crate) fn places(&self) -> &[u32] {
         &self.places

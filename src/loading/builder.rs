@@ -18,13 +18,11 @@ use super::scalars::PathScalars;
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
-use super::yielding::{Plastic, Yielding};
+use super::yielding::{Plastic, RefinedYielding, Yielding};
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
-use crate::{
-    Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, UpdaterError, memory,
-};
+use crate::{Boundary, ContactGrowth, Error, Grid, InfluenceKernel, Problem, Surface, memory};
 
 /// Sets up a [`LoadingSolver`]: the updater, the rule, the limits, the window, the memory budget.
 #[derive(Clone)]
@@ -243,15 +241,6 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// for itself, [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that contact
     /// grows, and [`UpdaterError::HardnessNotSupported`](crate::UpdaterError::HardnessNotSupported) for iterations.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
-        let path = self.build_to_read()?;
-        match (&path.run.plastic, &path.phase) {
-            (Some(_), Phase::Iterations(_)) => Err(UpdaterError::HardnessNotSupported.into()),
-            _ => Ok(path),
-        }
-    }
-
-    /// The same, for a path that need not go on.
-    pub(crate) fn build_to_read(self) -> Result<LoadingSolver<U>, Error> {
         if self.window_size == Some(0) {
             return Err(Error::OutOfRange {
                 quantity: "window size",
@@ -280,11 +269,14 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             }
             None => (None, problem),
         };
+        let settles = self.rule == ContactRule::FirstContact;
         let procedure = match growth {
             ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
-            _ if plastic.is_some() => Procedure::Yielding(Yielding::new(self.window_size)),
+            _ if plastic.is_some() => {
+                let refined = RefinedYielding::new(self.window_size, settles);
+                Procedure::Yielding(Yielding::new(self.window_size), refined)
+            }
             _ => {
-                let settles = self.rule == ContactRule::FirstContact;
                 let refined = Refined::new(self.window_size, settles);
                 Procedure::Windows(Windowed::new(growth, self.window_size), refined)
             }
@@ -304,11 +296,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             last,
             timings: LoadingTimings::default(),
         };
-        let mut phase = if run.plastic.is_some() {
-            Phase::to_the_end(self.updater)
-        } else {
-            Phase::new(self.updater)
-        };
+        let mut phase = Phase::new(self.updater);
         let handed_over_at = phase.hand_over(&mut run)?.then_some(0);
         phase.make_room(&run)?;
         Ok(LoadingSolver {

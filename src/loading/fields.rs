@@ -247,9 +247,29 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
-        let (contact, yielded) = (self.contact_map(), self.yielded_map());
         let pressure = self.pressure()?;
-        let state = self.state.map(|state| state.contact);
+        self.certify(&pressure, self.state)
+    }
+
+    /// The same at any state up to the present one: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
+        let pressure = self.pressure_at(state)?;
+        self.certify(&pressure, Some(*state))
+    }
+
+    /// How well a pressure fulfils the conditions of contact at a state.
+    fn certify(
+        &mut self,
+        pressure: &DMatrix<f64>,
+        state: Option<LoadingState>,
+    ) -> Result<Certificate, Error> {
+        let step = state.map_or(0, |state| state.step);
+        let (contact, yielded) = (self.map_of(step), self.yielded_by(step));
+        let state = state.map(|state| state.contact);
         let run = &mut self.run;
         let gap: &[f64] = match &run.plastic {
             Some(plastic) => plastic.surface().initial_gap(),
@@ -396,6 +416,12 @@ mod tests {
         near(&path.pressure_at(&second)?, [0.25, 0.0, 0.0, 0.0]);
         near(&path.displacement_at(&second)?, [1.0, 0.25, 0.0, 0.0]);
         near(&path.gap_at(&second)?, [0.0, 8.25, 0.0, 8.0]);
+        // As found there: the second node has no pressure yet, and the least gap is 8.
+        let found = path.certificate_at(&second)?;
+        assert!((found.least_gap * found.length - 8.0).abs() < 1e-13, "{found:?}");
+        assert!(found.least_pressure.abs() < 1e-13, "{found:?}");
+        let last = path.present()?;
+        assert_eq!(path.certificate_at(&last)?, path.certificate()?);
         let mut beyond = second;
         beyond.step = 3;
         for refused in [path.contact_map_at(&beyond).err(), path.pressure_at(&beyond).err()] {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::contact::ContactSequence;
 use crate::convolution::Convolution;
-use crate::updater::{Iterations, LinearUpdater, Solution, Solved};
+use crate::updater::{Behind, Iterations, LinearUpdater, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// The solution on a contact at an approach δ and the displacements of all nodes, which together give
@@ -119,12 +119,49 @@ impl GapField {
     ) -> Result<(), Error> {
         self.revision = None;
         iterations.advance(problem, contact, approach, span, &mut self.solved)?;
+        self.take(problem, contact, approach)
+    }
+
+    /// Moves iterations to a state behind yields.
+    pub(super) fn advance_behind(
+        &mut self,
+        behind: &Behind<'_>,
+        iterations: &mut dyn Iterations,
+        span: f64,
+    ) -> Result<(), Error> {
+        self.revision = None;
+        iterations.advance_behind(behind, span, &mut self.solved)?;
+        self.take(behind.problem, behind.contact, behind.approach)
+    }
+
+    /// Takes over what iterations have solved.
+    fn take(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+    ) -> Result<(), Error> {
         check_solution(&self.solved.solution, contact.len())?;
         for field in &self.solved.displacement {
             UpdaterError::check_length("displacements", field.len(), problem.grid().nodes())?;
         }
         self.belong_to(contact, approach);
         Ok(())
+    }
+
+    /// Follows a contact into another order of its nodes.
+    pub(super) fn reorder(&mut self, before: &ContactSequence, contact: &ContactSequence) {
+        let Solution { pressure, rate } = &mut self.solved.solution;
+        let mut field = vec![0.0; self.pressure[0].len()];
+        for values in [pressure, rate] {
+            for (&node, value) in before.order().iter().zip(&*values) {
+                field[node] = *value;
+            }
+            for (value, &node) in values.iter_mut().zip(contact.order()) {
+                *value = field[node];
+            }
+        }
+        self.revision = Some(contact.revision());
     }
 
     fn belong_to(&mut self, contact: &ContactSequence, approach: f64) {

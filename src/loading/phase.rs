@@ -30,14 +30,6 @@ impl<U: LinearUpdater> Phase<U> {
         }
     }
 
-    /// The same, with a factor that is never given up.
-    pub(super) fn to_the_end(updater: U) -> Self {
-        match Self::new(updater) {
-            Self::Factor { updater, .. } => Self::Factor { updater, may_end: false },
-            iterations @ Self::Iterations(_) => iterations,
-        }
-    }
-
     /// Gives up the factor if it does not serve any more. Returns whether it has just done so.
     pub(super) fn hand_over(&mut self, run: &mut LoadingRun) -> Result<bool, Error> {
         let (problem, contact) = (&run.problem, &run.contact);
@@ -178,6 +170,18 @@ impl<U: LinearUpdater> Phase<U> {
         let at = (nodes.len(), approach);
         if !run.releases.is_prefix(step) {
             // Nodes of that contact have left the updater since.
+            if let (Self::Iterations(iterations), Some(plastic)) = (&mut *self, &run.plastic) {
+                let grid = problem.grid();
+                let bytes = |contact| iterations.bytes(grid.nodes(), contact);
+                let needed = bytes(contact.len()).saturating_add(bytes(nodes.len()));
+                run.memory.check(needed, contact.len())?;
+                let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
+                let (_, problem) = plastic.beside(&yielded)?;
+                let contact = ContactSequence::with_order(grid, nodes.iter().copied())?;
+                iterations.solve_alone(&problem, &contact, approach, solution)?;
+                gap_field::check_solution(solution, at.0)?;
+                return Ok(nodes);
+            }
             let own = self.bytes(problem.grid().nodes(), contact.len());
             let rebuilt = RecursiveCholesky::bytes_of(nodes.len());
             run.memory.check(own.saturating_add(rebuilt), contact.len())?;

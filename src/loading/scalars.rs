@@ -123,6 +123,12 @@ impl PathScalars {
         self.load += way * (end.load - walked.load);
         self.mean_gap += way * (end.mean_gap - walked.mean_gap);
         self.energy += way * way * (end.energy - walked.energy);
+        if let (Some(own), Some(end), Some(walked)) =
+            (&mut self.plastic, end.plastic, walked.plastic)
+        {
+            own.depth += way * (end.depth - walked.depth);
+            own.work += way * (end.work - walked.work);
+        }
     }
 
     /// What the reported approach may be off by, if the one in the gauge of the kernel is by `approach`, and the load at a

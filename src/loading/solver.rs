@@ -12,10 +12,10 @@ use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
 use super::stepwise::Stepwise;
 use super::windowed::Windowed;
-use super::yielding::Yielding;
+use super::yielding::{RefinedYielding, Yielding};
 use crate::contact::ContactTarget;
 use crate::updater::{Handover, LinearUpdater};
-use crate::{Error, Grid, Problem, UpdaterError};
+use crate::{Error, Grid, Problem};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
@@ -67,7 +67,7 @@ pub(super) enum Procedure {
     Windows(Windowed, Refined),
     Stepwise(Stepwise),
     /// In windows in which nodes yield as well.
-    Yielding(Yielding),
+    Yielding(Yielding, RefinedYielding),
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -147,12 +147,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
             _ if is_enough => Ok(()),
-            (Procedure::Yielding(yielding), Phase::Factor { updater, .. }) => {
+            (Procedure::Yielding(yielding, _), Phase::Factor { updater, .. }) => {
                 self.failure = yielding.produce(run, updater, limit)?;
                 Ok(())
             }
-            (Procedure::Yielding(_), Phase::Iterations(_)) => {
-                Err(UpdaterError::HardnessNotSupported.into())
+            (Procedure::Yielding(_, refined), Phase::Iterations(iterations)) => {
+                refined.produce(run, &mut **iterations, limit)
             }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
                 refined.produce(run, &mut **iterations, most_nodes)
@@ -287,6 +287,13 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             value: 0.0,
             expected: "at least 1 for a present state",
         })
+    }
+
+    /// Number of states that are computed and not yielded yet: as long as there are any, the next one costs nothing.
+    #[doc(hidden)] // for the package of Python in this repository
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.run.queue.len()
     }
 
     /// Bytes held at present, with the nodes in contact of all states computed so far: those of a window are ahead of the

@@ -35,13 +35,40 @@ pub fn constriction(
     connectivity: Connectivity,
     axis: Axis,
 ) -> Result<Option<Constriction>, Error> {
+    let lattice = Lattice::new(*grid, boundary, connectivity.dual());
+    narrowest(gap, contact_map, (grid, lattice), axis)
+}
+
+/// The same of channels from one end of the grid to the other, whatever the boundary: see
+/// [`Percolation::spanning`](super::Percolation::spanning).
+///
+/// # Errors
+///
+/// Those of [`constriction`].
+pub fn spanning_constriction(
+    gap: &DMatrix<f64>,
+    contact_map: &DMatrix<bool>,
+    (grid, boundary): (&Grid, Boundary),
+    connectivity: Connectivity,
+    axis: Axis,
+) -> Result<Option<Constriction>, Error> {
+    let lattice = Lattice::new(*grid, boundary, connectivity.dual()).cut(axis);
+    narrowest(gap, contact_map, (grid, lattice), axis)
+}
+
+/// On a lattice.
+fn narrowest(
+    gap: &DMatrix<f64>,
+    contact_map: &DMatrix<bool>,
+    (grid, lattice): (&Grid, Lattice),
+    axis: Axis,
+) -> Result<Option<Constriction>, Error> {
     grid.check_shape(contact_map.shape())?;
     grid.check_finite("gap", gap)?;
     let mut open: Vec<usize> =
         (0..grid.nodes()).filter(|&node| !contact_map.as_slice()[node]).collect();
     let gap_of = |node: usize| gap.as_slice()[node];
     open.sort_by(|a, b| gap_of(*b).total_cmp(&gap_of(*a)));
-    let lattice = Lattice::new(*grid, boundary, connectivity.dual());
     let count = percolates(lattice, axis, open.iter().copied());
     Ok(count.and_then(|count| {
         let node = *open.get(count.checked_sub(1)?)?;

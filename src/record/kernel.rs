@@ -1,6 +1,6 @@
 //! The parameters of a kernel, as a record keeps them.
 
-use crate::kernel::{Boussinesq, KernelOrigin, KernelTable, PeriodicBoussinesq, Spectral};
+use crate::kernel::{Boussinesq, KernelOrigin, KernelTable, Layered, PeriodicBoussinesq, Spectral};
 use crate::{Boundary, Error, Grid, InfluenceKernel};
 
 /// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
@@ -61,14 +61,21 @@ impl KernelRecord {
 
     /// The kernel, made again, if it is still the same.
     pub(super) fn make(&self, grid: Grid) -> Result<KernelTable, Error> {
-        let table = match self.origin {
+        let table = match &self.origin {
             KernelOrigin::Boussinesq { e_star } => {
-                KernelTable::new(&Boussinesq::new(grid, e_star)?)
+                KernelTable::new(&Boussinesq::new(grid, *e_star)?)
             }
             KernelOrigin::PeriodicBoussinesq { e_star } => {
-                KernelTable::new(&PeriodicBoussinesq::new(grid, e_star)?)
+                KernelTable::new(&PeriodicBoussinesq::new(grid, *e_star)?)
             }
-            KernelOrigin::Spectral { e_star } => KernelTable::new(&Spectral::new(grid, e_star)?),
+            KernelOrigin::Spectral { e_star } => KernelTable::new(&Spectral::new(grid, *e_star)?),
+            KernelOrigin::Layered { body } => KernelTable::new(&Layered::free(grid, body.clone())?),
+            KernelOrigin::PeriodicLayered { body } => {
+                KernelTable::new(&Layered::periodic(grid, body.clone())?)
+            }
+            KernelOrigin::SpectralLayered { body } => {
+                KernelTable::new(&Layered::spectral(grid, body.clone())?)
+            }
             KernelOrigin::Other => Err(Error::ForeignKernel),
         }?;
         // As a problem takes it.

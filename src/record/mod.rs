@@ -290,7 +290,7 @@ impl LoadingRecord {
     ) -> Result<LoadingSolver<ConjugateGradient>, Error> {
         let hardness = self.hardness_map()?;
         let builder = self.builder(kernel, hardness.as_ref());
-        let mut solver = builder.updater(ConjugateGradient::new()).build_to_read()?;
+        let mut solver = builder.updater(ConjugateGradient::new()).build()?;
         self.kernel.check(solver.problem().table())?;
         solver.restore(&self.history)?;
         Ok(solver)

@@ -18,6 +18,7 @@
 //! | flat punches | [`CircularPunch`], [`SQUARE_PUNCH_STIFFNESS`] |
 //! | wavy surfaces | [`Westergaard`], [`DoubleWave`] |
 //! | sphere under a tangential load | [`SphereSlip`] |
+//! | thin layers, waves on a layer | [`ThinLayer`], [`layer_compliance`] |
 //! | area of rough contacts, and its pressures | [`AreaLoadLaw`] |
 //! | electrical and thermal contact conductance | [`contact_conductance`] |
 
@@ -73,6 +74,7 @@ mod elliptic;
 mod hertz_ellipse;
 mod hertz_line;
 mod hertz_sphere;
+mod layer;
 mod punch;
 mod sphere_slip;
 mod westergaard;
@@ -84,6 +86,7 @@ pub use double_wave::DoubleWave;
 pub use hertz_ellipse::HertzEllipse;
 pub use hertz_line::HertzLine;
 pub use hertz_sphere::HertzSphere;
+pub use layer::{ThinLayer, layer_compliance};
 pub use punch::{CircularPunch, SQUARE_PUNCH_STIFFNESS};
 pub use sphere_slip::SphereSlip;
 pub use westergaard::Westergaard;

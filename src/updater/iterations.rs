@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::{Schur, Solution};
 use crate::contact::ContactSequence;
-use crate::{Error, Problem};
+use crate::{Error, Problem, UpdaterError};
 
 /// How a path uses an updater.
 #[derive(Debug)]
@@ -25,6 +25,45 @@ pub struct Solved {
     pub solution: Solution,
     /// Under the pressure \[m\], and under the rate.
     pub displacement: [Vec<f64>; 2],
+}
+
+/// What nodes that have yielded displace.
+#[derive(Debug, Clone, Copy)]
+#[doc(hidden)]
+pub struct Beside<'a> {
+    /// Under a pressure of 1 on each of them \[m/Pa\], and under their hardness \[m\].
+    pub unit: &'a [f64],
+    pub load: &'a [f64],
+    /// The hardness of all nodes, if that is one.
+    pub hardness: Option<f64>,
+    /// The row sum of all nodes of the surface, if that is one.
+    pub row_sum: Option<f64>,
+}
+
+/// A state behind the last solution, when nodes have joined and others have yielded.
+#[derive(Debug, Clone, Copy)]
+#[doc(hidden)]
+pub struct Behind<'a> {
+    /// Of the nodes that have not yielded: the displacement under the others is in its gap.
+    pub problem: &'a Problem,
+    /// Those in contact: first the ones that were there before, in the same order.
+    pub contact: &'a ContactSequence,
+    /// Nodes that have yielded since, and their pressure.
+    pub yielded: &'a [(usize, f64)],
+    /// What that displaces.
+    pub load: &'a [f64],
+    pub approach: f64,
+}
+
+/// What iterations say of proposed nodes of both kinds.
+#[derive(Debug, Default)]
+#[doc(hidden)]
+pub struct Proposal {
+    /// Displacement under the solution and under its rate of each node out of contact; pressure and rate of each in contact.
+    pub lines: Vec<[f64; 2]>,
+    /// What a pressure on a node out of contact, or a gap of one in it, adds to sums over all nodes: of gaps out of contact, of plastic
+    /// depths, and of these times the hardness.
+    pub sums: Vec<[f64; 3]>,
 }
 
 /// Iterations on a contact that grows.
@@ -83,6 +122,51 @@ pub trait Iterations: Debug + Send + Sync {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error>;
+
+    /// The same as [`propose`](Self::propose) for nodes out of contact and nodes in it, which may yield: approximates the matrix M of
+    /// [`LinearUpdater::watch_both`](super::LinearUpdater::watch_both).
+    fn propose_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: [&[usize]; 2],
+        beside: &Beside<'_>,
+        schur: &mut Schur,
+    ) -> Result<Proposal, Error> {
+        let _ = (problem, contact, nodes, beside, schur);
+        Err(UpdaterError::HardnessNotSupported.into())
+    }
+
+    /// The same as [`advance`](Self::advance) when nodes have yielded since the last solution.
+    fn advance_behind(
+        &mut self,
+        behind: &Behind<'_>,
+        span: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let _ = (behind, span, solved);
+        Err(UpdaterError::HardnessNotSupported.into())
+    }
+
+    /// Pressures, and displacements of all nodes, at a state between the last two solutions, to an error of gaps \[m\] or the tolerance,
+    /// whichever is greater. No rates.
+    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
+        let _ = (behind, error);
+        Err(UpdaterError::HardnessNotSupported.into())
+    }
+
+    /// Solves on a contact of which nothing is known, as exactly as iterations go. The solution that the path goes on with is left as it
+    /// is.
+    fn solve_alone(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        let _ = (problem, contact, approach, solution);
+        Err(UpdaterError::HardnessNotSupported.into())
+    }
 
     /// Goes back to a contact that has been cut: to the solution before, if that was on it.
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;

@@ -37,7 +37,7 @@ pub use conjugate_gradient::ConjugateGradient;
 pub use dense::Dense;
 pub use handover::Handover;
 pub use iterations::Method;
-pub(crate) use iterations::{Iterations, Solved};
+pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, Solved};
 pub(crate) use join::join_all;
 pub use schur::Schur;
 pub use solution::Solution;

@@ -17,8 +17,7 @@ mod words;
 use asperity::bed::Bed;
 use asperity::record::LoadingRecord;
 use asperity_cli::outcome::{Failure, Outcome};
-use asperity_cli::panel;
-use asperity_cli::say;
+use asperity_cli::{answer, panel, speech};
 
 use crate::path::fields;
 use course::Task;
@@ -29,6 +28,9 @@ use passages::Passage;
 
 /// Reads the record, follows the history on it, says what happens, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
     let file = options.record.display();
     let record = LoadingRecord::read_npz(&options.record)
         .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
@@ -42,10 +44,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         None => None,
     };
     if options.json {
-        say!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
-    } else {
-        words::print(options, &task, &followed, &passages, sweep.as_ref());
+        answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
     }
+    words::print(options, &task, &followed, &passages, sweep.as_ref());
     let directory = match (&options.out, options.json) {
         (Some(directory), _) => directory.clone(),
         (None, false) => "out".into(),
@@ -74,5 +75,5 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     outcome.note(followed.whole(&task, &options.record));
-    if options.json { outcome.finish_on_stderr() } else { outcome.finish() }
+    outcome.finish()
 }

@@ -78,8 +78,8 @@ fn pressures(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, E
 fn persson(record: &LoadingRecord) -> Result<Option<AreaLoadLaw>, Error> {
     let (
         Boundary::Periodic,
-        KernelOrigin::PeriodicBoussinesq { e_star } | KernelOrigin::Spectral { e_star },
-    ) = (record.kernel().boundary, record.kernel().origin)
+        &(KernelOrigin::PeriodicBoussinesq { e_star } | KernelOrigin::Spectral { e_star }),
+    ) = (record.kernel().boundary, &record.kernel().origin)
     else {
         return Ok(None);
     };

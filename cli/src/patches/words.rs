@@ -10,6 +10,7 @@ use asperity::{Boundary, Error, LoadingState, Warning};
 use asperity_cli::number::{area, quantity};
 use asperity_cli::say;
 
+use crate::elasticity::Bodies;
 use crate::resolution::Resolution;
 
 use super::followed::Followed;
@@ -45,12 +46,7 @@ pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Fol
         }
     }
     let is_missing = followed.passages.iter().any(|passage| passage.state.is_none());
-    let can_go_on = matches!(
-        record.kernel().origin,
-        KernelOrigin::Boussinesq { .. }
-            | KernelOrigin::PeriodicBoussinesq { .. }
-            | KernelOrigin::Spectral { .. }
-    );
+    let can_go_on = record.kernel().origin != KernelOrigin::Other;
     let reached = record.states().last().map_or(0.0, |state| state.contact.contact_area_fraction);
     if is_missing && can_go_on && reached < 1.0 {
         // Random surfaces percolate and seal at some 40 to 55 % contact.
@@ -89,10 +85,7 @@ pub(super) fn print_channels(
     let mut warnings =
         Warning::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
     warnings.extend(resolution.warning());
-    if let KernelOrigin::Boussinesq { e_star }
-    | KernelOrigin::PeriodicBoussinesq { e_star }
-    | KernelOrigin::Spectral { e_star } = record.kernel().origin
-    {
+    if let Ok((_, Bodies { e_star, .. })) = Bodies::of_record(&record.kernel().origin) {
         warnings.extend(Warning::of_modulus(e_star));
         warnings.extend(Warning::of_pressure(moment.pressure.max(), e_star));
     }

@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::interrupt::Interrupt;
 use super::job::Job;
+use super::joint::Named;
 use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
@@ -124,6 +125,8 @@ fn in_words(event: ContactEvent) -> &'static str {
 pub(super) struct PathFile {
     /// The edge of the contact, for its corrected area.
     edge: ContactEdge,
+    /// The conductances that were asked for.
+    conductions: Vec<Named>,
     name: PathBuf,
     part: PathBuf,
     output: File,
@@ -134,7 +137,11 @@ pub(super) struct PathFile {
 
 impl PathFile {
     /// Begins the file in a directory, in place of one that may be there from another path.
-    pub(super) fn create(directory: &Path, edge: ContactEdge) -> Result<Self, Failure> {
+    pub(super) fn create(
+        directory: &Path,
+        edge: ContactEdge,
+        conductions: Vec<Named>,
+    ) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
             match fs::remove_file(&name) {
@@ -144,16 +151,14 @@ impl PathFile {
             File::create(&part)
         };
         let output = begin().map_err(|error| Failure::writing(&part, error))?;
-        Ok(Self {
-            edge,
-            name,
-            part,
-            output,
-            lines: "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,\
-                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error,yielded_area_fraction\n"
-                .to_string(),
-            waiting: 0,
-        })
+        let mut lines = "step,ix,iy,event,approach,load,contact_area,contact_area_fraction,mean_gap,\
+                    contact_stiffness,interfacial_stiffness,corrected_contact_area,approach_error,yielded_area_fraction"
+            .to_string();
+        for (name, _) in &conductions {
+            lines += &format!(",{name}");
+        }
+        lines.push('\n');
+        Ok(Self { edge, conductions, name, part, output, lines, waiting: 0 })
     }
 
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
@@ -167,7 +172,7 @@ impl PathFile {
             stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
         };
         // Writing to a text cannot fail.
-        let _ = writeln!(
+        let _ = write!(
             self.lines,
             "{},{ix},{iy},{},{:e},{:e},{:e},{:e},{:e},{},{},{:e},{:e},{:e}",
             state.step,
@@ -183,6 +188,12 @@ impl PathFile {
             state.approach_error,
             state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction),
         );
+        for (_, conduction) in &self.conductions {
+            let conductance = conduction.of(&state.contact);
+            let conductance = conductance.map_err(|error| Failure::writing(&self.part, error))?;
+            let _ = write!(self.lines, ",{}", printed(conductance));
+        }
+        self.lines.push('\n');
         self.waiting += 1;
         if self.waiting == STRIDE {
             self.flush().map_err(|error| Failure::writing(&self.part, error))?;

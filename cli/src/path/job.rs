@@ -3,7 +3,6 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use asperity::kernel::KernelOrigin;
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
@@ -23,7 +22,7 @@ use super::source::{Generated, fingerprint, generate, read, source_of};
 use crate::elasticity::Bodies;
 use crate::ensemble::Expected;
 use crate::settings::Settings;
-use asperity_cli::half_space::{Periodic, boundary, half_space};
+use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -102,12 +101,7 @@ impl Job {
     fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
         let record = LoadingRecord::read_npz(file).map_err(failed)?;
-        let (periodic, e_star) = match record.kernel().origin {
-            KernelOrigin::Boussinesq { e_star } => (None, e_star),
-            KernelOrigin::PeriodicBoussinesq { e_star } => (Some(Periodic::Love), e_star),
-            KernelOrigin::Spectral { e_star } => (Some(Periodic::Spectral), e_star),
-            _ => return Err(failed(asperity::Error::ForeignKernel)),
-        };
+        let (periodic, bodies) = Bodies::of_record(&record.kernel().origin).map_err(failed)?;
         let heights = record.heights().matrix().clone();
         options.reading.only_sides("the surface of a record")?;
         let surface =
@@ -137,7 +131,6 @@ impl Job {
             "record": file.display().to_string(),
             "heights_md5": fingerprint(&surface),
         });
-        let bodies = Bodies::of_modulus(e_star, "composite modulus of the record");
         let hardness = record.hardness_map().map_err(failed)?;
         let greatest = hardness.as_ref().map(DMatrix::max);
         let parts = Parts {
@@ -220,6 +213,11 @@ impl Job {
 
     pub(super) fn e_star(&self) -> f64 {
         self.bodies.e_star
+    }
+
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
+    pub(super) fn elastic(&self) -> &[[f64; 2]] {
+        &self.bodies.elastic
     }
 
     pub(super) fn boundary(&self) -> Boundary {
@@ -307,7 +305,8 @@ impl Job {
     }
 
     pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {
-        half_space(self.periodic, self.grid(), self.e_star())
+        self.bodies
+            .kernel(self.periodic, self.grid())
             .map_err(|error| Failure::new("cannot make the half-space", error))
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod fields;
 mod follow;
 mod interrupt;
 mod job;
+mod joint;
 mod map;
 mod object;
 mod options;
@@ -103,6 +104,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     for warning in job.warnings() {
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
+    let conductions = options.joint.check(&job)?;
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
@@ -112,7 +114,8 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     let mut solver = job.solver()?;
     panel::register_font()?;
     let settings = job.settings().write(&options.out)?;
-    let file = PathFile::create(&options.out, ContactEdge::new(job.grid(), job.boundary()))?;
+    let edge = ContactEdge::new(job.grid(), job.boundary());
+    let file = PathFile::create(&options.out, edge, conductions)?;
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
@@ -159,6 +162,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));
     }
+    outcome.all_written(options.joint.write(&job, &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
     Ok(outcome)

@@ -10,6 +10,7 @@ use asperity_cli::outcome::Failure;
 use clap::{ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
+use super::joint::Joint;
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::hardness::{GreatestPressure, Hardness};
@@ -23,7 +24,7 @@ use crate::values::{bytes, fraction, positive};
 /// line for each state), loading_curve.svg and contact_map.png.
 ///
 /// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If both bodies
-/// are elastic, E* contains both. With --hardness cells yield at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
+/// are elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
 /// approach_error estimates the remaining error. No solver can restore what the grid does not resolve: corrected_contact_area
 /// removes the excess of whole cells from the area, and the program warns if contact patches or wavelengths are only a few cells
 /// wide.
@@ -96,12 +97,15 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "hardness", "typical", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(super) memory_budget: Option<usize>,
+
+    #[command(flatten)]
+    pub(super) joint: Joint,
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,

@@ -1,5 +1,6 @@
 //! What a path is of, for `settings.json`.
 
+use asperity::kernel::{Base, LayeredBody};
 use asperity::{ContactRule, ContactTarget, Grid};
 use asperity_cli::half_space::Periodic;
 use asperity_cli::outcome::Failure;
@@ -19,6 +20,17 @@ fn hardness(map: Option<&DMatrix<f64>>) -> Value {
         (Some(_), _) => json!("one value for each node"),
         _ => Value::Null,
     }
+}
+
+/// Layers from the surface downwards, each its Young's modulus, Poisson's ratio and thickness; nothing if there are none.
+fn layers(body: Option<&LayeredBody>) -> Value {
+    let Some(body) = body else { return Value::Null };
+    let layers = body.layers().iter().map(|layer| [layer.young, layer.poisson, layer.thickness]);
+    let base = match body.base() {
+        Base::Rigid => json!("rigid"),
+        Base::HalfSpace { young, poisson } => json!([young, poisson]),
+    };
+    json!({"layers": layers.collect::<Vec<_>>(), "base": base, "against": body.counterpart()})
 }
 
 /// What a path is of besides its surface.
@@ -44,6 +56,7 @@ impl Parts<'_> {
             ("grid", json!({"nodes": grid.shape(), "sides": sides, "cell": cell})),
             ("e_star", json!(self.bodies.e_star)),
             ("bodies", json!(self.bodies.elastic)),
+            ("layers", layers(self.bodies.layered.as_ref())),
             (
                 "half_space",
                 match self.periodic {

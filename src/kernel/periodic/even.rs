@@ -7,7 +7,7 @@ use rustfft::FftPlanner;
 ///
 /// Its Fourier transform is real and even too, so that either can be kept like this.
 #[derive(Debug, Clone)]
-pub(super) struct Even {
+pub(in crate::kernel) struct Even {
     nx: usize,
     ny: usize,
     /// i fastest.
@@ -16,7 +16,7 @@ pub(super) struct Even {
 
 impl Even {
     /// Calls `value(i, j)` for each pair of 0 ≤ i ≤ nx / 2 and 0 ≤ j ≤ ny / 2.
-    pub(super) fn from_fn(
+    pub(in crate::kernel) fn from_fn(
         (nx, ny): (usize, usize),
         mut value: impl FnMut(usize, usize) -> f64,
     ) -> Self {
@@ -27,23 +27,23 @@ impl Even {
         Self { nx, ny, values }
     }
 
-    pub(super) fn map(&self, function: impl FnMut(f64) -> f64) -> Self {
+    pub(in crate::kernel) fn map(&self, function: impl FnMut(f64) -> f64) -> Self {
         Self { values: self.values.iter().copied().map(function).collect(), ..*self }
     }
 
     /// The value at any place, on the grid or in one of its periods.
-    pub(super) fn at(&self, i: isize, j: isize) -> f64 {
+    pub(in crate::kernel) fn at(&self, i: isize, j: isize) -> f64 {
         let (i, j) = (fold(i, self.nx), fold(j, self.ny));
         self.values[i + j * (self.nx / 2 + 1)]
     }
 
     /// All values, of which the first is that at (0, 0).
-    pub(super) fn values(&self) -> &[f64] {
+    pub(in crate::kernel) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// $`\frac1M \sum_{\mathbf k} f(\mathbf k) \, e^{2 \pi i (k_1 i / n_x + k_2 j / n_y)}`$.
-    pub(super) fn inverse_transform(&self) -> Self {
+    pub(in crate::kernel) fn inverse_transform(&self) -> Self {
         let mut planner = FftPlanner::new();
         let mut lines = |values: &[f64], n: usize| {
             let (fft, half) = (planner.plan_fft_inverse(n), n / 2 + 1);

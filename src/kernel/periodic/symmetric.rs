@@ -118,7 +118,7 @@ pub(super) use half_space;
 /// With A the pseudo-inverse of the matrix of `symbol`, $`C_s^{-1} = A + 1 / (s M^2)`$ everywhere.
 /// Its elements off the diagonal are not positive if all those of A are negative and
 /// $`s \ge s^* = 1 / (M^2 \min_{\mathbf r \ne 0} (-A(\mathbf r)))`$; its row sums are 1 / (s M).
-pub(super) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
+pub(in crate::kernel) fn least_gauge(grid: &Grid, symbol: &Even) -> Option<f64> {
     let inverse = symbol.map(|value| if value == 0.0 { 0.0 } else { 1.0 / value });
     let inverse = inverse.inverse_transform();
     let greatest = inverse.values()[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -134,7 +134,7 @@ pub(super) fn in_long_sides(grid: &Grid) -> Result<Grid, Error> {
 }
 
 /// Wave number of mode k of n on cells of `spacing`, for 0 ≤ k ≤ n / 2.
-pub(super) fn wave_number(k: usize, n: usize, spacing: f64) -> f64 {
+pub(in crate::kernel) fn wave_number(k: usize, n: usize, spacing: f64) -> f64 {
     std::f64::consts::TAU * (k as f64 / n as f64) / spacing
 }
 

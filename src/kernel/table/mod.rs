@@ -164,7 +164,9 @@ impl KernelTable {
     ///
     /// `mean` says how q = 0 is taken. If the mean displacement is
     /// [physical](MeanDisplacement::Physical), Ĉ(0) is what a uniform pressure does, u = Ĉ(0) p, and
-    /// must be finite. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies without a base,
+    /// must be finite. It may be zero, as of an incompressible layer on a rigid base, which no uniform pressure can compress: the mean
+    /// displacement is then zero under any load, and the table treats it like an arbitrary one, because what is reported of that, an
+    /// approach without the mean displacement, is then the approach itself. If it is [arbitrary](MeanDisplacement::Arbitrary), as on bodies without a base,
     /// where the symbol diverges, the symbol is not evaluated at q = 0, and the kernel gets a gauge that
     /// is good to compute in.
     ///
@@ -183,7 +185,7 @@ impl KernelTable {
         growth: ContactGrowth,
         symbol: impl FnMut(f64, f64) -> f64,
     ) -> Result<Self, Error> {
-        let period = symbol::coefficients(&grid, mean, symbol)?;
+        let (period, mean) = symbol::coefficients(&grid, mean, symbol)?;
         let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
         let table = Self::from_fn(grid, Boundary::Periodic, growth, |di, dj| {
             period[(di.rem_euclid(nx) + nx * dj.rem_euclid(ny)) as usize]
@@ -364,7 +366,7 @@ impl InfluenceKernel for KernelTable {
     }
 
     fn origin(&self) -> KernelOrigin {
-        self.origin
+        self.origin.clone()
     }
 }
 

@@ -10,7 +10,8 @@ use crate::{Error, Grid, KernelError};
 /// evaluated in another order, or with functions that are good to some ten digits.
 const SAME: f64 = 1e-10;
 
-/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\].
+/// The coefficients C(r) \[m/Pa\] of one period, x fastest, from the symbol Ĉ(q) \[m/Pa\]; and how the mean displacement is to be
+/// taken: one that is zero, of an incompressible layer, like one that is arbitrary.
 ///
 /// # Errors
 ///
@@ -19,9 +20,10 @@ pub(super) fn coefficients(
     grid: &Grid,
     mean: MeanDisplacement,
     symbol: impl FnMut(f64, f64) -> f64,
-) -> Result<Vec<f64>, Error> {
+) -> Result<(Vec<f64>, MeanDisplacement), Error> {
     let (nx, ny) = grid.shape();
     let values = on_the_waves(grid, mean, symbol)?;
+    let mean = if values[0] == 0.0 { MeanDisplacement::Arbitrary } else { mean };
     let mut waves: Vec<_> = values.into_iter().map(Complex64::from).collect();
     let mut planner = FftPlanner::new();
     planner.plan_fft_inverse(nx).process(&mut waves);
@@ -43,7 +45,7 @@ pub(super) fn coefficients(
         let opposite = (nx - ix) % nx + nx * ((ny - iy) % ny);
         0.5 * (result[place] + result[opposite])
     };
-    Ok((0..nx * ny).map(half).collect())
+    Ok(((0..nx * ny).map(half).collect(), mean))
 }
 
 /// The symbol at all waves of the grid, in the order of a Fourier transform, even under q → −q.
@@ -55,7 +57,8 @@ fn on_the_waves(
     let (nx, ny) = grid.shape();
     let mut value_at = |qx: f64, qy: f64| {
         let value = symbol(qx, qy);
-        if value > 0.0 && value.is_finite() {
+        let is_mean_of_nothing = value == 0.0 && (qx, qy) == (0.0, 0.0);
+        if (value > 0.0 && value.is_finite()) || is_mean_of_nothing {
             Ok(value)
         } else {
             Err(Error::Kernel(KernelError::SymbolNotPositive { q: (qx, qy), value }))

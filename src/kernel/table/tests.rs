@@ -149,6 +149,21 @@ fn uniform_pressure_compresses_a_layer_on_a_rigid_base() -> Result<(), Error> {
     Ok(())
 }
 
+/// No uniform pressure compresses it, and yet it is a body like others.
+#[test]
+fn an_incompressible_layer_on_a_rigid_base_has_no_mean_displacement() -> Result<(), Error> {
+    let (h, grid) = (0.3, Grid::new(10, 7, 0.1, 0.2)?);
+    let symbol = |qx: f64, qy: f64| layer(qx.hypot(qy), h, 0.5);
+    let mean = MeanDisplacement::Physical;
+    let table = KernelTable::from_symbol(grid, mean, ContactGrowth::Unknown, symbol)?;
+    assert_eq!(table.mean_displacement(), MeanDisplacement::Arbitrary);
+    // In the gauge that it computes in; otherwise zero, to the rounding of 70 terms.
+    assert!(table.gauge().is_some_and(|gauge| gauge > 0.0));
+    assert!(table.in_gauge(0.0).mean_coefficient().abs() < 1e-15 * table.self_influence());
+    assert!(crate::kernel::check(&table).is_ok());
+    Ok(())
+}
+
 /// An anisotropic symbol that is not even along x and y alone.
 #[test]
 fn waves_answer_with_their_symbol_in_every_direction() -> Result<(), Error> {

@@ -70,7 +70,7 @@ impl Refined {
 
 /// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
 /// most of them.
-pub(super) fn cut(
+pub(in crate::loading) fn cut(
     events: &[WindowEvent],
     horizon: f64,
     most: usize,
@@ -98,7 +98,7 @@ pub(super) fn cut(
 }
 
 /// So many events, and what ties with the last of them.
-pub(super) fn with_ties(
+pub(in crate::loading) fn with_ties(
     events: &[WindowEvent],
     most: usize,
     tolerances: &WindowTolerances,

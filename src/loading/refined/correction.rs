@@ -9,11 +9,11 @@ use crate::updater::{Schur, WindowFactor};
 
 /// The gap line of a watched node by the solution at a window's end, and its error.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct AtEnd {
+pub(in crate::loading) struct AtEnd {
     /// Pressure and its rate: 0 if the node is out of contact.
-    pub(super) pressure: [f64; 2],
+    pub(in crate::loading) pressure: [f64; 2],
     /// Gap and minus its closing rate: 0 if the node is in contact.
-    pub(super) gap: [f64; 2],
+    pub(in crate::loading) gap: [f64; 2],
 }
 
 /// The gap lines of the watched nodes by the present solution, at a window's end.
@@ -36,13 +36,13 @@ pub(super) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
 
 /// A window that explains its end.
 #[derive(Debug)]
-pub(super) struct Correction {
+pub(in crate::loading) struct Correction {
     /// With a corrected Schur complement, and courses for what is still missing at the end.
-    pub(super) window: Window,
+    pub(in crate::loading) window: Window,
     /// With the Schur complement as it was, and courses alone to make the end right.
-    pub(super) by_courses: Window,
+    pub(in crate::loading) by_courses: Window,
     /// Whether the Schur complement could be corrected: otherwise both are the same.
-    pub(super) is_updated: bool,
+    pub(in crate::loading) is_updated: bool,
 }
 
 impl Correction {
@@ -67,10 +67,26 @@ impl Correction {
 /// missing at the end is added to each gap as a cubic in time of zero value and slope at the
 /// beginning.
 pub(super) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction {
+    let is_definite = |schur: &Schur| {
+        // Whatever the order of events.
+        let all: Vec<usize> = (0..schur.size()).collect();
+        WindowFactor::of(schur.clone(), &all).is_ok()
+    };
+    correct_if(window, ends, time, is_definite)
+}
+
+/// The same of a matrix that is corrected only if the result `is_sound`. Its nodes in contact have pressures in the place of gaps, and
+/// overlaps in that of pressures.
+pub(in crate::loading) fn correct_if(
+    window: &Window,
+    ends: &[AtEnd],
+    time: f64,
+    is_sound: impl Fn(&Schur) -> bool,
+) -> Correction {
     let mut by_courses = window.clone();
     complete(&mut by_courses, window, ends, time);
     let mut updated = by_courses.clone();
-    let is_updated = update(&mut updated, ends, time);
+    let is_updated = update(&mut updated, ends, time) && is_sound(updated.schur());
     if is_updated {
         complete(&mut updated, window, ends, time);
     } else {
@@ -129,9 +145,7 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
             matrix[(i, j)] -= taken(i, j);
         }
     }
-    // Whatever the order of events.
-    let all: Vec<usize> = (0..size).collect();
-    WindowFactor::of(window.schur().clone(), &all).is_ok()
+    true
 }
 
 /// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;

@@ -5,8 +5,8 @@
 //! anyway, then corrects it, and the same events are played a second time. What is still closer than the
 //! remaining error is settled by one exact solution each.
 
-mod candidates;
-mod correction;
+pub(super) mod candidates;
+pub(super) mod correction;
 mod near_ties;
 mod plateau;
 mod states;

@@ -2,7 +2,7 @@
 
 use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
-use crate::loading::tuning::{EXACT_TIE, TOLERANCE};
+use crate::loading::tuning::{EXACT_TIE, NEWTON, TOLERANCE};
 use crate::loading::window::BadPivot;
 use crate::parallel::vectorized;
 use crate::updater::Schur;
@@ -39,6 +39,8 @@ pub(super) struct Event {
     /// How much further the approach is then than where the window began.
     pub(super) time: f64,
     pub(super) kind: ContactEvent,
+    /// How fast it came: a gap closes, or a pressure grows times what a pressure displaces, by so much of the approach.
+    pub(super) closing: f64,
     /// From then on.
     pub(super) rates: Rates,
 }
@@ -51,6 +53,8 @@ struct Course {
     values: Vec<f64>,
     /// Of the values, and of the sums.
     rates: Vec<f64>,
+    /// What is known of their curvature from now on, `a t² + b t³`; empty where all are lines.
+    curves: Vec<[f64; 2]>,
     states: Vec<NodeState>,
     unit_stiffness: f64,
     time: f64,
@@ -64,7 +68,7 @@ struct Course {
 ///
 /// An event exchanges an input for its output, a principal pivot of T: the gap of a node that touches stays 0 and its pressure
 /// grows; the pressure of a node that yields stays at its hardness, and its gap falls below 0. T stays positive definite.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Exchange {
     /// Where the window began.
     approach: f64,
@@ -73,6 +77,8 @@ pub(super) struct Exchange {
     start: Course,
     now: Course,
     events: Vec<Event>,
+    /// Rates of plastic depths that are negative by no more are rounding, or the error of the matrix.
+    tolerance: f64,
 }
 
 impl Exchange {
@@ -91,7 +97,9 @@ impl Exchange {
         self.nodes.extend(watched.iter().map(|watched| watched.node));
         self.hardness.clear();
         self.hardness.extend(watched.iter().map(|watched| watched.hardness));
+        self.tolerance = TOLERANCE;
         let start = &mut self.start;
+        start.curves.clear();
         start.matrix.clear();
         for i in 0..size {
             // The matrix of the updater is that of overlaps, and inputs are gaps.
@@ -115,6 +123,59 @@ impl Exchange {
         start.states.extend(watched.iter().map(state));
         start.unit_stiffness = rates.unit_stiffness;
         start.time = 0.0;
+    }
+
+    /// Bends the courses of the values by `a t² + b t³`, from the beginning on.
+    pub(super) fn bend(&mut self, curves: impl Iterator<Item = [f64; 2]>) {
+        let start = &mut self.start;
+        start.curves.clear();
+        start.curves.extend(curves);
+        start.curves.resize(start.rates.len(), [0.0; 2]);
+    }
+
+    /// Sets by how much rates of plastic depths may be wrong.
+    pub(super) fn tolerate(&mut self, tolerance: f64) {
+        self.tolerance = tolerance;
+    }
+
+    /// The number of watched nodes.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The node at a position.
+    pub(super) fn node(&self, position: usize) -> usize {
+        self.nodes[position]
+    }
+
+    /// A value of the matrix on its diagonal, at the beginning: what a pressure displaces where the node is out of contact, or what a
+    /// gap takes of a pressure.
+    pub(super) fn pivot(&self, position: usize) -> f64 {
+        self.start.matrix[position * self.nodes.len() + position]
+    }
+
+    /// The course of a node at the beginning: value and rate, and whether it is elastic.
+    pub(super) fn line(&self, position: usize) -> ([f64; 2], bool) {
+        let Course { values, rates, states, .. } = &self.start;
+        ([values[position], rates[position]], states[position] == NodeState::Elastic)
+    }
+
+    /// When a node touches or yields by its own course at the beginning, which may lie behind; `None` if it does not.
+    pub(super) fn own_time(&self, position: usize) -> Option<f64> {
+        let Course { values, rates, states, .. } = &self.start;
+        let (left, rate) = match states[position] {
+            NodeState::Out => (values[position], -rates[position]),
+            NodeState::Elastic => (self.hardness[position] - values[position], rates[position]),
+            NodeState::Yielded => return None,
+        };
+        (rate > 0.0 && left.is_finite()).then_some(left / rate)
+    }
+
+    /// The rates at the beginning.
+    pub(super) fn start_rates(&self) -> Rates {
+        let Course { rates, unit_stiffness, .. } = &self.start;
+        let sums = &rates[self.nodes.len()..];
+        Rates { unit_stiffness: *unit_stiffness, closing: -sums[0], plastic: [sums[1], sums[2]] }
     }
 
     /// The events, in their order.
@@ -153,9 +214,62 @@ impl Exchange {
         None
     }
 
+    /// Lets events happen at given positions and times, from the beginning, in whatever order that is.
+    pub(super) fn go_through(
+        &mut self,
+        events: impl Iterator<Item = (usize, f64)>,
+    ) -> Result<(), BadPivot> {
+        self.now.clone_from(&self.start);
+        self.events.clear();
+        for (position, time) in events {
+            let node = self.nodes[position];
+            self.happen(position, time).map_err(|pivot| BadPivot { node, time, pivot })?;
+        }
+        Ok(())
+    }
+
+    /// A window of some of the nodes, that begins at a time behind the last event and with other values then.
+    pub(super) fn remaining(&self, positions: &[usize], time: f64, values: &[f64]) -> Self {
+        let size = self.nodes.len();
+        let mut now = self.now.clone();
+        now.pass(time);
+        let pick = |position: &usize| now.rates[*position];
+        let mut start = Course {
+            values: values.to_vec(),
+            rates: positions.iter().map(pick).chain([0.0; SUMS]).collect(),
+            states: positions.iter().map(|&position| now.states[position]).collect(),
+            ..Course::default()
+        };
+        for &row in positions {
+            let row = &now.matrix[row * size..][..size];
+            start.matrix.extend(positions.iter().map(|&position| row[position]));
+        }
+        start.matrix.resize(start.rates.len() * positions.len(), 0.0);
+        if !now.curves.is_empty() {
+            start.curves = positions.iter().map(|&position| now.curves[position]).collect();
+            start.curves.resize(start.rates.len(), [0.0; 2]);
+        }
+        Self {
+            approach: self.approach + time,
+            nodes: positions.iter().map(|&position| self.nodes[position]).collect(),
+            hardness: positions.iter().map(|&position| self.hardness[position]).collect(),
+            start,
+            now: Course::default(),
+            events: Vec::new(),
+            tolerance: self.tolerance,
+        }
+    }
+
+    /// Moves the beginning by a time, forwards or backwards.
+    pub(super) fn shift(&mut self, time: f64) {
+        self.approach += time;
+        self.start.pass(time);
+        self.start.time = 0.0;
+    }
+
     /// The next event: of those that happen at once the one of the node of lowest index.
     fn next(&self) -> Option<(usize, f64)> {
-        let Course { values, rates, states, time: now, .. } = &self.now;
+        let Course { values, rates, curves, states, time: now, .. } = &self.now;
         let course = |k: usize| match states[k] {
             NodeState::Out => Some((values[k], -rates[k])),
             NodeState::Elastic => Some((self.hardness[k] - values[k], rates[k])),
@@ -163,10 +277,14 @@ impl Exchange {
         };
         // A hardness may be infinite.
         let comes = |(left, rate): &(f64, f64)| *rate > 0.0 && left.is_finite();
+        let curve = |k: usize| {
+            let sign = if states[k] == NodeState::Out { 1.0 } else { -1.0 };
+            curves.get(k).map_or([0.0; 2], |curve| curve.map(|c| sign * c))
+        };
         let (mut first, mut earliest) = (None, f64::INFINITY);
         for k in 0..self.nodes.len() {
             if let Some((left, rate)) = course(k).filter(comes) {
-                let time = (left / rate).max(0.0);
+                let time = comes_at(left, rate, curve(k));
                 if time < earliest {
                     (first, earliest) = (Some(k), time);
                 }
@@ -178,7 +296,9 @@ impl Exchange {
             let tie =
                 if states[k] == NodeState::Elastic { EXACT_TIE * self.hardness[k] } else { length };
             let course = course(k).filter(comes);
-            course.is_some_and(|(left, rate)| left - earliest * rate <= tie)
+            let [a, b] = curve(k);
+            let bent = earliest * earliest * (a + b * earliest);
+            course.is_some_and(|(left, rate)| left - earliest * rate + bent <= tie)
         };
         let tied = (0..self.nodes.len()).filter(ties);
         let lowest = tied.chain([first]).min_by_key(|&k| self.nodes[k])?;
@@ -188,7 +308,9 @@ impl Exchange {
     /// Whether the plastic depth of a node falls.
     fn recovers(&self) -> bool {
         let nodes = self.now.states.iter().zip(&self.now.rates);
-        nodes.into_iter().any(|(state, rate)| *state == NodeState::Yielded && *rate > TOLERANCE)
+        nodes
+            .into_iter()
+            .any(|(state, rate)| *state == NodeState::Yielded && *rate > self.tolerance)
     }
 
     /// Lets the node at a position touch or yield.
@@ -199,11 +321,7 @@ impl Exchange {
         if pivot.is_nan() || pivot <= 0.0 {
             return Err(pivot);
         }
-        let passed = time - course.time;
-        for (value, rate) in course.values.iter_mut().zip(&course.rates) {
-            *value += rate * passed;
-        }
-        course.time = time;
+        course.pass(time);
         let touches = course.states[position] == NodeState::Out;
         let own = course.rates[position];
         course.unit_stiffness += if touches { own * own / pivot } else { -(own * own / pivot) };
@@ -225,12 +343,45 @@ impl Exchange {
             plastic: [depth - yielded[0], work - yielded[1]],
         };
         let kind = if touches { ContactEvent::Touch } else { ContactEvent::Yield };
-        self.events.push(Event { position, time, kind, rates });
+        let closing = if touches { -own } else { own / pivot };
+        self.events.push(Event { position, time, kind, closing, rates });
         Ok(())
     }
 }
 
+/// When what is left, `left − rate t + a t² + b t³`, is nothing: not before now.
+fn comes_at(left: f64, rate: f64, [a, b]: [f64; 2]) -> f64 {
+    if [a, b] == [0.0; 2] {
+        return (left / rate).max(0.0);
+    }
+    let mut time = 0.0;
+    for _ in 0..NEWTON {
+        let slope = rate - time * (2.0 * a + 3.0 * b * time);
+        if slope.is_nan() || slope <= 0.0 {
+            return f64::INFINITY;
+        }
+        time += (left - time * (rate - time * (a + b * time))) / slope;
+    }
+    if time.is_nan() { f64::INFINITY } else { time.max(0.0) }
+}
+
 impl Course {
+    /// Goes to a time.
+    fn pass(&mut self, time: f64) {
+        let passed = time - self.time;
+        for (value, rate) in self.values.iter_mut().zip(&self.rates) {
+            *value += rate * passed;
+        }
+        for (k, [a, b]) in self.curves.iter_mut().enumerate() {
+            if let Some(value) = self.values.get_mut(k) {
+                *value += passed * passed * (*a + *b * passed);
+            }
+            self.rates[k] += passed * (2.0 * *a + 3.0 * *b * passed);
+            *a += 3.0 * *b * passed;
+        }
+        self.time = time;
+    }
+
     /// Makes the output at a position an input.
     fn exchange(&mut self, position: usize, size: usize, pivot: f64) {
         let own: Vec<f64> = self.matrix[position * size..][..size].to_vec();
@@ -257,6 +408,17 @@ impl Course {
                 }
             },
         );
+        let Some(own) = self.curves.get(position).copied() else {
+            return;
+        };
+        for (k, curve) in self.curves.iter_mut().enumerate() {
+            // The matrix has been divided by the pivot.
+            let factor = if k == position { 1.0 / pivot } else { self.matrix[k * size + position] };
+            let kept = if k == position { 0.0 } else { 1.0 };
+            for (c, own) in curve.iter_mut().zip(own) {
+                *c = kept * *c - factor * own;
+            }
+        }
     }
 }
 

@@ -8,8 +8,14 @@
 //! played, solved at its end, and checked there before the factor learns of it. Gaps only close and pressures only grow: what is right
 //! at the end was right throughout. Where the end contradicts events, fewer are played.
 
+//!
+//! Without a factor `RefinedYielding` plays such windows of a matrix that is nearly exact, and corrects them at their end.
+
 mod exchange;
+mod pinned;
 mod plastic;
+mod refined;
+mod settled;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -26,6 +32,7 @@ use crate::{Error, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
 use plastic::Displaced;
 pub(super) use plastic::Plastic;
+pub(super) use refined::RefinedYielding;
 
 /// Finds events of both kinds in windows.
 #[derive(Debug, Default)]
@@ -51,7 +58,65 @@ struct Trial {
     departures: Vec<(usize, Left)>,
 }
 
+impl Trial {
+    /// Contact and problem behind some events.
+    fn of(
+        run: &LoadingRun,
+        plastic: &Plastic,
+        events: impl Iterator<Item = (usize, ContactEvent)>,
+    ) -> Result<Self, Error> {
+        let (contact, yielded, departures) = contact_behind(run, events)?;
+        let displaced = plastic.displaced(&yielded)?;
+        let problem = plastic.elastic(&run.problem, &displaced);
+        Ok(Self { contact, problem, displaced, yielded, departures })
+    }
+
+    /// Lets the path follow, whatever solves on its contact. Returns what has yielded then.
+    fn adopt(self, run: &mut LoadingRun, plastic: &Plastic) -> Arc<Plastic> {
+        let step = run.steps();
+        let Self { contact, problem, displaced, yielded, departures } = self;
+        let plastic = Arc::new(plastic.grown(&yielded, &displaced));
+        run.plastic = Some(Arc::clone(&plastic));
+        run.problem = problem;
+        run.contact = contact;
+        for (number, left) in departures {
+            run.releases.push_yielded(step + number, left);
+        }
+        plastic
+    }
+}
+
+/// The contact behind some events, the nodes that yielded, and these with the number of their event and their places then.
+#[allow(clippy::type_complexity)]
+fn contact_behind(
+    run: &LoadingRun,
+    events: impl Iterator<Item = (usize, ContactEvent)>,
+) -> Result<(ContactSequence, Vec<usize>, Vec<(usize, Left)>), Error> {
+    let mut contact = run.contact.clone();
+    let (mut yielded, mut departures) = (Vec::new(), Vec::new());
+    for (number, (node, kind)) in (1..).zip(events) {
+        if kind == ContactEvent::Touch {
+            contact.push(node)?;
+        } else {
+            let position = contact.remove(node)?;
+            yielded.push(node);
+            departures.push((number, Left { node, position }));
+        }
+    }
+    Ok((contact, yielded, departures))
+}
+
+/// By how much a solution may contradict what contact that grows does.
+#[derive(Debug, Clone, Copy)]
+struct Slack {
+    /// Overlap \[m\].
+    gap: f64,
+    /// Rates of pressures, relative to the greatest, and of plastic depths.
+    rate: f64,
+}
+
 /// Nodes in contact where a window begins.
+#[derive(Debug, Clone, Copy)]
 struct Carried {
     /// How many are elastic, and how many have yielded.
     nodes: [usize; 2],
@@ -90,7 +155,9 @@ impl Yielding {
         };
         let approach = run.scalars.approach();
         run.renew_field(updater, approach)?;
-        let rates = self.survey(run, &plastic)?;
+        let gap = TOLERANCE * (run.problem.greatest_gap() + approach);
+        let slack = Slack { gap, rate: TOLERANCE };
+        let rates = survey(run, &plastic, &mut self.ranking, slack)?;
         if self.ranking.is_empty() {
             return Ok(None);
         }
@@ -127,84 +194,6 @@ impl Yielding {
         let queued = self.enqueue(run, &plastic, before);
         run.timings.events += start.elapsed();
         Ok(queued.err().or_else(|| bad_pivot.map(|bad| run.not_positive_definite(bad))))
-    }
-
-    /// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
-    /// rates.
-    fn survey(&mut self, run: &mut LoadingRun, plastic: &Plastic) -> Result<Rates, Error> {
-        let start = Instant::now();
-        let approach = run.scalars.approach();
-        let hardness = plastic.hardness().values();
-        let gaps = plastic.surface().initial_gap();
-        let least_gap = -TOLERANCE * (run.problem.greatest_gap() + approach);
-        let least_rate = -TOLERANCE * run.greatest_rate();
-        self.ranking.clear();
-        let [mut load, mut energy, mut mean_gap, mut closing] = [Sum::default(); 4];
-        let [mut depth, mut work, mut depth_rate, mut work_rate] = [Sum::default(); 4];
-        let mut unit_stiffness = Sum::default();
-        let rates = &run.field.solution().rate;
-        for ((node, pressure), &rate) in run.field.pressures(&run.contact, approach).zip(rates) {
-            if rate.is_nan() || rate < least_rate {
-                return Err(run.not_monotone("pressure per unit of approach", node, rate));
-            }
-            load.add(pressure);
-            energy.add(pressure * (approach - gaps[node]));
-            unit_stiffness.add(rate);
-            let left = hardness[node] - pressure;
-            let time = (left / rate).max(0.0);
-            if rate > 0.0 && time < f64::INFINITY {
-                self.ranking.push((time, node));
-            }
-        }
-        for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
-            if line.gap.is_nan() {
-                return Err(run.not_finite());
-            }
-            let grows = line.closing >= -TOLERANCE;
-            if plastic.has_yielded(node) {
-                if !grows {
-                    let quantity = "rate of the plastic depth";
-                    return Err(run.not_monotone(quantity, node, line.closing));
-                }
-                if line.gap > -least_gap {
-                    return Err(run.not_monotone("plastic depth", node, -line.gap));
-                }
-                let hardness = hardness[node];
-                load.add(hardness);
-                energy.add(hardness * (approach - gaps[node] + line.gap));
-                depth.add(-line.gap);
-                work.add(-(hardness * line.gap));
-                depth_rate.add(line.closing);
-                work_rate.add(hardness * line.closing);
-            } else {
-                if line.gap < least_gap {
-                    return Err(run.not_monotone("gap", node, line.gap));
-                }
-                mean_gap.add(line.gap);
-                closing.add(line.closing);
-                if line.closing > 0.0 {
-                    self.ranking.push((line.touches().max(0.0), node));
-                }
-            }
-        }
-        let rates = Rates {
-            unit_stiffness: unit_stiffness.total(),
-            closing: closing.total(),
-            plastic: [depth_rate.total(), work_rate.total()],
-        };
-        run.scalars.renew_gap(mean_gap, closing);
-        run.scalars.renew_plastic(
-            [load, energy],
-            PlasticScalars {
-                nodes: plastic.count(),
-                depth: depth.total(),
-                work: work.total(),
-                rates: rates.plastic,
-            },
-        );
-        run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
-        run.timings.choice += start.elapsed();
-        Ok(rates)
     }
 
     /// How many nodes to watch.
@@ -358,7 +347,9 @@ impl Yielding {
         for (node, value) in pressed {
             values[node] = value;
         }
-        let trial = self.trial(run, plastic)?;
+        let events = self.window.events().iter();
+        let events = events.map(|event| (self.window.node(event.position), event.kind));
+        let trial = Trial::of(run, plastic, events)?;
         let after = trial.contact.order();
         let solution = Solution {
             pressure: after.iter().map(|&node| values[node][0]).collect(),
@@ -367,28 +358,12 @@ impl Yielding {
         run.field.place(&trial.contact, solution, approach)?;
         run.timings.convolution = run.field.time();
         run.check_closed(&trial.problem, &trial.contact, approach)?;
-        let until = contradiction(run, plastic, &trial, approach);
+        let left = trial.contact.order().iter();
+        let left = left.map(|&node| run.field.left_at(&trial.problem, node)[0].abs());
+        let least = f64::EPSILON * (trial.problem.greatest_gap() + approach);
+        let slack = Slack { gap: OF_RESIDUAL * left.fold(least, f64::max), rate: TOLERANCE };
+        let until = contradiction(run, plastic, &trial, (approach, slack));
         Ok((trial, until.map(|until| end + until)))
-    }
-
-    /// Contact and problem behind the window.
-    fn trial(&self, run: &LoadingRun, plastic: &Plastic) -> Result<Trial, Error> {
-        let mut contact = run.contact.clone();
-        let (mut yielded, mut departures) = (Vec::new(), Vec::new());
-        let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
-        for (number, event) in (1..).zip(self.window.events()) {
-            let node = nodes[event.position];
-            if event.kind == ContactEvent::Touch {
-                contact.push(node)?;
-            } else {
-                let position = contact.remove(node)?;
-                yielded.push(node);
-                departures.push((number, Left { node, position }));
-            }
-        }
-        let displaced = plastic.displaced(&yielded)?;
-        let problem = plastic.elastic(&run.problem, &displaced);
-        Ok(Trial { contact, problem, displaced, yielded, departures })
     }
 
     /// Lets the updater follow to the end of the window.
@@ -400,7 +375,7 @@ impl Yielding {
         trial: Trial,
     ) -> Result<Arc<Plastic>, Error> {
         let step = run.steps();
-        let Trial { contact, problem, displaced, yielded, departures } = trial;
+        let Trial { contact, problem, yielded, .. } = &trial;
         // Whatever becomes of the updater, also by a panic: the states so far are known without it.
         let known = run.releases.forget(step);
         let before = run.contact.order();
@@ -411,7 +386,7 @@ impl Yielding {
             let positions: Vec<usize> = joined.filter_map(place).collect();
             self.watched_before.retain(|&node| !contact.contains(node));
             WindowFactor::of(self.schur.clone(), &positions)
-                .and_then(|factor| updater.join(&problem, &contact, &factor))
+                .and_then(|factor| updater.join(problem, contact, &factor))
         } else {
             self.watched_before.clear();
             let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
@@ -420,20 +395,13 @@ impl Yielding {
             let (kept, joined): (Vec<_>, Vec<_>) =
                 contact.order().iter().partition(|&&node| old(node));
             ContactSequence::with_order(problem.grid(), kept).and_then(|mut kept| {
-                updater.release(&problem, &kept, &left)?;
-                join_all(updater, &problem, &mut kept, &joined, run.memory.left())
+                updater.release(problem, &kept, &left)?;
+                join_all(updater, problem, &mut kept, &joined, run.memory.left())
             })
         };
         followed.map_err(|error| run.memory.in_all(error))?;
         run.releases.remember(known);
-        let plastic = Arc::new(plastic.grown(&yielded, &displaced));
-        run.plastic = Some(Arc::clone(&plastic));
-        run.problem = problem;
-        run.contact = contact;
-        for (number, left) in departures {
-            run.releases.push_yielded(step + number, left);
-        }
-        Ok(plastic)
+        Ok(trial.adopt(run, plastic))
     }
 
     /// Turns the events of the window, which began with these nodes in contact, into states.
@@ -475,6 +443,89 @@ impl Yielding {
     }
 }
 
+/// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
+/// rates.
+fn survey(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    ranking: &mut Vec<(f64, usize)>,
+    slack: Slack,
+) -> Result<Rates, Error> {
+    let start = Instant::now();
+    let approach = run.scalars.approach();
+    let hardness = plastic.hardness().values();
+    let gaps = plastic.surface().initial_gap();
+    let least_gap = -slack.gap;
+    let least_rate = -slack.rate * run.greatest_rate();
+    ranking.clear();
+    let [mut load, mut energy, mut mean_gap, mut closing] = [Sum::default(); 4];
+    let [mut depth, mut work, mut depth_rate, mut work_rate] = [Sum::default(); 4];
+    let mut unit_stiffness = Sum::default();
+    let rates = &run.field.solution().rate;
+    for ((node, pressure), &rate) in run.field.pressures(&run.contact, approach).zip(rates) {
+        if rate.is_nan() || rate < least_rate {
+            return Err(run.not_monotone("pressure per unit of approach", node, rate));
+        }
+        load.add(pressure);
+        energy.add(pressure * (approach - gaps[node]));
+        unit_stiffness.add(rate);
+        let left = hardness[node] - pressure;
+        let time = (left / rate).max(0.0);
+        if rate > 0.0 && time < f64::INFINITY {
+            ranking.push((time, node));
+        }
+    }
+    for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
+        if line.gap.is_nan() {
+            return Err(run.not_finite());
+        }
+        let grows = line.closing >= -slack.rate;
+        if plastic.has_yielded(node) {
+            if !grows {
+                let quantity = "rate of the plastic depth";
+                return Err(run.not_monotone(quantity, node, line.closing));
+            }
+            if line.gap > -least_gap {
+                return Err(run.not_monotone("plastic depth", node, -line.gap));
+            }
+            let hardness = hardness[node];
+            load.add(hardness);
+            energy.add(hardness * (approach - gaps[node] + line.gap));
+            depth.add(-line.gap);
+            work.add(-(hardness * line.gap));
+            depth_rate.add(line.closing);
+            work_rate.add(hardness * line.closing);
+        } else {
+            if line.gap < least_gap {
+                return Err(run.not_monotone("gap", node, line.gap));
+            }
+            mean_gap.add(line.gap);
+            closing.add(line.closing);
+            if line.closing > 0.0 {
+                ranking.push((line.touches().max(0.0), node));
+            }
+        }
+    }
+    let rates = Rates {
+        unit_stiffness: unit_stiffness.total(),
+        closing: closing.total(),
+        plastic: [depth_rate.total(), work_rate.total()],
+    };
+    run.scalars.renew_gap(mean_gap, closing);
+    run.scalars.renew_plastic(
+        [load, energy],
+        PlasticScalars {
+            nodes: plastic.count(),
+            depth: depth.total(),
+            work: work.total(),
+            rates: rates.plastic,
+        },
+    );
+    run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
+    run.timings.choice += start.elapsed();
+    Ok(rates)
+}
+
 /// The place of each node in an order; of nodes that are not there it means nothing.
 fn places(order: &[usize], nodes: usize) -> Vec<usize> {
     let mut places = vec![0; nodes];
@@ -486,11 +537,14 @@ fn places(order: &[usize], nodes: usize) -> Vec<usize> {
 
 /// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
 /// earlier the first was not yet, as far as the rates tell: not after 0.
-fn contradiction(run: &LoadingRun, plastic: &Plastic, trial: &Trial, approach: f64) -> Option<f64> {
+fn contradiction(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    trial: &Trial,
+    (approach, slack): (f64, Slack),
+) -> Option<f64> {
     let Trial { contact, problem, .. } = trial;
-    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
-    let least = f64::EPSILON * (problem.greatest_gap() + approach);
-    let length = OF_RESIDUAL * left.fold(least, f64::max);
+    let length = slack.gap;
     let pressure = length / problem.table().self_influence();
     let has_yielded = |node: usize| plastic.has_yielded(node) || trial.yielded.contains(&node);
     let before = |left: f64, rate: f64| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY };
@@ -500,7 +554,7 @@ fn contradiction(run: &LoadingRun, plastic: &Plastic, trial: &Trial, approach: f
             return (line.gap < -length).then(|| before(line.gap, line.closing));
         }
         // Plastic depth neither is negative nor falls.
-        let recovers = line.gap > length || line.closing < -TOLERANCE;
+        let recovers = line.gap > length || line.closing < -slack.rate;
         recovers.then_some(f64::NEG_INFINITY)
     });
     let hardness = plastic.hardness().values();

@@ -31,6 +31,13 @@ pub(super) struct Displaced {
     unit: Vec<f64>,
 }
 
+impl Displaced {
+    /// Under their hardness.
+    pub(super) fn load(&self) -> &[f64] {
+        &self.load
+    }
+}
+
 impl Plastic {
     /// None yet. Returns the problem of the elastic nodes as well.
     pub(in crate::loading) fn new(hardness: Hardness, problem: Problem) -> (Self, Problem) {

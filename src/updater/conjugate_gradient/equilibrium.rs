@@ -82,8 +82,19 @@ impl Equilibrium {
 
     /// `x_jᵀ r` for what is left on the contact near a proposed node.
     pub(super) fn left_near(&self, problem: &Problem, local: &Local) -> [f64; 2] {
+        self.left_near_in(problem, local, |_| true)
+    }
+
+    /// The same for those that are in contact still.
+    pub(super) fn left_near_in(
+        &self,
+        problem: &Problem,
+        local: &Local,
+        is_in: impl Fn(usize) -> bool,
+    ) -> [f64; 2] {
         let mut sums = [0.0; 2];
-        for (&node, x) in local.contact.iter().zip(&local.weights) {
+        let near = local.contact.iter().zip(&local.weights);
+        for (&node, x) in near.filter(|(node, _)| is_in(**node as usize)) {
             let left = self.left(problem, node as usize);
             for (sum, left) in sums.iter_mut().zip(left) {
                 *sum += x * left;

@@ -5,12 +5,14 @@ use super::tuning::{FAR, POINTS};
 use crate::kernel::KernelTable;
 use crate::{Boundary, Grid, Problem, parallel};
 
-/// Unit pressure on a watched node and the answer of the contact near it, `e_j − x_j`.
+/// What a watched node does to pressures: of one out of contact unit pressure and the answer of the contact near it, `e_j − x_j`; of
+/// one in contact what its overlap takes off that contact, `−x_q`.
 struct Source {
     /// (place in the table, pressure) of all nodes, by the first.
     near: Vec<(usize, f64)>,
     /// The place of the watched node itself.
     own: usize,
+    is_in_contact: bool,
     /// The same interpolated to few nodes.
     far: Vec<(usize, f64)>,
     centre: [f64; 2],
@@ -23,6 +25,13 @@ struct Source {
 ///
 /// column by column, for all pairs: the complement of a Galerkin solution, from which the exact one
 /// differs by the square of the error of x, and is never greater. The lower triangle is written.
+///
+/// With nodes q in contact, of which `x_q = C_KK⁻¹ e_q`, it is the same of the matrix M of
+/// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both): with the sources $`s_j = e_j - x_j`$ and $`s_q = -x_q`$
+///
+/// ```math
+/// \tilde M_{ij} = s_i^T C\, s_j + [i \text{ in contact}]\, s_{j,i} + [j \text{ in contact}]\, s_{i,j}
+/// ```
 pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     let table = problem.table();
     let sources: Vec<Source> = locals.iter().map(|local| Source::new(problem, local)).collect();
@@ -63,10 +72,14 @@ impl Source {
             [shortest(ix as i32 - own[0], grid.nx()), shortest(iy as i32 - own[1], grid.ny())]
         };
         let answers = local.contact.iter().zip(&local.weights);
-        let answers: Vec<([i32; 2], f64)> = std::iter::once(([0, 0], 1.0))
+        let is_in_contact = local.is_in_contact();
+        let alone = (!is_in_contact).then_some(local.node);
+        let answers: Vec<([i32; 2], f64)> = alone
+            .map(|_| ([0, 0], 1.0))
+            .into_iter()
             .chain(answers.map(|(&node, x)| (offset(node), -x)))
             .collect();
-        let nodes = std::iter::once(local.node).chain(local.contact.iter().map(|&n| n as usize));
+        let nodes = alone.into_iter().chain(local.contact.iter().map(|&n| n as usize));
         let near = nodes.zip(&answers).map(|(node, (_, p))| (table.place(node), *p));
         let mut near: Vec<(usize, f64)> = near.collect();
         near.sort_unstable_by_key(|(place, _)| *place);
@@ -95,6 +108,7 @@ impl Source {
         Self {
             near,
             own: table.place(local.node),
+            is_in_contact,
             far,
             centre: [0, 1].map(|axis| (f64::from(own[axis]) + middle(axis)) * sides[axis]),
             radius: (half(0) * sides[0]).hypot(half(1) * sides[1]),
@@ -111,18 +125,25 @@ impl Source {
                 .map(|here| here.1 * displacement(table, here.0, &other.far))
                 .sum();
         }
-        // The answer of the contact near a watched node takes its displacement away there.
+        // The answer of the contact near a watched node takes its displacement away there. What a node in contact displaces there is
+        // nothing but its own overlap, which goes with the last term.
         let mut answering = other.near.iter().peekable();
-        let mut work = 0.0;
+        let mut work = if self.is_in_contact { other.at(self.own) } else { 0.0 };
         for &(place, pressure) in &self.near {
             while answering.next_if(|(other, _)| *other < place).is_some() {}
-            let is_taken_away =
-                place != other.own && answering.peek().is_some_and(|(other, _)| *other == place);
+            let is_taken_away = (place != other.own || other.is_in_contact)
+                && answering.peek().is_some_and(|(other, _)| *other == place);
             if !is_taken_away {
                 work += pressure * displacement(table, place, &other.near);
             }
         }
         work
+    }
+
+    /// Pressure at a place.
+    fn at(&self, place: usize) -> f64 {
+        let found = self.near.binary_search_by_key(&place, |&(other, _)| other);
+        found.map_or(0.0, |k| self.near[k].1)
     }
 }
 

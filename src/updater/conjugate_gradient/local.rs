@@ -9,7 +9,8 @@ use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
 
 /// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but
-/// that of K to answer it, takes off K.
+/// that of K to answer it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds
+/// to pressures.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Local {
     pub(super) node: usize,
@@ -17,6 +18,13 @@ pub(super) struct Local {
     pub(super) contact: Vec<u32>,
     /// x.
     pub(super) weights: Vec<f64>,
+}
+
+impl Local {
+    /// Whether the node is in contact.
+    pub(super) fn is_in_contact(&self) -> bool {
+        self.contact.contains(&(self.node as u32))
+    }
 }
 
 /// Offsets to the nodes around a node, nearest first.
@@ -101,9 +109,35 @@ impl Neighbourhood {
     /// The local solution of a node out of contact, in single precision: it enters a Schur complement by
     /// the square of its error.
     pub(super) fn solve(&self, table: &KernelTable, set: &NodeSet, node: usize) -> Local {
-        let contact = self.nearest(set, node);
+        let own = table.place(node);
+        let coupling = |place: usize| table.between(place, own);
+        Self::answer(table, node, self.nearest(set, node), coupling)
+    }
+
+    /// The local solution of a node in contact.
+    pub(super) fn solve_inside(&self, table: &KernelTable, set: &NodeSet, node: usize) -> Local {
+        let mut contact = self.nearest(set, node);
+        if !contact.contains(&(node as u32)) {
+            contact.push(node as u32);
+        }
+        let (own, unit) = (table.place(node), table.self_influence());
+        let mut local =
+            Self::answer(table, node, contact, |place| if place == own { unit } else { 0.0 });
+        for x in &mut local.weights {
+            *x /= unit;
+        }
+        local
+    }
+
+    /// What takes a displacement off some nodes.
+    fn answer(
+        table: &KernelTable,
+        node: usize,
+        contact: Vec<u32>,
+        displacement: impl Fn(usize) -> f64,
+    ) -> Local {
         let places: Vec<usize> = contact.iter().map(|&other| table.place(other as usize)).collect();
-        let (size, own, unit) = (contact.len(), table.place(node), table.self_influence().recip());
+        let (size, unit) = (contact.len(), table.self_influence().recip());
         let mut matrix = vec![0.0_f32; size * size];
         for (j, &place) in places.iter().enumerate() {
             let column = &mut matrix[j * size + j..(j + 1) * size];
@@ -111,8 +145,8 @@ impl Neighbourhood {
                 *value = (table.between(other, place) * unit) as f32;
             }
         }
-        let coupling = places.iter().map(|&place| (table.between(place, own) * unit) as f32);
-        let mut x: Vec<f32> = coupling.collect();
+        let mut x: Vec<f32> =
+            places.iter().map(|&place| (displacement(place) * unit) as f32).collect();
         vectorized(
             #[inline(always)]
             || solve_in_place(&mut matrix, size, &mut x),

@@ -1,9 +1,11 @@
 //! Solutions by conjugate gradients and FFT, without a factor.
 
+mod both;
 mod equilibrium;
 mod galerkin;
 mod instants;
 mod local;
+mod plastic_sums;
 mod proposed;
 mod row_sums;
 mod solutions;
@@ -14,7 +16,8 @@ mod tolerances;
 mod tuning;
 
 use super::{
-    Iterations, Left, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor, check_count,
+    Behind, Beside, Iterations, Left, LinearUpdater, Method, Proposal, Schur, Solution, Solved,
+    WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
 use crate::krylov::check_cells;
@@ -202,6 +205,60 @@ impl Iterations for ConjugateGradient {
         inside(|| solutions.solve_apart(criteria, problem, contact, at, &mut solved))?;
         *solution = solved.solution;
         Ok(())
+    }
+
+    /// # Errors
+    ///
+    /// Those of [`propose`](Iterations::propose).
+    fn propose_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: [&[usize]; 2],
+        beside: &Beside<'_>,
+        schur: &mut Schur,
+    ) -> Result<Proposal, Error> {
+        nodes.into_iter().try_for_each(|nodes| problem.check_nodes(nodes))?;
+        Iterations::check_cells(self, problem)?;
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        check_count(solutions.count(), contact.len())?;
+        inside(|| {
+            let (complement, proposal) =
+                solutions.propose_both(criteria, problem, contact, nodes, beside)?;
+            schur.clone_from(complement);
+            Ok(proposal)
+        })
+    }
+
+    fn advance_behind(
+        &mut self,
+        behind: &Behind<'_>,
+        span: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let criteria = self.criteria;
+        let aim = if span < f64::INFINITY { Aim::Span(span) } else { Aim::Exact };
+        let solutions = self.solutions(behind.problem, behind.contact)?;
+        inside(|| solutions.advance_behind(criteria, behind, aim, solved))
+    }
+
+    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
+        let criteria = self.criteria;
+        let solutions = self.solutions(behind.problem, behind.contact)?;
+        inside(|| solutions.probe_behind(criteria, behind, error))
+    }
+
+    fn solve_alone(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        let mut other = Self { criteria: self.criteria, solutions: None };
+        let count = contact.len();
+        Iterations::solve_apart(&mut other, problem, contact, count, approach, solution)
     }
 
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {

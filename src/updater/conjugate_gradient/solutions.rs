@@ -1,10 +1,14 @@
 //! The solution of the path, the one before it, and solutions apart from them.
 
+mod behind;
+
 use std::mem;
 
+use super::both::Both;
 use super::equilibrium::Equilibrium;
 use super::instants::Instants;
 use super::local::Neighbourhood;
+use super::plastic_sums::PlasticSums;
 use super::proposed::Proposed;
 use super::row_sums::RowSums;
 use super::solver::Solver;
@@ -20,8 +24,9 @@ pub(super) struct Solutions {
     solver: Solver,
     neighbourhood: Neighbourhood,
     now: Equilibrium,
-    /// Where the last window began: its prefixes start from there.
+    /// Where the last window began: its prefixes start from there. On these nodes.
     before: Option<Equilibrium>,
+    solved_before: Vec<usize>,
     instants: Instants,
     sums: RowSums,
     proposed: Proposed,
@@ -29,6 +34,17 @@ pub(super) struct Solutions {
     directions: Directions,
     /// The nodes of that contact.
     solved: Vec<usize>,
+    /// The proposed nodes on a path on which nodes yield, what has happened to them since, and what sums answer to them.
+    both: Option<Both>,
+    passage: Option<Passage>,
+    plastic_sums: PlasticSums,
+}
+
+/// What has happened to proposed nodes of both kinds.
+#[derive(Debug, Clone, Default)]
+struct Passage {
+    joined: Vec<usize>,
+    fixed: Vec<(usize, f64)>,
 }
 
 impl Solutions {
@@ -39,11 +55,15 @@ impl Solutions {
             neighbourhood: Neighbourhood::new(problem),
             now: Equilibrium::zero(nodes),
             before: None,
+            solved_before: Vec::new(),
             instants: Instants::default(),
             sums: RowSums::start(0, vec![0.0; nodes]),
             proposed: Proposed::default(),
             directions: Directions::default(),
             solved: Vec::new(),
+            both: None,
+            passage: None,
+            plastic_sums: PlasticSums::default(),
         }
     }
 
@@ -64,6 +84,7 @@ impl Solutions {
         self.now = Equilibrium { count: contact.len(), approach, serves: 0.0, load, rate };
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
         self.solved = contact.order().to_vec();
+        (self.both, self.passage) = (None, None);
     }
 
     /// The grid of the problem.
@@ -134,12 +155,13 @@ impl Solutions {
             match self.solve_from(criteria, problem, contact, (contact.len(), approach), aim, &now)
             {
                 Ok((equilibrium, directions)) => {
+                    let solved = mem::replace(&mut self.solved, contact.order().to_vec());
                     if now.count < contact.len() && now.load.is_known() {
                         self.before = Some(now);
+                        self.solved_before = solved;
                     }
                     self.now = equilibrium;
                     self.directions = directions;
-                    self.solved = contact.order().to_vec();
                 }
                 Err(error) => {
                     self.now = now;
@@ -190,7 +212,8 @@ impl Solutions {
         at: (usize, f64),
         solved: &mut Solved,
     ) -> Result<(), Error> {
-        let equilibrium = if self.now.count <= at.0 && self.now.load.is_known() {
+        let belongs = || self.solved.iter().all(|&node| contact.contains(node));
+        let equilibrium = if self.now.count <= at.0 && self.now.load.is_known() && belongs() {
             let now = mem::take(&mut self.now);
             let found = self.solve_from(criteria, problem, contact, at, Aim::Exact, &now);
             self.now = now;
@@ -297,8 +320,9 @@ impl Solutions {
     /// Goes back to the first nodes of the contact.
     pub(super) fn truncate(&mut self, left: &ContactSequence) {
         match self.before.take() {
-            Some(before) if before.count == left.len() => {
+            Some(before) if self.was_on(&before, left) => {
                 self.now = before;
+                self.passage = None;
                 self.instants.clear();
                 self.directions = Directions::default();
                 if self.sums.count() > left.len() {
@@ -308,6 +332,12 @@ impl Solutions {
             }
             _ => self.keep(left),
         }
+    }
+
+    /// Whether the solution before is one on a contact.
+    fn was_on(&self, before: &Equilibrium, left: &ContactSequence) -> bool {
+        let is_in = |&node: &usize| left.contains(node);
+        before.count == left.len() && self.solved_before.iter().all(is_in)
     }
 
     /// Keeps of all solutions, as starts, what belongs to nodes that are left in contact.
@@ -321,6 +351,8 @@ impl Solutions {
         self.now.count = left.len();
         self.sums.keep(left);
         self.solved = left.order().to_vec();
+        (self.both, self.passage) = (None, None);
+        self.plastic_sums.keep(left);
     }
 }
 

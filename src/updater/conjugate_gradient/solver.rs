@@ -1,9 +1,11 @@
 //! The operator of a contact and its preconditioner.
 
 use crate::contact::ContactSequence;
-use crate::krylov::{Directions, Equation, Field, LinearSystem, NodeSet, Operator, Preconditioner};
 #[cfg(test)]
-use crate::krylov::{SINGLE, worst};
+use crate::krylov::worst;
+use crate::krylov::{
+    Directions, Equation, Field, LinearSystem, NodeSet, Operator, Preconditioner, SINGLE, dot,
+};
 use crate::{Error, Problem};
 
 /// The influence matrix of a contact set, and what approximates its inverse.
@@ -46,6 +48,22 @@ impl Solver {
             field.drift = 0.0;
         }
         Ok(())
+    }
+
+    /// A field with other pressures, on any nodes; what the change displaces comes to displacements that are known, in single precision.
+    pub(super) fn moved(&mut self, field: &Field, pressure: Vec<f64>) -> Result<Field, Error> {
+        if !field.is_known() {
+            return Ok(Field::of(pressure));
+        }
+        let mut changed = NodeSet::new(pressure.len());
+        changed.assign(|node| pressure[node] != field.pressure[node]);
+        let mut change = Vec::new();
+        changed.fill(&mut change, |_, node| pressure[node] - field.pressure[node]);
+        let mut displacement = field.displacement.clone();
+        let most = self.operator.add(&changed, &change, &mut displacement)?;
+        let norm = self.operator.noise() * dot(&change, &change).sqrt();
+        let drift = field.drift.hypot((SINGLE * most).hypot(SINGLE * norm));
+        Ok(Field { pressure, displacement, drift })
     }
 
     /// Solves an equation: see [`LinearSystem::solve`].

@@ -2,7 +2,8 @@
 
 mod short_range;
 
-use super::even::{Even, cosine_of_turn};
+use super::cosines::{CosineSeries, sinc};
+use super::even::Even;
 use super::symmetric::{self, Symmetric, half_space, in_long_sides, least_gauge, wave_number};
 use crate::kernel::check_periodic_cells;
 use crate::kernel::gauge::of_half_space;
@@ -147,12 +148,11 @@ fn symbol(cells: &Grid) -> Result<Even, Error> {
     let short_range = ShortRange::new(cells.dx(), cells.dy())?;
     // The sum over the rows b of S, for each wave along x and each row.
     let rows = short_range.rows();
-    let cosines_x = twice_cosines(nx);
-    let cosines_y = twice_cosines(ny);
+    let (series_x, series_y) = (CosineSeries::new(nx), CosineSeries::new(ny));
     let mut along_x = vec![0.0; (nx / 2 + 1) * rows];
     for (kx, sums) in along_x.chunks_exact_mut(rows).enumerate() {
         for (b, sum) in sums.iter_mut().enumerate() {
-            *sum = cosine_series(short_range.row(b), &cosines_x, kx);
+            *sum = series_x.sum(short_range.row(b), kx);
         }
     }
     Ok(Even::from_fn((nx, ny), |kx, ky| {
@@ -167,33 +167,8 @@ fn symbol(cells: &Grid) -> Result<Even, Error> {
             * libm::erfc(q / (2.0 * ALPHA))
             * sinc(kx as f64 / nx as f64)
             * sinc(ky as f64 / ny as f64);
-        long_range + cosine_series(sums, &cosines_y, ky)
+        long_range + series_y.sum(sums, ky)
     }))
-}
-
-/// 2 cos 2πj/n for j = 0..n.
-fn twice_cosines(n: usize) -> Vec<f64> {
-    (0..n).map(|j| 2.0 * cosine_of_turn(j, n)).collect()
-}
-
-/// f(0) + 2 Σ f(a) cos 2πak/n, from the small terms at the end to the large ones.
-fn cosine_series(terms: &[f64], twice_cosines: &[f64], k: usize) -> f64 {
-    let n = twice_cosines.len();
-    let Some((first, terms)) = terms.split_first() else {
-        return 0.0;
-    };
-    let mut sum = 0.0;
-    let mut phase = (terms.len() + 1) * k % n;
-    for term in terms.iter().rev() {
-        phase = if phase < k { phase + n - k } else { phase - k };
-        sum += term * twice_cosines[phase];
-    }
-    sum + first
-}
-
-fn sinc(x: f64) -> f64 {
-    let x = std::f64::consts::PI * x;
-    if x == 0.0 { 1.0 } else { libm::sin(x) / x }
 }
 
 #[cfg(test)]

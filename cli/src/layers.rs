@@ -1,0 +1,95 @@
+//! Layers on a base, as a command line asks for them.
+
+use std::str::FromStr;
+
+use asperity::kernel::{Base, Layer, LayeredBody};
+use asperity_cli::number::quantity;
+
+use crate::elasticity::Material;
+
+/// A layer: `210e9,0.3,20e-6` or `gold,2e-6`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LayerArgument(pub(crate) Layer);
+
+impl FromStr for LayerArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "neither 'E,NU,H' nor 'NAME,H', with the thickness H in metres";
+        let (material, thickness) = text.rsplit_once(',').ok_or(expected)?;
+        let thickness: f64 = thickness.trim().parse().map_err(|_| expected)?;
+        let (young, poisson) = material.parse::<Material>().map_err(|_| expected)?.elastic();
+        Ok(Self(Layer { young, poisson, thickness }))
+    }
+}
+
+/// What they are bonded to: `rigid`, or a material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BaseArgument(pub(crate) Base);
+
+impl FromStr for BaseArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "rigid" {
+            return Ok(Self(Base::Rigid));
+        }
+        let material =
+            text.parse::<Material>().map_err(|error| format!("not 'rigid', and {error}"))?;
+        let (young, poisson) = material.elastic();
+        Ok(Self(Base::HalfSpace { young, poisson }))
+    }
+}
+
+/// `5 µm of E = 450 GPa, ν = 0.25 on E = 210 GPa, ν = 0.30 against rigid`.
+pub(crate) fn described(body: &LayeredBody) -> String {
+    let elastic =
+        |young: f64, poisson: f64| format!("E = {}, ν = {poisson:.2}", quantity(young, "Pa", 4));
+    let layers = body.layers().iter().map(|layer| {
+        format!("{} of {}", quantity(layer.thickness, "m", 4), elastic(layer.young, layer.poisson))
+    });
+    let layers: Vec<String> = layers.collect();
+    let base = match body.base() {
+        Base::Rigid => "a rigid base".to_string(),
+        Base::HalfSpace { young, poisson } => elastic(young, poisson),
+    };
+    let against = body.counterpart().map_or_else(
+        || "rigid".to_string(),
+        |e_star| format!("E* = {}", quantity(e_star, "Pa", 4)),
+    );
+    format!("{} on {base} against {against}", layers.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_are_named_or_given_in_numbers() {
+        let layer = |text: &str| text.parse::<LayerArgument>().map(|found| found.0);
+        let expected = Layer { young: 210e9, poisson: 0.3, thickness: 20e-6 };
+        assert_eq!(layer("210e9,0.3,20e-6"), Ok(expected));
+        assert_eq!(layer("steel, 20e-6"), Ok(expected));
+        for bad in ["", "steel", "210e9,0.3", "stone,1e-6", "210e9,0.3,thick", "1,2,3,4"] {
+            assert!(layer(bad).is_err(), "{bad}");
+        }
+        let base = |text: &str| text.parse::<BaseArgument>().map(|found| found.0);
+        assert_eq!(base("rigid"), Ok(Base::Rigid));
+        assert_eq!(base("steel"), Ok(Base::HalfSpace { young: 210e9, poisson: 0.3 }));
+        assert!(base("soft").is_err());
+    }
+
+    #[test]
+    fn bodies_are_said_in_words() -> Result<(), asperity::Error> {
+        let coat = Layer { young: 450e9, poisson: 0.25, thickness: 5e-6 };
+        let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+        let body = LayeredBody::new(&[coat, Layer { thickness: 1e-3, ..coat }], steel)?;
+        assert_eq!(
+            described(&body),
+            "5 µm of E = 450 GPa, ν = 0.25, 1 mm of E = 450 GPa, ν = 0.25 on E = 210 GPa, ν = 0.30 against rigid"
+        );
+        let body = LayeredBody::new(&[coat], Base::Rigid)?.against(1e9)?;
+        assert!(described(&body).ends_with("on a rigid base against E* = 1 GPa"));
+        Ok(())
+    }
+}

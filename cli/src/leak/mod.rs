@@ -1,0 +1,187 @@
+//! `asperity leak`: how much of a fluid leaks through the gap along a recorded path.
+//!
+//! Prints the leak rate at states of the path, or one document of JSON, and writes `leak.csv`, `leak.png`, and for each load a map
+//! of the fluid pressure and one of the flux.
+
+mod charts;
+mod maps;
+mod table;
+mod words;
+
+use std::path::PathBuf;
+
+use asperity::leak::{Leak, LeakCurve, Seal};
+use asperity::record::LoadingRecord;
+use asperity::surface::Axis;
+use asperity::updater::ConjugateGradient;
+use asperity::{LoadingSolver, LoadingState};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::{answer, panel, speech};
+use clap::{Args, ValueEnum};
+
+use crate::values::positive;
+
+/// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
+///
+/// A fluid is pressed from one edge of the surface to the opposite one. The other two edges are closed, unless the half-space is periodic.
+/// Prints the leak rate at states of the path that are chosen where it changes, up to the one at which the last channel closes, and writes
+/// leak.csv and leak.png; for each --load, or else for the last state that leaks, it writes maps of the fluid pressure and of the flux.
+///
+/// The pressure of the fluid does not open the gap. The leak rate is that of the grid: shortly before the last channel closes, a constriction
+/// of few cells decides.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// File that `asperity path --record` has written
+    #[arg(value_name = "FILE.npz")]
+    record: PathBuf,
+
+    /// Viscosity of the fluid in Pa s: water 1e-3, air 1.8e-5, oils 1e-2 to 1
+    #[arg(long, value_name = "PA_S", allow_negative_numbers = true, value_parser = positive)]
+    viscosity: f64,
+
+    /// Pressure drop of the fluid from edge to edge
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    pressure_drop: f64,
+
+    /// Direction in which the fluid is pressed
+    #[arg(long, value_enum)]
+    along: Along,
+
+    /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: the last state that leaks]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    load: Vec<f64>,
+
+    /// Number of states at which the leak rate along the path is computed; 0 for none but those of --load
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    states: usize,
+
+    /// Print one document of JSON and nothing else: the last of the loads, or of the states, and all of them in `states`
+    #[arg(long)]
+    json: bool,
+
+    /// Directory for the files, created if it does not exist
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+/// [`Axis`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Along {
+    /// The first index of an array, the columns of an image
+    X,
+    /// The second index of an array, the rows of an image
+    Y,
+}
+
+impl From<Along> for Axis {
+    fn from(along: Along) -> Self {
+        match along {
+            Along::X => Self::X,
+            Along::Y => Self::Y,
+        }
+    }
+}
+
+/// A record, its path, and what leaks.
+struct Work {
+    record: LoadingRecord,
+    path: LoadingSolver<ConjugateGradient>,
+    seal: Seal,
+}
+
+impl Work {
+    fn new(options: &Options) -> Result<Self, Failure> {
+        let file = options.record.display();
+        let record = LoadingRecord::read_npz(&options.record)
+            .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
+        let failed = |error| Failure::new("cannot compute a leak", error);
+        let path = record.replay().map_err(failed)?;
+        let along = options.along.into();
+        let seal = Seal::new(options.viscosity, options.pressure_drop, along).map_err(failed)?;
+        Ok(Self { record, path, seal })
+    }
+
+    /// The states at the loads asked for.
+    fn states(&self, loads: &[f64]) -> Result<Vec<LoadingState>, Failure> {
+        let Some(last) = self.record.states().last() else {
+            return Err(Failure::request("the record holds no state"));
+        };
+        let at = |load: &f64| {
+            self.record.history().at_load(*load).ok_or_else(|| {
+                Failure::request(format!(
+                    "the path has no state at {}: it ends at {}",
+                    quantity(*load, "N", 6),
+                    quantity(last.contact.load, "N", 6)
+                ))
+            })
+        };
+        loads.iter().map(at).collect()
+    }
+
+    fn leak(&mut self, state: &LoadingState) -> Result<Leak, Failure> {
+        let what = format!("cannot compute the leak at {}", quantity(state.contact.load, "N", 6));
+        self.seal.leak_at(&mut self.path, state).map_err(|error| Failure::new(what, error))
+    }
+
+    fn curve(&mut self, states: usize) -> Result<LeakCurve, Failure> {
+        let history = self.record.history();
+        let curve = self.seal.curve(&mut self.path, history, states);
+        curve.map_err(|error| Failure::new("cannot compute the leak along the path", error))
+    }
+}
+
+/// Reads the record, computes the leaks, and writes the files.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
+    if options.states == 1 || (options.states == 0 && options.load.is_empty()) {
+        return Err(Failure::request(
+            "--states takes 0, with a --load, or at least 2 states: the first and the last one that leaks",
+        ));
+    }
+    let mut work = Work::new(options)?;
+    let mut drawn = work.states(&options.load)?;
+    panel::register_font()?;
+    let out = &options.out;
+    std::fs::create_dir_all(out)
+        .map_err(|error| Failure::new(format!("cannot create {}", out.display()), error))?;
+    words::print_seal(&work.record, &work.seal);
+
+    let mut outcome = Outcome::default();
+    let mut documents = Vec::new();
+    if options.states > 0 {
+        let curve = work.curve(options.states)?;
+        documents.extend(curve.points.iter().map(words::point));
+        words::print_curve(&curve, &work.record);
+        outcome.written(table::write(&curve, &out.join("leak.csv")));
+        match charts::draw(&curve, &out.join("leak.png")) {
+            Ok(drawn) => drawn.into_iter().for_each(|name| outcome.written(Ok(name))),
+            Err(failure) => outcome.note(Err(failure)),
+        }
+        if options.load.is_empty() {
+            let leaking = curve.points.iter().rev().find(|point| point.leak_rate > 0.0);
+            drawn.extend(leaking.map(|point| point.state));
+        }
+    }
+    for (k, state) in drawn.iter().enumerate() {
+        match work.leak(state) {
+            Ok(leak) => {
+                words::print_leak(state, &leak, &work.seal);
+                if !options.load.is_empty() {
+                    documents.push(words::leak(state, &leak));
+                }
+                outcome.all_written(maps::draw(&work.record, (state, &leak), &work.seal, (out, k)));
+            }
+            // What was found before is not lost.
+            Err(failure) => outcome.note(Err(failure)),
+        }
+    }
+    if options.json
+        && let Some(document) = words::document(documents)
+    {
+        answer!("{document}");
+    }
+    outcome.finish()
+}

@@ -1,0 +1,174 @@
+//! What is printed.
+
+use asperity::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
+use asperity::record::LoadingRecord;
+use asperity::surface::Axis;
+use asperity::{Boundary, LoadingState};
+use asperity_cli::number::{quantity, scientific};
+use asperity_cli::say;
+use serde_json::{Value, json};
+
+use crate::columns::{Column, print};
+
+/// Rows of the table on the screen.
+const ROWS: usize = 14;
+
+fn axis(seal: &Seal) -> &'static str {
+    match seal.along() {
+        Axis::X => "x",
+        Axis::Y => "y",
+    }
+}
+
+/// What is pressed through, and where.
+pub(super) fn print_seal(record: &LoadingRecord, seal: &Seal) {
+    let (nx, ny) = record.grid().shape();
+    let sides = match record.kernel().boundary {
+        Boundary::Free => "sides closed",
+        Boundary::Periodic => "sides joined, as the half-space is periodic",
+    };
+    say!("{} states on {nx} x {ny} nodes", record.states().len());
+    say!(
+        "fluid of {} under {} along {}, {sides}",
+        quantity(seal.viscosity(), "Pa s", 4),
+        quantity(seal.pressure_drop(), "Pa", 4),
+        axis(seal)
+    );
+    say!(
+        "nothing flows through contact or across corners of cells; the fluid does not open the gap"
+    );
+    say!();
+}
+
+/// Some of the points, and where the last channel closes.
+pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord) {
+    let points = &curve.points;
+    let some = (0..points.len())
+        .filter(|k| (points.len() - 1 - k).is_multiple_of(1 + points.len() / ROWS));
+    let rows: Vec<&LeakPoint> = some.map(|k| &points[k]).collect();
+    let of = |quantity: fn(&LeakPoint) -> f64| rows.iter().map(move |point| quantity(point));
+    let narrowest = |point: &LeakPoint| point.constriction.map_or(f64::NAN, |c| c.gap);
+    print(&[
+        Column::new("load", "N", of(|point| point.state.contact.load)),
+        Column::new("pressure", "Pa", of(|point| point.state.contact.mean_pressure())),
+        Column::percent("area", of(|point| point.state.contact.contact_area_fraction)),
+        Column::new("mean gap", "m", of(|point| point.state.contact.mean_gap)),
+        Column::new("narrowest", "m", of(narrowest)),
+        Column::plain("leak rate", "m³/s", of(|point| point.leak_rate)),
+        Column::plain("mean field", "m³/s", of(|point| point.mean_field_leak_rate)),
+        Column::percent(
+            "drop there",
+            of(|point| point.constriction.map_or(f64::NAN, |c| c.pressure_drop)),
+        ),
+        Column::percent(
+            "lost there",
+            of(|point| point.constriction.map_or(f64::NAN, |c| c.dissipation)),
+        ),
+    ]);
+    say!();
+    say!("narrowest: the least gap of the widest channel, which all fluid passes that takes it");
+    say!(
+        "drop there: share of the pressure drop at that cell; lost there: share of the power in the 9 x 9 cells about it"
+    );
+    say!("mean field: Bruggeman's estimate for a random mixture of these gaps");
+    match &curve.closing {
+        Some(state) => say!(
+            "the last channel closes at W = {}, A/A0 = {:.2} %, mean pressure {}: from there on the leak rate is 0",
+            quantity(state.contact.load, "N", 4),
+            100.0 * state.contact.contact_area_fraction,
+            quantity(state.contact.mean_pressure(), "Pa", 4)
+        ),
+        None => {
+            let reached = record.states().last().map_or(0.0, |s| s.contact.contact_area_fraction);
+            say!("it still leaks at the end of the path, at {:.2} % contact", 100.0 * reached);
+        }
+    }
+    say!();
+}
+
+/// The leak at one state.
+pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
+    let contact = &state.contact;
+    let at = format!(
+        "W = {}, A/A0 = {:.2} %, mean pressure {}",
+        quantity(contact.load, "N", 4),
+        100.0 * contact.contact_area_fraction,
+        quantity(contact.mean_pressure(), "Pa", 4)
+    );
+    let Some(narrowest) = leak.constriction else {
+        say!("{at}: no channel leads along {}, and the leak rate is 0", axis(seal));
+        return;
+    };
+    say!("{at}: leak rate {} m³/s", scientific(leak.leak_rate, 4));
+    say!(
+        "  narrowest at node ({}, {}), where the gap is {}: {:.1} % of the pressure drop at its cell, {:.1} % of the power in the 9 x 9 cells about it",
+        narrowest.node.0,
+        narrowest.node.1,
+        quantity(narrowest.gap, "m", 4),
+        100.0 * narrowest.pressure_drop,
+        100.0 * narrowest.dissipation
+    );
+    say!(
+        "  the fluid flows through {} nodes; {} cut off; conserved to {:.0e}",
+        leak.flowing_nodes,
+        match leak.pools {
+            1 => "1 pool is".to_string(),
+            pools => format!("{pools} pools are"),
+        },
+        leak.imbalance
+    );
+}
+
+/// A point of the curve as JSON, in SI units.
+pub(super) fn point(point: &LeakPoint) -> Value {
+    let mut value = state(&point.state);
+    value["leak_rate"] = json!(point.leak_rate);
+    value["mean_field_leak_rate"] = json!(point.mean_field_leak_rate);
+    value["permeability"] = json!(point.permeability);
+    value["transverse_permeability"] = json!(point.transverse_permeability);
+    value["constriction"] = constriction(point.constriction);
+    value["imbalance"] = json!(point.imbalance);
+    value
+}
+
+/// The leak at one state, with what there is besides.
+pub(super) fn leak(at: &LoadingState, leak: &Leak) -> Value {
+    let mut value = state(at);
+    value["leak_rate"] = json!(leak.leak_rate);
+    value["mean_field_leak_rate"] = json!(leak.mean_field_leak_rate);
+    value["permeability"] = json!(leak.permeability);
+    value["transverse_permeability"] = json!(leak.transverse_permeability);
+    value["constriction"] = constriction(leak.constriction);
+    value["imbalance"] = json!(leak.imbalance);
+    value["flowing_nodes"] = json!(leak.flowing_nodes);
+    value["pools"] = json!(leak.pools);
+    value
+}
+
+fn state(state: &LoadingState) -> Value {
+    json!({
+        "step": state.step,
+        "load": state.contact.load,
+        "mean_pressure": state.contact.mean_pressure(),
+        "contact_area_fraction": state.contact.contact_area_fraction,
+        "mean_gap": state.contact.mean_gap,
+    })
+}
+
+fn constriction(constriction: Option<CriticalConstriction>) -> Value {
+    constriction.map_or(Value::Null, |narrowest| {
+        json!({
+            "node": [narrowest.node.0, narrowest.node.1],
+            "gap": narrowest.gap,
+            "pressure_drop": narrowest.pressure_drop,
+            "dissipation": narrowest.dissipation,
+        })
+    })
+}
+
+/// The last of all states, with all of them.
+pub(super) fn document(states: Vec<Value>) -> Option<Value> {
+    let mut document = states.last()?.clone();
+    document["states"] = Value::Array(states);
+    Some(document)
+}

@@ -1,0 +1,206 @@
+//! What a joint conducts, and its laws for finite elements: columns of `path.csv`, `conductance.csv` and `interface.*`.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use asperity::LoadingState;
+use asperity::joint::{Conduction, FeProgram, InterfaceTable};
+use asperity::loading::History;
+use asperity_cli::outcome::{self, Failure};
+use clap::{Args, ValueEnum};
+
+use super::job::Job;
+use crate::values::positive;
+
+/// Conduction and tables for finite elements.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Joint")]
+pub(super) struct Joint {
+    /// Add the electrical conductance of the contact to path.csv: resistivities of both bodies, or of one if the other conducts
+    /// perfectly
+    #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    resistivity: Vec<f64>,
+
+    /// Add the thermal conductance of the contact to path.csv: thermal conductivities of both bodies in W/(m K), or of one if the other
+    /// conducts perfectly
+    #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    conductivity: Vec<f64>,
+
+    /// Thermal conductivity in W/(m K) of what fills the gap, in parallel to the contact: air 0.026
+    #[arg(long, value_name = "W_M_K", allow_negative_numbers = true, value_parser = positive, requires = "conductivity")]
+    gap_conductivity: Option<f64>,
+
+    /// Temperature jump distance of a gas in the gap, the sum of both surfaces: air about 3.7e-7 [default: 0]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "gap_conductivity")]
+    jump_distance: Option<f64>,
+
+    /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height from valley to peak
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    unresolved_roughness: Option<f64>,
+
+    /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean gap closes); over the
+    /// pressure the conductance, if there is one, and with --friction tangential stiffness and slip limit
+    #[arg(long, value_enum, value_name = "PROGRAM")]
+    fe_table: Option<Program>,
+
+    /// Greatest relative error of linear interpolation in that table
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = positive, default_value_t = 0.01, requires = "fe_table")]
+    fe_error: f64,
+
+    /// Coefficient of friction for that table
+    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = positive, requires = "fe_table")]
+    friction: Option<f64>,
+
+    /// Tangential over normal compliance, E*/G* [default: of --material and --against; (2 - ν)/(2 - 2ν) for one of them]
+    #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive, requires = "friction")]
+    compliance_ratio: Option<f64>,
+}
+
+/// [`FeProgram`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Program {
+    /// interface.inp for Abaqus
+    Abaqus,
+    /// interface.inp for CalculiX
+    Calculix,
+    /// interface.i, functions for MOOSE
+    Moose,
+    /// interface.csv
+    Csv,
+}
+
+impl Program {
+    fn named(self) -> (FeProgram, &'static str) {
+        match self {
+            Self::Abaqus => (FeProgram::Abaqus, "interface.inp"),
+            Self::Calculix => (FeProgram::CalculiX, "interface.inp"),
+            Self::Moose => (FeProgram::Moose, "interface.i"),
+            Self::Csv => (FeProgram::Csv, "interface.csv"),
+        }
+    }
+}
+
+/// A conductance with the name of its column.
+pub(super) type Named = (&'static str, Conduction);
+
+impl Joint {
+    /// What is to be conducted between bodies of a composite modulus.
+    pub(super) fn conductions(&self, e_star: f64) -> Result<Vec<Named>, Failure> {
+        let failed = |error| Failure::new("cannot compute a conductance", error);
+        let mut all = Vec::new();
+        for (option, values) in
+            [("--resistivity", &self.resistivity), ("--conductivity", &self.conductivity)]
+        {
+            if values.len() > 2 {
+                return Err(Failure::request(format!(
+                    "{option} takes the values of one body or of two"
+                )));
+            }
+        }
+        if !self.resistivity.is_empty() {
+            let sum = self.resistivity.iter().sum();
+            let current = Conduction::electrical(e_star, sum).map_err(failed)?;
+            all.push(("electrical_conductance", current));
+        }
+        if !self.conductivity.is_empty() {
+            let sum = self.conductivity.iter().map(|conductivity| 1.0 / conductivity).sum();
+            let mut heat = Conduction::thermal(e_star, sum).map_err(failed)?;
+            if let Some(gap) = self.gap_conductivity {
+                heat = heat.with_gap(gap, self.jump_distance.unwrap_or(0.0)).map_err(failed)?;
+            }
+            all.push(("thermal_conductance", heat));
+        }
+        if self.unresolved_roughness.is_some() && all.is_empty() {
+            return Err(Failure::request(
+                "--unresolved-roughness bounds a conductance: give --resistivity or --conductivity too",
+            ));
+        }
+        if self.fe_table.is_some() && all.len() > 1 {
+            return Err(Failure::request(
+                "--fe-table has one conductance: give --resistivity or --conductivity, not both",
+            ));
+        }
+        Ok(all)
+    }
+
+    /// E*/G* of the bodies: `1/G* = Σ (2 − ν) / (4 G)`.
+    fn compliance_ratio(&self, e_star: f64, elastic: &[[f64; 2]]) -> Result<f64, Failure> {
+        if let Some(ratio) = self.compliance_ratio {
+            return Ok(ratio);
+        }
+        if elastic.is_empty() {
+            return Err(Failure::request(
+                "the tangential stiffness needs Poisson's ratio: give --material, or --compliance-ratio (1.21 for 0.3)",
+            ));
+        }
+        let compliance = |[e, nu]: &[f64; 2]| (2.0 - nu) * (1.0 + nu) / (2.0 * e);
+        Ok(e_star * elastic.iter().map(compliance).sum::<f64>())
+    }
+
+    /// What cannot be done, before the work.
+    pub(super) fn check(&self, job: &Job) -> Result<Vec<Named>, Failure> {
+        if self.friction.is_some() {
+            self.compliance_ratio(job.e_star(), job.elastic())?;
+        }
+        self.conductions(job.e_star())
+    }
+
+    /// Writes the files that were asked for.
+    pub(super) fn write(
+        &self,
+        job: &Job,
+        states: &[LoadingState],
+        directory: &Path,
+    ) -> Result<Vec<PathBuf>, Failure> {
+        let conductions = self.conductions(job.e_star())?;
+        let history: History = states.iter().copied().collect();
+        let mut files = Vec::new();
+        if let Some(roughness) = self.unresolved_roughness {
+            let name = directory.join("conductance.csv");
+            let text = bounds(&history, &conductions, roughness);
+            let text = text.map_err(|error| Failure::writing(&name, error))?;
+            files.push(outcome::write(&name, text)?);
+        }
+        if let Some(program) = self.fe_table {
+            let (program, name) = program.named();
+            let name = directory.join(name);
+            let mut builder = InterfaceTable::builder(&history).tolerance(self.fe_error);
+            if let [(_, conduction)] = conductions[..] {
+                builder = builder.conduction(conduction);
+            }
+            if let Some(friction) = self.friction {
+                let ratio = self.compliance_ratio(job.e_star(), job.elastic())?;
+                builder = builder.friction(friction, ratio);
+            }
+            let table = builder.build().map_err(|error| Failure::writing(&name, error))?;
+            files.push(outcome::write(&name, table.text(program))?);
+        }
+        Ok(files)
+    }
+}
+
+/// A line for each state, with each conductance and its bounds.
+fn bounds(
+    history: &History,
+    conductions: &[Named],
+    roughness: f64,
+) -> Result<String, asperity::Error> {
+    let mut text = "step,load,mean_pressure".to_string();
+    let mut columns = Vec::new();
+    for (name, conduction) in conductions {
+        text += &format!(",{name},{name}_lower,{name}_upper");
+        columns.push((conduction, conduction.bounds(history, roughness)?));
+    }
+    text.push('\n');
+    for (k, state) in history.states().iter().enumerate() {
+        let contact = &state.contact;
+        // Writing to a text cannot fail.
+        let _ = write!(text, "{},{:e},{:e}", state.step, contact.load, contact.mean_pressure());
+        for (conduction, bounds) in &columns {
+            let value = conduction.of(contact)?.unwrap_or(f64::NAN);
+            let _ = write!(text, ",{value:e},{:e},{:e}", bounds[k].lower, bounds[k].upper);
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}

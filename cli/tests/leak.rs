@@ -1,0 +1,145 @@
+//! `asperity leak` on the record of a small path, and what `asperity path` writes of its joint.
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+
+use common::{Scratch, asperity, is_refused};
+use serde_json::Value;
+
+fn run(folder: &Scratch, arguments: &[&str]) -> std::io::Result<std::process::Output> {
+    let arguments: Vec<&OsStr> = arguments.iter().map(OsStr::new).collect();
+    asperity(&folder.0, &arguments).output()
+}
+
+const PATH: [&str; 10] = [
+    "path",
+    "--nodes",
+    "32",
+    "--periodic",
+    "love",
+    "--max-area-fraction",
+    "0.8",
+    "--record",
+    "path.npz",
+    "--out=path",
+];
+const LEAK: [&str; 8] =
+    ["leak", "path.npz", "--viscosity", "1e-3", "--pressure-drop", "1e5", "--along", "x"];
+
+/// Standard output is one document; its leak rate is that of the load asked for, and the table ends with 0 where the last channel closes.
+#[test]
+fn leaks_are_printed_and_drawn() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("leak")?;
+    assert!(run(&folder, &PATH)?.status.success());
+
+    let said = run(&folder, &[&LEAK[..], &["--states", "12", "--out", "seen"]].concat())?;
+    assert!(said.status.success());
+    let words = String::from_utf8(said.stdout)?;
+    assert!(words.contains("the last channel closes at W = "), "{words}");
+    let table = fs::read_to_string(folder.join("seen/leak.csv"))?;
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 13);
+    assert!(lines.iter().all(|line| line.len() == lines[0].len()));
+    let place = |name: &str| lines[0].iter().position(|other| *other == name).ok_or("no column");
+    let (load, rate) = (place("load")?, place("leak_rate")?);
+    let rates: Result<Vec<f64>, _> = lines[1..].iter().map(|line| line[rate].parse()).collect();
+    let rates = rates?;
+    assert!(rates.windows(2).all(|pair| pair[0] > pair[1]));
+    assert_eq!(rates.last(), Some(&0.0));
+    for picture in ["leak", "fluid_pressure_0", "flux_0"] {
+        let bytes = fs::read(folder.join("seen").join(picture).with_extension("png"))?;
+        assert!(bytes.starts_with(b"\x89PNG"), "{picture}");
+    }
+
+    // At the loads of the table: the same rates.
+    for k in [3, 8, 11] {
+        let newtons = lines[1 + k][load];
+        let at = ["--load", newtons, "--json", "--states", "0", "--out", "json"];
+        let said = run(&folder, &[&LEAK[..], &at].concat())?;
+        assert!(said.status.success());
+        let document: Value = serde_json::from_slice(&said.stdout)?;
+        assert_eq!(document["leak_rate"].as_f64(), Some(rates[k]));
+        assert_eq!(document["load"].as_f64(), Some(newtons.parse()?));
+        assert_eq!(document["states"].as_array().map(Vec::len), Some(1));
+        assert_eq!(document["constriction"].is_null(), rates[k] == 0.0);
+    }
+    let said = run(&folder, &[&LEAK[..], &["--json", "--states", "5", "--out", "json"]].concat())?;
+    let document: Value = serde_json::from_slice(&said.stdout)?;
+    assert_eq!(document["leak_rate"].as_f64(), Some(0.0));
+    assert_eq!(document["states"].as_array().map(Vec::len), Some(5));
+    assert_eq!(document["states"][0]["leak_rate"].as_f64(), Some(rates[0]));
+
+    is_refused(
+        &run(&folder, &[&LEAK[..], &["--load", "1e9"]].concat())?,
+        &["no state at 1 GN", "ends at"],
+    );
+    is_refused(&run(&folder, &[&LEAK[..], &["--states", "1"]].concat())?, &["--states"]);
+    is_refused(&run(&folder, &[&LEAK[..], &["--states", "0"]].concat())?, &["--states"]);
+    let bad = ["leak", "path.npz", "--viscosity", "0", "--pressure-drop", "1e5", "--along", "x"];
+    assert_eq!(run(&folder, &bad)?.status.code(), Some(2));
+    Ok(())
+}
+
+/// Columns and files of a joint; on a record as on a path that begins.
+#[test]
+fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("joint")?;
+    let begun = run(
+        &folder,
+        &[&PATH[..], &["--resistivity", "1.7e-8,1.7e-8", "--conductivity", "400"]].concat(),
+    )?;
+    assert!(begun.status.success());
+    let table = fs::read_to_string(folder.join("path/path.csv"))?;
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let names = &lines[0];
+    assert_eq!(names[names.len() - 2..], ["electrical_conductance", "thermal_conductance"]);
+    let place = names.iter().position(|name| *name == "interfacial_stiffness").ok_or("none")?;
+    for line in &lines[1..] {
+        let number = |k: usize| line[k].parse::<f64>();
+        let (stiffness, electrical) = (number(place)?, number(names.len() - 2)?);
+        // Assumed steel.
+        let e_star = 210e9 / 0.91;
+        let expected = 2.0 * stiffness / (e_star * 3.4e-8);
+        assert!((electrical / expected - 1.0).abs() < 1e-12);
+        let ratio = electrical / number(names.len() - 1)?;
+        assert!((ratio * 3.4e-8 * 400.0 - 1.0).abs() < 1e-12);
+    }
+
+    let again = ["path", "--resume", "path.npz", "--out", "again", "--conductivity", "400"];
+    for (program, file, words) in [
+        ("abaqus", "interface.inp", "*GAP CONDUCTANCE, PRESSURE\n"),
+        ("calculix", "interface.inp", "*FRICTION\n2.000000000000e-1, "),
+        ("moose", "interface.i", "[slip_limit_of_pressure]"),
+        (
+            "csv",
+            "interface.csv",
+            "pressure,overclosure,thermal_conductance,tangential_stiffness,slip_limit\n",
+        ),
+    ] {
+        let more = ["--fe-table", program, "--friction", "0.2", "--compliance-ratio", "1.2"];
+        assert!(run(&folder, &[&again[..], &more].concat())?.status.success());
+        let text = fs::read_to_string(folder.join("again").join(file))?;
+        assert!(text.contains(words), "{text}");
+    }
+    let more = ["--unresolved-roughness", "1e-8"];
+    assert!(run(&folder, &[&again[..], &more].concat())?.status.success());
+    let bounds = fs::read_to_string(folder.join("again/conductance.csv"))?;
+    assert!(bounds.starts_with(
+        "step,load,mean_pressure,thermal_conductance,thermal_conductance_lower,thermal_conductance_upper\n"
+    ));
+    assert_eq!(bounds.lines().count(), lines.len());
+
+    // A record knows no Poisson's ratio.
+    let missing =
+        run(&folder, &[&again[..], &["--fe-table", "csv", "--friction", "0.2"]].concat())?;
+    is_refused(&missing, &["--compliance-ratio"]);
+    let both =
+        run(&folder, &[&again[..], &["--fe-table", "csv", "--resistivity", "1e-8"]].concat())?;
+    is_refused(&both, &["not both"]);
+    let none = ["path", "--nodes", "16", "--unresolved-roughness", "1e-8", "--out", "none"];
+    is_refused(&run(&folder, &none)?, &["--resistivity"]);
+    Ok(())
+}

@@ -1,0 +1,287 @@
+"""Small results of asperity, as data classes: they print, compare and pickle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from asperity._asperity import State
+
+__all__ = [
+    "Certificate",
+    "Constriction",
+    "Distribution",
+    "Effort",
+    "Estimate",
+    "KernelReport",
+    "Material",
+    "Percolation",
+    "PowerSpectrum",
+    "SelfAffineFit",
+    "SpectralMoments",
+    "Trend",
+]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How well a state fulfils the conditions of contact, computed afresh from its pressure.
+
+    All figures are dimensionless: pressures relative to the mean pressure on the contact, loads to the load, gaps to
+    `length`. Zero would be exact.
+
+    Attributes
+    ----------
+    least_pressure : float
+        Least pressure in contact: zero at a node that just touches, negative by rounding.
+    least_gap : float
+        Least gap out of contact; infinite in full contact.
+    greatest_contact_gap : float
+        Greatest absolute gap in contact.
+    complementarity : float
+        Sum of pressure times gap, over the sum of pressures.
+    load_error : float
+        Difference between the sum of pressures and the load.
+    excess_pressure : float or None
+        Greatest pressure over the hardness of its node, less 1; None without a hardness.
+    length : float
+        The length that gaps are relative to [m].
+    """
+
+    least_pressure: float
+    least_gap: float
+    greatest_contact_gap: float
+    complementarity: float
+    load_error: float
+    excess_pressure: float | None
+    length: float
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What a solution for one load took.
+
+    Attributes
+    ----------
+    iterations, stiffness_iterations : int
+        Steps of conjugate gradients on the finest grid, for the pressure and for the stiffness.
+    convolutions : int
+        Convolutions on the finest grid.
+    coarse_convolutions : float
+        Convolutions on coarser grids, each counted as its part of the nodes of the finest.
+    """
+
+    iterations: int
+    stiffness_iterations: int
+    convolutions: int
+    coarse_convolutions: float
+
+
+@dataclass(frozen=True)
+class Constriction:
+    """The narrowest place of the widest channel.
+
+    Attributes
+    ----------
+    row, column : int
+        The node.
+    gap : float
+        The gap there [m].
+    """
+
+    row: int
+    column: int
+    gap: float
+
+
+@dataclass(frozen=True)
+class Percolation:
+    """When contact percolates and when leakage ends, along x and along y: None for what has not happened.
+
+    Attributes
+    ----------
+    contact_x, contact_y : State or None
+        The first state at which one patch alone leads all the way.
+    leak_x, leak_y : State or None
+        The first state at which no channel does: the last one is closed.
+    """
+
+    contact_x: State | None
+    contact_y: State | None
+    leak_x: State | None
+    leak_y: State | None
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """How often the values of a field occur.
+
+    Attributes
+    ----------
+    edges : ndarray of float
+        Edges of the bins, one more than there are bins.
+    counts : ndarray of int
+        Number of values in each bin.
+    density : ndarray of float
+        Probability density in each bin.
+    outside : int
+        Number of values in no bin.
+    contact_share : float
+        The share of nodes in contact.
+    """
+
+    edges: NDArray[np.float64] = field(compare=False)
+    counts: NDArray[np.int64] = field(compare=False)
+    density: NDArray[np.float64] = field(compare=False)
+    outside: int
+    contact_share: float
+
+
+@dataclass(frozen=True)
+class PowerSpectrum:
+    """A power spectral density: of a surface [m⁴], or of profiles [m³].
+
+    Attributes
+    ----------
+    wavevector : ndarray of float
+        Mean wavevector q = 2π/λ of the waves in each bin [rad/m].
+    density : ndarray of float
+        Their mean density.
+    waves : ndarray of int
+        Their number.
+    """
+
+    wavevector: NDArray[np.float64] = field(compare=False)
+    density: NDArray[np.float64] = field(compare=False)
+    waves: NDArray[np.int64] = field(compare=False)
+
+
+@dataclass(frozen=True)
+class Trend:
+    """A polynomial fitted to a surface, about its centre.
+
+    Attributes
+    ----------
+    height : float
+        Height at the centre [m].
+    slopes : (float, float)
+        Slopes along x and y there.
+    curvatures : (float, float, float)
+        Second derivatives xx, xy and yy [1/m].
+    tilt : float
+        Angle of the tangent plane at the centre [rad].
+    """
+
+    height: float
+    slopes: tuple[float, float]
+    curvatures: tuple[float, float, float]
+    tilt: float
+
+
+@dataclass(frozen=True)
+class SpectralMoments:
+    """Moments of the power spectrum, as of Nayak, and what follows from them.
+
+    Attributes
+    ----------
+    m0, m2, m4 : float
+        Moments of profiles [m², -, 1/m²].
+    rms_height : float
+        [m]
+    rms_gradient : float
+        Two-dimensional, without unit.
+    rms_laplacian, rms_curvature : float
+        [1/m]
+    nayak_parameter : float
+        ``m0 m4 / m2²``
+    """
+
+    m0: float
+    m2: float
+    m4: float
+    rms_height: float
+    rms_gradient: float
+    rms_laplacian: float
+    rms_curvature: float
+    nayak_parameter: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its standard error, one standard deviation."""
+
+    value: float
+    standard_error: float
+
+
+@dataclass(frozen=True)
+class SelfAffineFit:
+    """A self-affine spectrum that was fitted to that of a surface.
+
+    Attributes
+    ----------
+    hurst : Estimate
+        Hurst exponent.
+    rolloff_wavelength, short_cutoff_wavelength, long_cutoff_wavelength : Estimate or None
+        [m]; None where the spectrum has none.
+    prefactor : float
+        Prefactor of the power law [m^(2 - 2H)].
+    dispersion : float
+        Mean square of the relative residuals: 1 for a surface of random amplitudes, greater where the spectrum is not of
+        this form.
+    """
+
+    hurst: Estimate
+    rolloff_wavelength: Estimate | None
+    short_cutoff_wavelength: Estimate | None
+    long_cutoff_wavelength: Estimate | None
+    prefactor: float
+    dispersion: float
+
+
+@dataclass(frozen=True)
+class KernelReport:
+    """What `check_half_space` has tried and found.
+
+    Attributes
+    ----------
+    contact_sets : int
+        Number of sets of nodes that were tried.
+    largest_contact : int
+        Nodes of the largest of them.
+    exhaustive : bool
+        Whether every set there is on the grid was tried.
+    least_symbol : float or None
+        The least value of the symbol on the waves of the grid [m/Pa]; None on a free boundary.
+    promised_growth, supported_growth : str
+        ``"unknown"``, ``"monotone"`` or ``"convex"``: what the body promises, and the most that no set contradicts.
+    """
+
+    contact_sets: int
+    largest_contact: int
+    exhaustive: bool
+    least_symbol: float | None
+    promised_growth: str
+    supported_growth: str
+
+
+@dataclass(frozen=True)
+class Material:
+    """Typical values of a material.
+
+    Attributes
+    ----------
+    youngs_modulus : float
+        [Pa]
+    poissons_ratio : float
+    hardness : float or None
+        Mean pressure under an indenter [Pa], None where none is known.
+    """
+
+    youngs_modulus: float
+    poissons_ratio: float
+    hardness: float | None

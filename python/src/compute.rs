@@ -1,0 +1,148 @@
+//! Computing without the lock of the interpreter, on threads that belong to this process.
+
+use std::mem;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::errors::{Failure, Fallible};
+
+/// How long signals wait while something is computed elsewhere.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// The threads, and the process that they belong to.
+struct Threads {
+    process: u32,
+    pool: Arc<ThreadPool>,
+}
+
+static THREADS: Mutex<Option<Threads>> = Mutex::new(None);
+
+/// The threads of this process.
+pub(crate) fn pool(py: Python<'_>) -> Fallible<Arc<ThreadPool>> {
+    let mut threads = THREADS.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    match &*threads {
+        Some(threads) if threads.process == process => Ok(Arc::clone(&threads.pool)),
+        _ => {
+            let pool = made(0)?;
+            // A child has none of the threads of its parent, and so nothing to wait for at their end.
+            mem::forget(threads.replace(Threads { process, pool: Arc::clone(&pool) }));
+            Ok(pool)
+        }
+    }
+}
+
+/// So many threads; 0 for as many as there are processors, or as `RAYON_NUM_THREADS` says.
+fn made(count: usize) -> Fallible<Arc<ThreadPool>> {
+    let pool = ThreadPoolBuilder::new().num_threads(count).build();
+    let refused = |error| PyOSError::new_err(format!("no threads are to be had: {error}"));
+    Ok(Arc::new(pool.map_err(refused)?))
+}
+
+/// Does work without the lock of the interpreter, so that other threads of Python go on.
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> Fallible<T> {
+    let pool = pool(py)?;
+    let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| pool.install(work))));
+    done.map_err(|payload| Failure::of_panic(&*payload))
+}
+
+/// Does long work, and looks at signals meanwhile: Ctrl-C ends the wait, and what is computed by then is lost.
+pub(crate) fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Fallible<T> {
+    let (send, receive) = mpsc::channel();
+    pool(py)?.spawn(move || {
+        // Nobody listens after an interruption.
+        let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
+    });
+    let mut waiting = Some(receive);
+    let done = wait(py, &mut waiting)?;
+    match done {
+        Some(done) => done.map_err(|payload| Failure::of_panic(&*payload)),
+        None => Err(Failure::Panic("the thread has ended without an answer".to_string())),
+    }
+}
+
+/// Waits for what a thread sends, and looks at signals meanwhile; `None` if it sends nothing more. After a signal the receiver is
+/// still there.
+pub(crate) fn wait<T: Send>(
+    py: Python<'_>,
+    waiting: &mut Option<Receiver<T>>,
+) -> Fallible<Option<T>> {
+    loop {
+        // A receiver may be sent to another thread and not shared.
+        let Some(receive) = waiting.take() else {
+            return Ok(None);
+        };
+        let (received, receive) = py.detach(move || (receive.recv_timeout(PAUSE), receive));
+        *waiting = Some(receive);
+        match received {
+            Ok(value) => return Ok(Some(value)),
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+        }
+    }
+}
+
+/// Number of threads that computations use.
+///
+/// Returns
+/// -------
+/// int
+///     As many as there are processors, unless `RAYON_NUM_THREADS` or `set_threads` says otherwise. Results are the same
+///     bit for bit with any number.
+#[pyfunction]
+fn threads(py: Python<'_>) -> Fallible<usize> {
+    Ok(pool(py)?.current_num_threads())
+}
+
+/// Computes with another number of threads from now on.
+///
+/// Parameters
+/// ----------
+/// count : int
+///     Number of threads, at least 1. Results are the same bit for bit with any number.
+#[pyfunction]
+fn set_threads(py: Python<'_>, count: usize) -> Fallible<()> {
+    if !(1..=4096).contains(&count) {
+        return Err(asperity::Error::OutOfRange {
+            quantity: "number of threads",
+            value: count as f64,
+            expected: "from 1 to 4096",
+        }
+        .into());
+    }
+    let pool = made(count)?;
+    let process = std::process::id();
+    let mut threads = THREADS.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+    match threads.replace(Threads { process, pool }) {
+        Some(old) if old.process != process => mem::forget(old),
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Panics, with the lock of the interpreter or without it, for the test that no panic ends a process.
+#[pyfunction]
+#[allow(clippy::panic)]
+fn _panic_for_tests(py: Python<'_>, way: &str) -> Fallible<()> {
+    match way {
+        "detached" => detached(py, || panic!("on purpose")),
+        "interruptible" => interruptible(py, || panic!("on purpose")),
+        _ => panic!("on purpose"),
+    }
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(threads, module)?)?;
+    module.add_function(wrap_pyfunction!(set_threads, module)?)?;
+    module.add_function(wrap_pyfunction!(_panic_for_tests, module)?)
+}

@@ -1,0 +1,476 @@
+//! The states of a path, as columns.
+
+use std::sync::Arc;
+
+use asperity::contact::PlasticState;
+use asperity::patches::ContactEdge;
+use asperity::{Boundary, ContactState, Error, Grid, LoadingState, loading};
+use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode, PyReadonlyArray1};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::{column, shape};
+use crate::errors::{Failure, Fallible};
+use crate::state::{self, EVENTS, State};
+use crate::targets::Targets;
+
+/// A number of a state, and how it is put into one.
+struct Real {
+    name: &'static str,
+    get: fn(&LoadingState) -> f64,
+    set: fn(&mut LoadingState, f64),
+}
+
+/// Makes a column of a field of the contact.
+macro_rules! real {
+    ($name:literal, $($field:ident).+) => {
+        Real { name: $name, get: |s| s.$($field).+, set: |s, x| s.$($field).+ = x }
+    };
+    ($name:literal, optional $field:ident) => {
+        Real {
+            name: $name,
+            get: |s| s.contact.$field.unwrap_or(f64::NAN),
+            set: |s, x| s.contact.$field = (!x.is_nan()).then_some(x),
+        }
+    };
+}
+
+/// The numbers of every state; NaN stands for a stiffness that there is not.
+const REALS: [Real; 9] = [
+    real!("approach", contact.approach),
+    real!("load", contact.load),
+    real!("contact_area", contact.contact_area),
+    real!("area_fraction", contact.contact_area_fraction),
+    real!("mean_gap", contact.mean_gap),
+    real!("contact_stiffness", optional contact_stiffness),
+    real!("interfacial_stiffness", optional interfacial_stiffness),
+    real!("energy", contact.energy),
+    real!("approach_error", approach_error),
+];
+
+/// A number of what has yielded.
+struct Plastic {
+    name: &'static str,
+    get: fn(&PlasticState) -> f64,
+    set: fn(&mut PlasticState, f64),
+}
+
+macro_rules! plastic {
+    ($name:literal, $field:ident) => {
+        Plastic { name: $name, get: |s| s.$field, set: |s, x| s.$field = x }
+    };
+}
+
+/// Those that paths with a hardness have.
+const PLASTIC: [Plastic; 5] = [
+    plastic!("yielded_area_fraction", yielded_area_fraction),
+    plastic!("plastic_volume", volume),
+    plastic!("plastic_work", work),
+    plastic!("plastic_volume_per_load", volume_per_load),
+    plastic!("plastic_work_per_load", work_per_load),
+];
+
+/// What a history is of.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Setting {
+    pub(crate) grid: Grid,
+    pub(crate) boundary: Boundary,
+    pub(crate) has_hardness: bool,
+}
+
+/// The states of a path in the order of loading, as columns: new arrays of NumPy with one value for each state.
+///
+/// A sequence of `State`. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
+/// linear in the approach.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> surface = asp.example_surface(nodes=32)
+/// >>> path = asp.load_path(surface, asp.HalfSpace(115e9, boundary="love"), area_fraction=0.5)
+/// >>> history = path.run(check=False)
+/// >>> len(history), history.load.dtype, history.event[0]
+/// (512, dtype('float64'), np.str_('touch'))
+#[pyclass(frozen, sequence, module = "asperity")]
+pub(crate) struct History {
+    pub(crate) history: Arc<loading::History>,
+    pub(crate) setting: Setting,
+}
+
+impl History {
+    pub(crate) fn states(&self) -> &[LoadingState] {
+        self.history.states()
+    }
+
+    fn reals<'py>(
+        &self,
+        py: Python<'py>,
+        get: impl Fn(&LoadingState) -> f64,
+    ) -> Bound<'py, PyArray1<f64>> {
+        column(py, self.states().iter().map(get).collect())
+    }
+
+    fn wholes<'py>(
+        &self,
+        py: Python<'py>,
+        get: impl Fn(&LoadingState) -> usize,
+    ) -> Bound<'py, PyArray1<i64>> {
+        column(py, self.states().iter().map(|state| get(state) as i64).collect())
+    }
+
+    fn plastic<'py>(
+        &self,
+        py: Python<'py>,
+        get: impl Fn(&PlasticState) -> f64,
+    ) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.plastic.as_ref().map_or(0.0, &get))
+    }
+}
+
+#[pymethods]
+impl History {
+    /// All columns by name, for ``pandas.DataFrame``, ``xarray.Dataset`` or ``numpy.savez``.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to ndarray
+    ///     float64, int64 (step, row, column, contact_nodes) and text (event). The columns of yielding are there if the
+    ///     path has a hardness.
+    fn columns<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
+        let columns = PyDict::new(py);
+        columns.set_item("step", self.step(py))?;
+        columns.set_item("row", self.row(py))?;
+        columns.set_item("column", self.column(py))?;
+        columns.set_item("event", self.event(py))?;
+        columns.set_item("contact_nodes", self.contact_nodes(py))?;
+        columns.set_item("mean_pressure", self.mean_pressure(py))?;
+        for real in &REALS {
+            columns.set_item(real.name, self.reals(py, real.get))?;
+        }
+        columns.set_item("corrected_area", self.corrected_area(py)?)?;
+        if self.setting.has_hardness {
+            columns.set_item("yielded_nodes", self.yielded_nodes(py))?;
+            for plastic in &PLASTIC {
+                columns.set_item(plastic.name, self.plastic(py, plastic.get))?;
+            }
+        }
+        Ok(columns)
+    }
+
+    /// The state at exactly this load, mean pressure, approach or mean gap, or the first with as many nodes in contact as
+    /// fit into this fraction of the nominal area.
+    ///
+    /// Parameters
+    /// ----------
+    /// load, mean_pressure, approach, area_fraction, mean_gap : float
+    ///     One of them [N, Pa, m, -, m].
+    ///
+    /// Returns
+    /// -------
+    /// State
+    ///
+    /// Raises
+    /// ------
+    /// AsperityError
+    ///     For what lies outside the path.
+    #[pyo3(signature = (*, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None))]
+    fn at(
+        &self,
+        load: Option<f64>,
+        mean_pressure: Option<f64>,
+        approach: Option<f64>,
+        area_fraction: Option<f64>,
+        mean_gap: Option<f64>,
+    ) -> Fallible<State> {
+        let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
+        Ok(State::new(self.history.at(targets.only(&self.setting.grid)?)?))
+    }
+
+    /// Number of events up to each state, 1 for first touch.
+    #[getter]
+    fn step<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.wholes(py, |state| state.step)
+    }
+
+    /// Row of the node of each event.
+    #[getter]
+    fn row<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.wholes(py, |state| state.node.1)
+    }
+
+    /// Column of the node of each event.
+    #[getter]
+    fn column<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.wholes(py, |state| state.node.0)
+    }
+
+    /// What happens: ``"touch"``, ``"release"``, ``"limit"`` or ``"yield"``, as an array of text.
+    #[getter]
+    fn event<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<PyFixedUnicode<7>>> {
+        let letters = EVENTS.map(|word| {
+            let mut letters = [0_u32; 7];
+            for (letter, character) in letters.iter_mut().zip(word.chars()) {
+                *letter = character.into();
+            }
+            PyFixedUnicode(letters)
+        });
+        let events = self.states().iter().map(|s| letters[state::code(s.event) as usize]);
+        column(py, events.collect())
+    }
+
+    /// The same as numbers, int8: places in `EVENTS`, for ``pandas.Categorical.from_codes(h.event_code, asp.EVENTS)``.
+    #[getter]
+    fn event_code<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i8>> {
+        column(py, self.states().iter().map(|s| state::code(s.event)).collect())
+    }
+
+    /// Number of nodes in contact.
+    #[getter]
+    fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.wholes(py, |state| state.contact.contact_nodes)
+    }
+
+    /// Load W [N].
+    #[getter]
+    fn load<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.load)
+    }
+
+    /// Load over nominal area [Pa].
+    #[getter]
+    fn mean_pressure<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.mean_pressure())
+    }
+
+    /// Approach [m] from first touch; of the mean planes on a periodic half-space.
+    #[getter]
+    fn approach<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.approach)
+    }
+
+    /// Contact area [m²], counted in cells.
+    #[getter]
+    fn contact_area<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.contact_area)
+    }
+
+    /// Contact area over nominal area.
+    #[getter]
+    fn area_fraction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.contact_area_fraction)
+    }
+
+    /// Contact area [m²] without what whole cells count too much along the edges of patches.
+    #[getter]
+    fn corrected_area<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray1<f64>>> {
+        let mut edge = ContactEdge::new(self.setting.grid, self.setting.boundary);
+        let areas = self.states().iter().map(|state| {
+            edge.follow(state.event, state.node)?;
+            Ok(edge.corrected_area())
+        });
+        Ok(column(py, areas.collect::<Result<_, Error>>()?))
+    }
+
+    /// Mean gap [m].
+    #[getter]
+    fn mean_gap<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.mean_gap)
+    }
+
+    /// Contact stiffness dW/d(approach) on further loading [N/m]; NaN on a periodic half-space.
+    #[getter]
+    fn contact_stiffness<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.contact_stiffness.unwrap_or(f64::NAN))
+    }
+
+    /// Interfacial stiffness -dW/d(mean gap) [N/m]; infinite in full contact.
+    #[getter]
+    fn interfacial_stiffness<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.interfacial_stiffness.unwrap_or(f64::NAN))
+    }
+
+    /// Elastic energy [J].
+    #[getter]
+    fn energy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.contact.energy)
+    }
+
+    /// Estimated error of the approach [m], 0 where events are exact to rounding.
+    #[getter]
+    fn approach_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.reals(py, |state| state.approach_error)
+    }
+
+    /// Number of nodes that have yielded; 0 without a hardness.
+    #[getter]
+    fn yielded_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.wholes(py, |state| state.contact.plastic.map_or(0, |plastic| plastic.yielded_nodes))
+    }
+
+    /// Their area over the nominal area.
+    #[getter]
+    fn yielded_area_fraction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.plastic(py, |plastic| plastic.yielded_area_fraction)
+    }
+
+    /// Volume of the plastic depth [m³].
+    #[getter]
+    fn plastic_volume<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.plastic(py, |plastic| plastic.volume)
+    }
+
+    /// Energy that is lost [J].
+    #[getter]
+    fn plastic_work<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.plastic(py, |plastic| plastic.work)
+    }
+
+    /// Rows and columns of the surface.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        shape(&self.setting.grid)
+    }
+
+    /// Whether the path has a hardness.
+    #[getter]
+    fn has_hardness(&self) -> bool {
+        self.setting.has_hardness
+    }
+
+    fn __len__(&self) -> usize {
+        self.states().len()
+    }
+
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let places = builtins.getattr("range")?.call1((slf.get().states().len(),))?;
+        Ok(builtins.getattr("map")?.call1((slf.getattr("__getitem__")?, places))?)
+    }
+
+    fn __getitem__(&self, index: isize) -> Fallible<State> {
+        let count = self.states().len();
+        let place = if index < 0 { index + count as isize } else { index };
+        let state = usize::try_from(place).ok().and_then(|place| self.states().get(place));
+        match state {
+            Some(state) => Ok(State::new(*state)),
+            None => Err(PyIndexError::new_err(format!("state {index} of {count}")).into()),
+        }
+    }
+
+    fn __eq__(&self, other: PyRef<'_, Self>) -> bool {
+        self.setting == other.setting && self.history == other.history
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {
+        let restore = py.import("asperity._asperity")?.getattr("_restore_history")?;
+        let Setting { grid, boundary, has_hardness } = self.setting;
+        let setting =
+            (shape(&grid), (grid.dx(), grid.dy()), boundary == Boundary::Periodic, has_hardness);
+        Ok((restore, (table(py, self.states())?, setting)).into_pyobject(py)?)
+    }
+
+    fn __repr__(&self) -> String {
+        let last = self.states().last();
+        let end = last.map_or(String::new(), |s| format!(", up to {:.6e} N", s.contact.load));
+        format!("<History: {} states{end}>", self.states().len())
+    }
+}
+
+/// All that there is of some states, in arrays.
+pub(crate) fn table<'py>(py: Python<'py>, states: &[LoadingState]) -> Fallible<Bound<'py, PyDict>> {
+    let table = PyDict::new(py);
+    let wholes = |get: fn(&LoadingState) -> usize| {
+        column(py, states.iter().map(|state| get(state) as i64).collect())
+    };
+    table.set_item("step", wholes(|s| s.step))?;
+    table.set_item("ix", wholes(|s| s.node.0))?;
+    table.set_item("iy", wholes(|s| s.node.1))?;
+    table.set_item("contact_nodes", wholes(|s| s.contact.contact_nodes))?;
+    // -1 where there is no hardness.
+    let yielded = states.iter().map(|s| s.contact.plastic.map_or(-1, |p| p.yielded_nodes as i64));
+    table.set_item("yielded_nodes", column(py, yielded.collect()))?;
+    let events: Vec<i8> = states.iter().map(|s| state::code(s.event)).collect();
+    table.set_item("event", column(py, events))?;
+    for real in &REALS {
+        table.set_item(real.name, column(py, states.iter().map(real.get).collect()))?;
+    }
+    for plastic in &PLASTIC {
+        let values = states.iter().map(|s| s.contact.plastic.as_ref().map_or(0.0, plastic.get));
+        table.set_item(plastic.name, column(py, values.collect()))?;
+    }
+    Ok(table)
+}
+
+/// The states of a table.
+fn states(table: &Bound<'_, PyDict>) -> Fallible<Vec<LoadingState>> {
+    fn values<T: numpy::Element + Copy>(table: &Bound<'_, PyDict>, name: &str) -> Fallible<Vec<T>> {
+        let column = table.get_item(name)?;
+        let column = column.ok_or_else(|| Failure::arguments(format!("no column {name}")))?;
+        let column: PyReadonlyArray1<'_, T> = column.extract()?;
+        column.to_vec().map_err(|error| Failure::arguments(error.to_string()))
+    }
+    let wholes = |name: &str| values::<i64>(table, name);
+    let (step, ix, iy) = (wholes("step")?, wholes("ix")?, wholes("iy")?);
+    let (nodes, yielded) = (wholes("contact_nodes")?, wholes("yielded_nodes")?);
+    let events = values::<i8>(table, "event")?;
+    let count = step.len();
+    if [&ix, &iy, &nodes, &yielded].iter().any(|c| c.len() != count) || events.len() != count {
+        return Err(Failure::arguments("columns of different lengths"));
+    }
+    let any = Grid::new(1, 1, 1.0, 1.0)?;
+    let mut states = Vec::with_capacity(count);
+    for k in 0..count {
+        let whole = |value: i64| value.max(0) as usize;
+        let mut contact = ContactState::new(&any, whole(nodes[k]), 0.0, 0.0, 0.0);
+        if yielded[k] >= 0 {
+            let mut plastic = PlasticState::default();
+            plastic.yielded_nodes = whole(yielded[k]);
+            contact.plastic = Some(plastic);
+        }
+        let node = (whole(ix[k]), whole(iy[k]));
+        states.push(LoadingState::new(whole(step[k]), state::event(events[k])?, node, contact));
+    }
+    for real in &REALS {
+        for (state, value) in states.iter_mut().zip(values::<f64>(table, real.name)?) {
+            (real.set)(state, value);
+        }
+    }
+    for plastic in &PLASTIC {
+        for (state, value) in states.iter_mut().zip(values::<f64>(table, plastic.name)?) {
+            if let Some(found) = &mut state.contact.plastic {
+                (plastic.set)(found, value);
+            }
+        }
+    }
+    Ok(states)
+}
+
+/// A state that was pickled.
+#[pyfunction]
+fn _restore_states(table: &Bound<'_, PyDict>, is_one: bool) -> Fallible<State> {
+    let states = states(table)?;
+    match states[..] {
+        [state] if is_one => Ok(State::new(state)),
+        _ => Err(Failure::arguments("a state has one row")),
+    }
+}
+
+/// Shape, cell, whether it is periodic, and whether there is a hardness.
+type Pickled = ((usize, usize), (f64, f64), bool, bool);
+
+/// A history that was pickled.
+#[pyfunction]
+fn _restore_history(table: &Bound<'_, PyDict>, setting: Pickled) -> Fallible<History> {
+    let ((rows, columns), (dx, dy), is_periodic, has_hardness) = setting;
+    let grid = Grid::new(columns, rows, dx, dy)?;
+    let boundary = if is_periodic { Boundary::Periodic } else { Boundary::Free };
+    let history = Arc::new(states(table)?.into_iter().collect());
+    Ok(History { history, setting: Setting { grid, boundary, has_hardness } })
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<History>()?;
+    module.add_function(wrap_pyfunction!(_restore_states, module)?)?;
+    module.add_function(wrap_pyfunction!(_restore_history, module)?)
+}

@@ -1,0 +1,37 @@
+//! The package `asperity` of Python: the library, with arrays of NumPy, exceptions and signals.
+//!
+//! Nothing is computed here. Each file has one topic, with a function `register` that adds its classes and functions.
+
+mod arrays;
+mod choice;
+mod compute;
+mod errors;
+mod fixed_load;
+mod half_space;
+mod history;
+mod materials;
+mod own_kernels;
+mod patches;
+mod path;
+mod results;
+mod state;
+mod surface;
+mod targets;
+mod warnings;
+
+use pyo3::prelude::*;
+
+/// The engine.
+#[pymodule]
+fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    compute::register(module)?;
+    surface::register(module)?;
+    half_space::register(module)?;
+    materials::register(module)?;
+    state::register(module)?;
+    history::register(module)?;
+    path::register(module)?;
+    fixed_load::register(module)?;
+    patches::register(module)
+}

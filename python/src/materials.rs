@@ -1,0 +1,115 @@
+//! Moduli and hardnesses of bodies.
+
+use asperity::material::{BRINELL, Material, VICKERS};
+use asperity::{Error, composite_modulus as composite, plane_strain_modulus as plane_strain};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::{Failure, Fallible};
+use crate::results::result;
+
+/// A body by its name, or by Young's modulus and Poisson's ratio.
+#[derive(FromPyObject)]
+enum Body {
+    #[pyo3(transparent)]
+    Numbers((f64, f64)),
+    #[pyo3(transparent)]
+    Named(String),
+}
+
+impl Body {
+    fn numbers(&self) -> Fallible<(f64, f64)> {
+        match self {
+            Self::Numbers(numbers) => Ok(*numbers),
+            Self::Named(name) => {
+                let material = named(name)?;
+                Ok((material.youngs_modulus, material.poissons_ratio))
+            }
+        }
+    }
+}
+
+fn named(name: &str) -> Fallible<&'static Material> {
+    Material::named(name).ok_or_else(|| {
+        let names: Vec<&str> = Material::ALL.iter().map(|material| material.name).collect();
+        Failure::arguments(format!("no material is called '{name}': {} are", names.join(", ")))
+    })
+}
+
+/// Composite modulus of two bodies [Pa], ``1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2``.
+///
+/// Parameters
+/// ----------
+/// first : (float, float) or str
+///     Young's modulus [Pa] and Poisson's ratio, or the name of one of `materials`.
+/// second : (float, float) or str, optional
+///     The other body; rigid unless it is given.
+///
+/// Returns
+/// -------
+/// float
+///     No factor 2: the E' of elastohydrodynamics is 2 E*.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> asp.composite_modulus("steel") == 210e9 / (1 - 0.3 * 0.3)
+/// True
+#[pyfunction]
+#[pyo3(signature = (first, second=None))]
+fn composite_modulus(first: Body, second: Option<Body>) -> Fallible<f64> {
+    let (e, nu) = first.numbers()?;
+    Ok(match second {
+        None => plane_strain(e, nu)?,
+        Some(second) => composite((e, nu), second.numbers()?)?,
+    })
+}
+
+/// Typical values of materials at room temperature.
+///
+/// Returns
+/// -------
+/// dict of str to results.Material
+///     Young's modulus [Pa], Poisson's ratio, and hardness [Pa] as a mean pressure under an indenter, None where none is
+///     known. Those of an alloy or a polymer vary: for results that matter give your own.
+#[pyfunction]
+fn materials(py: Python<'_>) -> Fallible<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for material in &Material::ALL {
+        let values = result!(py, "Material", {
+            youngs_modulus: material.youngs_modulus,
+            poissons_ratio: material.poissons_ratio,
+            hardness: material.hardness,
+        })?;
+        all.set_item(material.name, values)?;
+    }
+    Ok(all)
+}
+
+/// A hardness [Pa] from a number of Brinell or Vickers.
+///
+/// Parameters
+/// ----------
+/// number : float
+/// scale : {"HB", "HV"}
+///
+/// Returns
+/// -------
+/// float
+///     Mean pressure under the indenter [Pa].
+#[pyfunction]
+#[pyo3(signature = (number, scale))]
+fn hardness(number: f64, scale: &str) -> Fallible<f64> {
+    let pascals = crate::choice::choose("scale", scale, &[("HB", BRINELL), ("HV", VICKERS)])?;
+    if number > 0.0 && number.is_finite() {
+        Ok(number * pascals)
+    } else {
+        Err(Error::NotPositive { quantity: "hardness", value: number }.into())
+    }
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(composite_modulus, module)?)?;
+    module.add_function(wrap_pyfunction!(materials, module)?)?;
+    module.add_function(wrap_pyfunction!(hardness, module)?)
+}

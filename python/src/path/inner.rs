@@ -1,0 +1,199 @@
+//! A path with its states, live or from a record.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use asperity::loading::{self, LoadingEnd};
+use asperity::record::LoadingRecord;
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::{ContactEvent, ContactTarget, Error, InfluenceKernel, LoadingSolver, LoadingState};
+
+use super::engine::Engine;
+
+/// An updater of any kind.
+pub(super) type AnyUpdater = Box<dyn LinearUpdater + Send + Sync>;
+
+/// The solver of the linear systems.
+#[derive(Clone, Copy)]
+pub(super) enum Updater {
+    Auto,
+    Cholesky,
+    Iterative,
+}
+
+impl Updater {
+    pub(super) const WORDS: [(&'static str, Self); 3] =
+        [("auto", Self::Auto), ("cholesky", Self::Cholesky), ("iterative", Self::Iterative)];
+
+    pub(super) fn make(self) -> AnyUpdater {
+        match self {
+            Self::Auto => Box::new(Handover::new()),
+            Self::Cholesky => Box::new(RecursiveCholesky::new()),
+            Self::Iterative => Box::new(ConjugateGradient::new()),
+        }
+    }
+}
+
+/// A kernel that a path is made with again.
+pub(super) type Kernel = Box<dyn InfluenceKernel + Send + Sync>;
+
+/// What a record goes on with.
+pub(super) struct Resume {
+    pub(super) kernel: Kernel,
+    pub(super) updater: Updater,
+    pub(super) memory_budget: Option<usize>,
+}
+
+/// Where the states come from.
+enum Source {
+    /// A path that goes on.
+    Live(Box<dyn Engine>),
+    /// A record: its path as it was, for fields, and what it takes to go on.
+    Record { record: Box<LoadingRecord>, replay: Box<dyn Engine>, resume: Resume },
+}
+
+/// A path with its states.
+pub(super) struct Inner {
+    source: Source,
+    pub(super) history: Arc<loading::History>,
+}
+
+impl Inner {
+    pub(super) fn live(engine: impl Engine + 'static) -> Self {
+        Self { source: Source::Live(Box::new(engine)), history: Arc::default() }
+    }
+
+    pub(super) fn of_record(record: LoadingRecord, resume: Resume) -> Result<Self, Error> {
+        let replay = Box::new(record.replay_on(&*resume.kernel)?);
+        let history = Arc::new(record.history().clone());
+        Ok(Self { source: Source::Record { record: Box::new(record), replay, resume }, history })
+    }
+
+    /// What computes fields.
+    pub(super) fn engine(&self) -> &dyn Engine {
+        match &self.source {
+            Source::Live(engine) => &**engine,
+            Source::Record { replay, .. } => &**replay,
+        }
+    }
+
+    pub(super) fn engine_mut(&mut self) -> &mut dyn Engine {
+        match &mut self.source {
+            Source::Live(engine) => &mut **engine,
+            Source::Record { replay, .. } => &mut **replay,
+        }
+    }
+
+    /// Number of states that are there already.
+    pub(super) fn waiting(&self) -> usize {
+        match &self.source {
+            Source::Live(engine) => engine.waiting(),
+            Source::Record { .. } => 0,
+        }
+    }
+
+    pub(super) fn end(&self) -> Option<LoadingEnd> {
+        match &self.source {
+            Source::Live(engine) => engine.end(),
+            Source::Record { record, .. } => record.end(),
+        }
+    }
+
+    pub(super) fn targets(&self) -> Vec<ContactTarget> {
+        match &self.source {
+            Source::Live(engine) => engine.targets(),
+            Source::Record { record, .. } => record.settings().targets.clone(),
+        }
+    }
+
+    /// The last state there is.
+    pub(super) fn present(&self) -> Option<LoadingState> {
+        self.history.states().last().copied()
+    }
+
+    /// A path that goes on, of a record made again: the factor is built anew.
+    fn revive(&mut self) -> Result<&mut dyn Engine, Error> {
+        if let Source::Record { record, resume, .. } = &self.source {
+            let hardness = record.hardness_map()?;
+            let mut builder = LoadingSolver::builder(record.heights(), &*resume.kernel)
+                .updater(resume.updater.make())
+                .rule(record.settings().rule);
+            for &target in &record.settings().targets {
+                builder = builder.until(target);
+            }
+            if let Some(hardness) = &hardness {
+                builder = builder.hardness_map(hardness);
+            }
+            if let Some(bytes) = resume.memory_budget {
+                builder = builder.memory_budget(bytes);
+            }
+            self.source = Source::Live(Box::new(builder.resume(record.history())?));
+        }
+        Ok(self.engine_mut())
+    }
+
+    pub(super) fn continue_to(&mut self, target: ContactTarget) -> Result<(), Error> {
+        self.revive()?.continue_to(target)
+    }
+
+    /// The next state, which is kept.
+    pub(super) fn next(&mut self) -> Result<Option<LoadingState>, Error> {
+        if self.end().is_some() {
+            return Ok(None);
+        }
+        let Some(state) = self.revive()?.advance().transpose()? else {
+            return Ok(None);
+        };
+        self.keep(state);
+        Ok(Some(state))
+    }
+
+    fn keep(&mut self, state: LoadingState) {
+        let history = Arc::make_mut(&mut self.history);
+        // A limit is no event: the path goes on from the one before, and may come to the same limit again.
+        if history.states().last().is_some_and(|last| last.event == ContactEvent::Limit) {
+            let events = history.events().iter().copied();
+            *history = events.collect();
+        }
+        history.extend([state]);
+    }
+
+    /// States up to the end, or for so long: signals are looked at in between, when no state is waiting. Whether there are more.
+    pub(super) fn run_for(&mut self, time: Duration) -> Result<bool, Error> {
+        let start = Instant::now();
+        loop {
+            if self.waiting() == 0 && start.elapsed() >= time {
+                return Ok(true);
+            }
+            if self.next()?.is_none() {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// The record of the states so far.
+    pub(super) fn record(&self) -> Result<LoadingRecord, Error> {
+        match &self.source {
+            Source::Live(engine) => engine.record((*self.history).clone()),
+            Source::Record { record, .. } => Ok((**record).clone()),
+        }
+    }
+
+    /// The part of the path that is done, as far as the nearest target tells.
+    pub(super) fn done(&self) -> f64 {
+        let Some(state) = self.present() else {
+            return 0.0;
+        };
+        if self.end().is_some() {
+            return 1.0;
+        }
+        let contact = state.contact;
+        let shares = self.targets().into_iter().map(|target| match target {
+            ContactTarget::Load(load) => contact.load / load,
+            ContactTarget::Approach(approach) => contact.approach / approach,
+            ContactTarget::AreaFraction(fraction) => contact.contact_area_fraction / fraction,
+            _ => 0.0,
+        });
+        shares.fold(contact.contact_area_fraction, f64::max).min(1.0)
+    }
+}

@@ -1,0 +1,654 @@
+//! The loading path.
+
+mod engine;
+mod inner;
+mod setup;
+mod unloading;
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use asperity::contact::Certificate;
+use asperity::loading::LoadingEnd;
+use asperity::nalgebra::DMatrix;
+use asperity::patches::{Patches, constriction};
+use asperity::{Error, Grid, LoadingState, Warning};
+use numpy::{Element, PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::PyDict;
+
+use self::engine::Engine;
+use self::inner::Inner;
+pub(crate) use self::setup::{Hardness, warn_of};
+use crate::arrays::{column, rows, shape};
+use crate::choice;
+use crate::compute::detached;
+use crate::errors::{Failure, Fallible};
+use crate::history::{History, Setting};
+use crate::results::result;
+use crate::state::State;
+use crate::surface::Surface;
+use crate::targets::{Targets, named};
+use crate::warnings::{warn, warn_all};
+
+/// How long a path runs between two looks at signals and calls of `progress`.
+const STRETCH: Duration = Duration::from_millis(50);
+
+/// The exact loading path of a rough surface, event by event: made by `load_path` or `open`.
+///
+/// An iterator of `State`: one for each node that touches, or yields, computed when it is asked for. All states so far are
+/// kept in `history`. `run` computes the rest at once. Fields of any state so far are computed on demand.
+///
+/// Notes
+/// -----
+/// The lock of the interpreter is released while something is computed, so that two paths in two threads run side by
+/// side. One path may be used from several threads, which then take turns. After Ctrl-C, which is noticed between two
+/// windows of events, nothing is lost, and the path goes on where it was.
+#[pyclass(frozen, module = "asperity")]
+pub(crate) struct LoadingPath {
+    inner: Mutex<Inner>,
+    setting: Setting,
+    e_star: Option<f64>,
+}
+
+impl LoadingPath {
+    fn new(inner: Inner, e_star: Option<f64>) -> Self {
+        let engine = inner.engine();
+        let setting = Setting {
+            grid: engine.problem().grid(),
+            boundary: engine.problem().boundary(),
+            has_hardness: engine.has_hardness(),
+        };
+        Self { inner: Mutex::new(inner), setting, e_star }
+    }
+
+    /// The path, for as long as nobody else uses it. No function of Python may be called meanwhile: it might ask for it too.
+    fn lock(&self, py: Python<'_>) -> MutexGuard<'_, Inner> {
+        // After a panic the engine says itself that it does not go on.
+        self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn grid(&self) -> &Grid {
+        &self.setting.grid
+    }
+
+    fn history_of(&self, inner: &Inner) -> History {
+        History { history: Arc::clone(&inner.history), setting: self.setting }
+    }
+
+    pub(crate) fn history_now(&self, py: Python<'_>) -> History {
+        self.history_of(&self.lock(py))
+    }
+
+    /// The state that is meant: the one given, or the last one.
+    fn state_or_last(inner: &Inner, state: Option<PyRef<'_, State>>) -> Fallible<LoadingState> {
+        match state {
+            Some(state) => Ok(state.state),
+            None => inner.present().ok_or_else(|| {
+                Error::OutOfRange {
+                    quantity: "number of states so far",
+                    value: 0.0,
+                    expected: "at least 1: iterate the path or call run() first",
+                }
+                .into()
+            }),
+        }
+    }
+
+    /// What the engine computes at a state, without the lock of the interpreter.
+    fn at<T: Send>(
+        &self,
+        py: Python<'_>,
+        state: Option<PyRef<'_, State>>,
+        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let mut inner = self.lock(py);
+        let state = Self::state_or_last(&inner, state)?;
+        let engine = inner.engine_mut();
+        Ok(detached(py, || compute(engine, &state))??)
+    }
+
+    /// A field of a state.
+    fn field<'py, T: Element + asperity::nalgebra::Scalar + Send>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+        compute: impl FnOnce(&mut dyn Engine, &LoadingState) -> Result<DMatrix<T>, Error> + Send,
+    ) -> Fallible<Bound<'py, PyArray2<T>>> {
+        rows(py, self.at(py, state, compute)?)
+    }
+
+    /// Why the path has ended, in a word.
+    fn end_in_words(end: LoadingEnd) -> &'static str {
+        match end {
+            LoadingEnd::FullContact => "full contact",
+            LoadingEnd::FullyPlastic => "fully plastic",
+            LoadingEnd::Load => "load",
+            LoadingEnd::Approach => "approach",
+            LoadingEnd::MeanGap => "mean gap",
+            LoadingEnd::AreaFraction => "area fraction",
+            LoadingEnd::Nodes => "nodes",
+            LoadingEnd::Memory => "memory",
+            LoadingEnd::NoMoreEvents => "no more events",
+            _ => "failed",
+        }
+    }
+
+    /// What looks wrong with the last state.
+    fn warnings(&self, py: Python<'_>) -> Fallible<Vec<Warning>> {
+        let mut inner = self.lock(py);
+        let Some(state) = inner.present() else {
+            return Ok(Vec::new());
+        };
+        let Setting { grid, boundary, has_hardness } = self.setting;
+        let e_star = self.e_star.filter(|_| !has_hardness);
+        let engine = inner.engine_mut();
+        let warnings = detached(py, move || {
+            let map = engine.contact_map_at(&state)?;
+            let four = asperity::patches::Connectivity::Four;
+            let patches = Patches::new(&map, &grid, boundary, four)?.patches().len();
+            let resolved = Warning::of_patches(patches, state.contact.contact_nodes);
+            let greatest = match e_star {
+                Some(e_star) => Warning::of_pressure(engine.pressure_at(&state)?.max(), e_star),
+                None => None,
+            };
+            Ok::<_, Error>(resolved.into_iter().chain(greatest).collect())
+        });
+        Ok(warnings??)
+    }
+}
+
+#[pymethods]
+impl LoadingPath {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> Fallible<Option<State>> {
+        let mut inner = self.lock(py);
+        let state = if inner.waiting() > 0 {
+            inner.next()?
+        } else {
+            let inner = &mut *inner;
+            detached(py, || inner.next())??
+        };
+        Ok(state.map(State::new))
+    }
+
+    /// Compute the rest of the path.
+    ///
+    /// Parameters
+    /// ----------
+    /// progress : bool or callable, optional
+    ///     True shows a bar, by tqdm if that is installed. A function is called some times a second with the part of the
+    ///     path that is done, 0 to 1, and the last `State`.
+    /// check : bool
+    ///     Warn if the greatest pressure at the end is more than solids bear elastically, or the grid does not resolve the
+    ///     patches of contact.
+    ///
+    /// Returns
+    /// -------
+    /// History
+    ///     All states of the path from first touch on.
+    ///
+    /// Raises
+    /// ------
+    /// AsperityError
+    ///     The states up to there are in `history`.
+    /// KeyboardInterrupt
+    ///     After Ctrl-C; call `run` again to go on.
+    #[pyo3(signature = (*, progress=None, check=true))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        check: bool,
+    ) -> Fallible<History> {
+        let bar = Progress::new(py, progress)?;
+        let result = (|| loop {
+            let (goes_on, done, state) = {
+                let mut inner = self.lock(py);
+                let inner = &mut *inner;
+                let goes_on = detached(py, || inner.run_for(STRETCH))??;
+                (goes_on, inner.done(), inner.present())
+            };
+            py.check_signals()?;
+            bar.show(done, state)?;
+            if !goes_on {
+                return Ok::<_, Failure>(());
+            }
+        })();
+        bar.close()?;
+        result?;
+        if check {
+            warn_all(py, self.warnings(py)?)?;
+        }
+        Ok(self.history_now(py))
+    }
+
+    /// Go on to a target beyond the end of the path: all limits before are forgotten, and `run` or the iterator goes on.
+    ///
+    /// Parameters
+    /// ----------
+    /// load, mean_pressure, approach, area_fraction, mean_gap : float
+    ///     One of them [N, Pa, m, -, m].
+    #[pyo3(signature = (*, load=None, mean_pressure=None, approach=None, area_fraction=None, mean_gap=None))]
+    fn continue_to(
+        &self,
+        py: Python<'_>,
+        load: Option<f64>,
+        mean_pressure: Option<f64>,
+        approach: Option<f64>,
+        area_fraction: Option<f64>,
+        mean_gap: Option<f64>,
+    ) -> Fallible<()> {
+        let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
+        let target = targets.only(self.grid())?;
+        let mut inner = self.lock(py);
+        let inner = &mut *inner;
+        Ok(detached(py, || inner.continue_to(target))??)
+    }
+
+    /// All states so far.
+    #[getter]
+    fn history(&self, py: Python<'_>) -> History {
+        self.history_now(py)
+    }
+
+    /// The last state so far, None before the first.
+    #[getter]
+    fn state(&self, py: Python<'_>) -> Option<State> {
+        self.lock(py).present().map(State::new)
+    }
+
+    /// Why the path has ended, None while there is more to come: ``"load"``, ``"approach"``, ``"mean gap"``,
+    /// ``"area fraction"``, ``"nodes"``, ``"full contact"``, ``"fully plastic"``, ``"memory"``, ``"no more events"`` or
+    /// ``"failed"``.
+    #[getter]
+    fn end(&self, py: Python<'_>) -> Option<&'static str> {
+        self.lock(py).end().map(Self::end_in_words)
+    }
+
+    /// Where the path is to end, by name.
+    #[getter]
+    fn targets<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
+        let targets = PyDict::new(py);
+        let all = self.lock(py).targets();
+        for (name, value) in all.into_iter().map(named) {
+            targets.set_item(name, value)?;
+        }
+        Ok(targets)
+    }
+
+    /// Rows and columns of the surface.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        shape(self.grid())
+    }
+
+    /// Sides ``(x, y)`` of the surface [m].
+    #[getter]
+    fn size(&self) -> (f64, f64) {
+        self.grid().sides()
+    }
+
+    /// Composite modulus [Pa]; None for a body of one's own without one.
+    #[getter]
+    fn e_star(&self) -> Option<f64> {
+        self.e_star
+    }
+
+    /// Whether the half-space repeats with the sides of the surface.
+    #[getter]
+    fn is_periodic(&self) -> bool {
+        self.setting.boundary == asperity::Boundary::Periodic
+    }
+
+    /// The surface, with heights [m] from its highest node.
+    #[getter]
+    fn surface(&self, py: Python<'_>) -> Fallible<Surface> {
+        let inner = self.lock(py);
+        let gaps = inner.engine().problem().initial_gap().iter().map(|gap| -gap);
+        let (nx, ny) = self.grid().shape();
+        Ok(Surface::new(*self.grid(), DMatrix::from_iterator(nx, ny, gaps))?)
+    }
+
+    /// Hardness of each node [Pa], ``[row, column]``; None without one.
+    #[getter]
+    fn hardness<'py>(&self, py: Python<'py>) -> Fallible<Option<Bound<'py, PyArray2<f64>>>> {
+        let map = self.lock(py).engine().hardness_map();
+        map.map(|map| rows(py, map)).transpose()
+    }
+
+    /// Number of nodes in contact when the factor was given up for iterations, None while it is in use.
+    #[getter]
+    fn handed_over_at(&self, py: Python<'_>) -> Option<usize> {
+        self.lock(py).engine().handed_over_at()
+    }
+
+    /// Bytes that the engine holds for the path.
+    #[getter]
+    fn nbytes(&self, py: Python<'_>) -> usize {
+        self.lock(py).engine().bytes()
+    }
+
+    /// Pressure [Pa] at a state.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     One of this path so far, or one that `History.at` has read from it; the last one if not given.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn pressure<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
+        self.field(py, state, |engine, state| engine.pressure_at(state))
+    }
+
+    /// Gap [m] at a state: zero in contact, to rounding.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn gap<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
+        self.field(py, state, |engine, state| engine.gap_at(state))
+    }
+
+    /// Displacement of the half-space [m] at a state, positive into it; about its mean on a periodic half-space.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn displacement<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
+        self.field(py, state, |engine, state| engine.displacement_at(state))
+    }
+
+    /// Which nodes are in contact at a state.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of bool, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn contact_map<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<bool>>> {
+        self.field(py, state, |engine, state| engine.contact_map_at(state))
+    }
+
+    /// Which nodes have yielded at a state: none without a hardness.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of bool, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn yielded_map<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<bool>>> {
+        self.field(py, state, |engine, state| engine.yielded_map_at(state))
+    }
+
+    /// Plastic depth [m] at a state: by how much yielded nodes would overlap, 0 elsewhere.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float, [row, column]
+    #[pyo3(signature = (state=None))]
+    fn plastic_depth<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyArray2<f64>>> {
+        self.field(py, state, |engine, state| engine.plastic_depth_at(state))
+    }
+
+    /// The surface with the plastic depth of a state taken off: that of elastic unloading from there.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// Surface
+    #[pyo3(signature = (state=None))]
+    fn residual_surface(
+        &self,
+        py: Python<'_>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Surface> {
+        let map = self.at(py, state, |engine, state| engine.residual_surface_at(state))?;
+        Ok(Surface::new(*self.grid(), map.into_matrix())?)
+    }
+
+    /// Unload from the last state, elastically: what yielded stays.
+    ///
+    /// Returns
+    /// -------
+    /// Unloading
+    ///     States, energies, and the surface that is left.
+    fn unload(slf: &Bound<'_, Self>) -> Fallible<unloading::Unloading> {
+        unloading::unload(slf)
+    }
+
+    /// How well a state fulfils the conditions of contact, computed afresh from its pressure.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : State, optional
+    ///     As of `pressure`.
+    ///
+    /// Returns
+    /// -------
+    /// results.Certificate
+    ///     Relative to the mean pressure on the contact, the load and a length; zero would be exact.
+    #[pyo3(signature = (state=None))]
+    fn certificate<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<PyRef<'_, State>>,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        let certificate = self.at(py, state, |engine, state| engine.certificate_at(state))?;
+        of_certificate(py, &certificate)
+    }
+
+    /// The narrowest place of the widest channel that leads along an axis through the nodes out of contact.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : {"x", "y"}
+    /// state : State, optional
+    ///     As of `pressure`.
+    /// connectivity : {8, 4}
+    ///     That of patches; channels have the other one.
+    ///
+    /// Returns
+    /// -------
+    /// results.Constriction or None
+    ///     None if no channel leads all the way.
+    #[pyo3(signature = (axis, state=None, *, connectivity=8))]
+    fn constriction<'py>(
+        &self,
+        py: Python<'py>,
+        axis: &str,
+        state: Option<PyRef<'_, State>>,
+        connectivity: usize,
+    ) -> Fallible<Option<Bound<'py, PyAny>>> {
+        let axis = choice::axis(axis)?;
+        let connectivity = choice::connectivity(connectivity)?;
+        let Setting { grid, boundary, .. } = self.setting;
+        let found = self.at(py, state, |engine, state| {
+            let (gap, contact) = (engine.gap_at(state)?, engine.contact_map_at(state)?);
+            constriction(&gap, &contact, (&grid, boundary), connectivity, axis)
+        })?;
+        found
+            .map(|found| {
+                result!(py, "Constriction", {
+                    row: found.node.1,
+                    column: found.node.0,
+                    gap: found.gap,
+                })
+            })
+            .transpose()
+    }
+
+    /// Nodes in contact at the last state, in the order in which they touched.
+    ///
+    /// Returns
+    /// -------
+    /// (ndarray of int, ndarray of int)
+    ///     Rows and columns.
+    #[allow(clippy::type_complexity)] // two arrays
+    fn contact_order<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Fallible<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>)> {
+        let order = self.lock(py).record()?.contact()?;
+        let nodes = order.order().iter().map(|node| self.grid().coordinates(*node));
+        let (columns, rows) = nodes.map(|(ix, iy)| (ix as i64, iy as i64)).unzip();
+        Ok((column(py, rows), column(py, columns)))
+    }
+
+    /// Write the record of the path so far, which `open` and the program read, and `numpy.load` opens.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     A ``.npz`` file. It has this name only when it is whole.
+    /// fields : bool
+    ///     Whether pressure and gap of the last state go into it, and the plastic depth.
+    #[pyo3(signature = (path, *, fields=false))]
+    fn save(&self, py: Python<'_>, path: PathBuf, fields: bool) -> Fallible<()> {
+        let mut inner = self.lock(py);
+        let inner = &mut *inner;
+        let has_hardness = self.setting.has_hardness;
+        Ok(detached(py, move || {
+            let record = inner.record()?;
+            let mut written = Vec::new();
+            if let (true, Some(state)) = (fields, inner.present()) {
+                let engine = inner.engine_mut();
+                written.push(("pressure", engine.pressure_at(&state)?));
+                written.push(("gap", engine.gap_at(&state)?));
+                if has_hardness {
+                    written.push(("plastic_depth", engine.plastic_depth_at(&state)?));
+                }
+            }
+            let written: Vec<_> = written.iter().map(|(name, field)| (*name, field)).collect();
+            record.write_npz(path, &written)
+        })??)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let inner = self.lock(py);
+        let (rows, columns) = self.shape();
+        let states = inner.history.states().len();
+        let end = inner.end().map_or("more to come", Self::end_in_words);
+        format!("<LoadingPath: {states} states on {rows} x {columns} rows and columns; end: {end}>")
+    }
+}
+
+/// A certificate as a result.
+pub(crate) fn of_certificate<'py>(
+    py: Python<'py>,
+    certificate: &Certificate,
+) -> Fallible<Bound<'py, PyAny>> {
+    result!(py, "Certificate", {
+        least_pressure: certificate.least_pressure,
+        least_gap: certificate.least_gap,
+        greatest_contact_gap: certificate.greatest_contact_gap,
+        complementarity: certificate.complementarity,
+        load_error: certificate.load_error,
+        excess_pressure: certificate.excess_pressure,
+        length: certificate.length,
+    })
+}
+
+/// Who is told how far a path is.
+struct Progress<'py> {
+    told: Option<Bound<'py, PyAny>>,
+    /// Whether it is a bar of this package, which is to be closed.
+    is_bar: bool,
+}
+
+impl<'py> Progress<'py> {
+    fn new(py: Python<'py>, asked: Option<&Bound<'py, PyAny>>) -> Fallible<Self> {
+        let nobody = Self { told: None, is_bar: false };
+        match asked {
+            Some(asked) if asked.is_callable() => {
+                Ok(Self { told: Some(asked.clone()), is_bar: false })
+            }
+            Some(asked) if asked.is_truthy()? => {
+                let bar = py.import("asperity._progress")?.getattr("Bar")?.call0()?;
+                Ok(Self { told: Some(bar), is_bar: true })
+            }
+            _ => Ok(nobody),
+        }
+    }
+
+    fn show(&self, done: f64, state: Option<LoadingState>) -> Fallible<()> {
+        if let (Some(told), Some(state)) = (&self.told, state) {
+            told.call1((done, State::new(state)))?;
+        }
+        Ok(())
+    }
+
+    fn close(&self) -> Fallible<()> {
+        if let (Some(told), true) = (&self.told, self.is_bar) {
+            told.call_method0("close")?;
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<LoadingPath>()?;
+    setup::register(module)?;
+    unloading::register(module)
+}

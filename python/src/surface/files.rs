@@ -1,0 +1,177 @@
+//! Files of surfaces.
+
+use std::path::{Path, PathBuf};
+
+use asperity::io::{
+    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_x3p,
+};
+use asperity::nalgebra::DMatrix;
+use asperity::{FileError, Grid};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use super::Surface;
+use crate::arrays::Lengths;
+use crate::compute::detached;
+use crate::errors::{Failure, Fallible};
+use crate::warnings::warn;
+
+/// Read a surface from the file of an instrument.
+///
+/// Parameters
+/// ----------
+/// source : str, os.PathLike, bytes or file object
+///     ``.npy``, ``.gsf``, ``.gwy``, ``.sdf``, ``.x3p``, ``.sur``, ``.al3d``, ``.vk4`` or text; the format is known by the
+///     content. A file object is one with ``read()`` that returns bytes.
+/// channel : str, optional
+///     Name of the map, in a file with several.
+/// size : (float, float) or float, optional
+///     Sides ``(x, y)`` [m] in place of what the file says; one number is the side along x, with square cells.
+/// height_unit, lateral_unit : str, optional
+///     Units in place of those in the file.
+/// ignore_mask : bool
+///     Keep the heights of nodes that a mask in the file marks.
+/// name : str, optional
+///     Name of the file that bytes are from: errors call it so, and lists of points are known by ``.xyz``.
+///
+/// Returns
+/// -------
+/// Surface
+///     Missing nodes are NaN. What was assumed is in `Surface.notes`, and is given as a warning.
+///
+/// Raises
+/// ------
+/// FileError
+///     An `OSError` as well: a file that is not there, is damaged, or leaves something open.
+///
+/// Notes
+/// -----
+/// The rows of a file are those of an image. Only a ``.npy`` file holds ``[ix, iy]``, as the program and the Rust library
+/// have it: an image has to be saved by ``numpy.save(name, z.T)``, or by `Surface.save`.
+#[pyfunction]
+#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, ignore_mask=false, name=None))]
+#[allow(clippy::too_many_arguments)] // each is a keyword
+fn read(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    channel: Option<String>,
+    size: Option<Lengths>,
+    height_unit: Option<&str>,
+    lateral_unit: Option<&str>,
+    ignore_mask: bool,
+    name: Option<PathBuf>,
+) -> Fallible<Surface> {
+    let mut options = ReadOptions::new();
+    if let Some(channel) = channel {
+        options = options.channel(channel);
+    }
+    if let Some(size) = size {
+        let (x, y) = size.x_and_y();
+        options = options.side(x);
+        if let Some(y) = y {
+            options = options.side_y(y);
+        }
+    }
+    if let Some(unit) = height_unit {
+        options = options.height_unit(unit.parse::<LengthUnit>()?);
+    }
+    if let Some(unit) = lateral_unit {
+        options = options.lateral_unit(unit.parse::<LengthUnit>()?);
+    }
+    if ignore_mask {
+        options = options.ignore_mask();
+    }
+    let measured = match Source::of(source)? {
+        Source::File(path) => detached(py, || options.read(path))??,
+        Source::Bytes(bytes, found) => {
+            let name = name.or(found).unwrap_or_default();
+            detached(py, || options.read_bytes(bytes, name))??
+        }
+    };
+    for note in &measured.notes {
+        warn(py, note)?;
+    }
+    surface(measured)
+}
+
+fn surface(measured: MeasuredSurface) -> Fallible<Surface> {
+    let grid = measured.grid()?;
+    let MeasuredSurface { heights, title, notes, .. } = measured;
+    Ok(Surface { title, notes, ..Surface::new(grid, heights)? })
+}
+
+/// The names of the maps in a file.
+///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+///
+/// Returns
+/// -------
+/// list of str
+///     What `read` takes as `channel`.
+#[pyfunction]
+fn channels(py: Python<'_>, path: PathBuf) -> Fallible<Vec<String>> {
+    Ok(detached(py, || io::channels(path))??)
+}
+
+/// Where the bytes of a file are.
+enum Source {
+    File(PathBuf),
+    Bytes(Vec<u8>, Option<PathBuf>),
+}
+
+impl Source {
+    fn of(source: &Bound<'_, PyAny>) -> Fallible<Self> {
+        if let Ok(bytes) = source.cast::<PyBytes>() {
+            return Ok(Self::Bytes(bytes.as_bytes().to_vec(), None));
+        }
+        if let Ok(path) = source.extract::<PathBuf>() {
+            return Ok(Self::File(path));
+        }
+        if !source.hasattr("read")? {
+            let bytes = source.py().import("builtins")?.getattr("bytes")?;
+            let is_buffer = source.is_instance_of::<pyo3::types::PyByteArray>()
+                || source.get_type().name()? == "memoryview";
+            if is_buffer {
+                return Ok(Self::Bytes(bytes.call1((source,))?.extract()?, None));
+            }
+            return Err(Failure::arguments(
+                "source must be the name of a file, bytes, or a file object",
+            ));
+        }
+        let read = source.call_method0("read")?;
+        let Ok(bytes) = read.cast::<PyBytes>() else {
+            return Err(Failure::arguments("a file object must be opened in binary mode, \"rb\""));
+        };
+        let name = source.getattr("name").ok().and_then(|name| name.extract().ok());
+        Ok(Self::Bytes(bytes.as_bytes().to_vec(), name))
+    }
+}
+
+/// Writes heights in the format of the extension.
+pub(super) fn save(
+    py: Python<'_>,
+    path: &Path,
+    grid: &Grid,
+    heights: &DMatrix<f64>,
+) -> Fallible<()> {
+    let extension = path.extension().map(|end| end.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("npy") => Ok(detached(py, || write_npy(path, heights))??),
+        Some("gsf") => Ok(detached(py, || write_gsf(path, grid, heights, "m"))??),
+        Some("x3p") => Ok(detached(py, || write_x3p(path, grid, heights))??),
+        _ => Err(FileError::BadFile {
+            path: path.to_path_buf(),
+            format: "surface",
+            offset: None,
+            reason: "its extension must be .npy, .gsf or .x3p to say the format".to_string(),
+        }
+        .into()),
+    }
+}
+
+pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(read, module)?)?;
+    module.add_function(wrap_pyfunction!(channels, module)?)
+}

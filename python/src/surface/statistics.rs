@@ -1,0 +1,94 @@
+//! Statistics of surfaces.
+
+use asperity::surface::{Axis, Estimate, RadialBins, SpectralBin, Topography, Trend};
+use pyo3::prelude::*;
+
+use crate::arrays::{Found, Kind, column};
+use crate::compute::detached;
+use crate::errors::{Failure, Fallible};
+use crate::results::result;
+
+pub(super) fn trend<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+    trend: Trend,
+) -> Fallible<Bound<'py, PyAny>> {
+    let fitted = detached(py, || surface.trend(trend))?;
+    result!(py, "Trend", {
+        height: fitted.height(),
+        slopes: fitted.slopes(),
+        curvatures: fitted.curvatures(),
+        tilt: fitted.tilt(),
+    })
+}
+
+pub(super) fn moments<'py>(py: Python<'py>, surface: &Topography) -> Fallible<Bound<'py, PyAny>> {
+    let moments = detached(py, || surface.spectral_moments())?;
+    result!(py, "SpectralMoments", {
+        m0: moments.m0(),
+        m2: moments.m2(),
+        m4: moments.m4(),
+        rms_height: moments.rms_height(),
+        rms_gradient: moments.rms_gradient(),
+        rms_laplacian: moments.rms_laplacian(),
+        rms_curvature: moments.rms_curvature(),
+        nayak_parameter: moments.nayak_parameter(),
+    })
+}
+
+pub(super) fn radial_psd<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+    bins: Option<&Bound<'py, PyAny>>,
+) -> Fallible<Bound<'py, PyAny>> {
+    let bins = match bins {
+        None => RadialBins::Linear,
+        Some(bins) if bins.extract::<&str>().is_ok_and(|word| word == "linear") => {
+            RadialBins::Linear
+        }
+        Some(bins) => match bins.extract::<usize>() {
+            Ok(number) => RadialBins::PerDecade(number),
+            Err(_) if bins.is_instance_of::<pyo3::types::PyString>() => {
+                return Err(Failure::arguments(
+                    "bins must be 'linear', a number of rings in a decade, or wavevectors",
+                ));
+            }
+            Err(_) => RadialBins::Edges(Found::of(bins, "bins", Kind::Real)?.list()?),
+        },
+    };
+    let spectrum = detached(py, || surface.radial_psd(&bins))??;
+    of_bins(py, &spectrum)
+}
+
+pub(super) fn psd_along<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+    axis: Axis,
+) -> Fallible<Bound<'py, PyAny>> {
+    of_bins(py, &detached(py, || surface.psd_along(axis))?)
+}
+
+fn of_bins<'py>(py: Python<'py>, bins: &[SpectralBin]) -> Fallible<Bound<'py, PyAny>> {
+    result!(py, "PowerSpectrum", {
+        wavevector: column(py, bins.iter().map(|bin| bin.wavevector).collect()),
+        density: column(py, bins.iter().map(|bin| bin.density).collect()),
+        waves: column(py, bins.iter().map(|bin| bin.waves as i64).collect()),
+    })
+}
+
+pub(super) fn fit_self_affine<'py>(
+    py: Python<'py>,
+    surface: &Topography,
+) -> Fallible<Bound<'py, PyAny>> {
+    let fit = detached(py, || surface.fit_self_affine())??;
+    let one = |estimate: Estimate| result!(py, "Estimate", { value: estimate.value, standard_error: estimate.standard_error });
+    let perhaps = |estimate: Option<Estimate>| estimate.map(one).transpose();
+    result!(py, "SelfAffineFit", {
+        hurst: one(fit.hurst)?,
+        rolloff_wavelength: perhaps(fit.rolloff_wavelength)?,
+        short_cutoff_wavelength: perhaps(fit.short_cutoff_wavelength)?,
+        long_cutoff_wavelength: perhaps(fit.long_cutoff_wavelength)?,
+        prefactor: fit.prefactor,
+        dispersion: fit.dispersion,
+    })
+}

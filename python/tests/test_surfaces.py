@@ -1,0 +1,241 @@
+"""Surfaces: files, preparation, statistics, generators."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import DATA
+from numpy.typing import NDArray
+
+import asperity as asp
+from asperity.errors import FileError, MissingFileError
+
+FILES = DATA / "surface_files"
+COLUMN, ROW = np.meshgrid(np.arange(7), np.arange(5))
+NANOMETRES = 100 * COLUMN + 17 * ROW**2 - 3 * COLUMN * ROW - 250.0
+# What a file does not say, by extension.
+OPEN: dict[str, dict[str, object]] = {
+    ".npy": {"size": (14e-6, 15e-6), "height_unit": "m"},
+    ".asc": {"size": (14e-6, 15e-6), "height_unit": "m"},
+    ".csv": {"size": (14e-6, 15e-6), "height_unit": "m"},
+    ".xyz": {"height_unit": "m", "lateral_unit": "m"},
+}
+
+
+def expected(name: str) -> NDArray[np.float64]:
+    z = NANOMETRES * 1e-9
+    z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9}.get(name, 0.0)
+    if name.startswith(("missing", "masked")):
+        z[1, 2] = z[4, 6] = np.nan
+    return z
+
+
+@pytest.mark.parametrize("name", sorted(file.name for file in FILES.iterdir()))
+@pytest.mark.filterwarnings("ignore::asperity.AsperityWarning")
+def test_every_format(name: str) -> None:
+    options = dict(OPEN.get(Path(name).suffix, {}))
+    surface = asp.read(FILES / name, **options)
+    assert surface.shape == (5, 7)
+    assert surface.missing == (2 if name.startswith(("missing", "masked")) else 0)
+    # Seven digits in texts, float32 in .gsf and .al3d: of a height below 0.8 um.
+    np.testing.assert_allclose(surface.z, expected(name), rtol=0, atol=1e-13)
+    # Seven digits in texts as well.
+    assert surface.size == pytest.approx((14e-6, 15e-6), rel=1e-6)
+    from_bytes = asp.read((FILES / name).read_bytes(), name=name, **options)
+    from_object = asp.read(io.BytesIO((FILES / name).read_bytes()), name=name, **options)
+    with (FILES / name).open("rb") as file:
+        from_file = asp.read(file, **options)
+    assert surface == from_bytes == from_object == from_file
+
+
+def test_masks_and_channels() -> None:
+    with pytest.warns(asp.AsperityWarning, match="2 nodes that a mask marks"):
+        masked = asp.read(FILES / "masked.gwy")
+    assert masked.missing == 2 and any("mask" in note for note in masked.notes)
+    assert asp.read(FILES / "masked.gwy", ignore_mask=True).missing == 0
+    names = asp.channels(FILES / "masked.gwy")
+    assert len(names) >= 1
+    with pytest.raises(FileError) as refused:
+        asp.read(FILES / "masked.gwy", channel="nonsense")
+    assert refused.value.kind == "WhichChannel" and refused.value.channels == names
+    assert refused.value.wanted == "nonsense"
+
+
+def test_what_a_file_leaves_open_is_asked_for() -> None:
+    with pytest.warns(asp.AsperityWarning), pytest.raises(FileError) as refused:
+        asp.read(FILES / "missing.npy")
+    assert refused.value.kind == "NoSide" and "`size=`" in str(refused.value)
+    with pytest.warns(asp.AsperityWarning) as warned:
+        asp.read(FILES / "missing.npy", size=14e-6)
+    words = [str(warning.message) for warning in warned]
+    assert any("no unit" in sentence for sentence in words) and any("square" in sentence for sentence in words)
+    # The warning is of the line that called.
+    assert all(warning.filename == __file__ for warning in warned)
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(MissingFileError) as missing:
+        asp.read(tmp_path / "nothing.sdf")
+    assert isinstance(missing.value, FileNotFoundError) and isinstance(missing.value, ValueError)
+    assert missing.value.filename == str(tmp_path / "nothing.sdf") and missing.value.errno == 2
+    (tmp_path / "noise.bin").write_bytes(bytes(range(256)))
+    with pytest.raises(OSError) as unknown:
+        asp.read(tmp_path / "noise.bin")
+    assert unknown.value.kind == "UnknownFormat" and unknown.value.begins == list(range(8))
+    broken = (FILES / "plain.gsf").read_bytes()[:-3]
+    with pytest.raises(FileError) as bad:
+        asp.read(broken, name="cut.gsf")
+    assert bad.value.kind == "BadFile" and bad.value.filename == "cut.gsf"
+    with pytest.raises(OSError):
+        asp.read(tmp_path)
+    for source in [3, None, object(), ["a"]]:
+        with pytest.raises(asp.AsperityError):
+            asp.read(source)
+    with pytest.raises(asp.AsperityError, match="binary"):
+        asp.read(io.StringIO("1 2\n3 4"))
+    assert asp.read(bytearray((FILES / "plain.gsf").read_bytes())) == asp.read(FILES / "plain.gsf")
+    assert asp.read(memoryview((FILES / "plain.gsf").read_bytes())) == asp.read(FILES / "plain.gsf")
+
+
+def test_files_are_written_and_read_again(tmp_path: Path) -> None:
+    surface = asp.example_surface(nodes=32)
+    surface.save(tmp_path / "z.x3p")
+    np.testing.assert_array_equal(asp.read(tmp_path / "z.x3p").z, surface.z)
+    surface.save(tmp_path / "z.npy")
+    np.testing.assert_array_equal(np.load(tmp_path / "z.npy").T, surface.z)
+    surface.save(tmp_path / "z.gsf")
+    # float32.
+    np.testing.assert_allclose(asp.read(tmp_path / "z.gsf").z, surface.z, rtol=1e-7)
+    with pytest.raises(FileError):
+        surface.save(tmp_path / "z.tiff")
+    with pytest.raises(OSError):
+        surface.save(tmp_path / "no folder" / "z.npy")
+
+
+def test_statistics_are_those_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+    """Every number that `asperity info --json` prints of a surface and Python has too."""
+    surface = asp.example_surface(nodes=64, seed=3)
+    surface.save(tmp_path / "z.npy")
+    told = json.loads(program("info", tmp_path / "z.npy", "--side", "1e-2", "--json", "--out", tmp_path))
+    numbers = {name: value for name, value in told.items() if isinstance(value, int | float)}
+    known = {
+        "missing": surface.missing,
+        "rms_height": surface.sq,
+        "mean_absolute_height": surface.sa,
+        "peak_to_valley": surface.sz,
+        "skewness": surface.ssk,
+        "kurtosis": surface.sku,
+        "rms_gradient": surface.rms_gradient,
+    }
+    common = known.keys() & numbers.keys()
+    assert {"missing", "rms_gradient"} <= common, sorted(numbers)
+    for name in common:
+        assert numbers[name] == known[name], name
+
+
+def test_statistics_are_those_of_their_definitions() -> None:
+    z = asp.example_surface(nodes=48, seed=5).z
+    surface = asp.Surface(z, (1e-2, 2e-2))
+    d = z - z.mean()
+    # Rounding of sums over 2304 heights.
+    close = {"rel": 1e-12}
+    assert surface.sq == pytest.approx(np.sqrt(np.mean(d**2)), **close)
+    assert surface.sa == pytest.approx(np.mean(np.abs(d)), **close)
+    assert surface.sz == z.max() - z.min()
+    assert surface.ssk == pytest.approx(np.mean(d**3) / np.mean(d**2) ** 1.5, rel=1e-9)
+    assert surface.sku == pytest.approx(np.mean(d**4) / np.mean(d**2) ** 2, **close)
+    slopes = (np.diff(z, axis=1) / (1e-2 / 48), np.diff(z, axis=0) / (2e-2 / 48))
+    along = tuple(np.sqrt(np.mean(s**2)) for s in slopes)
+    assert surface.rms_slopes == pytest.approx(along, **close)
+    assert surface.rms_gradient == pytest.approx(np.hypot(*along), **close)
+    assert surface.rms_curvature == pytest.approx(surface.rms_laplacian / 2, **close)
+    moments = surface.moments()
+    assert moments.rms_height == pytest.approx(surface.sq, **close)
+    assert moments.nayak_parameter == pytest.approx(moments.m0 * moments.m4 / moments.m2**2, **close)
+    spectrum = surface.psd()
+    assert spectrum.wavevector.shape == spectrum.density.shape == spectrum.waves.shape
+    assert np.all(np.diff(spectrum.wavevector) > 0)
+    assert len(surface.psd(10).density) > 5
+    edges = surface.psd([300.0, 3000.0, 30000.0])
+    assert len(edges.density) <= 2
+    along_x, along_y = surface.psd_along("x"), surface.psd_along("y")
+    assert along_x.wavevector[0] == pytest.approx(2 * np.pi / 1e-2, **close)
+    assert along_y.wavevector[0] == pytest.approx(2 * np.pi / 2e-2, **close)
+    fit = asp.example_surface(nodes=128).fit_self_affine()
+    assert fit.hurst.value == pytest.approx(0.8, abs=0.05) and fit.rolloff_wavelength is not None
+    full = surface.full_contact_pressure(115e9)
+    assert full.shape == z.shape and abs(full.mean()) < 1e-9 * full.max()
+    shortest, longest = surface.bandwidth
+    assert shortest < longest
+
+
+def test_what_looks_wrong_is_said() -> None:
+    surface = asp.example_surface(nodes=64)
+    assert surface.check() == []
+    steep = surface.scaled(1e3)
+    assert any("units" in sentence for sentence in steep.check())
+    tilted = asp.Surface(surface.z + 1e-3 * np.arange(64), surface.size)
+    assert any('Surface.level("plane")' in sentence for sentence in tilted.check())
+    assert tilted.level().check() == []
+    np.testing.assert_allclose(tilted.level().z, surface.level().z, atol=1e-15)
+
+
+def test_preparation() -> None:
+    surface = asp.example_surface(nodes=64)
+    long, short = surface.low_pass(1e-3), surface.high_pass(1e-3)
+    np.testing.assert_allclose(long.z + short.z, surface.z, atol=1e-18)
+    fine = surface.resample((128, 96), method="fourier")
+    assert fine.shape == (128, 96) and fine.size == pytest.approx(surface.size)
+    assert fine.sq == pytest.approx(surface.sq, rel=1e-6)
+    assert surface.window("hann").sq != surface.sq
+    with pytest.raises(asp.AsperityError) as refused:
+        surface.window("tukey", 1.5)
+    assert refused.value.kind == "OutOfRange" and refused.value.value == 1.5
+    for call in [
+        lambda: surface.level("cubic"),
+        lambda: surface.flip("z"),
+        lambda: surface.low_pass(1e-3, "boxcar"),
+        lambda: surface.resample((8, 8), method="nearest"),
+        lambda: surface.window("kaiser"),
+        lambda: surface.psd("octaves"),
+    ]:
+        with pytest.raises(asp.AsperityError, match="must be"):
+            call()
+    with pytest.raises(asp.AsperityError) as out:
+        surface.crop(rows=(0, 65))
+    assert out.value.kind == "CropOutOfGrid" and out.value.axis == "y"
+    with pytest.raises(asp.AsperityError, match="different grids"):
+        surface + fine
+
+
+def test_generators_are_those_of_the_library() -> None:
+    """Closed forms of the shapes, and the same surface for the same seed."""
+    x = (np.arange(12) + 0.5) / 12 * 1e-3 - 0.5e-3
+    y = (np.arange(8) + 0.5) / 8 * 2e-3 - 1e-3
+    shape, size = (8, 12), (1e-3, 2e-3)
+    xx, yy = np.meshgrid(x, y)
+    close = {"rtol": 1e-12, "atol": 1e-20}
+    np.testing.assert_allclose(asp.paraboloid(0.1, shape, size).z, -(xx**2 + yy**2) / 0.2, **close)
+    np.testing.assert_allclose(asp.paraboloid((0.1, 0.2), shape, size).z, -(xx**2) / 0.2 - yy**2 / 0.4, **close)
+    np.testing.assert_allclose(asp.cylinder(0.1, shape, size, axis="y").z, -(xx**2) / 0.2, **close)
+    np.testing.assert_allclose(asp.cylinder(0.1, shape, size, axis="x").z, -(yy**2) / 0.2, **close)
+    np.testing.assert_allclose(asp.cone(0.3, shape, size).z, -0.3 * np.hypot(xx, yy), **close)
+    wave = 1e-6 * np.cos(2 * np.pi * xx / 1e-3)
+    np.testing.assert_allclose(asp.wave(1e-6, 1e-3, shape, size).z, wave, rtol=0, atol=1e-20)
+    assert asp.wave(1e-6, (1e-3, 2e-3), shape, size).shape == shape
+    corner = asp.paraboloid(0.1, shape, size, center=(0.0, 0.0)).z
+    assert np.unravel_index(np.argmax(corner), shape) == (0, 0)
+    settings = {"hurst": 0.8, "rolloff": 2.5e-4, "short_cutoff": 1e-4, "seed": 7}
+    one = asp.self_affine((40, 50), (1e-3, 8e-4), rms_height=1e-6, **settings)
+    assert one == asp.self_affine((40, 50), (1e-3, 8e-4), rms_height=1e-6, **settings)
+    assert one.sq == pytest.approx(1e-6, rel=1e-12) and one.shape == (40, 50)
+    with pytest.raises(asp.AsperityError, match="one of"):
+        asp.self_affine((40, 50), 1e-3, **settings)
+    with pytest.raises(asp.AsperityError) as refused:
+        asp.self_affine((40, 50), 1e-3, rms_height=1e-6, **{**settings, "short_cutoff": 1e-6})
+    assert refused.value.kind == "CutoffBelowGrid"

@@ -1,0 +1,93 @@
+//! Bounds of the conductance when the surface has more roughness than the grid.
+
+use super::Conduction;
+use crate::loading::History;
+use crate::{Error, LoadingState};
+
+/// Between what the conductance of a rougher surface lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct ConductanceBounds {
+    /// It conducts at least this \[S, W/K\].
+    pub lower: f64,
+    /// It conducts at most this \[S, W/K\]: infinity where the path tells of no bound.
+    pub upper: f64,
+}
+
+impl Conduction {
+    /// Barber's bounds of the conductance at every state of a path, for a surface with more roughness than the grid resolves, of
+    /// at most s \[m\] from its deepest valley to its highest peak.
+    ///
+    /// Such a surface lies between this one and this one raised by s, so that its approach δᵣ at each load lies between δ and δ + s; and δᵣ
+    /// is a concave function of the load, since contact grows. Chords then bound its slope,
+    /// ```math
+    /// \max_{W_2 > W} \frac{\delta(W_2) - \delta(W) - s}{W_2 - W} \le \delta_r'(W) \le \min_{W_1 < W} \frac{\delta(W) + s - \delta(W_1)}{W - W_1} ,
+    /// ```
+    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has closed. Without s
+    /// both bounds are the stiffness before and behind the event. The upper one needs a path well beyond the load. Between two events, those of the earlier one
+    /// are no bounds. The gap is as at the state.
+    ///
+    /// Barber, Proc. R. Soc. A 459 (2003) 53.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or NaN.
+    pub fn bounds(
+        &self,
+        history: &History,
+        unresolved: f64,
+    ) -> Result<Vec<ConductanceBounds>, Error> {
+        let is_one = (0.0..f64::INFINITY).contains(&unresolved);
+        Error::require("unresolved roughness", unresolved, is_one, "finite and not negative")?;
+        let states = history.states();
+        let points: Vec<(f64, f64)> = states.iter().map(compression).collect();
+        let stiffness = |slope: f64| if slope > 0.0 { 1.0 / slope } else { f64::INFINITY };
+        let bounds = states.iter().enumerate().map(|(k, state)| {
+            let (load, depth) = points[k];
+            // Slopes of chords from an earlier point, and to a later one.
+            let before = |i: usize| (depth + unresolved - points[i].1) / (load - points[i].0);
+            let after = |i: usize| (points[i].1 - depth - unresolved) / (points[i].0 - load);
+            let first = points.partition_point(|point| point.0 < load);
+            let next = points.partition_point(|point| point.0 <= load);
+            // There is no earlier point at first touch, and no later one at the end.
+            let lower = match first > 0 {
+                true => stiffness(before(best(0..first, before))),
+                false => 0.0,
+            };
+            let upper = match next < points.len() {
+                true => stiffness(after(best(next..points.len(), |i| -after(i)))),
+                false => f64::INFINITY,
+            };
+            Ok(ConductanceBounds {
+                lower: self.at_stiffness(lower, &state.contact)?,
+                upper: self.at_stiffness(upper, &state.contact)?,
+            })
+        });
+        bounds.collect()
+    }
+}
+
+/// Load and compression: the approach where it is that of a distant point, else what the mean gap has closed, up to a constant.
+fn compression(state: &LoadingState) -> (f64, f64) {
+    let contact = &state.contact;
+    let depth = match contact.contact_stiffness {
+        Some(_) => contact.approach,
+        None => -contact.mean_gap,
+    };
+    (contact.load, depth)
+}
+
+/// Where a function with one valley is least. Any place is a bound, so that rounding cannot make it wrong.
+fn best(places: std::ops::Range<usize>, value: impl Fn(usize) -> f64) -> usize {
+    let (mut low, mut high) = (places.start, places.end - 1);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if value(middle + 1) < value(middle) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}

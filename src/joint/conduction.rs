@@ -1,0 +1,144 @@
+//! The conductance of a contact, and of the gap beside it.
+
+use crate::reference::contact_conductance;
+use crate::{ContactState, Error};
+
+/// What is conducted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Carrier {
+    /// Electrical current: resistivities in Ω m, conductances in S.
+    Current,
+    /// Heat: resistivities in m K/W, conductances in W/K.
+    Heat,
+}
+
+/// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally the gap in parallel.
+///
+/// See [`contact_conductance`] for what the formula assumes, and which stiffness K it takes: the contact stiffness on a free
+/// half-space and the interfacial one on a periodic one.
+///
+/// ```
+/// use asperity::joint::Conduction;
+/// use asperity::{ContactState, Grid};
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let mut contact = ContactState::new(&Grid::square(64, 1e-3)?, 100, 1e-7, 5.0, 2e-6);
+/// contact.contact_stiffness = Some(2e7);
+/// let copper = Conduction::electrical(70e9, 1.7e-8 + 1.7e-8)?;
+/// let conductance = copper.of(&contact)?.unwrap_or_default();
+/// assert!((conductance - 2.0 * 2e7 / (70e9 * 3.4e-8)).abs() < 1e-9 * conductance);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conduction {
+    carrier: Carrier,
+    e_star: f64,
+    resistivity: f64,
+    /// Conductivity of what fills the gap, and its jump distance.
+    gap: Option<(f64, f64)>,
+}
+
+impl Conduction {
+    /// Of current, between bodies of the composite modulus E\* \[Pa\] and the resistivity ρ = ρ₁ + ρ₂ \[Ω m\], the sum of both.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for either.
+    pub fn electrical(e_star: f64, resistivity: f64) -> Result<Self, Error> {
+        Self::new(Carrier::Current, e_star, resistivity)
+    }
+
+    /// Of heat, with the thermal resistivity ρ = 1/k₁ + 1/k₂ \[m K/W\] of both bodies.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::electrical`].
+    pub fn thermal(e_star: f64, resistivity: f64) -> Result<Self, Error> {
+        Self::new(Carrier::Heat, e_star, resistivity)
+    }
+
+    fn new(carrier: Carrier, e_star: f64, resistivity: f64) -> Result<Self, Error> {
+        Ok(Self {
+            carrier,
+            e_star: Error::require_positive("plane-strain modulus", e_star)?,
+            resistivity: Error::require_positive("resistivity", resistivity)?,
+            gap: None,
+        })
+    }
+
+    /// The same with the gap in parallel, filled by a medium of the conductivity k \[W/(m K), S/m\] with the jump distance M \[m\] (the sum of the
+    /// temperature jump distances of a gas at both surfaces; 0 for a liquid): over the open area $`A_0 - A`$
+    /// ```math
+    /// h = k\, \frac{A_0 - A}{\bar g_\mathrm{open} + M} ,
+    /// ```
+    /// with the mean gap of the open nodes, $`\bar g_\mathrm{open} = \bar g A_0 / (A_0 - A)`$. It is a model: both ways are taken to share
+    /// nothing but their ends; and since 1/(g + M) is convex in g, the mean over all gaps is no less.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for the conductivity, and [`Error::OutOfRange`] for a jump distance that is negative or not finite.
+    pub fn with_gap(mut self, conductivity: f64, jump_distance: f64) -> Result<Self, Error> {
+        let conductivity = Error::require_positive("conductivity of the gap", conductivity)?;
+        let is_one = (0.0..f64::INFINITY).contains(&jump_distance);
+        let jump =
+            Error::require("jump distance", jump_distance, is_one, "finite and not negative")?;
+        self.gap = Some((conductivity, jump));
+        Ok(self)
+    }
+
+    /// What is conducted.
+    #[must_use]
+    pub fn carrier(&self) -> Carrier {
+        self.carrier
+    }
+
+    /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which adds nothing to the bodies, it is
+    /// infinite.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a stiffness that is negative or NaN.
+    pub fn of(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
+        match contact.contact_stiffness.or(contact.interfacial_stiffness) {
+            Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// Conductance of the interface \[S, W/K\]: what it adds to bodies with a uniform current, by the interfacial stiffness on either
+    /// half-space. It is what a finite element model of both bodies needs, which has the constriction into the nominal area itself.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::of`].
+    pub fn of_interface(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
+        match contact.interfacial_stiffness {
+            Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// The conductance that a stiffness has, with the gap.
+    pub(super) fn at_stiffness(
+        &self,
+        stiffness: f64,
+        contact: &ContactState,
+    ) -> Result<f64, Error> {
+        let solid = contact_conductance(stiffness, self.e_star, self.resistivity)?;
+        Ok(solid + self.through_gap(contact))
+    }
+
+    /// Conductance of the gap alone.
+    fn through_gap(&self, contact: &ContactState) -> f64 {
+        let open = 1.0 - contact.contact_area_fraction;
+        match self.gap {
+            Some((conductivity, jump)) if open > 0.0 => {
+                let area = open * contact.contact_area / contact.contact_area_fraction;
+                conductivity * area / ((contact.mean_gap / open).max(0.0) + jump)
+            }
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The laws of an interface as a short table.
+
+use super::text::number;
+use super::{Carrier, Conduction};
+use crate::loading::History;
+use crate::{Error, LoadingState};
+
+/// Below this part of the greatest pressure errors are absolute.
+const SMALL: f64 = 1e-3;
+
+/// An interface under one pressure, per nominal area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct InterfaceRow {
+    /// Mean pressure \[Pa\].
+    pub pressure: f64,
+    /// Overclosure \[m\]: what the mean gap has closed since first touch.
+    pub overclosure: f64,
+    /// Conductance per area \[W/(m² K), S/m²\] of the interface, if conduction was asked for.
+    pub conductance: Option<f64>,
+    /// Tangential stiffness per area before any slip \[Pa/m\], if friction was asked for.
+    pub tangential_stiffness: Option<f64>,
+    /// Shear stress at which the interface slides \[Pa\], μ times the pressure.
+    pub slip_limit: Option<f64>,
+}
+
+impl InterfaceRow {
+    /// The quantities that are interpolated: pressure over overclosure, the others over pressure.
+    fn values(&self) -> [Option<f64>; 3] {
+        [Some(self.pressure), self.conductance, self.tangential_stiffness]
+    }
+}
+
+/// Coulomb friction of an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Friction {
+    coefficient: f64,
+    compliance_ratio: f64,
+}
+
+/// The laws of an interface: pressure over overclosure, and over the pressure conductance, tangential stiffness and slip limit.
+///
+/// It is the interface alone, for a finite element model whose bodies are flat there: what the mean gap closes, and the interfacial
+/// stiffness $`K_i`$ on either half-space. Bulk deformation, and the constriction into the nominal area, are the model's own.
+///
+/// Rows are states of the path, in strictly rising order of pressure and overclosure; conductance and stiffness never fall. Of all states so many
+/// are left out that linear interpolation between the rows is wrong by no more than the tolerance at any of them: relative to the value, and for
+/// pressures below a thousandth of the greatest one relative to that. In full contact, where the interface is rigid, the table ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InterfaceTable {
+    rows: Vec<InterfaceRow>,
+    tolerance: f64,
+    carrier: Option<Carrier>,
+    friction: Option<Friction>,
+}
+
+/// What is to be in an [`InterfaceTable`].
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct InterfaceTableBuilder<'a> {
+    history: &'a History,
+    conduction: Option<Conduction>,
+    friction: Option<Friction>,
+    tolerance: f64,
+}
+
+impl<'a> InterfaceTableBuilder<'a> {
+    /// Adds conductances.
+    pub fn conduction(mut self, conduction: Conduction) -> Self {
+        self.conduction = Some(conduction);
+        self
+    }
+
+    /// Adds tangential stiffness and slip limit, with the coefficient of friction μ and the ratio κ = E\*/G\* of tangential to normal compliance:
+    /// the stiffness is $`K_i / \kappa`$. Of bodies of one material, and of a rigid one against ν, κ = (2 − ν) / (2 (1 − ν)): 1.21 for ν = 0.3.
+    pub fn friction(mut self, coefficient: f64, compliance_ratio: f64) -> Self {
+        self.friction = Some(Friction { coefficient, compliance_ratio });
+        self
+    }
+
+    /// Greatest relative error of interpolation (default: 0.01).
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// The table.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1 and more, for a path
+    /// with fewer than two rows, and for stiffnesses that are negative or NaN.
+    pub fn build(self) -> Result<InterfaceTable, Error> {
+        let tolerance = Error::require_positive("tolerance of the table", self.tolerance)?;
+        Error::require("tolerance of the table", tolerance, tolerance < 1.0, "below 1")?;
+        if let Some(friction) = self.friction {
+            Error::require_positive("coefficient of friction", friction.coefficient)?;
+            Error::require_positive("compliance ratio", friction.compliance_ratio)?;
+        }
+        let all = self.all()?;
+        let count = all.len();
+        let is_one = count > 1;
+        Error::require(
+            "number of states with their own pressure",
+            count as f64,
+            is_one,
+            "two or more",
+        )?;
+        let mut rows = thinned(&all, tolerance);
+        // They rise in print too.
+        rows.dedup_by(|row, before| {
+            number(row.pressure) == number(before.pressure)
+                || number(row.overclosure) == number(before.overclosure)
+        });
+        Ok(InterfaceTable {
+            rows,
+            tolerance,
+            carrier: self.conduction.map(|conduction| conduction.carrier()),
+            friction: self.friction,
+        })
+    }
+
+    /// A row for each state, without those that do not rise.
+    fn all(&self) -> Result<Vec<InterfaceRow>, Error> {
+        let states = self.history.states();
+        let unloaded = states.first().map_or(0.0, |state| state.contact.mean_gap);
+        let mut rows: Vec<InterfaceRow> = Vec::new();
+        for state in states {
+            let Some(row) = self.row(state, unloaded)? else {
+                continue;
+            };
+            if let Some(last) = rows.last() {
+                let falls = |before: Option<f64>, now: Option<f64>| now < before;
+                if row.overclosure <= last.overclosure && row.pressure <= last.pressure {
+                    // Nodes that touch at once: the last of them has the stiffness of all.
+                    let is_same =
+                        row.overclosure == last.overclosure && row.pressure == last.pressure;
+                    if is_same
+                        && row.tangential_stiffness >= last.tangential_stiffness
+                        && row.conductance >= last.conductance
+                    {
+                        rows.pop();
+                    } else {
+                        continue;
+                    }
+                } else if row.overclosure <= last.overclosure
+                    || row.pressure <= last.pressure
+                    || falls(last.conductance, row.conductance)
+                    || falls(last.tangential_stiffness, row.tangential_stiffness)
+                {
+                    continue;
+                }
+            }
+            rows.push(row);
+        }
+        Ok(rows)
+    }
+
+    /// The row of a state, `None` where it has no finite stiffness.
+    fn row(&self, state: &LoadingState, unloaded: f64) -> Result<Option<InterfaceRow>, Error> {
+        let contact = &state.contact;
+        let Some(stiffness) = contact.interfacial_stiffness.filter(|k| k.is_finite()) else {
+            return Ok(None);
+        };
+        let area = contact.contact_area / contact.contact_area_fraction;
+        let pressure = contact.mean_pressure();
+        let conductance = match &self.conduction {
+            Some(conduction) => conduction.of_interface(contact)?.map(|whole| whole / area),
+            None => None,
+        };
+        Ok(Some(InterfaceRow {
+            pressure,
+            overclosure: unloaded - contact.mean_gap,
+            conductance,
+            tangential_stiffness: self.friction.map(|f| stiffness / f.compliance_ratio / area),
+            slip_limit: self.friction.map(|f| f.coefficient * pressure),
+        }))
+    }
+}
+
+impl InterfaceTable {
+    /// A table of the states of a path from first touch on.
+    pub fn builder(history: &History) -> InterfaceTableBuilder<'_> {
+        InterfaceTableBuilder { history, conduction: None, friction: None, tolerance: 0.01 }
+    }
+
+    /// The rows, in the order of pressure.
+    #[must_use]
+    pub fn rows(&self) -> &[InterfaceRow] {
+        &self.rows
+    }
+
+    /// Greatest relative error of interpolation.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// What its conductances are of.
+    #[must_use]
+    pub fn carrier(&self) -> Option<Carrier> {
+        self.carrier
+    }
+
+    /// The coefficient of friction.
+    #[must_use]
+    pub fn friction(&self) -> Option<f64> {
+        self.friction.map(|friction| friction.coefficient)
+    }
+}
+
+/// The value at a place on the line through two points.
+fn on_line((x0, y0): (f64, f64), (x1, y1): (f64, f64), x: f64) -> f64 {
+    y0 + (y1 - y0) * ((x - x0) / (x1 - x0))
+}
+
+/// The error of interpolation at a row between two others, over the one that is allowed.
+fn error(
+    before: &InterfaceRow,
+    row: &InterfaceRow,
+    after: &InterfaceRow,
+    allowed: [f64; 2],
+) -> f64 {
+    let [tolerance, greatest] = allowed;
+    let ends = before.values().into_iter().zip(after.values());
+    let errors = ends.zip(row.values()).enumerate().map(|(k, ((y0, y1), y))| {
+        let (Some(y0), Some(y1), Some(y)) = (y0, y1, y) else {
+            return 0.0;
+        };
+        let x = |row: &InterfaceRow| if k == 0 { row.overclosure } else { row.pressure };
+        let found = on_line((x(before), y0), (x(after), y1), x(row));
+        let scale = if k == 0 { y.max(SMALL * greatest) } else { y };
+        (found - y).abs() / (tolerance * scale)
+    });
+    errors.fold(0.0, f64::max)
+}
+
+/// The rows that interpolation needs: the two ends, and always the one between two others at which the error is greatest, until none is too
+/// large (Ramer, Douglas and Peucker).
+fn thinned(all: &[InterfaceRow], tolerance: f64) -> Vec<InterfaceRow> {
+    let greatest = all.last().map_or(0.0, |row| row.pressure);
+    let mut kept = vec![false; all.len()];
+    let mut waiting = vec![(0, all.len() - 1)];
+    while let Some((first, last)) = waiting.pop() {
+        kept[first] = true;
+        kept[last] = true;
+        let mut worst = (1.0, None);
+        for place in first + 1..last {
+            let error = error(&all[first], &all[place], &all[last], [tolerance, greatest]);
+            if error > worst.0 {
+                worst = (error, Some(place));
+            }
+        }
+        if let (_, Some(place)) = worst {
+            waiting.extend([(first, place), (place, last)]);
+        }
+    }
+    all.iter().zip(kept).filter(|(_, kept)| *kept).map(|(row, _)| *row).collect()
+}

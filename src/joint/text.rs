@@ -1,0 +1,168 @@
+//! Tables in the words of other programs.
+
+use std::fmt::Write as _;
+
+use super::{Carrier, InterfaceRow, InterfaceTable};
+
+/// A program that reads a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FeProgram {
+    /// Abaqus: a surface interaction for an input file.
+    Abaqus,
+    /// CalculiX: the same in its words.
+    CalculiX,
+    /// MOOSE: piecewise linear functions.
+    Moose,
+    /// A table of comma-separated values with a line of names.
+    Csv,
+}
+
+/// The name of the interaction.
+const NAME: &str = "ROUGH_INTERFACE";
+
+impl InterfaceTable {
+    /// The table for a program, in SI units.
+    ///
+    /// * *Abaqus*: `*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR`; `*GAP CONDUCTANCE, PRESSURE` for heat, `*GAP ELECTRICAL CONDUCTANCE, PRESSURE`
+    ///   for current; `*FRICTION, ELASTIC SLIP`, which is one number: that of the last row.
+    /// * *CalculiX*: the same; a `*FRICTION` whose stick slope is the stiffness of the last row; current goes by the analogy with heat, as a
+    ///   `*GAP CONDUCTANCE`.
+    /// * *MOOSE*: a `PiecewiseLinear` function for each quantity.
+    /// * *CSV*: all columns.
+    #[must_use]
+    pub fn text(&self, program: FeProgram) -> String {
+        match program {
+            FeProgram::Abaqus | FeProgram::CalculiX => self.keywords(program),
+            FeProgram::Moose => self.functions(),
+            FeProgram::Csv => self.columns(),
+        }
+    }
+
+    /// What the table is, line by line.
+    fn about(&self) -> [String; 3] {
+        [
+            format!("interface law of a rough surface by asperity {}, in SI units", env!("CARGO_PKG_VERSION")),
+            "overclosure: what the mean gap has closed since first touch; all quantities per nominal area".to_string(),
+            format!(
+                "{} rows; pressures between them err by at most {:e} of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs",
+                self.rows().len(),
+                self.tolerance()
+            ),
+        ]
+    }
+
+    fn keywords(&self, program: FeProgram) -> String {
+        let mut text = String::new();
+        for line in self.about() {
+            let _ = writeln!(text, "** {line}");
+        }
+        let _ = writeln!(text, "*SURFACE INTERACTION, NAME={NAME}");
+        let _ = writeln!(text, "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR");
+        for row in self.rows() {
+            let _ = writeln!(text, "{}, {}", number(row.pressure), number(row.overclosure));
+        }
+        if let Some(carrier) = self.carrier() {
+            let keyword = match (program, carrier) {
+                (FeProgram::Abaqus, Carrier::Heat) => "*GAP CONDUCTANCE, PRESSURE",
+                (FeProgram::Abaqus, Carrier::Current) => "*GAP ELECTRICAL CONDUCTANCE, PRESSURE",
+                (_, Carrier::Heat) => "*GAP CONDUCTANCE",
+                (_, Carrier::Current) => {
+                    let _ = writeln!(
+                        text,
+                        "** electrical, by the analogy with heat: temperatures are potentials"
+                    );
+                    "*GAP CONDUCTANCE"
+                }
+            };
+            let _ = writeln!(text, "{keyword}");
+            for row in self.rows() {
+                let _ = writeln!(
+                    text,
+                    "{}, {}",
+                    number(row.conductance.unwrap_or(0.0)),
+                    number(row.pressure)
+                );
+            }
+        }
+        let last =
+            self.rows().last().and_then(|row| Some((row.tangential_stiffness?, row.slip_limit?)));
+        if let (Some(friction), Some((stiffness, limit))) = (self.friction(), last) {
+            let _ = writeln!(
+                text,
+                "** tangential stiffness and slip limit under the greatest pressure of the table; with all rows: CSV"
+            );
+            if program == FeProgram::Abaqus {
+                let _ = writeln!(text, "*FRICTION, ELASTIC SLIP={}", number(limit / stiffness));
+                let _ = writeln!(text, "{}", number(friction));
+            } else {
+                let _ = writeln!(text, "*FRICTION");
+                let _ = writeln!(text, "{}, {}", number(friction), number(stiffness));
+            }
+        }
+        text
+    }
+
+    fn functions(&self) -> String {
+        let mut text = String::new();
+        for line in self.about() {
+            let _ = writeln!(text, "# {line}");
+        }
+        let values = |quantity: &dyn Fn(&InterfaceRow) -> f64| {
+            let all: Vec<String> = self.rows().iter().map(|row| number(quantity(row))).collect();
+            all.join(" ")
+        };
+        let _ = writeln!(text, "[Functions]");
+        let mut function = |name: &str, x: String, y: String| {
+            let _ = writeln!(
+                text,
+                "  [{name}]\n    type = PiecewiseLinear\n    x = '{x}'\n    y = '{y}'\n  []"
+            );
+        };
+        let pressure = || values(&|row| row.pressure);
+        function("pressure_of_overclosure", values(&|row| row.overclosure), pressure());
+        if self.carrier().is_some() {
+            function(
+                "conductance_of_pressure",
+                pressure(),
+                values(&|row| row.conductance.unwrap_or(0.0)),
+            );
+        }
+        if self.friction().is_some() {
+            let stiffness = values(&|row| row.tangential_stiffness.unwrap_or(0.0));
+            function("tangential_stiffness_of_pressure", pressure(), stiffness);
+            function(
+                "slip_limit_of_pressure",
+                pressure(),
+                values(&|row| row.slip_limit.unwrap_or(0.0)),
+            );
+        }
+        let _ = writeln!(text, "[]");
+        text
+    }
+
+    fn columns(&self) -> String {
+        let mut names = vec!["pressure", "overclosure"];
+        if let Some(carrier) = self.carrier() {
+            names.push(match carrier {
+                Carrier::Heat => "thermal_conductance",
+                Carrier::Current => "electrical_conductance",
+            });
+        }
+        if self.friction().is_some() {
+            names.extend(["tangential_stiffness", "slip_limit"]);
+        }
+        let mut text = names.join(",") + "\n";
+        for row in self.rows() {
+            let optional = [row.conductance, row.tangential_stiffness, row.slip_limit];
+            let all = [Some(row.pressure), Some(row.overclosure)].into_iter().chain(optional);
+            let cells: Vec<String> = all.flatten().map(number).collect();
+            text += &(cells.join(",") + "\n");
+        }
+        text
+    }
+}
+
+/// Thirteen digits, with point and exponent: CalculiX reads no more than twenty characters.
+pub(super) fn number(value: f64) -> String {
+    format!("{value:.12e}")
+}

@@ -1,0 +1,182 @@
+//! How the surface of layers answers a wave: a recursion from the base to the surface.
+//!
+//! A wave along x in plane strain, with depth z and x̄ = q z, has the displacements W cos qx into the body and U sin qx along it, and
+//! on planes of constant z the pressure 2 G q n cos qx and the shear traction −2 G q τ sin qx. In a material of Poisson's ratio ν
+//!
+//! ```math
+//! \frac{\mathrm d}{\mathrm d \bar x} \begin{pmatrix} W \\ U \\ n \\ \tau \end{pmatrix} =
+//! A \begin{pmatrix} W \\ U \\ n \\ \tau \end{pmatrix}, \qquad
+//! A = \begin{pmatrix} 0 & -b & -c & 0 \\ 1 & 0 & 0 & -2 \\ 0 & 0 & 0 & -1 \\ 0 & -d & b & 0 \end{pmatrix},
+//! ```
+//!
+//! b = ν / (1 − ν), c = (1 − 2ν) / (1 − ν), d = 1 / (1 − ν): Hooke's law and equilibrium, without a division by 1 − 2ν. The
+//! eigenvalues are ±1, each twice, and (A² − 1)² = 0, so that with B = A² − 1
+//!
+//! ```math
+//! e^{-A x} = \cosh x + \tfrac12 x \sinh x\, B - A \bigl(\sinh x + \tfrac12 (x \cosh x - \sinh x)\, B\bigr) .
+//! ```
+//!
+//! With (W, U) = S (n, τ) below, blocks of this matrix give the same above. S is symmetric and positive, and errors in it fade on the
+//! way up.
+
+/// A material: shear modulus and Poisson's ratio.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Material {
+    shear: f64,
+    poisson: f64,
+}
+
+impl Material {
+    pub(super) fn new(young: f64, poisson: f64) -> Self {
+        Self { shear: 0.5 * young / (1.0 + poisson), poisson }
+    }
+}
+
+type Block = [[f64; 2]; 2];
+
+/// The compliance matrix of a surface, times 2 q \[1/Pa\]: from pressure and shear traction to displacements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Compliance(Block);
+
+/// From this thickness on, in units of 1/q, nothing below a layer is felt: 10⁻¹⁹ of it.
+const DEEP: f64 = 26.0;
+/// Greatest thickness that is passed at once: terms that grow with it cancel.
+const STEP: f64 = 4.0;
+
+impl Compliance {
+    /// Nothing moves.
+    pub(super) const RIGID: Self = Self([[0.0; 2]; 2]);
+
+    /// That of a half-space.
+    pub(super) fn half_space(material: Material) -> Self {
+        let nu = material.poisson;
+        let (own, other) = (2.0 * (1.0 - nu), 2.0 * nu - 1.0);
+        Self([[own, other], [other, own]]).scaled(1.0 / material.shear)
+    }
+
+    /// That of a layer of the thickness `x`/q on what this is of.
+    pub(super) fn under(self, material: Material, x: f64) -> Self {
+        if x >= DEEP {
+            return Self::half_space(material);
+        }
+        let steps = (x / STEP).ceil().max(1.0);
+        let transfer = Transfer::new(material.poisson, x / steps);
+        let mut own = self.scaled(material.shear);
+        for _ in 0..steps as usize {
+            own = transfer.applied(own);
+        }
+        own.scaled(1.0 / material.shear)
+    }
+
+    /// q Ĉ(q) \[1/Pa\].
+    pub(super) fn normal(self) -> f64 {
+        0.5 * self.0[0][0]
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self(self.0.map(|row| row.map(|value| factor * value)))
+    }
+}
+
+/// From the lower side of a slice of a material to the upper one.
+struct Transfer {
+    /// Displacements from displacements and from tractions, tractions from displacements and from tractions.
+    blocks: [[Block; 2]; 2],
+}
+
+impl Transfer {
+    fn new(nu: f64, x: f64) -> Self {
+        let (b, c, d) = (nu / (1.0 - nu), (1.0 - 2.0 * nu) / (1.0 - nu), 1.0 / (1.0 - nu));
+        let a =
+            [[0.0, -b, -c, 0.0], [1.0, 0.0, 0.0, -2.0], [0.0, 0.0, 0.0, -1.0], [0.0, -d, b, 0.0]];
+        let (cosh, sinh) = (libm::cosh(x), libm::sinh(x));
+        let identity = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let product = |m: &[[f64; 4]; 4], i: usize, j: usize| -> f64 {
+            (0..4).map(|k| a[i][k] * m[k][j]).sum()
+        };
+        let excess: [[f64; 4]; 4] =
+            std::array::from_fn(|i| std::array::from_fn(|j| product(&a, i, j) - identity(i, j)));
+        let (even, odd) = (0.5 * x * sinh, 0.5 * x_cosh_less_sinh(x, cosh, sinh));
+        let element = |i: usize, j: usize| {
+            cosh * identity(i, j) + even * excess[i][j]
+                - (sinh * a[i][j] + odd * product(&excess, i, j))
+        };
+        let block = |row: usize, column: usize| -> Block {
+            std::array::from_fn(|i| std::array::from_fn(|j| element(row + i, column + j)))
+        };
+        Self { blocks: [[block(0, 0), block(0, 2)], [block(2, 0), block(2, 2)]] }
+    }
+
+    fn applied(&self, below: Compliance) -> Compliance {
+        let [displacement, traction] =
+            self.blocks.each_ref().map(|[from_displacement, from_traction]| {
+                let mut sum = *from_traction;
+                for (i, row) in sum.iter_mut().enumerate() {
+                    for (j, value) in row.iter_mut().enumerate() {
+                        let [first, second] = from_displacement[i];
+                        *value += first * below.0[0][j] + second * below.0[1][j];
+                    }
+                }
+                sum
+            });
+        let [[p, q], [r, s]] = traction;
+        let determinant = p * s - q * r;
+        let row = |[first, second]: [f64; 2]| {
+            [(first * s - second * r) / determinant, (second * p - first * q) / determinant]
+        };
+        let [[normal, other], [another, along]] = displacement.map(row);
+        // Symmetric, as reciprocity has it.
+        let mixed = 0.5 * (other + another);
+        Compliance([[normal, mixed], [mixed, along]])
+    }
+}
+
+/// x cosh x − sinh x, which is x³/3 of a small x.
+fn x_cosh_less_sinh(x: f64, cosh: f64, sinh: f64) -> f64 {
+    if x > 1.0 {
+        return x * cosh - sinh;
+    }
+    // Σ 2k x^(2k + 1) / (2k + 1)!, of which the eleventh term is below 10⁻²⁰ of the first.
+    let square = x * x;
+    let (mut term, mut sum) = (x, 0.0);
+    for k in 1..=11 {
+        let k = f64::from(k);
+        term *= square / (2.0 * k * (2.0 * k + 1.0));
+        sum += 2.0 * k * term;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_meets_the_difference() {
+        for x in [0.3, 0.9, 0.999] {
+            let difference = x_cosh_less_sinh(x, x.cosh(), x.sinh());
+            let plain = x * x.cosh() - x.sinh();
+            // What the difference of two numbers of some x loses.
+            assert!((difference - plain).abs() < 4.0 * f64::EPSILON * x.cosh(), "{x}");
+        }
+        let x = 1e-5;
+        let exact = x * x * x / 3.0 * (1.0 + x * x / 10.0);
+        assert!((x_cosh_less_sinh(x, x.cosh(), x.sinh()) / exact - 1.0).abs() < 1e-15);
+    }
+
+    /// A layer of the material of the half-space below is more of it.
+    #[test]
+    fn a_half_space_on_a_half_space_is_one() {
+        for nu in [-0.9, 0.0, 0.3, 0.5] {
+            let material = Material { shear: 2.0, poisson: nu };
+            let below = Compliance::half_space(material);
+            for x in [1e-6, 0.1, 1.0, 3.9, 4.1, 25.0, 27.0] {
+                let above = below.under(material, x);
+                for (a, b) in above.0.as_flattened().iter().zip(below.0.as_flattened()) {
+                    // Terms of up to e⁴ × 8 that cancel, in each of at most seven steps that forget.
+                    assert!((a - b).abs() < 1e-14 * below.0[0][0], "{nu} {x}: {a} {b}");
+                }
+            }
+        }
+    }
+}

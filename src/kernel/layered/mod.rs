@@ -1,0 +1,253 @@
+//! Coated, thin and graded bodies.
+
+mod body;
+mod cell;
+mod compliance;
+mod free;
+mod growth;
+mod periodic;
+mod radial;
+
+pub use body::{Base, Layer, LayeredBody};
+
+use super::gauge::of_coefficients;
+use super::periodic::{Even, least_gauge};
+use super::{Boundary, ContactGrowth, InfluenceKernel, KernelOrigin, MeanDisplacement};
+use crate::{Error, Grid};
+
+/// A [`LayeredBody`] under the cells of a grid.
+///
+/// | constructor | boundary | a cell's displacement | without layers it is |
+/// |---|---|---|---|
+/// | [`free`](Self::free) | free | exact for uniform pressure on each cell | [`Boussinesq`](super::Boussinesq) |
+/// | [`periodic`](Self::periodic) | periodic | exact for uniform pressure on each cell | [`PeriodicBoussinesq`](super::PeriodicBoussinesq) |
+/// | [`spectral`](Self::spectral) | periodic | the waves of the grid only | [`Spectral`](super::Spectral) |
+///
+/// # Evaluation
+///
+/// All are sums of a half-space of the uppermost layer and of a difference, whose transform fades as exp(−2 q h), h the thickness of the
+/// uppermost layer. With a free boundary the difference is a function of the distance,
+///
+/// ```math
+/// f(r) = \frac{1}{2 \pi} \int_0^\infty \Bigl( q\, \hat C(q) - \frac{2}{E_1^*} \Bigr) J_0(q r)\, \mathrm dq ,
+/// ```
+///
+/// tabulated and integrated over the cell: C(d) is Love's coefficient with E₁\* plus ∫ f dA. With a periodic boundary it is a sum over
+/// all waves that look alike on the grid, for thin layers with the shortest of them replaced by integrals over cells.
+///
+/// Coefficients err by some 10⁻¹³ of C(0, 0). What is left of a layer on a rigid base is a difference of the two parts: relative to what
+/// it answers to a wave q, the error is some 10⁻¹⁵ × 2 / (E₁\* q Ĉ(q)), for a thin incompressible layer 10⁻¹⁵ / (q h)³. Where q h is
+/// below 10⁻⁴ on the longest wave of the grid, use [`spectral`](Self::spectral), which takes no difference.
+///
+/// # Mean displacement
+///
+/// With a rigid base it is [physical](MeanDisplacement::Physical): a uniform pressure p compresses the layers by Ĉ(0) p
+/// ([`LayeredBody::mean_compliance`]). If all are incompressible, it is zero under any load. The matrix is singular then, and is treated like
+/// that of an [arbitrary](MeanDisplacement::Arbitrary) mean; the approach of the mean planes, which is reported, is the approach of the base,
+/// and its stiffness the interfacial one. On an elastic half-space, or in contact with one, the mean is arbitrary.
+///
+/// # Growth of contact
+///
+/// A coat that is stiffer than what it lies on bends over a support, and rises beside it. Contact may then lose nodes as the approach
+/// grows. [`ContactGrowth::Monotone`] is promised where nothing of the kind can happen on the waves of the grid: where the compliance
+/// falls no faster than 1/q and rises no faster than q² (soft coats, layers on a rigid base), and where the inverse of the periodic
+/// kernel has no positive element off the diagonal. With the latter and a periodic boundary gaps are [convex](ContactGrowth::Convex) as well,
+/// unless waves ring. Of other bodies [nothing is promised](ContactGrowth::Unknown): each event is found by itself, releases included.
+///
+/// # Example
+///
+/// A sphere on a rubber layer of 1 mm on steel:
+///
+/// ```
+/// use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+/// use asperity::surface::Paraboloid;
+/// use asperity::{FixedLoadSolver, Grid};
+///
+/// let rubber = Layer { young: 3e6, poisson: 0.5, thickness: 1e-3 };
+/// let body = LayeredBody::new(&[rubber], Base::Rigid)?;
+/// let kernel = Layered::free(Grid::square(64, 8e-3)?, body)?;
+/// let solution = FixedLoadSolver::new(&Paraboloid::new(20e-3)?, &kernel)?.solve(1.0)?;
+/// assert!(solution.state.approach < 0.2e-3);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Layered {
+    grid: Grid,
+    body: LayeredBody,
+    growth: ContactGrowth,
+    mean: MeanDisplacement,
+    coefficients: Coefficients,
+}
+
+#[derive(Debug, Clone)]
+enum Coefficients {
+    /// At offsets that are not negative, x fastest.
+    Free(Vec<f64>),
+    /// Without a uniform part, and that.
+    Periodic { values: Even, uniform: f64, pressure: Pressure },
+}
+
+/// What pressure is between the nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Pressure {
+    Cells,
+    Waves,
+}
+
+/// Nodes a side of a grid on which the inverse of a kernel is looked at.
+const LOOKED_AT: usize = 256;
+
+impl Layered {
+    /// With a free boundary.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] and [`Error::OutOfRange`] for moduli, thicknesses and cells that are too far apart.
+    pub fn free(grid: Grid, body: LayeredBody) -> Result<Self, Error> {
+        check_scales(&grid, &body)?;
+        let values = free::coefficients(&grid, &body)?;
+        let growth = if growth::is_soft(&grid, &body) || is_inverse_m_matrix(&grid, &body)? {
+            ContactGrowth::Monotone
+        } else {
+            ContactGrowth::Unknown
+        };
+        let coefficients = Coefficients::Free(values);
+        Ok(Self { grid, body, growth, mean: MeanDisplacement::default(), coefficients })
+    }
+
+    /// With a periodic boundary, and uniform pressure on each cell and its images.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::free`], and [`Error::OutOfRange`] for cells that are more than
+    /// [`MAX_ASPECT`](super::PeriodicBoussinesq::MAX_ASPECT) times as long as wide.
+    pub fn periodic(grid: Grid, body: LayeredBody) -> Result<Self, Error> {
+        check_scales(&grid, &body)?;
+        let mean = body.mean_compliance().unwrap_or_default();
+        let symbol = periodic::cells(&grid, &body, mean)?;
+        Ok(Self::of_symbol(grid, body, &symbol, Pressure::Cells))
+    }
+
+    /// With a periodic boundary, on the waves of the grid.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::free`].
+    pub fn spectral(grid: Grid, body: LayeredBody) -> Result<Self, Error> {
+        check_scales(&grid, &body)?;
+        let mean = body.mean_compliance().unwrap_or_default();
+        let symbol = periodic::waves(&grid, &body, mean);
+        let mut kernel = Self::of_symbol(grid, body, &symbol, Pressure::Waves);
+        // Waves ring, which lets no inverse be one of an M-matrix; the body behind them may be.
+        if kernel.growth == ContactGrowth::Unknown && is_inverse_m_matrix(&grid, &kernel.body)? {
+            kernel.growth = ContactGrowth::Monotone;
+        }
+        Ok(kernel)
+    }
+
+    fn of_symbol(grid: Grid, body: LayeredBody, symbol: &Even, pressure: Pressure) -> Self {
+        let mean = match body.mean_compliance() {
+            Some(compliance) if compliance > 0.0 => MeanDisplacement::Physical,
+            _ => MeanDisplacement::Arbitrary,
+        };
+        let values = symbol.inverse_transform();
+        let is_convex = growth::greatest_off_diagonal(symbol) < 0.0;
+        let uniform = match mean {
+            MeanDisplacement::Physical => 0.0,
+            MeanDisplacement::Arbitrary => {
+                let least = values.values().iter().copied().fold(f64::INFINITY, f64::min);
+                let least_gauge = if is_convex { least_gauge(&grid, symbol) } else { None };
+                // A single node has nothing but its gauge.
+                let own = grid.cell_area().sqrt() / body.surface_modulus();
+                let good = of_coefficients(0.0, least);
+                least_gauge.map_or(if good > 0.0 { good } else { own }, |least| 1.02 * least)
+            }
+        };
+        let growth = if is_convex {
+            ContactGrowth::Convex
+        } else if growth::is_soft(&grid, &body) {
+            ContactGrowth::Monotone
+        } else {
+            ContactGrowth::Unknown
+        };
+        let coefficients = Coefficients::Periodic { values, uniform, pressure };
+        Self { grid, body, growth, mean, coefficients }
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &LayeredBody {
+        &self.body
+    }
+}
+
+/// Whether the inverse of the periodic kernel on cells of this size is that of an M-matrix, in a gauge that is great enough.
+fn is_inverse_m_matrix(grid: &Grid, body: &LayeredBody) -> Result<bool, Error> {
+    let (nx, ny) = grid.shape();
+    let looked_at = Grid::new(nx.min(LOOKED_AT), ny.min(LOOKED_AT), grid.dx(), grid.dy())?;
+    if grid.cell_aspect() > super::PeriodicBoussinesq::MAX_ASPECT {
+        return Ok(false);
+    }
+    let symbol = periodic::cells(&looked_at, body, 0.0)?;
+    Ok(growth::greatest_off_diagonal(&symbol) < 0.0)
+}
+
+/// `Ok` if thickness and cells are not so far apart that nothing can be computed.
+fn check_scales(grid: &Grid, body: &LayeredBody) -> Result<(), Error> {
+    let (lx, ly) = grid.sides();
+    let ratio = body.thickness() / grid.dx().min(grid.dy());
+    let quantity = "thickness of all layers over the short side of a cell";
+    Error::require(quantity, ratio, ratio <= 1e12, "at most 1e12")?;
+    let ratio = lx.max(ly) / body.top_thickness();
+    let quantity = "long side of the grid over the thickness of the uppermost layer";
+    Error::require(quantity, ratio, ratio <= 1e12, "at most 1e12").map(drop)
+}
+
+impl InfluenceKernel for Layered {
+    fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    fn boundary(&self) -> Boundary {
+        match self.coefficients {
+            Coefficients::Free(_) => Boundary::Free,
+            Coefficients::Periodic { .. } => Boundary::Periodic,
+        }
+    }
+
+    /// \[m/Pa\]; NaN at offsets beyond the grid if the boundary is free.
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        match &self.coefficients {
+            Coefficients::Free(values) => {
+                let (nx, ny) = self.grid.shape();
+                let (di, dj) = (di.unsigned_abs(), dj.unsigned_abs());
+                if di < nx && dj < ny { values[di + nx * dj] } else { f64::NAN }
+            }
+            Coefficients::Periodic { values, uniform, .. } => values.at(di, dj) + uniform,
+        }
+    }
+
+    fn contact_growth(&self) -> ContactGrowth {
+        self.growth
+    }
+
+    fn mean_displacement(&self) -> MeanDisplacement {
+        self.mean
+    }
+
+    fn origin(&self) -> KernelOrigin {
+        let body = self.body.clone();
+        match self.coefficients {
+            Coefficients::Free(_) => KernelOrigin::Layered { body },
+            Coefficients::Periodic { pressure: Pressure::Cells, .. } => {
+                KernelOrigin::PeriodicLayered { body }
+            }
+            Coefficients::Periodic { pressure: Pressure::Waves, .. } => {
+                KernelOrigin::SpectralLayered { body }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

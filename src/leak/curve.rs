@@ -1,0 +1,148 @@
+//! The leak rate along a path.
+
+use super::{CriticalConstriction, Leak, Seal};
+use crate::contact::ContactSequence;
+use crate::loading::History;
+use crate::patches::{Connectivity, Percolation, contact_sequence};
+use crate::surface::Axis;
+use crate::updater::LinearUpdater;
+use crate::{ContactEvent, Error, LoadingSolver, LoadingState};
+
+/// The leak at one state of a path, without its fields.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct LeakPoint {
+    /// The state.
+    pub state: LoadingState,
+    /// Leak rate \[m³/s\].
+    pub leak_rate: f64,
+    /// Bruggeman's estimate of it \[m³/s\].
+    pub mean_field_leak_rate: f64,
+    /// Permeability along the flow \[m³/(Pa s)\].
+    pub permeability: f64,
+    /// Permeability across \[m³/(Pa s)\], on a periodic boundary.
+    pub transverse_permeability: Option<f64>,
+    /// The narrowest place of the widest channel.
+    pub constriction: Option<CriticalConstriction>,
+    /// What is lost over the leak rate.
+    pub imbalance: f64,
+}
+
+impl LeakPoint {
+    fn new(state: LoadingState, leak: &Leak) -> Self {
+        Self {
+            state,
+            leak_rate: leak.leak_rate,
+            mean_field_leak_rate: leak.mean_field_leak_rate,
+            permeability: leak.permeability,
+            transverse_permeability: leak.transverse_permeability,
+            constriction: leak.constriction,
+            imbalance: leak.imbalance,
+        }
+    }
+}
+
+/// The leak rate along a path, at states chosen where it changes.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct LeakCurve {
+    /// In the order of loading.
+    pub points: Vec<LeakPoint>,
+    /// The state at which the last channel closes, from which on nothing leaks. `None` if the path does not reach it, and if nodes leave
+    /// the contact, so that it has no order.
+    pub closing: Option<LoadingState>,
+}
+
+impl Seal {
+    /// The leak at some states of a path, up to the one at which the last channel closes: first touch, the last state that leaks, and then
+    /// always between the two neighbours that lie furthest apart in the mean pressure and the logarithm of the leak rate, each over its range.
+    ///
+    /// `history` are the states of the path from first touch on. Each point takes the gap of one state and one solution.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for fewer than two states; those of [`Self::leak_at`], and of [`contact_sequence`] for states that are no path.
+    pub fn curve<U: LinearUpdater>(
+        &self,
+        path: &mut LoadingSolver<U>,
+        history: &History,
+        states: usize,
+    ) -> Result<LeakCurve, Error> {
+        Error::require("number of states", states as f64, states > 1, "two or more")?;
+        let events = history.states();
+        let closing = closing(events, path, self.along())?;
+        // Those that may leak: of states at one approach too, since each has its contact.
+        let leaking = closing.unwrap_or(events.len());
+        let mut points: Vec<(usize, LeakPoint)> = Vec::new();
+        let at = |place: usize, path: &mut LoadingSolver<U>| -> Result<LeakPoint, Error> {
+            let state = events[place];
+            Ok(LeakPoint::new(state, &self.leak_at(path, &state)?))
+        };
+        for place in [Some(0), leaking.checked_sub(1), closing].into_iter().flatten() {
+            let is_new = points.last().is_none_or(|(last, _)| *last < place);
+            if is_new && place < events.len() {
+                points.push((place, at(place, path)?));
+            }
+        }
+        while points.len() < states
+            && let Some(before) = widest(&points)
+        {
+            let place = (points[before].0 + points[before + 1].0) / 2;
+            let point = at(place, path)?;
+            points.insert(before + 1, (place, point));
+        }
+        let points = points.into_iter().map(|(_, point)| point).collect();
+        Ok(LeakCurve { points, closing: closing.map(|place| events[place]) })
+    }
+}
+
+/// The place among the states of that at which the last channel along an axis closes.
+fn closing<U: LinearUpdater>(
+    states: &[LoadingState],
+    path: &LoadingSolver<U>,
+    along: Axis,
+) -> Result<Option<usize>, Error> {
+    let events = states.iter().map(|state| (state.event, state.node));
+    let contact: ContactSequence = match contact_sequence(path.grid(), events) {
+        Ok(contact) => contact,
+        // A channel may open again: there is no last one.
+        Err(Error::NodeLeaves { .. }) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    // Channels pass through sides of cells: patches hang together through corners too.
+    let found = Percolation::spanning(&contact, path.problem().boundary(), Connectivity::Eight);
+    let nodes = match along {
+        Axis::X => found.leak_x,
+        Axis::Y => found.leak_y,
+    };
+    let touches = states.iter().enumerate().filter(|(_, s)| s.event == ContactEvent::Touch);
+    let mut places = touches.map(|(place, _)| place);
+    Ok(nodes.and_then(|nodes| places.nth(nodes.checked_sub(1)?)))
+}
+
+/// The point before the widest interval in which there are more states.
+fn widest(points: &[(usize, LeakPoint)]) -> Option<usize> {
+    let position = |(_, point): &(usize, LeakPoint)| {
+        (point.state.contact.mean_pressure(), point.leak_rate.ln())
+    };
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let values = points.iter().map(position).map(|at| of(&at)).filter(|v| v.is_finite());
+        let (least, most) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        if most > least { most - least } else { 1.0 }
+    };
+    let (pressures, logarithms) = (range(|at| at.0), range(|at| at.1));
+    let mut widest: Option<(f64, usize)> = None;
+    for (before, pair) in points.windows(2).enumerate() {
+        let ((p, q), (next_p, next_q)) = (position(&pair[0]), position(&pair[1]));
+        // Where the last channel closes the logarithm has no end, and the states are neighbours.
+        let length = ((next_p - p) / pressures).hypot((next_q - q) / logarithms);
+        let is_wider = widest.is_none_or(|(most, _)| length > most);
+        if pair[1].0 - pair[0].0 > 1 && is_wider {
+            widest = Some((length, before));
+        }
+    }
+    widest.map(|(_, before)| before)
+}

@@ -1,0 +1,171 @@
+//! States of a window, pinned to the exact ones at both ends.
+
+use super::exchange::Exchange;
+use super::settled::Settled;
+use super::{Carried, Plastic};
+use crate::Error;
+use crate::loading::run::LoadingRun;
+use crate::loading::scalars::{PathScalars, Rates};
+use crate::loading::state::ContactEvent;
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
+
+/// A window that the path has gone through.
+pub(super) struct Passed {
+    /// Where it began, and the nodes in contact there.
+    pub(super) start: PathScalars,
+    pub(super) before: Carried,
+    /// How far it went.
+    pub(super) span: f64,
+}
+
+/// Nodes in contact and what they carry, along the events of a window.
+struct Walk<'a> {
+    hardness: &'a [f64],
+    carried: Carried,
+    step: usize,
+}
+
+impl<'a> Walk<'a> {
+    fn new(plastic: &'a Plastic, carried: Carried) -> Self {
+        let [elastic, yielded] = carried.nodes;
+        Self { hardness: plastic.hardness().values(), step: elastic + 2 * yielded, carried }
+    }
+
+    /// Lets a node touch or yield. Returns the bounds of the load there.
+    fn pass(&mut self, node: usize, kind: ContactEvent) -> [f64; 2] {
+        let Carried { nodes: [elastic, yielded], sum, most } = &mut self.carried;
+        let bounds = [*sum, *most];
+        if kind == ContactEvent::Touch {
+            *elastic += 1;
+            *most += self.hardness[node];
+        } else {
+            *elastic -= 1;
+            *yielded += 1;
+            *sum += self.hardness[node];
+        }
+        self.step += 1;
+        bounds
+    }
+
+    /// Takes over the rates behind the last event.
+    fn take(&self, scalars: &mut PathScalars, rates: Rates) {
+        scalars.change_rates(rates, self.carried.nodes, self.carried.sum);
+    }
+
+    fn contact_nodes(&self) -> usize {
+        let [elastic, yielded] = self.carried.nodes;
+        elastic + yielded
+    }
+}
+
+/// The numbers of rates.
+fn numbers(rates: &Rates) -> [f64; 4] {
+    let Rates { unit_stiffness, closing, plastic: [depth, work] } = *rates;
+    [unit_stiffness, closing, depth, work]
+}
+
+fn rates_of([unit_stiffness, closing, depth, work]: [f64; 4]) -> Rates {
+    Rates { unit_stiffness, closing, plastic: [depth, work] }
+}
+
+/// Rates of events with what they lack at the end, where they are `exact`: in proportion to how much the events so far have changed
+/// them.
+fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
+    let (start, exact) = (numbers(start), numbers(exact));
+    let events: Vec<[f64; 4]> = events.iter().map(numbers).collect();
+    let mut found = events.clone();
+    for k in 0..4 {
+        let mut last = start[k];
+        let mut way = 0.0;
+        let ways: Vec<f64> = events
+            .iter()
+            .map(|event| {
+                way += (event[k] - last).abs();
+                last = event[k];
+                way
+            })
+            .collect();
+        let lacking = exact[k] - last;
+        for (event, part) in found.iter_mut().zip(ways) {
+            event[k] += if way > 0.0 { lacking * part / way } else { lacking };
+        }
+    }
+    found.into_iter().map(rates_of).collect()
+}
+
+/// Queues the states of the events of a corrected window, which it has gone through, from where it began to the present approach.
+///
+/// Rates are those of its matrix, and end where they should; load, mean gap, energies and plastic sums follow by integration, and what
+/// they lack at the end is spread along the way.
+pub(super) fn enqueue(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    (window, settled): (&Exchange, &Settled),
+    passed: Passed,
+    (exact, tolerances): (Rates, &WindowTolerances),
+) -> Result<(), Error> {
+    let Passed { start, before, span } = passed;
+    let events = window.events();
+    let found: Vec<Rates> = events.iter().map(|event| event.rates).collect();
+    let rates = completed(&window.start_rates(), &found, &exact);
+    let mut walk = Walk::new(plastic, before);
+    let mut walked = start;
+    let mut along = Vec::with_capacity(events.len());
+    for (event, rates) in events.iter().zip(&rates) {
+        walked.advance(start.approach() + event.time);
+        walk.pass(window.node(event.position), event.kind);
+        walk.take(&mut walked, *rates);
+        along.push(walked);
+    }
+    walked.advance(run.scalars.approach());
+    // What the load may be off by: what is spread, and what the events so far would change of it.
+    let spacing = span / events.len() as f64;
+    let mut load_error =
+        run.scalars.load_beyond(&walked).abs() + run.scalars.load_over(OF_END * spacing);
+    let mut stiffness = window.start_rates().unit_stiffness;
+    let mut walk = Walk::new(plastic, before);
+    let own = run.scalars;
+    for (k, (mut scalars, event)) in along.into_iter().zip(events).enumerate() {
+        let node = window.node(event.position);
+        let bounds = walk.pass(node, event.kind);
+        scalars.pin(&walked, &own, event.time / span);
+        scalars.clamp_load(bounds);
+        scalars.clamp_mean_gap();
+        walk.take(&mut scalars, rates[k]);
+        let error = settled.errors[k];
+        load_error += scalars.load_of((rates[k].unit_stiffness - stiffness).abs(), error);
+        stiffness = rates[k].unit_stiffness;
+        let error = OF_TIME * error + tolerances.time_of_gap(event.closing);
+        let error = scalars.reported_error(error, OF_LOAD * load_error);
+        let event = (walk.step, event.kind, node);
+        run.enqueue_at(&scalars, event, walk.contact_nodes(), error)?;
+    }
+    Ok(())
+}
+
+/// Queues the states of events that come together, at the present approach: rates go from the first of two to the other in equal steps.
+pub(super) fn enqueue_together(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    events: &[(usize, ContactEvent)],
+    passed: Passed,
+    ([first, last], error): ([Rates; 2], f64),
+) -> Result<(), Error> {
+    let (first, last) = (numbers(&first), numbers(&last));
+    let mut scalars = passed.start;
+    scalars.advance(run.scalars.approach());
+    let stiffness = (last[0] - first[0]).abs();
+    let error = scalars.reported_error(error, scalars.load_of(stiffness, error));
+    let mut walk = Walk::new(plastic, passed.before);
+    for (k, &(node, kind)) in events.iter().enumerate() {
+        let part = (k + 1) as f64 / events.len() as f64;
+        let rates = std::array::from_fn(|k| first[k] + part * (last[k] - first[k]));
+        let bounds = walk.pass(node, kind);
+        scalars.clamp_load(bounds);
+        scalars.clamp_mean_gap();
+        walk.take(&mut scalars, rates_of(rates));
+        run.enqueue_at(&scalars, (walk.step, kind, node), walk.contact_nodes(), error)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,629 @@
+//! Events of both kinds in windows, without a factor: with a matrix that is nearly exact.
+//!
+//! As where nothing yields: the exact solution at a window's end corrects the matrix, the same events are played a second time, and
+//! what is still closer than the remaining error is settled by a solution of its own.
+
+use nalgebra::DMatrixViewMut;
+
+use super::exchange::{Event, Exchange, Watched};
+use super::pinned::{self, Passed};
+use super::settled::{self, Beginning};
+use super::{Carried, Plastic, Slack, Trial, contradiction, survey};
+use crate::Error;
+use crate::loading::gap_field::GapLine;
+use crate::loading::refined::candidates::{cut, with_ties};
+use crate::loading::refined::correction::{self, AtEnd, Correction};
+use crate::loading::run::LoadingRun;
+use crate::loading::scalars::Rates;
+use crate::loading::state::ContactEvent;
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::tuning::{
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, PART, REMEMBERED, SLACK_OF_RATE, TRUSTED,
+    WATCHED, WATCHED_UNSETTLED,
+};
+use crate::loading::window::{Course, Window, WindowEvent};
+use crate::updater::{Behind, Beside, Iterations, Proposal, Schur, WindowFactor};
+use crate::{Boundary, UpdaterError};
+
+/// Finds events of both kinds in windows that are corrected at their end.
+#[derive(Debug)]
+pub(in crate::loading) struct RefinedYielding {
+    size: usize,
+    /// Whether events that are too close to be told apart get a solution of their own.
+    settles: bool,
+    /// Nodes by the time of their next event if no other came first, at the present approach, and the rates there.
+    ranking: Vec<(f64, usize)>,
+    rates: Rates,
+    /// The contact and approach that these belong to.
+    ranked: Option<(u64, f64)>,
+    /// How far the last window went, and the span that the rates at hand serve.
+    last_span: f64,
+    rate_span: f64,
+    /// The part of a pivot that matrices were off by lately, at worst.
+    left_out: f64,
+}
+
+/// The nodes to watch.
+struct Candidates {
+    nodes: Vec<usize>,
+    /// The time at which the next of the others would touch or yield.
+    horizon: f64,
+    /// Set if more nodes have their events at this time than can be watched.
+    group: Option<f64>,
+}
+
+/// A window that has begun.
+pub(super) struct Opened {
+    pub(super) window: Exchange,
+    approach: f64,
+    watched: Vec<Watched>,
+    schur: Schur,
+    rates: Rates,
+    horizon: f64,
+}
+
+impl Opened {
+    /// The window with another matrix, and with bent courses.
+    fn with<'a>(&self, schur: &Schur, courses: impl Iterator<Item = &'a Course>) -> Exchange {
+        let mut window = Exchange::default();
+        window.begin(self.approach, &self.watched, schur, self.rates);
+        window.bend(courses.map(|course| course.curve));
+        window.tolerate(SLACK_OF_RATE);
+        window
+    }
+}
+
+/// How a window ended.
+enum Outcome {
+    Done,
+    /// Its end, or a solution in it, contradicted it: the next one has fewer events. Nothing has changed.
+    TakenBack,
+}
+
+impl RefinedYielding {
+    pub(in crate::loading) fn new(size: Option<usize>, settles: bool) -> Self {
+        let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
+        Self {
+            size: size.unwrap_or(watched).max(FEWEST),
+            settles,
+            ranking: Vec::new(),
+            rates: Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] },
+            ranked: None,
+            last_span: 0.0,
+            rate_span: 0.0,
+            left_out: 0.0,
+        }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if no node is left to
+    /// touch or to yield.
+    pub(in crate::loading) fn produce(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        most_nodes: usize,
+    ) -> Result<(), Error> {
+        let Some(plastic) = run.plastic.clone() else {
+            return Ok(());
+        };
+        let touches = most_nodes - run.contact.len() - plastic.count();
+        loop {
+            let tolerances = WindowTolerances::of(run, iterations.tolerance());
+            self.begin(run, &plastic, iterations, &tolerances)?;
+            if self.ranking.is_empty() {
+                return Ok(());
+            }
+            let mut candidates = self.choose(run, &tolerances);
+            self.improve_rates(run, &plastic, iterations, &tolerances, &mut candidates)?;
+            if let Some(time) = candidates.group {
+                return self.enter(run, &plastic, iterations, &tolerances, (time, &[]), touches);
+            }
+            let opened = self.propose(run, &plastic, iterations, candidates)?;
+            match self.follow(run, &plastic, iterations, &tolerances, &opened, touches)? {
+                Outcome::Done => return Ok(()),
+                Outcome::TakenBack => run.timings.taken_back += 1,
+            }
+        }
+    }
+
+    /// Makes solution and ranking those of the present approach.
+    fn begin(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+    ) -> Result<(), Error> {
+        let approach = run.scalars.approach();
+        if !run.field.belongs_to(&run.contact, approach) {
+            if self.rate_span == 0.0 {
+                self.rate_span = f64::INFINITY;
+            }
+            run.advance_field(iterations, approach, self.rate_span)?;
+        }
+        if self.ranked != Some((run.contact.revision(), approach)) {
+            self.survey(run, plastic, tolerances)?;
+        }
+        Ok(())
+    }
+
+    /// Takes all scalars from the solution at the present approach, and ranks the nodes.
+    fn survey(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        tolerances: &WindowTolerances,
+    ) -> Result<(), Error> {
+        let approach = run.scalars.approach();
+        let slack = slack(tolerances, approach);
+        self.ranked = None;
+        self.rates = survey(run, plastic, &mut self.ranking, slack)?;
+        self.ranked = Some((run.contact.revision(), approach));
+        Ok(())
+    }
+
+    /// Time below which the event of a node may come before or after another one.
+    fn tie_of(
+        run: &LoadingRun,
+        tolerances: &WindowTolerances,
+        (node, place): (usize, Option<usize>),
+    ) -> f64 {
+        tolerances.tie_of(closing(run, node, place))
+    }
+
+    /// Chooses the nodes with the smallest times.
+    fn choose(&mut self, run: &LoadingRun, tolerances: &WindowTolerances) -> Candidates {
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let places = places(run);
+        let wanted = self.most_events().min(run.contact.len() / PART);
+        let size = self.size.min(wanted.max(FEWEST));
+        let ranking = &mut self.ranking;
+        let nodes = |chosen: &[(f64, usize)]| chosen.iter().map(|&(_, node)| node).collect();
+        if ranking.len() <= size {
+            return Candidates { nodes: nodes(ranking), horizon: f64::INFINITY, group: None };
+        }
+        let tie_of = |node: usize| Self::tie_of(run, tolerances, (node, places[node]));
+        let (chosen, &mut next, others) = ranking.select_nth_unstable_by(size, order);
+        let first = chosen.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
+        let limit = next.0 + tie_of(next.1);
+        let mut candidates = Candidates {
+            nodes: nodes(chosen),
+            horizon: next.0,
+            group: (next.0 <= first + tie_of(next.1)).then_some(first),
+        };
+        let tied = others.iter().filter(|(time, _)| *time <= limit);
+        if tied.clone().count() < MOST_TIES * self.size {
+            candidates.nodes.push(next.1);
+            candidates.nodes.extend(tied.map(|&(_, node)| node));
+            let rest = others.iter().map(|(time, _)| *time).filter(|time| *time > limit);
+            candidates.horizon = rest.fold(f64::INFINITY, f64::min);
+        }
+        candidates
+    }
+
+    /// Solves for the rates once more if they have to serve much further than the last window did.
+    fn improve_rates(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        candidates: &mut Candidates,
+    ) -> Result<(), Error> {
+        let furthest = if candidates.horizon < f64::INFINITY {
+            candidates.horizon
+        } else {
+            self.ranking.iter().map(|(time, _)| *time).fold(0.0, f64::max)
+        };
+        if furthest > 0.0
+            && tolerances.rate_tolerance(furthest) < 0.5 * tolerances.rate_tolerance(self.rate_span)
+        {
+            self.rate_span = furthest;
+            run.advance_field(iterations, run.scalars.approach(), furthest)?;
+            self.survey(run, plastic, tolerances)?;
+            *candidates = self.choose(run, tolerances);
+        }
+        Ok(())
+    }
+
+    /// Opens a window on the candidates, with lines that are better known than those of the gap field.
+    fn propose(
+        &self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        candidates: Candidates,
+    ) -> Result<Opened, Error> {
+        let (approach, count) = (run.scalars.approach(), run.contact.len());
+        let (problem, contact) = (&run.problem, &run.contact);
+        // One node at least joins.
+        let grown = iterations.bytes(problem.grid().nodes(), count + 1);
+        run.memory.check(grown.saturating_add(WindowFactor::bytes(1)), count)?;
+        let mut nodes = candidates.nodes;
+        nodes.sort_unstable_by_key(|&node| (contact.contains(node), node));
+        let out = nodes.partition_point(|&node| !contact.contains(node));
+        let (outside, inside) = nodes.split_at(out);
+        let surface = plastic.surface();
+        let is_periodic = surface.boundary() == Boundary::Periodic;
+        let beside = Beside {
+            unit: plastic.unit(),
+            load: plastic.load(),
+            hardness: plastic.hardness().uniform(),
+            row_sum: surface.row_sums().first().copied().filter(|_| is_periodic),
+        };
+        let mut schur = Schur::default();
+        let Proposal { lines, sums } =
+            iterations.propose_both(problem, contact, [outside, inside], &beside, &mut schur)?;
+        UpdaterError::check_length("watched displacements", lines.len(), nodes.len())?;
+        UpdaterError::check_length("watched sums", sums.len(), nodes.len())?;
+        let numbers = lines.as_flattened().iter().chain(sums.as_flattened());
+        if !numbers.copied().all(f64::is_finite) {
+            return Err(run.not_finite());
+        }
+        run.check_complement(&nodes, &schur)?;
+        let gap = problem.initial_gap();
+        let hardness = plastic.hardness().values();
+        let watched = nodes.iter().zip(lines.iter().zip(&sums)).enumerate();
+        let watched = watched.map(|(k, (&node, (&[value, rate], &sums)))| {
+            let is_elastic = k >= out;
+            let [value, rate] = match is_elastic {
+                true => [value, rate],
+                false => [gap[node] + value - approach, rate - 1.0],
+            };
+            Watched { node, is_elastic, hardness: hardness[node], value, rate, sums }
+        });
+        let watched: Vec<Watched> = watched.collect();
+        let mut window = Exchange::default();
+        window.begin(approach, &watched, &schur, self.rates);
+        window.tolerate(SLACK_OF_RATE);
+        run.timings.windows += 1;
+        let (rates, horizon) = (self.rates, TRUSTED * candidates.horizon);
+        Ok(Opened { window, approach, watched, schur, rates, horizon })
+    }
+
+    /// Goes through a window, and queues its states.
+    fn follow(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        opened: &Opened,
+        touches: usize,
+    ) -> Result<Outcome, Error> {
+        let mut first = opened.window.clone();
+        let bad = first.play(opened.horizon, usize::MAX, usize::MAX);
+        let events = first.events();
+        if events.is_empty() {
+            return Err(match bad {
+                Some(bad) => run.not_positive_definite(bad),
+                None => {
+                    let node = opened.watched.iter().map(|watched| watched.node).min();
+                    run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+                }
+            });
+        }
+        let times: Vec<WindowEvent> = events
+            .iter()
+            .map(|&Event { position, time, .. }| WindowEvent { position, time })
+            .collect();
+        let most = with_ties(&times, self.most_events(), tolerances).min(within(events, touches));
+        let (mut kept, mut time) = cut(&times, opened.horizon, most, tolerances);
+        if time <= tolerances.tie {
+            // All of them happen at once. Their courses are better known than those of the ranking.
+            let known: Vec<usize> =
+                events[..kept].iter().map(|event| first.node(event.position)).collect();
+            self.enter(run, plastic, iterations, tolerances, (time, &known), touches)?;
+            return Ok(Outcome::Done);
+        }
+        let start = run.scalars.approach();
+        let trial = loop {
+            let event = |event: &Event| (first.node(event.position), event.kind);
+            let trial = Trial::of(run, plastic, events[..kept].iter().map(event))?;
+            self.rate_span = time.max(self.last_span);
+            let at = (start + time, self.rate_span);
+            self.go_to(run, plastic, iterations, &trial, at)?;
+            let slack = slack(tolerances, start + time);
+            let Some(until) = contradiction(run, plastic, &trial, (start + time, slack)) else {
+                break trial;
+            };
+            iterations.cut(&run.problem, &run.contact)?;
+            run.timings.taken_back += 1;
+            let own = events[kept - 1].time;
+            if kept > 1 {
+                // What joined or yielded without need says nothing of when that was.
+                let fewer = if until.is_finite() {
+                    times.iter().take_while(|event| event.time <= time + until).count()
+                } else {
+                    kept / 2
+                };
+                (kept, time) = cut(&times, opened.horizon, fewer.clamp(1, kept - 1), tolerances);
+            } else if time > own {
+                time = own;
+            } else {
+                let node = first.node(events[0].position);
+                return Err(run.not_monotone("gap or pressure", node, 0.0));
+            }
+        };
+        let events = &events[..kept];
+        match self.refine(run, plastic, iterations, tolerances, (opened, &trial), (events, time))? {
+            Some((window, settled)) => {
+                self.finish(run, plastic, trial, (window, &settled), time, tolerances)?;
+                Ok(Outcome::Done)
+            }
+            None => {
+                iterations.cut(&run.problem, &run.contact)?;
+                Ok(Outcome::TakenBack)
+            }
+        }
+    }
+
+    /// Moves iterations to the state behind a window at an approach, with a rate that serves over a span.
+    fn go_to(
+        &self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        trial: &Trial,
+        (approach, span): (f64, f64),
+    ) -> Result<(), Error> {
+        let yielded = trial.pressures(plastic);
+        let behind = trial.behind(&yielded, approach);
+        run.field.advance_behind(&behind, iterations, span)
+    }
+
+    /// Corrects a window by the solution at its end, and settles the events in it; `None` if the end, or a solution in between,
+    /// contradicts what was expected.
+    fn refine(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (opened, trial): (&Opened, &Trial),
+        (first, time): (&[Event], f64),
+    ) -> Result<Option<(Exchange, settled::Settled)>, Error> {
+        let window = as_window(opened)?;
+        let ends = at_end(run, plastic, opened, (trial, opened.approach + time));
+        let correction = correction::correct_if(&window, &ends, time, |schur| {
+            is_definite(schur, &opened.watched)
+        });
+        let Correction { window, by_courses, is_updated } = &correction;
+        let corrected = opened.with(window.schur(), window.courses());
+        let other = opened.with(by_courses.schur(), by_courses.courses());
+        let passes = (&corrected, &other, *is_updated);
+        let settled = settled::second_pass(passes, (first, time));
+        let part = |i: usize| (window.schur().entry(i, i) / opened.schur.entry(i, i) - 1.0).abs();
+        let left_out = (0..opened.watched.len()).map(part).fold(0.0, f64::max);
+        self.left_out = left_out.max(REMEMBERED * self.left_out);
+        let change = settled::mean_change(first, &settled.events, time);
+        let most_change = MOST_CHANGE * time / first.len() as f64;
+        let half = first.len() / 2;
+        let tied = with_ties(
+            &first
+                .iter()
+                .map(|e| WindowEvent { position: e.position, time: e.time })
+                .collect::<Vec<_>>(),
+            half,
+            tolerances,
+        );
+        let is_certain = first.len() <= CERTAIN || tied >= first.len();
+        let is_poor = !is_certain && (change > most_change || first.len() > 2 * self.most_events());
+        let settled = match is_poor {
+            true => None,
+            false if self.settles => {
+                let beginning = Beginning {
+                    plastic,
+                    approach: opened.approach,
+                    count: run.contact.len() + plastic.count(),
+                    is_certain,
+                };
+                settled::settle(run, iterations, tolerances, &corrected, settled, beginning)?
+            }
+            false => Some(settled),
+        };
+        if settled.is_none() {
+            self.left_out = self.left_out.max(LEFT_OUT / half.max(1) as f64);
+        }
+        Ok(settled.map(|settled| (corrected, settled)))
+    }
+
+    /// How many events a window may have: see the same of windows in which nothing yields.
+    fn most_events(&self) -> usize {
+        ((LEFT_OUT / self.left_out) as usize).max(1)
+    }
+
+    /// Queues the states of a corrected window, at whose end the solution is.
+    fn finish(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        mut trial: Trial,
+        (mut window, settled): (Exchange, &settled::Settled),
+        time: f64,
+        tolerances: &WindowTolerances,
+    ) -> Result<(), Error> {
+        self.last_span = time;
+        let moments = settled.events.iter().map(|event| (event.position, event.time));
+        window.go_through(moments).map_err(|bad| run.not_positive_definite(bad))?;
+        let events = settled.events.iter().map(|event| (window.node(event.position), event.kind));
+        let played: Vec<(usize, ContactEvent)> = events.collect();
+        trial.reorder(run, &played)?;
+        let before = Carried::of(run, plastic);
+        let passed = Passed { start: run.scalars, before, span: time };
+        let approach = passed.start.approach() + time;
+        let plastic = trial.adopt(run, plastic);
+        run.scalars.place_at(approach);
+        self.survey(run, &plastic, tolerances)?;
+        pinned::enqueue(run, &plastic, (&window, settled), passed, (self.rates, tolerances))
+    }
+
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices, up to so many
+    /// `touches`. Between them rates change in equal steps.
+    fn enter(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (time, known): (f64, &[usize]),
+        touches: usize,
+    ) -> Result<(), Error> {
+        let places = places(run);
+        let tie_of = |node: usize| Self::tie_of(run, tolerances, (node, places[node]));
+        let together =
+            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
+        let group = self.ranking.iter().filter(together);
+        let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
+        // What their times cannot be told apart by.
+        let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        group.sort_unstable();
+        let kind = |node: usize| match run.contact.contains(node) {
+            true => ContactEvent::Yield,
+            false => ContactEvent::Touch,
+        };
+        let mut touched = 0;
+        let within = |&(_, kind): &(usize, ContactEvent)| {
+            touched += usize::from(kind == ContactEvent::Touch);
+            touched <= touches
+        };
+        let events: Vec<(usize, ContactEvent)> =
+            group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
+        let approach = run.scalars.approach() + time;
+        let trial = Trial::of(run, plastic, events.iter().copied())?;
+        self.last_span = self.last_span.max(time);
+        // However little is left open by so many nodes: rates must be exact.
+        self.rate_span = f64::INFINITY;
+        self.go_to(run, plastic, iterations, &trial, (approach, self.rate_span))?;
+        let before = Carried::of(run, plastic);
+        let passed = Passed { start: run.scalars, before, span: time };
+        let rates = self.rates;
+        let plastic = trial.adopt(run, plastic);
+        run.scalars.place_at(approach);
+        self.survey(run, &plastic, tolerances)?;
+        pinned::enqueue_together(run, &plastic, &events, passed, ([rates, self.rates], error))
+    }
+}
+
+/// By how much solutions may contradict what contact that grows does.
+fn slack(tolerances: &WindowTolerances, approach: f64) -> Slack {
+    Slack { gap: tolerances.overlap(approach), rate: SLACK_OF_RATE }
+}
+
+/// How many of some events come before one more than `touches` nodes touch.
+fn within(events: &[Event], touches: usize) -> usize {
+    let mut touched = 0;
+    let is_within = |event: &&Event| {
+        touched += usize::from(event.kind == ContactEvent::Touch);
+        touched <= touches
+    };
+    events.iter().take_while(is_within).count().max(1)
+}
+
+/// The place of each node in the contact.
+fn places(run: &LoadingRun) -> Vec<Option<usize>> {
+    let mut places = vec![None; run.problem.grid().nodes()];
+    for (place, &node) in run.contact.order().iter().enumerate() {
+        places[node] = Some(place);
+    }
+    places
+}
+
+/// How fast the event of a node comes, relative to the approach: how fast its gap closes, or its pressure rises times what a pressure
+/// displaces.
+fn closing(run: &LoadingRun, node: usize, place: Option<usize>) -> f64 {
+    match place {
+        Some(place) => run.field.solution().rate[place] * run.problem.table().self_influence(),
+        None => run.line(node).closing,
+    }
+}
+
+/// A window as those have it in which nothing yields: pressures in the place of gaps.
+fn as_window(opened: &Opened) -> Result<Window, Error> {
+    let mut window = Window::default();
+    let lines = opened
+        .watched
+        .iter()
+        .map(|watched| (watched.node, GapLine { gap: watched.value, closing: -watched.rate }));
+    let (_, schur) = window.open((opened.approach, opened.horizon), lines);
+    schur.clone_from(&opened.schur);
+    window.begin();
+    Ok(window)
+}
+
+/// Whether every exchange of a matrix has a positive pivot, whatever their order.
+fn is_definite(schur: &Schur, watched: &[Watched]) -> bool {
+    let mut parts = schur.clone();
+    let size = parts.size();
+    let mut matrix: DMatrixViewMut<'_, f64> = parts.matrix_mut();
+    for j in 0..size {
+        for i in j..size {
+            matrix[(i, j)] *= match (watched[i].is_elastic, watched[j].is_elastic) {
+                (false, false) => 1.0,
+                (true, true) => -1.0,
+                _ => 0.0,
+            };
+        }
+    }
+    let all: Vec<usize> = (0..size).collect();
+    WindowFactor::of(parts, &all).is_ok()
+}
+
+/// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were elastic; and
+/// gaps, or pressures of those.
+fn at_end(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    opened: &Opened,
+    (trial, approach): (&Trial, f64),
+) -> Vec<AtEnd> {
+    let mut places = vec![None; run.problem.grid().nodes()];
+    for (place, &node) in trial.contact.order().iter().enumerate() {
+        places[node] = Some(place);
+    }
+    let solution = run.field.solution();
+    let hardness = plastic.hardness().values();
+    let at = |watched: &Watched| {
+        let node = watched.node;
+        let line = run.field.line(&trial.problem, node, approach);
+        let gap = [line.gap, -line.closing];
+        let has_yielded = trial.yielded.contains(&node);
+        match (watched.is_elastic, places[node]) {
+            (false, Some(place)) => {
+                AtEnd { pressure: [solution.pressure[place], solution.rate[place]], gap: [0.0; 2] }
+            }
+            (false, None) if has_yielded => AtEnd { pressure: [hardness[node], 0.0], gap },
+            (false, None) => AtEnd { pressure: [0.0; 2], gap },
+            (true, Some(place)) => {
+                AtEnd { pressure: [0.0; 2], gap: [solution.pressure[place], solution.rate[place]] }
+            }
+            (true, None) => AtEnd { pressure: gap.map(|value| -value), gap: [hardness[node], 0.0] },
+        }
+    };
+    opened.watched.iter().map(at).collect()
+}
+
+impl Trial {
+    /// The nodes that have yielded, and what they carry.
+    pub(super) fn pressures(&self, plastic: &Plastic) -> Vec<(usize, f64)> {
+        let hardness = plastic.hardness().values();
+        self.yielded.iter().map(|&node| (node, hardness[node])).collect()
+    }
+
+    pub(super) fn behind<'a>(&'a self, yielded: &'a [(usize, f64)], approach: f64) -> Behind<'a> {
+        let (problem, contact) = (&self.problem, &self.contact);
+        Behind { problem, contact, yielded, load: self.displaced.load(), approach }
+    }
+
+    /// The same events in another order.
+    fn reorder(
+        &mut self,
+        run: &mut LoadingRun,
+        events: &[(usize, ContactEvent)],
+    ) -> Result<(), Error> {
+        let (contact, yielded, departures) = super::contact_behind(run, events.iter().copied())?;
+        run.field.reorder(&self.contact, &contact);
+        (self.contact, self.yielded, self.departures) = (contact, yielded, departures);
+        Ok(())
+    }
+}

@@ -1,0 +1,214 @@
+//! Tables for finite elements: their error, their order, and their syntax.
+
+use asperity::joint::{Conduction, FeProgram, InterfaceRow, InterfaceTable};
+use asperity::loading::History;
+use asperity::{
+    Boussinesq, ContactEvent, Error, Grid, InfluenceKernel, LoadingState, PeriodicBoussinesq,
+};
+
+use super::{history, rough};
+
+const E_STAR: f64 = 115e9;
+
+fn paths() -> Vec<History> {
+    let grid = Grid::square(48, 1.25e-3).unwrap();
+    let free = Boussinesq::new(grid, E_STAR).unwrap();
+    let periodic = PeriodicBoussinesq::new(grid, E_STAR).unwrap();
+    let kernels: [&dyn InfluenceKernel; 2] = [&free, &periodic];
+    // The second one to full contact.
+    kernels.iter().zip([0.4, 1.0]).map(|(kernel, area)| history(&rough(), *kernel, area)).collect()
+}
+
+fn table(history: &History, tolerance: f64) -> InterfaceTable {
+    InterfaceTable::builder(history)
+        .conduction(Conduction::thermal(E_STAR, 0.04).unwrap())
+        .friction(0.25, 1.2)
+        .tolerance(tolerance)
+        .build()
+        .unwrap()
+}
+
+/// Linear interpolation as a finite element program does it.
+fn interpolated(
+    rows: &[InterfaceRow],
+    x: impl Fn(&InterfaceRow) -> f64,
+    y: impl Fn(&InterfaceRow) -> f64,
+    at: f64,
+) -> f64 {
+    let after = rows.partition_point(|row| x(row) < at).clamp(1, rows.len() - 1);
+    let (a, b) = (&rows[after - 1], &rows[after]);
+    y(a) + (y(b) - y(a)) * (at - x(a)) / (x(b) - x(a))
+}
+
+/// At every state of the path each quantity is within the tolerance, which is what thins the table; between states pressure is linear in the
+/// overclosure, as in the table. The worst error is near the tolerance: the table is no longer than it needs to be by much.
+#[test]
+fn interpolation_errs_by_no_more_than_the_tolerance() {
+    for history in paths() {
+        let states = history.states();
+        let area = states[0].contact.contact_area / states[0].contact.contact_area_fraction;
+        let unloaded = states[0].contact.mean_gap;
+        let finite = states.iter().filter(|s| s.contact.interfacial_stiffness.unwrap().is_finite());
+        let mut lengths = Vec::new();
+        for tolerance in [0.1, 0.01, 0.001] {
+            let table = table(&history, tolerance);
+            let rows = table.rows();
+            lengths.push(rows.len());
+            let greatest = rows.last().unwrap().pressure;
+            let mut worst = 0.0_f64;
+            for state in finite.clone() {
+                let pressure = state.contact.mean_pressure();
+                let overclosure = unloaded - state.contact.mean_gap;
+                let found = interpolated(rows, |r| r.overclosure, |r| r.pressure, overclosure);
+                let error = (found - pressure).abs() / pressure.max(1e-3 * greatest);
+                worst = worst.max(error);
+                assert!(error <= tolerance * (1.0 + 1e-6), "{error}");
+                let stiffness = state.contact.interfacial_stiffness.unwrap() / area;
+                let conductance = |r: &InterfaceRow| r.conductance.unwrap();
+                let found = interpolated(rows, |r| r.pressure, conductance, pressure);
+                let error = found / (2.0 * stiffness / (0.04 * E_STAR)) - 1.0;
+                assert!(error.abs() <= tolerance * (1.0 + 1e-6), "{error}");
+                worst = worst.max(error.abs());
+                let tangential = |r: &InterfaceRow| r.tangential_stiffness.unwrap();
+                let found = interpolated(rows, |r| r.pressure, tangential, pressure);
+                assert!((found / (stiffness / 1.2) - 1.0).abs() <= tolerance * (1.0 + 1e-6));
+            }
+            assert!(worst > 0.5 * tolerance, "{worst} {tolerance}");
+        }
+        assert!(lengths[0] < lengths[1] && lengths[1] < lengths[2]);
+        assert!(lengths[1] * 5 < states.len(), "{lengths:?} of {}", states.len());
+    }
+}
+
+#[test]
+fn tables_begin_without_pressure_and_rise() {
+    for history in paths() {
+        for tolerance in [0.3, 0.01, 1e-9] {
+            let table = table(&history, tolerance);
+            assert_eq!(table.tolerance(), tolerance);
+            let rows = table.rows();
+            assert_eq!((rows[0].pressure, rows[0].overclosure), (0.0, 0.0));
+            for pair in rows.windows(2) {
+                assert!(pair[0].pressure < pair[1].pressure);
+                assert!(pair[0].overclosure < pair[1].overclosure);
+                assert!(pair[0].conductance <= pair[1].conductance);
+                assert!(pair[0].tangential_stiffness <= pair[1].tangential_stiffness);
+            }
+            for row in rows {
+                assert_eq!(row.slip_limit, Some(0.25 * row.pressure));
+                assert!(row.conductance.unwrap().is_finite());
+            }
+        }
+    }
+}
+
+/// Every number of the CSV reads back; the same numbers are in the other formats, where each program expects them.
+#[test]
+fn programs_find_the_numbers_where_they_look() {
+    let history = &paths()[1];
+    let table = table(history, 0.02);
+    let csv = table.text(FeProgram::Csv);
+    let mut lines = csv.lines();
+    assert_eq!(
+        lines.next(),
+        Some("pressure,overclosure,thermal_conductance,tangential_stiffness,slip_limit")
+    );
+    let cells: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(cells.len(), table.rows().len());
+    for (cells, row) in cells.iter().zip(table.rows()) {
+        let read: Vec<f64> = cells.iter().map(|cell| cell.parse().unwrap()).collect();
+        let expected = [
+            row.pressure,
+            row.overclosure,
+            row.conductance.unwrap(),
+            row.tangential_stiffness.unwrap(),
+            row.slip_limit.unwrap(),
+        ];
+        for (read, expected) in read.iter().zip(expected) {
+            assert!((read - expected).abs() <= 1e-12 * expected);
+        }
+        // What CalculiX reads of a field.
+        assert!(cells.iter().all(|cell| cell.len() <= 20));
+    }
+    let column = |k: usize| -> Vec<&str> { cells.iter().map(|cells| cells[k]).collect() };
+    let (pressure, overclosure, conductance) = (column(0), column(1), column(2));
+    let last = cells.last().unwrap();
+    for (program, heat, friction) in [
+        (FeProgram::Abaqus, "*GAP CONDUCTANCE, PRESSURE", "*FRICTION, ELASTIC SLIP="),
+        (FeProgram::CalculiX, "*GAP CONDUCTANCE", "*FRICTION"),
+    ] {
+        let text = table.text(program);
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("**")).collect();
+        assert_eq!(lines[0], "*SURFACE INTERACTION, NAME=ROUGH_INTERFACE");
+        assert_eq!(lines[1], "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR");
+        let n = pressure.len();
+        assert_eq!(lines[2 + n], heat);
+        for k in 0..n {
+            assert_eq!(lines[2 + k], format!("{}, {}", pressure[k], overclosure[k]));
+            assert_eq!(lines[3 + n + k], format!("{}, {}", conductance[k], pressure[k]));
+        }
+        assert!(lines[3 + 2 * n].starts_with(friction));
+        let coefficient: f64 = lines[4 + 2 * n].split(',').next().unwrap().parse().unwrap();
+        assert_eq!(coefficient, 0.25);
+        if program == FeProgram::CalculiX {
+            assert_eq!(lines[4 + 2 * n].split(", ").nth(1), Some(last[3]));
+        }
+        assert_eq!(lines.len(), 5 + 2 * n);
+        // Abaqus reads no longer lines.
+        assert!(text.lines().all(|line| line.len() <= 256));
+    }
+    let moose = table.text(FeProgram::Moose);
+    for (name, x, y) in [
+        ("pressure_of_overclosure", &overclosure, &pressure),
+        ("conductance_of_pressure", &pressure, &conductance),
+        ("tangential_stiffness_of_pressure", &pressure, &column(3)),
+        ("slip_limit_of_pressure", &pressure, &column(4)),
+    ] {
+        let block = format!(
+            "  [{name}]\n    type = PiecewiseLinear\n    x = '{}'\n    y = '{}'\n  []\n",
+            x.join(" "),
+            y.join(" ")
+        );
+        assert!(moose.contains(&block), "{name}");
+    }
+    assert!(moose.starts_with("# ") && moose.ends_with("[]\n"));
+    // Only what was asked for.
+    let plain = InterfaceTable::builder(history).build().unwrap();
+    for program in [FeProgram::Abaqus, FeProgram::CalculiX, FeProgram::Moose, FeProgram::Csv] {
+        let text = plain.text(program).to_lowercase();
+        assert!(
+            !text.contains("conductance") && !text.contains("friction") && !text.contains("slip")
+        );
+    }
+    let current = Conduction::electrical(E_STAR, 3.4e-8).unwrap();
+    let current = InterfaceTable::builder(history).conduction(current).build().unwrap();
+    assert!(current.text(FeProgram::Abaqus).contains("*GAP ELECTRICAL CONDUCTANCE, PRESSURE\n"));
+    assert!(current.text(FeProgram::CalculiX).contains("\n*GAP CONDUCTANCE\n"));
+    assert!(
+        current.text(FeProgram::Csv).starts_with("pressure,overclosure,electrical_conductance\n")
+    );
+}
+
+#[test]
+fn tables_of_nothing_are_refused() {
+    let full = &paths()[0];
+    for bad in [0.0, -0.1, f64::NAN, f64::INFINITY, 1.0] {
+        assert!(InterfaceTable::builder(full).tolerance(bad).build().is_err());
+    }
+    for bad in [0.0, -0.1, f64::NAN] {
+        assert!(InterfaceTable::builder(full).friction(bad, 1.2).build().is_err());
+        assert!(InterfaceTable::builder(full).friction(0.2, bad).build().is_err());
+    }
+    let first: History = full.states()[..1].iter().copied().collect();
+    for history in [History::default(), first] {
+        let refused = InterfaceTable::builder(&history).build();
+        assert!(matches!(refused, Err(Error::OutOfRange { .. })));
+    }
+    // Without stiffnesses there is no state to put in.
+    let none = full.states().iter().map(|state| {
+        let mut contact = state.contact;
+        contact.interfacial_stiffness = None;
+        LoadingState::new(state.step, ContactEvent::Touch, state.node, contact)
+    });
+    assert!(InterfaceTable::builder(&none.collect()).build().is_err());
+}
