@@ -37,14 +37,15 @@ pub(super) fn draw(
         let all = states.iter().map(quantity);
         all.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)))
     };
+    let seen = together(passages);
     let marks = |from: f64, to: f64, named: bool| -> Vec<Series> {
         let colours = [ORANGE, GREEN, PURPLE, GREY];
-        let seen = passages.iter().zip(colours).filter_map(|(passage, colour)| {
-            let time = passage.time?.max(first);
-            let name = if named { passage.name } else { "" };
-            Some(Series::new(name, colour, Style::Dashed, [(time, from), (time, to)]))
+        let marks = seen.iter().zip(colours).map(|((time, names), colour)| {
+            let time = time.max(first);
+            let name = if named { names.as_str() } else { "" };
+            Series::new(name, colour, Style::Dashed, [(time, from), (time, to)])
         });
-        seen.collect()
+        marks.collect()
     };
     let time = || Axis::logarithmic("time", "s", first, last);
     let chart = |title: &str, y: Axis, series: Vec<Series>, legend| Chart {
@@ -100,4 +101,22 @@ pub(super) fn draw(
         ),
     ];
     chart::draw(&charts, 2, name)
+}
+
+/// Passages at the same time have one mark.
+fn together(passages: &[Passage]) -> Vec<(f64, String)> {
+    let mut marks: Vec<(f64, String)> = Vec::new();
+    for passage in passages {
+        let Some(time) = passage.time else {
+            continue;
+        };
+        match marks.iter_mut().find(|(at, _)| *at == time) {
+            Some((_, names)) => {
+                names.push_str(", ");
+                names.push_str(passage.name);
+            }
+            None => marks.push((time, passage.name.to_string())),
+        }
+    }
+    marks
 }

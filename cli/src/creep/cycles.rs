@@ -16,7 +16,7 @@ use asperity_cli::outcome::{self, Failure};
 use super::course::{Cycles, Task};
 
 /// Frequencies a decade.
-const A_DECADE: f64 = 3.0;
+const A_DECADE: f64 = 5.0;
 /// From the slowest to the fastest phase of the series, and beyond both by this factor.
 const BEYOND: f64 = 20.0;
 /// At most so many increments of the path: a curve needs no more.
