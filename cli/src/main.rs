@@ -64,7 +64,6 @@ enum Command {
     Creep(creep::Options),
     Slip(slip::Options),
     Leak(leak::Options),
-    Creep(creep::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
 }
@@ -90,7 +89,6 @@ fn main() -> ExitCode {
         Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
         Some(Command::Leak(options)) => leak::run(&options),
-        Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),
     };
