@@ -56,8 +56,8 @@ const EXIT_CODES: &str = "Exit codes: 0: done; 1: an error, and what was compute
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Path(path::Options),
-    Load(load::Options),
+    Path(Box<path::Options>),
+    Load(Box<load::Options>),
     Info(info::Options),
     Gather(gather::Options),
     Patches(patches::Options),

@@ -147,7 +147,7 @@ fn what_is_no_bed_is_refused() -> Result<(), Error> {
         match Bed::new(&history) {
             Ok(_) => None,
             Err(Error::Bed(error)) => Some(error),
-            Err(other) => panic!("{other}"),
+            Err(other) => unreachable!("{other}"),
         }
     };
     assert!(refused(&good).is_none());

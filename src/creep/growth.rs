@@ -218,7 +218,7 @@ impl<'a> Growth<'a> {
             let next = since + missing / rate;
             let is_between = next > below && next < above;
             let next = if is_between { next } else { 0.5 * (below + above) };
-            if (next - since).abs() <= f64::EPSILON * next || !(below < above) {
+            if (next - since).abs() <= f64::EPSILON * next || below >= above {
                 return next;
             }
             since = next;

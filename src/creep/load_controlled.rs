@@ -145,7 +145,7 @@ impl<'a> Creep<'a> {
     #[must_use]
     pub fn time_of(&self, effective_load: f64) -> Option<f64> {
         let until = self.recession.map_or(f64::INFINITY, |recession| recession.time);
-        if !(effective_load >= 0.0) {
+        if effective_load.is_nan() || effective_load < 0.0 {
             return None;
         }
         let knots = [0.0, effective_load];

@@ -92,7 +92,7 @@ impl Flow {
         for (&node, residual) in flowing.iter().zip(residual) {
             let beyond = network.layout.beyond(node);
             let flows =
-                [0, 1, 2, 3].map(|face| self.into_face(network, node, (face, beyond[face])));
+                [0, 1, 2, 3].map(|face| self.face_flux(network, node, (face, beyond[face])));
             *residual = -flows.iter().sum::<f64>();
             if beyond[0] == Beyond::Inlet {
                 rate -= flows[0];
@@ -102,7 +102,7 @@ impl Flow {
     }
 
     /// What flows out of a node through a face.
-    pub(super) fn into_face(
+    pub(super) fn face_flux(
         &self,
         network: &Network,
         node: usize,

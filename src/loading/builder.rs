@@ -274,7 +274,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
             _ if plastic.is_some() => {
                 let refined = RefinedYielding::new(self.window_size, settles);
-                Procedure::Yielding(Yielding::new(self.window_size), refined)
+                Procedure::Yielding(Box::new((Yielding::new(self.window_size), refined)))
             }
             _ => {
                 let refined = Refined::new(self.window_size, settles);

@@ -67,7 +67,7 @@ pub(super) enum Procedure {
     Windows(Windowed, Refined),
     Stepwise(Stepwise),
     /// In windows in which nodes yield as well.
-    Yielding(Yielding, RefinedYielding),
+    Yielding(Box<(Yielding, RefinedYielding)>),
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -147,8 +147,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
             _ if is_enough => Ok(()),
-            (Procedure::Yielding(yielding, _), Phase::Factor { updater, .. }) => {
-                let failure = yielding.produce(run, updater, limit)?;
+            (Procedure::Yielding(windows), Phase::Factor { updater, .. }) => {
+                let failure = windows.0.produce(run, updater, limit)?;
                 if let Some(node) = run.waiting().filter(|_| run.queue.is_empty()) {
                     let stopped = || run.not_monotone("rate of a gap or a pressure", node, 0.0);
                     return Err(failure.unwrap_or_else(stopped));
@@ -156,8 +156,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 self.failure = failure;
                 Ok(())
             }
-            (Procedure::Yielding(_, refined), Phase::Iterations(iterations)) => {
-                refined.produce(run, &mut **iterations, limit)
+            (Procedure::Yielding(windows), Phase::Iterations(iterations)) => {
+                windows.1.produce(run, &mut **iterations, limit)
             }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
                 refined.produce(run, &mut **iterations, most_nodes)

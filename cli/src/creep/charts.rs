@@ -22,7 +22,7 @@ pub(super) fn draw(
     let positive = || states.iter().map(|state| state.time).filter(|time| *time > 0.0);
     let last = positive().fold(0.0, f64::max);
     let first = positive().fold(f64::INFINITY, f64::min);
-    if !(first < last) {
+    if first >= last {
         return Err(Failure::request("there is nothing to draw over time: all states are at one"));
     }
     let shown: Vec<(f64, &CreepState)> = states

@@ -39,10 +39,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let bed = Bed::of(&record).map_err(failed)?;
     let followed = Followed::new(&bed, &task)?;
     let passages = Passage::all(&record, &followed, options.connectivity()).map_err(failed)?;
-    let sweep = match &task.cycles {
-        Some(cycles) => Some(Sweep::new(&record, &task, cycles)),
-        None => None,
-    };
+    let sweep = task.cycles.as_ref().map(|cycles| Sweep::new(&record, &task, cycles));
     if options.json {
         answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
     }

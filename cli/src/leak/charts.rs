@@ -13,7 +13,7 @@ const DECADES: f64 = 14.0;
 /// Draws both charts; nothing if nothing leaks under load.
 pub(super) fn draw(curve: &LeakCurve, name: &Path) -> Result<Option<PathBuf>, Failure> {
     let leaking: Vec<&LeakPoint> = curve.points.iter().filter(|p| p.leak_rate > 0.0).collect();
-    let reached = curve.points.last().map_or(0.0, |point| pressure(point));
+    let reached = curve.points.last().map_or(0.0, pressure);
     let (Some(most), true) = (leaking.first().map(|point| point.leak_rate), reached > 0.0) else {
         return Ok(None);
     };
