@@ -1,6 +1,6 @@
 //! Beds whose numbers can be worked out by hand, and superpositions against their fields.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use nalgebra::DMatrix;
 
