@@ -43,6 +43,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(cycles) => Some(Sweep::new(&record, &task, cycles)),
         None => None,
     };
+    if followed.states.is_empty() {
+        return followed.whole(&task, &options.record);
+    }
     if options.json {
         answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
     }
@@ -57,7 +60,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
-    outcome.written(charts::draw(&followed, &passages, &directory.join("creep.png")));
+    let has_corners = options.history.is_some();
+    outcome.written(charts::draw(&followed, &passages, has_corners, &directory.join("creep.png")));
     if let Some(drawn) = touch_times::draw(&record, &followed, &directory) {
         outcome.written(drawn);
     }
