@@ -39,6 +39,7 @@
 //! | save a path and continue it | [`record`] |
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
+//! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | superpose increments of a path | [`bed`] |
 //! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |

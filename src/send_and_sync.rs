@@ -4,6 +4,10 @@
 use crate::bed::{Bed, BedState, Piece, Spring, Superposed, Superposition};
 use crate::contact::{Certificate, ContactSequence, ContactState, ContactTarget};
 use crate::convolution::Convolution;
+use crate::creep::{
+    Corners, Course, Creep, CreepState, Cycle, Prony, Recession, Relaxation, Unloading,
+    UnloadingState, ViscoelasticBed,
+};
 use crate::fixed_load::{FixedLoadSolution, FixedLoadSolver, LoadSweep, SolverEffort};
 use crate::joint::{
     Carrier, ConductanceBounds, Conduction, FeProgram, InterfaceRow, InterfaceTable,
@@ -116,6 +120,17 @@ send_and_sync!(
     SphereSlip,
     Westergaard,
 );
+send_and_sync!(
+    Corners,
+    Course,
+    Creep<'static>,
+    CreepState,
+    Cycle,
+    Prony,
+    Recession,
+    Relaxation<'static>
+);
+send_and_sync!(Unloading<'static, 'static>, UnloadingState, ViscoelasticBed<'static>);
 send_and_sync!(HeightMap, SelfAffine, Topography);
 send_and_sync!(
     ConjugateGradient,

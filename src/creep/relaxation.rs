@@ -94,7 +94,7 @@ impl<'a> Relaxation<'a> {
             return Err(CreepError::ContactRecedes { time: from, effective_load }.into());
         }
         let approach = self.approach.value_at(time);
-        if let Some((_, end)) = self.ends.filter(|(from, end)| time > *from && approach > *end) {
+        if let Some((_, end)) = self.ends.filter(|(from, end)| time >= *from && approach > *end) {
             return Err(
                 BedError::PathEndsBefore { quantity: "approach", value: approach, end }.into()
             );

@@ -45,6 +45,10 @@ fn loads_and_times_that_are_none() {
     let relaxation = Relaxation::new(&bed, &solid(), &beyond).unwrap();
     assert!(relaxation.at(0.05).is_ok());
     assert!(matches!(relaxation.at(1.0), Err(Error::Bed(BedError::PathEndsBefore { .. }))));
+    // At once as well.
+    let at_once = Corners::step(10.0 * bed.approaches()[49]).unwrap();
+    let relaxation = Relaxation::new(&bed, &solid(), &at_once).unwrap();
+    assert!(matches!(relaxation.at(0.0), Err(Error::Bed(BedError::PathEndsBefore { .. }))));
 }
 
 #[test]

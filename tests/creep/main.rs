@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod any_history;
+mod cost;
 mod cycles;
 mod growing;
 mod hostile;

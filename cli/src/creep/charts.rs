@@ -12,10 +12,12 @@ use super::passages::Passage;
 
 type Quantity = fn(&CreepState) -> f64;
 
-/// Draws area, mean gap, approach and load over the logarithm of time; the state just after t = 0 is at the left end.
+/// Draws area, mean gap, approach and load over the logarithm of time, the state just after t = 0 being at the left end; a history with
+/// corners of its own over time itself, unless most of it is one long hold.
 pub(super) fn draw(
     followed: &Followed,
     passages: &[Passage],
+    has_corners: bool,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
     let states = &followed.states;
@@ -25,10 +27,14 @@ pub(super) fn draw(
     if first >= last {
         return Err(Failure::request("there is nothing to draw over time: all states are at one"));
     }
+    // Half of the states lie behind a thousandth of the time.
+    let middle = states[states.len() / 2].time;
+    let is_linear = has_corners && middle > 1e-3 * last;
+    let start = if is_linear { states[0].time.min(0.0) } else { first };
     let shown: Vec<(f64, &CreepState)> = states
         .iter()
-        .filter(|state| state.time >= 0.0)
-        .map(|state| (state.time.max(first), state))
+        .filter(|state| is_linear || state.time >= 0.0)
+        .map(|state| (state.time.max(start), state))
         .collect();
     let curve = |quantity: Quantity, name: &str, colour, style| {
         Series::new(name, colour, style, shown.iter().map(|(t, state)| (*t, quantity(state))))
@@ -41,13 +47,19 @@ pub(super) fn draw(
     let marks = |from: f64, to: f64, named: bool| -> Vec<Series> {
         let colours = [ORANGE, GREEN, PURPLE, GREY];
         let marks = seen.iter().zip(colours).map(|((time, names), colour)| {
-            let time = time.max(first);
+            let time = time.max(start);
             let name = if named { names.as_str() } else { "" };
             Series::new(name, colour, Style::Dashed, [(time, from), (time, to)])
         });
         marks.collect()
     };
-    let time = || Axis::logarithmic("time", "s", first, last);
+    let time = || {
+        if is_linear {
+            Axis::linear("time", "s", start, last)
+        } else {
+            Axis::logarithmic("time", "s", first, last)
+        }
+    };
     let chart = |title: &str, y: Axis, series: Vec<Series>, legend| Chart {
         title: title.to_string(),
         x: time(),
@@ -92,7 +104,7 @@ pub(super) fn draw(
         ),
         chart(
             "load, and the elastic load of the same contact while it grows",
-            Axis::linear("load", "N", 0.0, heaviest.max(most_effective)).with_room(0.0, 0.15),
+            Axis::linear("load", "N", 0.0, heaviest.max(most_effective)).with_room(0.0, 0.25),
             vec![
                 curve(load, "load", BLUE, Style::Line),
                 curve(effective, "effective load", ORANGE, Style::Dashed),

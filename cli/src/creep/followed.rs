@@ -129,16 +129,26 @@ impl<'a> Followed<'a> {
             return Ok(());
         };
         let file = record.display();
-        let further = match &self.solution {
-            Solution::Creep(creep) => format!("--max-load {:.4e}", creep.effective_load(task.end)),
-            _ => "--max-load with a greater load".to_string(),
+        let further = match (&self.solution, &task.course) {
+            (Solution::Creep(creep), _) => {
+                format!("--max-load {:.4e}", creep.effective_load(task.end))
+            }
+            (_, Course::Approach(approach)) => {
+                let values = approach.corners().iter().map(|corner| corner.1);
+                format!("--max-approach {:.4e}", values.fold(0.0, f64::max))
+            }
+            // To full contact, behind which all is linear.
+            (_, Course::Load(_)) => "--max-area-fraction 1".to_string(),
         };
-        Err(Failure::request(format!(
-            "the path is enough until t = {}, and not to {}",
-            quantity(until, "s", 4),
-            quantity(task.end, "s", 4)
-        ))
-        .with_advice(&format!(
+        let reached = match until {
+            0.0 => "the path is not enough for this history, from its beginning".to_string(),
+            until => format!(
+                "the path is enough until t = {}, and not to {}",
+                quantity(until, "s", 4),
+                quantity(task.end, "s", 4)
+            ),
+        };
+        Err(Failure::request(reached).with_advice(&format!(
             "`asperity path --resume {file} --record {file} {further}` takes it further"
         )))
     }

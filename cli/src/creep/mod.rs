@@ -54,7 +54,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
     let mut outcome = Outcome::default();
     outcome.written(table::write(&followed, &directory.join("creep.csv")));
-    outcome.written(charts::draw(&followed, &passages, &directory.join("creep.png")));
+    let has_corners = options.history.is_some();
+    outcome.written(charts::draw(&followed, &passages, has_corners, &directory.join("creep.png")));
     if let Some(drawn) = touch_times::draw(&record, &followed, &directory) {
         outcome.written(drawn);
     }

@@ -1,0 +1,97 @@
+//! How does a rubber seal creep under its load: when is the last channel closed, what load is left if it is clamped at one approach, and
+//! what does it lose under vibration?
+//!
+//! The path is elastic, of the modulus at once. Everything over time follows from it without another solution.
+//!
+//! Pictures of such a path: `asperity path --material rubber --periodic love --max-area-fraction 0.6 --record rubber.npz`, then
+//! `asperity creep rubber.npz --prony 0.1,0.3 10,0.5 --load 1 --time 1e4`.
+//!
+//! ```text
+//! cargo run --release --example rubber_creeps
+//! ```
+
+use asperity::bed::Bed;
+use asperity::creep::{
+    Corners, Course, Creep, CycleSettings, Prony, Relaxation, Steps, ViscoelasticBed,
+};
+use asperity::loading::History;
+use asperity::patches::{Connectivity, Percolation, contact_sequence};
+use asperity::surface::Amplitude;
+use asperity::{
+    Boundary, Error, Grid, LoadingSolver, PeriodicBoussinesq, SelfAffine, plane_strain_modulus,
+};
+
+fn main() -> Result<(), Error> {
+    let side = 1e-3;
+    let grid = Grid::square(128, side)?;
+    let surface = SelfAffine::new(0.8, side / 4.0, side / 16.0, Amplitude::RmsHeight(2e-6), 1)?;
+    // The modulus at once, 6 MPa, of which 0.3 relaxes in 0.1 s and 0.5 in 10 s.
+    let half_space = PeriodicBoussinesq::new(grid, plane_strain_modulus(6e6, 0.5)?)?;
+    let rubber = Prony::shares(&[(0.1, 0.3), (10.0, 0.5)])?;
+
+    let mut path = LoadingSolver::builder(&surface, &half_space).max_area_fraction(0.7).build()?;
+    let history: History = path.by_ref().collect::<Result<_, _>>()?;
+    let bed = Bed::new(&history)?;
+
+    // A load put on within a second and held: in closed form.
+    let load = 0.03; // [N], a mean pressure of 0.03 MPa
+    let creep = Creep::new(&bed, &rubber, &Corners::ramp(load, 1.0)?)?;
+    println!("time [s]   contact [%]   mean gap [µm]   greatest pressure [MPa]   (load {load} N)");
+    for time in [1.0, 3.0, 10.0, 30.0, 100.0, 1000.0] {
+        let state = creep.at(time)?;
+        let pressure = creep.pressure(time, 40)?.pressure(&bed, &mut path)?;
+        println!(
+            "{time:8} {:13.3} {:15.4} {:25.4}",
+            100.0 * state.contact_area_fraction,
+            1e6 * state.mean_gap,
+            1e-6 * pressure.max()
+        );
+    }
+    let events = history.states().iter().map(|state| (state.event, state.node));
+    let contact = contact_sequence(grid, events)?;
+    let found = Percolation::of(&contact, Boundary::Periodic, Connectivity::Four);
+    let times = creep.times();
+    match found.leak_x.and_then(|nodes| times.get(nodes - 1)) {
+        Some(time) => println!("the last channel along x closes after {time:.2} s"),
+        None => println!("a channel along x stays open"),
+    }
+
+    // Clamped at the approach that the load has at once.
+    let approach = bed.at_load(load)?.approach;
+    let clamped = Relaxation::new(&bed, &rubber, &Corners::step(approach)?)?;
+    println!(
+        "clamped, it bears {:.4} N at once and {:.4} N after 1000 s",
+        clamped.at(0.0)?.load,
+        clamped.at(1000.0)?.load
+    );
+
+    // Half of the load taken away after a minute: contact recedes, and the bed is stepped in time.
+    let course = Corners::ramp(load, 1.0)?.hold(60.0)?.to(0.5 * load, 1.0)?.hold(60.0)?;
+    let creep = Creep::new(&bed, &rubber, &course)?;
+    if let Some(recession) = creep.recession() {
+        println!("unloaded by half, contact recedes from {:.3} s on", recession.time);
+    }
+    let times = Steps::default().times(&rubber, &course, course.end())?;
+    let mut contact = ViscoelasticBed::new(&bed, &rubber)?;
+    let states = contact.follow(&Course::Load(course), &times)?;
+    for time in [61.0, 62.0, 122.0] {
+        let state =
+            states.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
+        if let Some(state) = state {
+            println!("after {time} s {:.3} % in contact", 100.0 * state.contact_area_fraction);
+        }
+    }
+
+    // Vibration around half of the load.
+    let mut contact = ViscoelasticBed::new(&bed, &rubber)?;
+    contact.settle(0.5 * load)?;
+    for frequency in [10.0, 1.0, 0.1, 0.01, 0.001] {
+        let cycle =
+            contact.cycle(0.5 * load, 0.1 * load, 1.0 / frequency, CycleSettings::default())?;
+        println!(
+            "at {frequency:5} Hz a cycle loses {:.3e} J, loss factor {:.3}",
+            cycle.dissipated, cycle.loss_factor
+        );
+    }
+    Ok(())
+}
