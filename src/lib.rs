@@ -124,3 +124,8 @@ struct Readme;
 #[cfg(all(doctest, feature = "io"))]
 #[doc = include_str!("../docs/from_file_to_contact.md")]
 struct FromFileToContact;
+
+/// The same of the page on layers.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/coated_and_thin_bodies.md")]
+struct CoatedAndThinBodies;
