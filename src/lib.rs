@@ -146,3 +146,8 @@ struct MetalsThatYield;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/joints_that_slip.md")]
 struct JointsThatSlip;
+
+/// The same of the page on layers.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/coated_and_thin_bodies.md")]
+struct CoatedAndThinBodies;

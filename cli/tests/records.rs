@@ -299,3 +299,56 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
     is_refused(&larger, &["the budget is 10 MB"]);
     Ok(())
 }
+
+/// Layers are said, in the settings and in the record, and a path on them goes on.
+#[test]
+fn a_path_on_layers_goes_on() -> Done {
+    let folder = Scratch::new("records-layers")?;
+    let coat = "1 mm of E = 20 GPa, ν = 0.30, 500 µm of E = 125 GPa, ν = 0.34 on E = 210 GPa, ν = 0.30 against rigid";
+    for (name, periodic) in
+        [("free", ""), ("love", "--periodic love"), ("waves", "--periodic spectral")]
+    {
+        let line =
+            format!("{PATH} --layer 20e9,0.3,1e-3 --layer copper,5e-4 --base steel {periodic}");
+        let first =
+            format!("{line} --max-area-fraction 0.1 --record {name}.npz --out {name}_first");
+        let first = run(&folder.0, &first)?;
+        assert!(said(&first).contains(&format!("bodies     {coat}")), "{}", said(&first));
+        let settings = fs::read_to_string(folder.join(&format!("{name}_first/settings.json")))?;
+        assert!(settings.contains("20000000000.0"), "{settings}");
+        let more = format!(
+            "path --updater cholesky --resume {name}.npz --max-area-fraction 0.2 --out {name}_more"
+        );
+        assert!(said(&run(&folder.0, &more)?).contains(coat));
+        printed(&folder.0, &format!("{line} --max-area-fraction 0.2 --out {name}_whole"))?;
+        are_alike(
+            &folder.join(&format!("{name}_more/path.csv")),
+            &folder.join(&format!("{name}_whole/path.csv")),
+        )?;
+    }
+    printed(&folder.0, "patches free.npz --out patches")?;
+    Ok(())
+}
+
+/// Layers that there are not, in words.
+#[test]
+fn bad_layers_are_refused() -> Done {
+    let folder = Scratch::new("records-bad-layers")?;
+    for (line, words) in [
+        ("--layer 1e9,0.3,0 --base rigid", "thickness"),
+        ("--layer 1e9,0.3,-1e-6 --base rigid", "thickness"),
+        ("--layer 1e9,0.3,nan --base rigid", "thickness"),
+        ("--layer 1e9,0.6,1e-6 --base rigid", "Poisson"),
+        ("--layer 0,0.3,1e-6 --base rigid", "Young"),
+        ("--layer 1e9,0.3,1e-6 --base 0,0.3", "Young"),
+        ("--layer 1e9,0.3,1e-6", "--base"),
+        ("--base rigid", "--layer"),
+        ("--layer 1e9,0.3 --base rigid", "E,NU,H"),
+        ("--layer 1e9,0.3,1e-6 --base soft", "rigid"),
+        ("--layer 1e9,0.3,1e-6 --base rigid --e-star 1e9", "--e-star"),
+        ("--against steel", "--against"),
+    ] {
+        is_refused(&run(&folder.0, &format!("path --nodes 16 {line}"))?, &[words]);
+    }
+    Ok(())
+}

@@ -12,6 +12,7 @@ mod foreign_states;
 mod handover;
 mod hardness;
 mod inexact_updaters;
+mod layers;
 mod long_cells;
 mod path_properties;
 mod periodic_paths;

@@ -40,6 +40,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let followed = Followed::new(&bed, &task)?;
     let passages = Passage::all(&record, &followed, options.connectivity()).map_err(failed)?;
     let sweep = task.cycles.as_ref().map(|cycles| Sweep::new(&record, &task, cycles));
+    if followed.states.is_empty() {
+        return followed.whole(&task, &options.record);
+    }
     if options.json {
         answer!("{}", object::object(&task, &followed, &passages, sweep.as_ref()));
     }

@@ -1,0 +1,288 @@
+//! Coated and thin bodies: free kernels beside periodic ones on padded grids and beside a quadrature, the iterations that layers take,
+//! and the picture of the page on coats.
+//!
+//! ```text
+//! cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md
+//! ```
+//!
+//! The coefficients of the quadrature are what `studies/src/bin/peers/layered_cells.py` has written.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+use asperity::surface::Paraboloid;
+use asperity::{
+    Boussinesq, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
+    LoadingState, SelfAffine, plane_strain_modulus,
+};
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::panel;
+use asperity_studies::page::Section;
+use clap::Parser;
+
+const QUADRATURE: &str = include_str!("../../../tests/data/layers_free.csv");
+const STEEL: Base = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+
+/// Coated and thin bodies.
+#[derive(Debug, Parser)]
+#[command(name = "layers")]
+struct Options {
+    /// Also write the section of this page
+    #[arg(long, value_name = "FILE.md")]
+    report: Option<PathBuf>,
+
+    /// Nodes along each side of the surface whose iterations are counted
+    #[arg(long, value_name = "N", default_value_t = 256)]
+    nodes: usize,
+
+    /// Folder for the pictures
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let failed = |error: Error| Failure::new("cannot solve for a contact", error);
+    panel::register_font()?;
+    std::fs::create_dir_all(&options.out)
+        .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
+    let mut text = String::from(
+        "# Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
+    );
+    quadrature(&mut text).map_err(failed)?;
+    padded(&mut text).map_err(failed)?;
+    iterations(options.nodes, &mut text).map_err(failed)?;
+    let picture = coats(&options.out, &mut text)?;
+    println!("{text}");
+    let mut outcome = Outcome::default();
+    if let Some(page) = &options.report {
+        let section = Section { study: "layers", text: &text, pictures: &[picture] };
+        outcome.written(section.publish(page));
+    }
+    outcome.finish()
+}
+
+fn one_layer(young: f64, poisson: f64, thickness: f64, base: Base) -> Result<LayeredBody, Error> {
+    LayeredBody::new(&[Layer { young, poisson, thickness }], base)
+}
+
+/// Greatest errors of coefficients beside those of a quadrature.
+fn quadrature(text: &mut String) -> Result<(), Error> {
+    let grid = Grid::square(8, 8.0)?;
+    let mut greatest = 0.0_f64;
+    let mut bodies = 0;
+    let lines = QUADRATURE.lines().skip(1);
+    let numbers = lines.map(|line| -> Vec<f64> {
+        line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+    });
+    let lines: Vec<Vec<f64>> = numbers.collect();
+    for case in lines.chunks(7) {
+        let base = match case[0][3] {
+            0.0 => Base::Rigid,
+            young => Base::HalfSpace { young, poisson: case[0][4] },
+        };
+        let kernel = Layered::free(grid, one_layer(case[0][0], case[0][1], case[0][2], base)?)?;
+        for line in case {
+            let found = kernel.coefficient(line[5] as isize, line[6] as isize);
+            greatest = greatest.max((found - line[7]).abs() / kernel.coefficient(0, 0));
+        }
+        bodies += 1;
+    }
+    let _ = write!(
+        text,
+        "\n**Coefficients.** `studies/src/bin/peers/layered_cells.py` integrates the symbol of {bodies} bodies, soft, stiff and on a rigid \
+         base, over all wavevectors, without the tables of this crate. The greatest difference in {} coefficients is {greatest:.0e} of \
+         C(0, 0).\n",
+        lines.len()
+    );
+    Ok(())
+}
+
+/// A sphere on the free kernel, and on the periodic one on larger and larger grids.
+fn padded(text: &mut String) -> Result<(), Error> {
+    let n = 64_usize;
+    let radius = 400.0;
+    let _ = write!(
+        text,
+        "\n**Free and padded.** A sphere with a contact some 40 cells wide on a free grid of {n}² cells, and on a periodic grid of so many \
+         times the side with the sphere in its middle, at the same load: relative difference of the greatest pressure. Images of a sphere \
+         in the period L change it by some (a/L)³; those of a layer on a rigid base are not felt.\n\n\
+         | body | 1 | 2 | 4 | 8 |\n|---|---:|---:|---:|---:|\n"
+    );
+    let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+    for (name, body) in [
+        ("soft coat, E₁/E₂ = 0.1, h = 5 cells", one_layer(0.1, 0.3, 5.0, steel)?),
+        ("stiff coat, E₁/E₂ = 10, h = 5 cells", one_layer(10.0, 0.3, 5.0, steel)?),
+        ("rigid base, ν = 0.3, h = 5 cells", one_layer(1.0, 0.3, 5.0, Base::Rigid)?),
+        ("rigid base, ν = 0.5, h = 5 cells", one_layer(1.0, 0.5, 5.0, Base::Rigid)?),
+    ] {
+        let sphere = Paraboloid::new(radius)?;
+        let grid = Grid::square(n, n as f64)?;
+        let free = Layered::free(grid, body.clone())?;
+        let mut solver = FixedLoadSolver::builder(&sphere, &free).tolerance(1e-10).build()?;
+        let expected = solver.solve_target(ContactTarget::AreaFraction(0.3))?;
+        let _ = write!(text, "| {name} |");
+        for times in [1, 2, 4, 8] {
+            let large = Grid::square(times * n, (times * n) as f64)?;
+            let kernel = Layered::periodic(large, body.clone())?;
+            // Beyond the free grid nothing touches.
+            let middle = 0.5 * (times * n) as f64;
+            let inside = 0.5 * n as f64;
+            let heights = asperity::nalgebra::DMatrix::from_fn(times * n, times * n, |ix, iy| {
+                let (x, y) = (ix as f64 + 0.5 - middle, iy as f64 + 0.5 - middle);
+                let is_inside = x.abs() < inside && y.abs() < inside;
+                let depth = -(x * x + y * y) / (2.0 * radius);
+                if is_inside { depth } else { depth.min(-inside * inside / radius) }
+            });
+            let surface = asperity::HeightMap::new(heights)?;
+            let mut solver =
+                FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
+            let found = solver.solve(expected.state.load)?;
+            let difference = found.max_pressure() / expected.max_pressure() - 1.0;
+            let _ = write!(text, " {difference:.1e} |");
+        }
+        text.push('\n');
+    }
+    Ok(())
+}
+
+/// The bodies whose iterations are counted, in cells of 1.
+fn counted(h: f64) -> Result<[(&'static str, LayeredBody); 5], Error> {
+    let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
+    Ok([
+        ("soft coat, E₁/E₂ = 0.1", one_layer(0.1, 0.3, h, steel)?),
+        ("stiff coat, E₁/E₂ = 3", one_layer(3.0, 0.3, h, steel)?),
+        ("stiff coat, E₁/E₂ = 10", one_layer(10.0, 0.3, h, steel)?),
+        ("rigid base, ν = 0.3", one_layer(1.0, 0.3, h, Base::Rigid)?),
+        ("rigid base, ν = 0.5", one_layer(1.0, 0.5, h, Base::Rigid)?),
+    ])
+}
+
+/// Iterations for pressures and stiffnesses on layers.
+fn iterations(n: usize, text: &mut String) -> Result<(), Error> {
+    let grid = Grid::square(n, n as f64)?;
+    let surface = SelfAffine::new(
+        0.8,
+        0.25 * n as f64,
+        8.0,
+        asperity::surface::Amplitude::RmsHeight(1.0),
+        1,
+    )?;
+    let fractions = [0.01, 0.05, 0.2, 0.6];
+    let _ = write!(
+        text,
+        "\n**Iterations without a factor.** Single loads on {n}² nodes with a free boundary, at the load of each area fraction: steps of \
+         conjugate gradients on the finest grid for the pressure + for the stiffness, to 10⁻⁸.\n\n\
+         | body | thickness in cells | 1 % | 5 % | 20 % | 60 % |\n|---|---:|---:|---:|---:|---:|\n"
+    );
+    let mut line = |name: &str, h: &str, kernel: &dyn InfluenceKernel| -> Result<(), Error> {
+        let _ = write!(text, "| {name} | {h} |");
+        let start = Instant::now();
+        let mut solver = FixedLoadSolver::new(&surface, kernel)?;
+        for fraction in fractions {
+            let load = solver.solve_target(ContactTarget::AreaFraction(fraction))?.state.load;
+            let effort = solver.solve(load)?.effort;
+            let _ = write!(text, " {} + {} |", effort.iterations, effort.stiffness_iterations);
+        }
+        eprintln!("{name} {h}: {:.1} s", start.elapsed().as_secs_f64());
+        text.push('\n');
+        Ok(())
+    };
+    line("half-space", "–", &Boussinesq::new(grid, 1.0)?)?;
+    for h in [0.5, 4.0, 32.0] {
+        for (name, body) in counted(h)? {
+            line(name, &h.to_string(), &Layered::free(grid, body)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Area and stiffness of a rough surface on steel with a soft coat, none, and a stiff one.
+fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
+    let failed = |error: Error| Failure::new("cannot follow a path", error);
+    let n = 128;
+    let grid = Grid::square(n, 1e-3).map_err(|error| failed(error.into()))?;
+    let amplitude = asperity::surface::Amplitude::RmsHeight(1e-6);
+    let surface = SelfAffine::new(0.8, 0.25e-3, 8.0 * grid.dx(), amplitude, 1)
+        .map_err(|error| failed(error.into()))?;
+    let h = 20e-6;
+    let e_star = plane_strain_modulus(210e9, 0.3).map_err(failed)?;
+    let plain: Box<dyn InfluenceKernel> = Box::new(Boussinesq::new(grid, e_star).map_err(failed)?);
+    let coated = |young: f64| -> Result<Box<dyn InfluenceKernel>, Error> {
+        Ok(Box::new(Layered::free(grid, one_layer(young, 0.3, h, STEEL)?)?))
+    };
+    let bodies = [
+        ("soft coat, 21 GPa", ORANGE, coated(21e9).map_err(failed)?),
+        ("no coat, 210 GPa", GREY, plain),
+        ("stiff coat, 2.1 TPa", BLUE, coated(2.1e12).map_err(failed)?),
+    ];
+    let (mut areas, mut stiffnesses) = (Vec::new(), Vec::new());
+    let _ = write!(
+        text,
+        "\n**Coats on steel.** A self-affine surface of {n} × {n} nodes on 1 mm × 1 mm (Sq 1 µm, shortest wavelength 8 cells) against steel \
+         with a coat of 20 µm, 2.6 cells, to 30 % contact:\n\n\
+         | body | promise | events | nodes that left | load at 10 % | K_i there |\n|---|---|---:|---:|---:|---:|\n"
+    );
+    for (name, colour, kernel) in bodies {
+        let start = Instant::now();
+        let builder = LoadingSolver::builder(&surface, &kernel).max_area_fraction(0.3);
+        let path = builder.build().map_err(failed)?;
+        let states: Vec<LoadingState> = path.collect::<Result<_, _>>().map_err(failed)?;
+        eprintln!("{name}: {:.1} s", start.elapsed().as_secs_f64());
+        let left =
+            states.iter().filter(|state| state.event == asperity::ContactEvent::Release).count();
+        let history: asperity::loading::History = states.iter().copied().collect();
+        if let Some(state) = history.at_area_fraction(0.1) {
+            let _ = writeln!(
+                text,
+                "| {name} | {:?} | {} | {left} | {:.2} kN | {:.3} GN/m |",
+                kernel.contact_growth(),
+                states.len(),
+                state.contact.load / 1e3,
+                state.contact.interfacial_stiffness.unwrap_or(f64::NAN) / 1e9
+            );
+        }
+        let loaded = states.iter().filter(|state| state.contact.load > 1.0);
+        let loaded: Vec<LoadingState> = loaded.copied().collect();
+        let area = |state: &LoadingState| (state.contact.load, state.contact.contact_area_fraction);
+        let stiffness = |state: &LoadingState| {
+            (state.contact.load, state.contact.contact_stiffness.unwrap_or(f64::NAN))
+        };
+        areas.push(Series::new(name, colour, Style::Line, loaded.iter().map(area)));
+        stiffnesses.push(Series::new(name, colour, Style::Line, loaded.iter().map(stiffness)));
+    }
+    let load = || Axis::logarithmic("load W", "N", 1.0, 1e5);
+    let charts = [
+        Chart {
+            title: "20 µm on steel: contact area".to_string(),
+            x: load(),
+            y: Axis::plain_logarithmic("contact area over nominal area", 1e-4, 0.5),
+            series: areas,
+            legend: Corner::TopLeft,
+        },
+        Chart {
+            title: "contact stiffness".to_string(),
+            x: load(),
+            y: Axis::logarithmic("dW/dδ", "N/m", 1e6, 1e9),
+            series: stiffnesses,
+            legend: Corner::BottomRight,
+        },
+    ];
+    let picture = chart::draw(&charts, 2, &directory.join("layers.png"))?;
+    text.push_str("\n![Contact area and stiffness against load for a soft coat, none and a stiff coat](images/layers.png)\n");
+    Ok(picture)
+}
