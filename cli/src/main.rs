@@ -63,6 +63,7 @@ enum Command {
     Patches(patches::Options),
     Slip(slip::Options),
     Leak(leak::Options),
+    Creep(creep::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
 }
@@ -87,6 +88,7 @@ fn main() -> ExitCode {
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
         Some(Command::Leak(options)) => leak::run(&options),
+        Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),
     };
