@@ -39,8 +39,11 @@ fn address_space(text: &str) -> Option<usize> {
 /// shows them. A container shows its own group as the root.
 fn of_groups_in(root: &Path, text: &str) -> Option<usize> {
     let limits = text.lines().flat_map(|line| {
-        let mut parts = line.splitn(3, ':').skip(1);
-        let (controllers, path) = (parts.next().unwrap_or(""), parts.next().unwrap_or(""));
+        let mut parts = line.splitn(3, ':');
+        let (Some(_), Some(controllers), Some(path)) = (parts.next(), parts.next(), parts.next())
+        else {
+            return Vec::new();
+        };
         // The second version has one hierarchy without a name, and the first one of its own for memory.
         let (root, file) = match controllers {
             "" => (root.to_path_buf(), "memory.max"),
@@ -49,8 +52,8 @@ fn of_groups_in(root: &Path, text: &str) -> Option<usize> {
         let is_of_memory = controllers.is_empty() || controllers.split(',').any(|c| c == "memory");
         let group = root.join(path.trim_start_matches('/'));
         let around = group.ancestors().take_while(|folder| folder.starts_with(&root));
-        let files: Vec<PathBuf> = around.map(|folder| folder.join(file)).collect();
-        files.into_iter().filter(move |_| is_of_memory)
+        let files = around.map(|folder| folder.join(file)).filter(|_| is_of_memory);
+        files.collect::<Vec<PathBuf>>()
     });
     // Without a limit the second version says `max`, and the first a number beyond all memory.
     limits.filter_map(|file| read_to_string(file).ok()?.trim().parse().ok()).min()

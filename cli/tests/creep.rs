@@ -27,13 +27,15 @@ fn run(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
 fn with_record(name: &str) -> Result<Scratch, Box<dyn Error>> {
     let folder = Scratch::new(name)?;
     fs::copy(data("selfaffine_48.npy"), folder.join("rough.npy"))?;
-    let path = "path --surface rough.npy --side 1e-2 --e-star 1 --max-area-fraction 0.3 --record path.npz --out path";
+    let path = "path --surface rough.npy --side 1e-2 --e-star 1 --max-area-fraction 0.32 --record path.npz --out path";
     run(&folder.0, path)?;
     Ok(folder)
 }
 
-/// The columns of a table by their names.
-fn table(file: &Path) -> Result<(String, Vec<Vec<f64>>), Box<dyn Error>> {
+/// The header of a table, and its rows.
+type Table = (String, Vec<Vec<f64>>);
+
+fn table(file: &Path) -> Result<Table, Box<dyn Error>> {
     let text = fs::read_to_string(file)?;
     let mut lines = text.lines();
     let header = lines.next().ok_or("no header")?.to_string();

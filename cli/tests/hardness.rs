@@ -106,7 +106,6 @@ fn a_typical_hardness_is_said() -> Done {
         ("path --nodes 32 --material rubber --yield", "typical hardness"),
         ("path --nodes 32 --unload", "--hardness"),
         ("path --nodes 32 --hardness 1e9 --mean-pressure 1e9", "all nodes yield"),
-        ("path --nodes 32 --hardness 1e9 --updater iterative", "hardness"),
     ] {
         is_refused(&run(&folder.0, line)?, &[word]);
     }

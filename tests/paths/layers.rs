@@ -23,32 +23,33 @@ fn rough(n: usize) -> (SelfAffine, Grid) {
     (SelfAffine::new(0.8, 0.5e-3, 4.0 * cell, amplitude, 3).unwrap(), grid)
 }
 
-/// W(δ) of a sphere tends to that of a thin layer, with errors that fall as h/a.
-#[test]
-fn a_sphere_on_a_thin_layer() {
+/// W(δ) of a sphere over that of a thin layer, less 1, with a contact radius of 32 cells.
+fn errors_of_a_sphere(poisson: f64, thicknesses: [f64; 3]) -> [f64; 3] {
     let (n, radius, young) = (96, 4000.0, 1.0);
     let grid = Grid::square(n, n as f64).unwrap();
     let sphere = Paraboloid::new(radius).unwrap();
-    for (poisson, thicknesses, first) in [(0.3, [8.0, 4.0, 2.0], 0.2), (0.5, [6.0, 3.0, 1.5], 0.8)]
-    {
-        let errors = thicknesses.map(|thickness: f64| {
-            let layer = ThinLayer::new(young, poisson, thickness).unwrap();
-            let body = Layer { young, poisson, thickness };
-            let body = LayeredBody::new(&[body], Base::Rigid).unwrap();
-            let kernel = Layered::free(grid, body).unwrap();
-            let mut solver = FixedLoadSolver::new(&sphere, &kernel).unwrap();
-            // A contact radius of 32.
-            let approach = layer.sphere_approach(radius, 32.0);
-            let found = solver.solve_approach(approach).unwrap();
-            found.state.load / layer.sphere_load(radius, 32.0) - 1.0
-        });
-        println!("{poisson}: {errors:?}");
-        assert!(errors[0].abs() < first, "{errors:?}");
-        for pair in errors.windows(2) {
-            let ratio = pair[1] / pair[0];
-            // First order, and what is left of the second.
-            assert!((0.35..0.65).contains(&ratio), "{poisson}: {errors:?}");
-        }
+    thicknesses.map(|thickness: f64| {
+        let layer = ThinLayer::new(young, poisson, thickness).unwrap();
+        let body = Layer { young, poisson, thickness };
+        let kernel = Layered::free(grid, LayeredBody::new(&[body], Base::Rigid).unwrap()).unwrap();
+        let mut solver = FixedLoadSolver::new(&sphere, &kernel).unwrap();
+        let found = solver.solve_approach(layer.sphere_approach(radius, 32.0)).unwrap();
+        found.state.load / layer.sphere_load(radius, 32.0) - 1.0
+    })
+}
+
+#[test]
+fn a_sphere_on_a_thin_layer() {
+    // Nothing of first order is left of a compressible layer, whose pressure is zero at the edge: the errors are below (h/a)²/5, and
+    // below those of 32 cells to the radius, 2 × 10⁻⁴.
+    for (error, h) in errors_of_a_sphere(0.3, [8.0, 4.0, 2.0]).into_iter().zip([8.0, 4.0, 2.0]) {
+        assert!(error.abs() < 0.2 * (h / 32.0_f64).powi(2) + 2e-4, "{h}: {error}");
+    }
+    let errors = errors_of_a_sphere(0.5, [6.0, 3.0, 1.5]);
+    println!("sphere {errors:?}");
+    for pair in errors.windows(2) {
+        // First order, and what is left of the second.
+        assert!((0.35..0.65).contains(&(pair[1] / pair[0])), "{errors:?}");
     }
 }
 
@@ -57,7 +58,7 @@ fn a_sphere_on_a_thin_layer() {
 fn a_punch_on_a_thin_layer() {
     let n = 96_usize;
     let grid = Grid::square(n, n as f64).unwrap();
-    for (poisson, thicknesses) in [(0.3, [8.0, 4.0, 2.0]), (0.5, [6.0, 3.0, 1.5])] {
+    for (poisson, thicknesses) in [(0.5, [6.0, 3.0, 1.5]), (0.3, [8.0, 4.0, 2.0])] {
         let errors = thicknesses.map(|thickness: f64| {
             let layer = ThinLayer::new(1.0, poisson, thickness).unwrap();
             let body = Layer { young: 1.0, poisson, thickness };
@@ -70,10 +71,10 @@ fn a_punch_on_a_thin_layer() {
             let found = solver.solve_approach(1e-3).unwrap();
             found.state.load / 1e-3 / layer.punch_stiffness(radius) - 1.0
         });
-        println!("{poisson}: {errors:?}");
         for pair in errors.windows(2) {
+            // First order, what is left of the second, and the steps of the outline.
             let ratio = pair[1] / pair[0];
-            assert!((0.35..0.65).contains(&ratio), "{poisson}: {errors:?}");
+            assert!((0.3..0.65).contains(&ratio), "{poisson}: {errors:?}");
         }
     }
 }

@@ -31,6 +31,8 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
     for_each_chunk(&mut values, nx, |iy, row| {
         for (ix, value) in row.iter_mut().enumerate() {
             let (x, y) = (ix as f64 * dx, iy as f64 * dy);
+            // On square cells symmetric to the last bit, so that ties of symmetric surfaces are ties.
+            let (x, y) = if dx == dy { (x.max(y), x.min(y)) } else { (x, y) };
             let (di, dj) = (ix as isize, iy as isize);
             *value = if libm::hypot(x, y) - half_diagonal > difference.reach {
                 counterpart.as_ref().map_or(0.0, |other| other.coefficient(di, dj))
