@@ -354,8 +354,8 @@ fn free_layers_on_a_rigid_base_repeat_to_periodic_ones() -> Result<(), Error> {
             // All cells under the same pressure.
             let mean = body.mean_compliance().unwrap_or_default();
             let error = (total - mean).abs() / scale;
-            // Of 1800 coefficients.
-            let allowed = if nu == 0.5 { 1e-12 * (0.1 / scale).max(0.1) } else { 1e-13 };
+            // Of 800 to 3200 coefficients, which cancel where nothing is left on average: 3200 ε is 7·10⁻¹³.
+            let allowed = if nu == 0.5 { 1e-12 * (0.1 / scale).max(1.0) } else { 1e-13 };
             assert!(error < allowed, "{thickness} {nu}: {total} {mean}");
         }
     }
