@@ -1,13 +1,13 @@
 //! Coated, thin and graded bodies: thin layers under spheres and punches, paths on soft and stiff coats, and their records.
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
-use asperity::loading::History;
-use asperity::record::LoadingRecord;
 use asperity::reference::ThinLayer;
 use asperity::surface::Paraboloid;
+#[cfg(feature = "io")]
+use asperity::{ContactEvent, loading::History, record::LoadingRecord};
 use asperity::{
-    ContactEvent, ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
-    LoadingState, MeanDisplacement, SelfAffine,
+    ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    MeanDisplacement, SelfAffine,
 };
 
 const STEEL: Base = Base::HalfSpace { young: 210e9, poisson: 0.3 };
