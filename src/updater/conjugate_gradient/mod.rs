@@ -46,7 +46,11 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 /// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
 /// ```
 ///
-/// exceeds S by the square of the error of x.
+/// exceeds S by the square of the error of x. With a hardness nodes q in contact are watched too, with `x_q = C_KK⁻¹ e_q`: what a gap
+/// of q adds to the pressures near it.
+///
+/// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too; a path does with
+/// local ones there as well.
 ///
 /// Cells of a periodic half-space may be [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as wide: on longer ones
 /// a path is an [`Error::OutOfRange`], but a solution on a known contact is not.
