@@ -8,9 +8,12 @@ use asperity::{
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::arrays::{Found, Kind, column};
 use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
+use crate::layered::{Layers, Lowest, Parts};
+use crate::materials;
 use crate::own_kernels;
 use crate::results::result;
 use crate::surface::Surface;
@@ -33,6 +36,7 @@ use crate::surface::Surface;
 ///
 /// See Also
 /// --------
+/// HalfSpace.layered : coats, thin films and graded bodies.
 /// HalfSpace.from_symbol : a body of your own, from a function of the wavevector.
 /// HalfSpace.from_coefficients : a body of your own, from influence coefficients.
 ///
@@ -52,6 +56,7 @@ enum Body {
     Free,
     Love,
     Spectral,
+    Layered(Layers),
     Symbol { symbol: Py<PyAny>, mean: MeanDisplacement, growth: ContactGrowth },
     Coefficients(Coefficients),
 }
@@ -85,6 +90,9 @@ fn word<T: PartialEq>(choices: &[(&'static str, T)], choice: &T) -> &'static str
 impl HalfSpace {
     /// A half-space of the engine.
     pub(crate) fn of_origin(origin: &kernel::KernelOrigin) -> Option<Self> {
+        if let Some(layers) = Layers::of_origin(origin) {
+            return Some(Self::of_layers(layers));
+        }
         use kernel::KernelOrigin as Origin;
         let (body, e_star) = match origin {
             Origin::Boussinesq { e_star } => (Body::Free, *e_star),
@@ -93,6 +101,18 @@ impl HalfSpace {
             _ => return None,
         };
         Some(Self { body, e_star: Some(e_star) })
+    }
+
+    fn of_layers(layers: Layers) -> Self {
+        let e_star = layers.surface_modulus();
+        Self { body: Body::Layered(layers), e_star: Some(e_star) }
+    }
+
+    fn layers_of(&self) -> Option<&Layers> {
+        match &self.body {
+            Body::Layered(layers) => Some(layers),
+            _ => None,
+        }
     }
 
     /// The influence coefficients on a grid.
@@ -106,6 +126,7 @@ impl HalfSpace {
             Body::Free => Ok(boxed(Boussinesq::new(grid, e_star)?)),
             Body::Love => Ok(boxed(detached(py, || PeriodicBoussinesq::new(grid, e_star))??)),
             Body::Spectral => Ok(boxed(detached(py, || Spectral::new(grid, e_star))??)),
+            Body::Layered(layers) => Ok(detached(py, || layers.kernel(grid))??),
             Body::Symbol { symbol, mean, growth } => {
                 Ok(boxed(own_kernels::of_symbol(symbol.bind(py), grid, *mean, *growth)?))
             }
@@ -121,6 +142,7 @@ impl HalfSpace {
     pub(crate) fn surroundings(&self) -> Boundary {
         match &self.body {
             Body::Free => Boundary::Free,
+            Body::Layered(layers) => layers.boundary(),
             Body::Coefficients(Coefficients { boundary, .. }) => *boundary,
             _ => Boundary::Periodic,
         }
@@ -157,7 +179,49 @@ impl HalfSpace {
         Ok(Self { body, e_star: Some(e_star) })
     }
 
-    /// A periodic body from its symbol: layers, graded and anisotropic bodies.
+    /// Elastic layers, bonded to each other and to a base: coats, thin films, graded bodies.
+    ///
+    /// Parameters
+    /// ----------
+    /// layers : list of (float, float, float)
+    ///     Young's modulus [Pa], Poisson's ratio (up to 1/2) and thickness [m] of each, the uppermost first.
+    /// base : "rigid", (float, float) or str
+    ///     What the lowest layer is bonded to: a rigid plane, or a half-space by Young's modulus [Pa] and Poisson's ratio
+    ///     or the name of one of `materials`.
+    /// boundary : {"free", "love", "spectral"}
+    ///     As of `HalfSpace`.
+    /// against : (float, float) or str, optional
+    ///     The other body, an elastic half-space; rigid unless it is given.
+    ///
+    /// Returns
+    /// -------
+    /// HalfSpace
+    ///     Its `e_star` is that of short waves: of the uppermost layer and the other body.
+    ///
+    /// Notes
+    /// -----
+    /// Of layers on a rigid base against a rigid body the mean displacement under a load is physical: the approach is that
+    /// of the base. A coat that is stiffer than what it lies on bends, and contact may lose nodes as the approach grows; a
+    /// path then finds each event by itself, releases included.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import asperity as asp
+    /// >>> coated = asp.HalfSpace.layered([(450e9, 0.25, 5e-6)], base="steel", boundary="free")
+    /// >>> coated.layers, coated.base
+    /// ([(450000000000.0, 0.25, 5e-06)], (210000000000.0, 0.3))
+    #[staticmethod]
+    #[pyo3(signature = (layers, *, base, boundary, against=None))]
+    fn layered(
+        layers: Vec<(f64, f64, f64)>,
+        base: Lowest,
+        boundary: &str,
+        against: Option<materials::Body>,
+    ) -> Fallible<Self> {
+        Ok(Self::of_layers(Layers::of(&layers, &base, against.as_ref(), boundary)?))
+    }
+
+    /// A periodic body from its symbol: graded and anisotropic bodies.
     ///
     /// Parameters
     /// ----------
@@ -239,9 +303,49 @@ impl HalfSpace {
             Body::Free => "free",
             Body::Love => "love",
             Body::Spectral => "spectral",
+            Body::Layered(layers) => layers.word(),
             Body::Symbol { .. } => "symbol",
             Body::Coefficients(_) => "coefficients",
         }
+    }
+
+    /// Young's modulus [Pa], Poisson's ratio and thickness [m] of each layer, the uppermost first; None without layers.
+    #[getter]
+    fn layers(&self) -> Option<Vec<(f64, f64, f64)>> {
+        self.layers_of().map(|layers| layers.parts().0)
+    }
+
+    /// Young's modulus [Pa] and Poisson's ratio of what the layers lie on; None if it is rigid, and without layers.
+    #[getter]
+    fn base(&self) -> Option<(f64, f64)> {
+        self.layers_of().and_then(|layers| layers.parts().1)
+    }
+
+    /// Displacement over pressure of waves on a layered body [m/Pa]: the symbol, as a function of the wave number.
+    ///
+    /// Parameters
+    /// ----------
+    /// wave_number : array_like of float
+    ///     Wave numbers q = 2 pi / wavelength [rad/m], in one dimension.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float
+    ///     Infinite at q = 0 unless base and other body are rigid; 2/(E* q) of a body without layers.
+    fn compliance<'py>(
+        &self,
+        py: Python<'py>,
+        wave_number: &Bound<'py, PyAny>,
+    ) -> Fallible<Bound<'py, numpy::PyArray1<f64>>> {
+        let waves = Found::of(wave_number, "wave_number", Kind::Real)?.list()?;
+        let values = match (&self.body, self.e_star) {
+            (Body::Layered(layers), _) => layers.compliance(&waves),
+            (Body::Free | Body::Love | Body::Spectral, Some(e_star)) => {
+                waves.iter().map(|q| 2.0 / (e_star * q.abs())).collect()
+            }
+            _ => return Err(Failure::arguments("a body of your own knows its compliance itself")),
+        };
+        Ok(column(py, values))
     }
 
     /// Whether surface and body repeat with the sides of the grid.
@@ -252,6 +356,10 @@ impl HalfSpace {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyTuple>> {
         let (py, this) = (slf.py(), slf.get());
+        if let Some(layers) = this.layers_of() {
+            let restore = py.import("asperity._asperity")?.getattr("_restore_layered")?;
+            return Ok((restore, (layers.parts(),)).into_pyobject(py)?);
+        }
         let restore = py.import("asperity._asperity")?.getattr("_restore_half_space")?;
         let (function, words) = match &this.body {
             Body::Symbol { symbol, mean, growth } => {
@@ -272,6 +380,7 @@ impl HalfSpace {
             Ok(format!("HalfSpace.from_{name}({})", function.bind(py).repr()?))
         };
         match &self.body {
+            Body::Layered(layers) => layers.repr(py),
             Body::Symbol { symbol, .. } => own("symbol", symbol),
             Body::Coefficients(Coefficients { function, .. }) => own("coefficients", function),
             _ => {
@@ -288,6 +397,12 @@ fn callable(function: Bound<'_, PyAny>, name: &str) -> Fallible<Py<PyAny>> {
     } else {
         Err(Failure::arguments(format!("{name} must be a function of two arrays")))
     }
+}
+
+/// A layered body that was pickled.
+#[pyfunction]
+fn _restore_layered(parts: Parts) -> Fallible<HalfSpace> {
+    Ok(HalfSpace::of_layers(Layers::of_parts(&parts)?))
 }
 
 /// A half-space that was pickled.
@@ -376,6 +491,7 @@ fn influence<'py>(
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<HalfSpace>()?;
     module.add_function(wrap_pyfunction!(_restore_half_space, module)?)?;
+    module.add_function(wrap_pyfunction!(_restore_layered, module)?)?;
     module.add_function(wrap_pyfunction!(check_half_space, module)?)?;
     module.add_function(wrap_pyfunction!(influence, module)?)
 }

@@ -9,6 +9,7 @@ mod errors;
 mod fixed_load;
 mod half_space;
 mod history;
+mod layered;
 mod materials;
 mod own_kernels;
 mod patches;

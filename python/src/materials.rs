@@ -10,7 +10,7 @@ use crate::results::result;
 
 /// A body by its name, or by Young's modulus and Poisson's ratio.
 #[derive(FromPyObject)]
-enum Body {
+pub(crate) enum Body {
     #[pyo3(transparent)]
     Numbers((f64, f64)),
     #[pyo3(transparent)]
@@ -18,7 +18,7 @@ enum Body {
 }
 
 impl Body {
-    fn numbers(&self) -> Fallible<(f64, f64)> {
+    pub(crate) fn numbers(&self) -> Fallible<(f64, f64)> {
         match self {
             Self::Numbers(numbers) => Ok(*numbers),
             Self::Named(name) => {
