@@ -15,6 +15,7 @@ mod own_kernels;
 mod patches;
 mod path;
 mod results;
+mod slip;
 mod state;
 mod surface;
 mod targets;
@@ -34,5 +35,6 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     history::register(module)?;
     path::register(module)?;
     fixed_load::register(module)?;
+    slip::register(module)?;
     patches::register(module)
 }

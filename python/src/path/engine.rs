@@ -4,12 +4,13 @@ use asperity::contact::Certificate;
 use asperity::loading::{History, LoadingEnd};
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
+use asperity::slip::{PartialSlip, SlipZone};
 use asperity::surface::HeightMap;
 use asperity::updater::LinearUpdater;
 use asperity::{ContactTarget, Error, LoadingSolver, LoadingState, Problem};
 
 /// What a path is asked.
-pub(super) trait Engine: Send + Sync {
+pub(crate) trait Engine: Send + Sync {
     fn advance(&mut self) -> Option<Result<LoadingState, Error>>;
     fn waiting(&self) -> usize;
     fn end(&self) -> Option<LoadingEnd>;
@@ -29,6 +30,14 @@ pub(super) trait Engine: Send + Sync {
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
     fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error>;
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
+    fn traction_of(&mut self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<f64>, Error>;
+    fn slip_of(&mut self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<f64>, Error>;
+    fn zones_of(&self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<SlipZone>, Error>;
+    fn friction_work_of(
+        &mut self,
+        joint: &PartialSlip<'_>,
+        amplitude: f64,
+    ) -> Result<DMatrix<f64>, Error>;
 }
 
 impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
@@ -106,5 +115,25 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
 
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
         Self::certificate_at(self, state)
+    }
+
+    fn traction_of(&mut self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<f64>, Error> {
+        joint.traction(self, load)
+    }
+
+    fn slip_of(&mut self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<f64>, Error> {
+        joint.slip(self, load)
+    }
+
+    fn zones_of(&self, joint: &PartialSlip<'_>, load: f64) -> Result<DMatrix<SlipZone>, Error> {
+        joint.zones(self, load)
+    }
+
+    fn friction_work_of(
+        &mut self,
+        joint: &PartialSlip<'_>,
+        amplitude: f64,
+    ) -> Result<DMatrix<f64>, Error> {
+        joint.friction_work(self, amplitude)
     }
 }

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-use self::engine::Engine;
+pub(crate) use self::engine::Engine;
 use self::inner::Inner;
 pub(crate) use self::setup::{Hardness, warn_of};
 use crate::arrays::{column, rows, shape};
@@ -108,6 +108,17 @@ impl LoadingPath {
         let state = Self::state_or_last(&inner, state)?;
         let engine = inner.engine_mut();
         Ok(detached(py, || compute(engine, &state))??)
+    }
+
+    /// What is computed with the engine, without the lock of the interpreter.
+    pub(crate) fn with_engine<T: Send>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut dyn Engine) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let mut inner = self.lock(py);
+        let engine = inner.engine_mut();
+        Ok(detached(py, || compute(engine))??)
     }
 
     /// A field of a state.
