@@ -91,8 +91,7 @@ impl Flow {
         let mut rate = 0.0;
         for (&node, residual) in flowing.iter().zip(residual) {
             let beyond = network.layout.beyond(node);
-            let flows =
-                [0, 1, 2, 3].map(|face| self.into_face(network, node, (face, beyond[face])));
+            let flows = [0, 1, 2, 3].map(|face| self.outflow(network, node, (face, beyond[face])));
             *residual = -flows.iter().sum::<f64>();
             if beyond[0] == Beyond::Inlet {
                 rate -= flows[0];
@@ -102,7 +101,7 @@ impl Flow {
     }
 
     /// What flows out of a node through a face.
-    pub(super) fn into_face(
+    pub(super) fn outflow(
         &self,
         network: &Network,
         node: usize,

@@ -154,7 +154,7 @@ impl Flows<'_> {
     /// What flows out of a node through its four faces.
     fn out_of(&self, node: usize) -> [f64; 4] {
         let beyond = self.network.layout.beyond(node);
-        [0, 1, 2, 3].map(|face| self.flow.into_face(self.network, node, (face, beyond[face])))
+        [0, 1, 2, 3].map(|face| self.flow.outflow(self.network, node, (face, beyond[face])))
     }
 
     /// Fills the fields and sections of a leak.
