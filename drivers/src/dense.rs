@@ -13,7 +13,10 @@
 //! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
 //! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
 //! the very set. Where nodes have yielded they are the greatest of all sets before: a window of events is computed from the equations
-//! at its beginning, of more elastic nodes.
+//! at its beginning, of more elastic nodes. How fast gaps of nodes close that yielded within a window is `r_Y = −B⁻¹ y_Y`, where
+//! `B = (C_II⁻¹)_YY` and the rates of pressure `y_Y` are solved for at its beginning: columns with residuals as above are off by
+//! `‖C_II⁻¹‖` times as much, and `‖B⁻¹‖ ≤ ‖C‖` since `B⁻¹` is a Schur complement, so closing rates are off by the product of both norms
+//! instead of `1 + ‖C_OI C_II⁻¹‖`.
 
 use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
 use asperity_testing::dense::{influence_matrix, initial_gap};
@@ -276,6 +279,8 @@ pub(crate) struct Norms {
     pub(crate) carried: f64,
     /// `Σ |y₂|`.
     rate: f64,
+    /// What cancels in a closing rate.
+    closing: f64,
 }
 
 impl Norms {
@@ -285,6 +290,7 @@ impl Norms {
             inverse: self.inverse.max(other.inverse),
             carried: self.carried.max(other.carried),
             rate: self.rate.max(other.rate),
+            closing: self.closing.max(other.closing),
         }
     }
 }
@@ -359,17 +365,22 @@ impl<'a> ContactSet<'a> {
             load,
             factor,
             residual,
-            norms: Norms { inverse: norm(&inverse), carried, rate: 0.0 },
+            norms: Norms { inverse: norm(&inverse), carried, rate: 0.0, closing: 0.0 },
             rate: DVector::zeros(0),
             closing: DVector::zeros(0),
             closing_error: 0.0,
         };
         let rate = set.solve(&ones);
         let (displacement, lengths) = dense.displace(&rate);
-        let lengths = 1.0 + lengths;
         set.norms.rate = rate.abs().sum();
+        set.norms.closing = 1.0 + lengths;
         set.norms = set.norms.max(before);
-        set.closing_error = set.norms.carried * (lengths * Dense::rounding(all) + residual);
+        let rounding = set.norms.closing * Dense::rounding(all);
+        let carried = match yielded {
+            [] => set.norms.carried,
+            _ => set.norms.carried.max(norm(&dense.influence) * set.norms.inverse),
+        };
+        set.closing_error = carried * rounding + set.norms.carried * residual;
         set.closing = displacement.map(|u| 1.0 - u);
         set.rate = rate;
         Some(set)
