@@ -138,7 +138,7 @@ impl Lattices {
         count
     }
 
-    /// Calls `found` with nodes that may have `node` for a neighbour, and with its influence on them
+    /// Calls `found` with nodes that may have `node` for a neighbour, and with the size of its influence on them
     /// relative to C(0, 0): all that could find it, and some that come before it.
     pub(super) fn later(&self, node: usize, mut found: impl FnMut(usize, f32)) {
         let [nx, ny] = self.shape;
@@ -152,7 +152,7 @@ impl Lattices {
                     let Some(x) = lattice.to(0, ix, da << level, nx) else { continue };
                     if (x | y).trailing_zeros().min(last) == level && (da, db) != (0, 0) {
                         let offset = (da + db * WIDTH) as i32;
-                        found(x + nx * y, lattice.between(offset, 0));
+                        found(x + nx * y, lattice.between(offset, 0).abs());
                     }
                 }
             }
@@ -189,7 +189,8 @@ impl Lattice {
         for db in -REACH..=REACH {
             for da in -REACH..=REACH {
                 if let Some(value) = coefficient(da, db) {
-                    offsets.push((value, da, db));
+                    // A layer that cannot be compressed rises beside a pressure: that is influence too.
+                    offsets.push((value.abs(), da, db));
                 }
             }
         }
