@@ -17,8 +17,8 @@ use asperity::loading::History;
 use asperity::surface::Paraboloid;
 use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
-    LoadingSolver, LoadingState, SelfAffine, plane_strain_modulus,
+    Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid,
+    InfluenceKernel, LoadingSolver, LoadingState, SelfAffine, plane_strain_modulus,
 };
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
@@ -67,7 +67,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
     let mut text = String::from(
-        "# Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
+        "## Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
     );
     if let Some(word) = &options.only_iterations {
         iterations(options.nodes, word, &mut text).map_err(failed)?;
