@@ -46,6 +46,10 @@ struct Options {
     #[arg(long, value_name = "WORD", num_args = 0..=1, default_missing_value = "")]
     only_iterations: Option<String>,
 
+    /// Only draw the picture
+    #[arg(long, conflicts_with = "only_iterations")]
+    only_picture: bool,
+
     /// Folder for the pictures
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -69,6 +73,11 @@ fn run(options: &Options) -> Result<(), Failure> {
     let mut text = String::from(
         "## Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
     );
+    if options.only_picture {
+        let picture = coats(&options.out, &mut text)?;
+        println!("{text}\n{}", picture.display());
+        return Ok(());
+    }
     if let Some(word) = &options.only_iterations {
         iterations(options.nodes, word, &mut text).map_err(failed)?;
         println!("{text}");
@@ -360,7 +369,7 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
             x: load(),
             y: Axis::plain_logarithmic("contact area over nominal area", 1e-4, 0.5),
             series: areas,
-            legend: Corner::TopLeft,
+            legend: Corner::BottomRight,
         },
         Chart {
             title: "contact stiffness".to_string(),
