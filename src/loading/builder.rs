@@ -331,7 +331,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         if let Some(state) = &solver.state {
             solver.limits.check_ahead(state, false)?;
         }
-        solver.rebuild()?;
+        match history.window_end() {
+            Some(end) if solver.follow_on(end)? => {}
+            _ => solver.rebuild()?,
+        }
         Ok(solver)
     }
 

@@ -85,6 +85,7 @@ mod test_chain;
 mod tolerances;
 mod tuning;
 mod window;
+mod window_end;
 mod windowed;
 mod yielding;
 
@@ -93,9 +94,11 @@ pub use history::History;
 pub use limits::LoadingEnd;
 #[doc(hidden)]
 pub use phase::{event_seconds, last_factor};
+pub(crate) use refined::resumed::RefinedEnd;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};
+pub(crate) use window_end::{NextWindow, WindowEnd};

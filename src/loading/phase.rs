@@ -1,6 +1,7 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
 use super::gap_field;
+use super::refined::resumed::RefinedEnd;
 use super::run::LoadingRun;
 use super::tuning::{FACTOR, ITERATIONS, LEAST_WINDOW, WINDOW};
 use super::window::Window;
@@ -160,6 +161,52 @@ impl<U: LinearUpdater> Phase<U> {
             Self::Iterations(_) => order.iter().try_for_each(|&node| run.contact.push(node)),
         };
         restored.map(|()| hands_over)
+    }
+
+    /// Makes a factor of a contact, as long as it has room for one more window. Returns whether it does.
+    pub(super) fn restore_factor(
+        &mut self,
+        run: &LoadingRun,
+        contact: &ContactSequence,
+    ) -> Result<bool, Error> {
+        let Self::Factor { updater, .. } = self else {
+            return Ok(false);
+        };
+        let needed = updater.bytes(contact.len() + LEAST_WINDOW, LEAST_WINDOW);
+        let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
+        if run.memory.check(needed, contact.len()).is_err() {
+            return Ok(false);
+        }
+        let mut joined = ContactSequence::new(run.problem.grid());
+        join_all(updater, &run.problem, &mut joined, contact.order(), run.memory.left())
+            .map_err(|error| run.memory.in_all(error))?;
+        Ok(true)
+    }
+
+    /// Goes on with iterations where a window ended. Returns whether they are those of this path.
+    pub(super) fn restore_iterations(
+        &mut self,
+        run: &LoadingRun,
+        contact: &ContactSequence,
+        end: &RefinedEnd,
+    ) -> Result<bool, Error> {
+        let solved = end.contact(contact)?;
+        let mut successor: Option<Box<dyn Iterations>> = None;
+        let iterations = match self {
+            Self::Factor { may_end: false, .. } => return Ok(false),
+            Self::Factor { .. } => successor.insert(Box::<ConjugateGradient>::default()),
+            Self::Iterations(iterations) => iterations,
+        };
+        let needed = iterations.bytes(run.problem.grid().nodes(), contact.len());
+        if run.memory.check(needed, contact.len()).is_err()
+            || !iterations.restore(&run.problem, &solved, &end.kept)?
+        {
+            return Ok(false);
+        }
+        if let Some(iterations) = successor {
+            *self = Self::Iterations(iterations);
+        }
+        Ok(true)
     }
 
     /// Solves on the contact after `step` events at an approach, and returns it. The solution that the path goes on with is left as it is.

@@ -5,7 +5,7 @@ use std::iter::FusedIterator;
 use nalgebra::DMatrix;
 
 use super::limits::{Limits, LoadingEnd};
-use super::phase::Phase;
+use super::phase::{Phase, last_factor};
 use super::refined::Refined;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
@@ -160,10 +160,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 windows.1.produce(run, &mut **iterations, limit)
             }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
-                refined.produce(run, &mut **iterations, most_nodes)
+                // A whole window, whatever the limit: a path that goes on behind it has the same windows.
+                let all = run.problem.grid().nodes();
+                refined.produce(run, &mut **iterations, all)
             }
-            (Procedure::Windows(windowed, _), Phase::Factor { updater, .. }) => {
-                let failure = windowed.produce(run, updater, most_nodes)?;
+            (Procedure::Windows(windowed, _), Phase::Factor { updater, may_end }) => {
+                // A factor is given up with one number of nodes in contact, wherever windows begin.
+                let last = last_factor(run.problem.grid().nodes());
+                let ends_here = *may_end && run.contact.len() < last;
+                let most = if ends_here { most_nodes.min(last) } else { most_nodes };
+                let failure = windowed.produce(run, updater, most)?;
                 if run.queue.is_empty() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
                     return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));

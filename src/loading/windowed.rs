@@ -69,6 +69,16 @@ impl Windowed {
         Ok(queued.err().or(failure))
     }
 
+    /// The nodes that the last window watched and that have not touched: the next one keeps their order.
+    pub(super) fn untouched(&self) -> Vec<usize> {
+        self.window.untouched().collect()
+    }
+
+    /// Goes on behind a window that left these nodes.
+    pub(super) fn follow_on(&mut self, untouched: &[usize]) {
+        self.window = Window::ended_with(untouched.to_vec());
+    }
+
     /// How many nodes to watch.
     fn next_size(&self, run: &LoadingRun, most_nodes: usize) -> usize {
         let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());

@@ -130,6 +130,9 @@ impl LoadingRecord {
         {
             return Err(Error::StateNotReached { step, present });
         }
+        let events = history.events().last().map(|state| state.step);
+        let reaches = events.is_some() && events == path.state().map(|state| state.step);
+        let history = history.with_window_end(reaches.then(|| path.window_end()).flatten());
         let problem = path.problem();
         let grid = problem.grid();
         let heights = problem.initial_gap().iter().map(|gap| -gap);

@@ -23,6 +23,7 @@ mod records;
 mod records_on_disk;
 mod reference_paths;
 mod releases;
+mod resumed;
 mod small_without_factor;
 mod strips;
 mod ties;

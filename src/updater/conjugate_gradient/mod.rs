@@ -16,8 +16,8 @@ mod tolerances;
 mod tuning;
 
 use super::{
-    Behind, Beside, Iterations, Left, LinearUpdater, Method, Proposal, Schur, Solution, Solved,
-    WindowFactor, check_count,
+    Behind, Beside, Iterations, Kept, Left, LinearUpdater, Method, Proposal, Schur, Solution,
+    Solved, WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
 use crate::krylov::check_cells;
@@ -135,6 +135,26 @@ impl Iterations for ConjugateGradient {
         solutions.take_over(contact, approach, solution);
         self.solutions = Some(solutions);
         Ok(())
+    }
+
+    fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
+        self.solutions.as_ref()?.keep_all(self.criteria, problem, contact)
+    }
+
+    fn restore(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        kept: &Kept,
+    ) -> Result<bool, Error> {
+        let criteria = self.criteria;
+        if kept.tolerance != criteria.tolerance {
+            return Ok(false);
+        }
+        problem.check_nodes(contact.order())?;
+        let restored = inside(|| Solutions::restore(criteria, problem, contact, kept))?;
+        self.solutions = Some(restored);
+        Ok(true)
     }
 
     /// # Errors

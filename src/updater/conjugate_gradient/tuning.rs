@@ -54,6 +54,10 @@ pub(super) const DRIFT: f64 = 0.25;
 /// strip.
 pub(super) const RATE_DRIFT: f64 = 0.1;
 
+/// Displacements that were kept may differ from those of their pressures by so many times what solutions leave at worst. They differ by
+/// a part of it; what was damaged differs by more. No effect on a path.
+pub(super) const UNSPOILT: f64 = 10.0;
+
 // Row sums, for the rate of the mean gap
 
 /// Residual of the row sums relative to the greatest one: the rate of the mean gap, which depends on them, is
