@@ -127,21 +127,23 @@ fn without_a_factor() {
 #[test]
 fn on_a_grid_with_a_coarse_space() {
     let heights = surface("selfaffine_128");
-    let grid = Grid::square(128, 1e-2).unwrap();
-    let [free, love, _] = half_spaces(grid);
-    for (name, kernel) in [free, love] {
-        let builder = || {
-            LoadingSolver::builder(&heights, &*kernel)
-                .updater(ConjugateGradient::new())
-                .max_area_fraction(0.06)
-        };
+    for which in [0, 1] {
         let mut all = Vec::new();
-        on_threads(1, || all = whole(builder()));
-        println!("{name}: {} states", all.len());
-        assert!(all.len() > 900);
         for threads in [1, 2] {
-            let at = steps(10 + threads as u64, 3, 350..all.len());
-            on_threads(threads, || interrupt(&builder(), &all, &at, &identical));
+            let (heights, all) = (&heights, &mut all);
+            on_threads(threads, move || {
+                let (name, kernel) = &half_spaces(Grid::square(128, 1e-2).unwrap())[which];
+                let builder = LoadingSolver::builder(heights, &**kernel)
+                    .updater(ConjugateGradient::new())
+                    .max_area_fraction(0.06);
+                if all.is_empty() {
+                    *all = whole(builder.clone());
+                    println!("{name}: {} states", all.len());
+                    assert!(all.len() > 900);
+                }
+                let at = steps(10 + threads as u64, 3, 350..all.len());
+                interrupt(&builder, all, &at, &identical);
+            });
         }
     }
 }
