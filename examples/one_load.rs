@@ -14,7 +14,7 @@
 //! mean gap           1.0211e-5 m
 //! greatest pressure  7.7590e9 Pa
 //! contact stiffness  3.8494e8 N/m
-//! found in 18 iterations, gaps in contact within 8.4e-9 of the approach
+//! found in 18 iterations, gaps in contact within 8e-9 of the approach
 //! ```
 
 use asperity::surface::Amplitude;

@@ -60,6 +60,7 @@
 
 mod builder;
 mod cost;
+mod factor_log;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod failing_iterations;
@@ -90,6 +91,7 @@ mod windowed;
 mod yielding;
 
 pub use builder::LoadingBuilder;
+pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
 #[doc(hidden)]
@@ -101,4 +103,4 @@ pub use rule::ContactRule;
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};
-pub(crate) use window_end::{NextWindow, WindowEnd};
+pub(crate) use window_end::{FactorEnd, NextWindow, WindowEnd};

@@ -1,5 +1,6 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
+use super::factor_log::FactorLog;
 use super::gap_field;
 use super::refined::resumed::RefinedEnd;
 use super::run::LoadingRun;
@@ -163,24 +164,19 @@ impl<U: LinearUpdater> Phase<U> {
         restored.map(|()| hands_over)
     }
 
-    /// Makes a factor of a contact, as long as it has room for one more window. Returns whether it does.
+    /// Makes a factor of a contact by the steps of a log. Returns whether it does: there must be one, and room for it.
     pub(super) fn restore_factor(
         &mut self,
         run: &LoadingRun,
         contact: &ContactSequence,
+        log: &FactorLog,
     ) -> Result<bool, Error> {
-        let Self::Factor { updater, .. } = self else {
-            return Ok(false);
-        };
-        let needed = updater.bytes(contact.len() + LEAST_WINDOW, LEAST_WINDOW);
-        let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
-        if run.memory.check(needed, contact.len()).is_err() {
-            return Ok(false);
+        match self {
+            Self::Factor { updater, .. } => {
+                log.replay(updater, &run.problem, contact, run.memory.left())
+            }
+            Self::Iterations(_) => Ok(false),
         }
-        let mut joined = ContactSequence::new(run.problem.grid());
-        join_all(updater, &run.problem, &mut joined, contact.order(), run.memory.left())
-            .map_err(|error| run.memory.in_all(error))?;
-        Ok(true)
     }
 
     /// Goes on with iterations where a window ended. Returns whether they are those of this path.

@@ -4,6 +4,7 @@ use std::iter::FusedIterator;
 
 use nalgebra::DMatrix;
 
+use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::{Phase, last_factor};
 use super::refined::Refined;
@@ -143,6 +144,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         if !is_enough && phase.hand_over(run)? {
             self.handed_over_at = Some(run.contact.len());
+            if let Procedure::Windows(windowed, _) = &mut self.procedure {
+                // How the factor grew is of no use any more.
+                windowed.follow_on(FactorLog::default());
+            }
         }
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),

@@ -1,11 +1,13 @@
 //! Where a path is in its windows: what a record keeps besides states, so that a path that goes on is the one that was not
 //! interrupted.
 
+use super::factor_log::FactorLog;
 use super::phase::Phase;
 use super::refined::resumed::RefinedEnd;
 use super::snapshot::{Snapshot, not_on_path};
 use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
+use super::tuning::RECOGNISED;
 use crate::Error;
 use crate::updater::LinearUpdater;
 
@@ -17,10 +19,9 @@ use crate::updater::LinearUpdater;
 /// |---|---|---|
 /// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
 /// | `handed_over_at` | | when the factor was given up, which memory may have decided |
-/// | `next` | the nodes that were watched and have not touched, whose order the next window keeps | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
+/// | `next` | [`FactorLog`], the windows so far: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
 ///
-/// A factor is made again of the contact, in other blocks than before: its numbers differ by rounding, the windows do not. Nothing else
-/// is remembered from window to window. Timings are not kept.
+/// Nothing else is remembered from window to window. Timings are not kept.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct WindowEnd {
     pub(crate) ahead: Vec<LoadingState>,
@@ -31,9 +32,16 @@ pub(crate) struct WindowEnd {
 /// What the next window begins with.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NextWindow {
-    /// The nodes that were watched and have not touched.
-    Factor(Vec<usize>),
+    Factor(Box<FactorEnd>),
     Iterations(Box<RefinedEnd>),
+}
+
+/// What the next window with a factor depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FactorEnd {
+    pub(crate) log: FactorLog,
+    /// Approach, load, energy, mean gap, stiffness and closing rate in the gauge of the kernel.
+    pub(crate) scalars: [f64; 6],
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
@@ -47,7 +55,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             return None;
         };
         let next = match &self.phase {
-            Phase::Factor { .. } => NextWindow::Factor(windowed.untouched()),
+            Phase::Factor { .. } => {
+                let (log, scalars) = (windowed.log().clone(), self.run.scalars.numbers());
+                NextWindow::Factor(Box::new(FactorEnd { log, scalars }))
+            }
             Phase::Iterations(iterations) => {
                 NextWindow::Iterations(Box::new(refined.end(&self.run, &**iterations)?))
             }
@@ -83,7 +94,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             contact.push(run.problem.grid().node(ix, iy).unwrap_or(usize::MAX))?;
         }
         let restored = match &end.next {
-            NextWindow::Factor(_) => phase.restore_factor(run, &contact)?,
+            NextWindow::Factor(end) => phase.restore_factor(run, &contact, &end.log)?,
             NextWindow::Iterations(end) if refined.can_follow(end) => {
                 phase.restore_iterations(run, &contact, end)?
             }
@@ -97,12 +108,20 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         snapshot.recognise(run, phase, &last)?;
         let front = end.ahead.last().unwrap_or(&last);
         match (&end.next, phase) {
-            (NextWindow::Factor(untouched), phase) => {
-                run.problem.check_nodes(untouched)?;
-                windowed.follow_on(untouched);
-                run.scalars.place_at(run.scalars.own_approach(&front.contact));
-                phase.renew_field(run, run.scalars.approach())?;
-                run.scalars.renew_load(&run.problem, &run.contact, &run.field);
+            (NextWindow::Factor(end), _) => {
+                windowed.follow_on(end.log.clone());
+                run.scalars.take_over(end.scalars);
+                let own = run.scalars.state(run.contact.len());
+                let pairs = [
+                    (own.approach, front.contact.approach),
+                    (own.load, front.contact.load),
+                    (own.energy, front.contact.energy),
+                ];
+                // They are those of the last state, but for a load that must not fall by rounding.
+                let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
+                if !is_front || !run.scalars.is_sound(&own) {
+                    return Err(not_on_path(front, "load", own.load, "the load of the state"));
+                }
             }
             (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
                 refined.follow_on(run, &mut **iterations, end)?;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{COLUMNS, Column, code, event, whole};
 use crate::contact::ContactState;
 use crate::io::archive::{Archive, ArchiveWriter};
-use crate::loading::{LoadingState, NextWindow, RefinedEnd, WindowEnd};
+use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, RefinedEnd, WindowEnd};
 use crate::updater::{Kept, KeptField};
 use crate::{Error, Grid};
 
@@ -66,7 +66,13 @@ pub(super) fn write(
         archive.integers(name, nodes.len(), nodes.iter().map(|&node| node as i64))
     };
     let end = match &end.next {
-        NextWindow::Factor(untouched) => return nodes("window_untouched", untouched),
+        NextWindow::Factor(end) => {
+            let FactorEnd { log, scalars } = &**end;
+            nodes("window_watched", &log.watched)?;
+            nodes("window_places", &log.joined)?;
+            nodes("window_sizes", log.windows.as_flattened())?;
+            return archive.numbers("window_scalars", scalars.len(), scalars.iter().copied());
+        }
         NextWindow::Iterations(end) => end,
     };
     let kept = &end.kept;
@@ -133,7 +139,14 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
     };
     let handed_over_at = numbers.handed_over_at;
     let Some(iterations) = numbers.iterations else {
-        let next = NextWindow::Factor(nodes("window_untouched")?);
+        let log = FactorLog {
+            watched: nodes("window_watched")?,
+            joined: nodes("window_places")?,
+            windows: nodes("window_sizes")?.as_chunks().0.to_vec(),
+        };
+        let mut scalars = [0.0; 6];
+        scalars.copy_from_slice(&archive.vector("window_scalars", Some(6))?);
+        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars }));
         return Ok(WindowEnd { ahead, handed_over_at, next });
     };
     let values = archive.vector("window_numbers", Some(9))?;
