@@ -55,6 +55,8 @@ impl<U: LinearUpdater> Phase<U> {
         {
             iterations.take_over(problem, contact, approach, &solution)?;
         }
+        // Where the window of a factor was checked there is a solution of it: iterations begin with their own, whether or not.
+        run.field.forget();
         Ok(true)
     }
 
