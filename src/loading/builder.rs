@@ -318,7 +318,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path then goes on: see
     /// [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
     ///
-    /// Nothing is searched for again. A factor is made of the nodes in contact in large blocks, n³/3 flops at
+    /// Otherwise nothing is searched for again: a factor is made of the nodes in contact in large blocks, n³/3 flops at
     /// the speed of a matrix product; without one a solution is all. The solution is compared with the last state,
     /// so that states of another surface or kernel are refused.
     ///

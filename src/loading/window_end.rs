@@ -134,3 +134,102 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::{History, LoadingBuilder};
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::updater::{ConjugateGradient, RecursiveCholesky};
+    use crate::{Boussinesq, Grid};
+
+    /// Takes a path behind 60 of 168 states, changes what it goes on with, and tells whether it is refused.
+    fn is_refused<U: LinearUpdater + Clone>(
+        updater: &U,
+        change: &dyn Fn(&mut WindowEnd),
+    ) -> Result<bool, Error> {
+        let kernel = Boussinesq::new(Grid::new(14, 12, 1.0, 1.5)?, 1.0)?;
+        let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+        let builder: LoadingBuilder<'_, U> =
+            LoadingSolver::builder(&surface, &kernel).updater(updater.clone());
+        let mut path = builder.clone().build()?;
+        let states: History = path.by_ref().take(60).collect::<Result<_, _>>()?;
+        let mut end = path.window_end();
+        assert!(end.as_ref().is_some_and(|end| !end.ahead.is_empty()));
+        if let Some(end) = &mut end {
+            change(end);
+        }
+        Ok(builder.resume(&states.with_window_end(end)).is_err())
+    }
+
+    fn iterations(end: &mut WindowEnd) -> &mut RefinedEnd {
+        match &mut end.next {
+            NextWindow::Iterations(end) => end,
+            NextWindow::Factor(_) => unreachable!("there is no factor"),
+        }
+    }
+
+    fn factor(end: &mut WindowEnd) -> &mut FactorEnd {
+        match &mut end.next {
+            NextWindow::Factor(end) => end,
+            NextWindow::Iterations(_) => unreachable!("there is a factor"),
+        }
+    }
+
+    /// What is not the end of a window of this path is an error, and no wrong path.
+    #[test]
+    fn what_was_damaged_is_refused() -> Result<(), Error> {
+        let updater = ConjugateGradient::new();
+        assert!(!is_refused(&updater, &|_| {})?);
+        let changes: [&dyn Fn(&mut WindowEnd); 22] = [
+            &|end| end.ahead[0].step += 1,
+            &|end| end.ahead[0].event = ContactEvent::Release,
+            &|end| end.ahead[0].node = (99, 0),
+            &|end| end.ahead[0].contact.load = f64::NAN,
+            &|end| drop(end.ahead.pop()),
+            &|end| end.ahead.clear(),
+            &|end| iterations(end).last_span = f64::NAN,
+            &|end| iterations(end).rate_span = -1.0,
+            &|end| iterations(end).joined[0] = 999,
+            &|end| drop(iterations(end).joined.pop()),
+            &|end| iterations(end).kept.approach = f64::INFINITY,
+            &|end| iterations(end).kept.serves = f64::NAN,
+            &|end| iterations(end).kept.load.pressure[7] *= 1.001,
+            &|end| iterations(end).kept.load.displacement[7] *= 1.001,
+            &|end| iterations(end).kept.rate.displacement[7] = f64::NAN,
+            &|end| drop(iterations(end).kept.rate.pressure.pop()),
+            &|end| iterations(end).kept.proposed[0] = iterations(end).joined[0] + 10_000,
+            &|end| drop(iterations(end).kept.row_sums.pop()),
+            &|end| iterations(end).kept.proposed_beside = 169,
+            &|end| iterations(end).kept.sums.displacement[3] = f64::INFINITY,
+            &|end| iterations(end).kept.coarse.push(168),
+            &|end| iterations(end).kept.directions.push(vec![1.0; 3]),
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            assert!(is_refused(&updater, change)?, "{k}");
+        }
+        let updater = RecursiveCholesky::new();
+        assert!(!is_refused(&updater, &|_| {})?);
+        let changes: [&dyn Fn(&mut WindowEnd); 6] = [
+            &|end| end.ahead[0].node = end.ahead[1].node,
+            &|end| drop(end.ahead.pop()),
+            &|end| factor(end).scalars[0] *= 1.001,
+            &|end| factor(end).scalars[1] = f64::NAN,
+            &|end| factor(end).log.watched[3] = 168,
+            &|end| factor(end).log.windows[0][2] -= 1,
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            assert!(is_refused(&updater, change)?, "{k}");
+        }
+        Ok(())
+    }
+
+    /// Another updater goes on from the states.
+    #[test]
+    fn what_does_not_suit_is_left_alone() -> Result<(), Error> {
+        let other = |end: &mut WindowEnd| iterations(end).kept.tolerance = 1e-9;
+        assert!(!is_refused(&ConjugateGradient::new(), &other)?);
+        assert!(!is_refused(&ConjugateGradient::new(), &|end| iterations(end).settles = false)?);
+        Ok(())
+    }
+}

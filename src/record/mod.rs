@@ -236,8 +236,8 @@ impl LoadingRecord {
     /// what it costs, and for other updaters.
     ///
     /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state of its path knows where
-    /// the window of that state ended: without a factor all states are the same bit for bit, with one to rounding. Otherwise,
-    /// and with a hardness, they are the same to rounding with a factor, and without one to their estimated error: windows begin elsewhere.
+    /// the window of that state ended, and how the factor grew: all states are the same bit for bit. Otherwise, and with a hardness, they are
+    /// the same to rounding with a factor, and without one to their estimated error: windows begin elsewhere.
     ///
     /// # Errors
     ///
