@@ -170,7 +170,7 @@ fn a_path_in_parts_is_the_whole_one() -> Done {
         "--updater iterative",
         "--updater iterative --periodic love",
         "--updater iterative --periodic spectral",
-        "--memory-budget 5e6",
+        "--memory-budget 8e6",
     ]
     .into_iter()
     .enumerate()
