@@ -2,6 +2,7 @@
 //! interrupted.
 
 use super::factor_log::FactorLog;
+use super::limits::LoadingEnd;
 use super::phase::Phase;
 use super::refined::resumed::RefinedEnd;
 use super::snapshot::{Snapshot, not_on_path};
@@ -45,10 +46,12 @@ pub(crate) struct FactorEnd {
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
-    /// The end of the last window behind the state that was yielded last; `None` before the first one, behind an error, and for paths of
-    /// which it is not known: nodes that leave or yield.
+    /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, behind an error,
+    /// and for paths of which it is not known: nodes that leave or yield.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
-        if self.state.is_none() || self.failure.is_some() {
+        use LoadingEnd::{Failed, FullContact, Memory};
+        let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
+        if self.state.is_none() || self.failure.is_some() || is_over {
             return None;
         }
         let Procedure::Windows(windowed, refined) = &self.procedure else {
