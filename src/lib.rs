@@ -41,7 +41,7 @@
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | superpose increments of a path | [`bed`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
@@ -129,7 +129,7 @@ pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterErro
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
-    PeriodicBoussinesq, Spectral,
+    PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;

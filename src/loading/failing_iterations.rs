@@ -385,7 +385,7 @@ impl Small {
     /// The approach for which gap = g + C p − δ with the coefficients as they are.
     fn own_approach(&self, state: &ContactState) -> f64 {
         match self.kernel.boundary() {
-            Boundary::Free => state.approach,
+            Boundary::Free | Boundary::PeriodicX | Boundary::PeriodicY => state.approach,
             Boundary::Periodic => state.approach + self.matrix.mean() * state.load,
         }
     }

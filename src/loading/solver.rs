@@ -280,6 +280,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.run.timings
     }
 
+    /// Number of convolutions of iterations so far; `None` as long as there is a factor.
+    #[doc(hidden)] // for the studies of this repository
+    #[must_use]
+    pub fn convolutions(&self) -> Option<usize> {
+        match &self.phase {
+            Phase::Factor { .. } => None,
+            Phase::Iterations(iterations) => Some(iterations.convolutions()),
+        }
+    }
+
     /// Why the path has ended; `None` while there is more to come.
     #[must_use]
     pub fn end(&self) -> Option<LoadingEnd> {

@@ -188,6 +188,11 @@ pub trait Iterations: Debug + Send + Sync {
     /// Goes back to a contact that has been cut: to the solution before, if that was on it.
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;
 
+    /// Number of convolutions so far, as far as it is counted.
+    fn convolutions(&self) -> usize {
+        0
+    }
+
     /// Bytes held when `contact` nodes of a grid of `nodes` are in contact.
     fn bytes(&self, nodes: usize, contact: usize) -> usize;
 

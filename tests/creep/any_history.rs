@@ -56,7 +56,7 @@ fn compare(
         // On a periodic half-space the approach of the solver is that in the gauge of the kernel.
         let approach = match kernel.boundary() {
             asperity::Boundary::Free => (state.approach - solver.approach) / half.approach,
-            asperity::Boundary::Periodic => 0.0,
+            _ => 0.0,
         };
         for error in errors.into_iter().chain([approach]) {
             seen.scalars = seen.scalars.max(error.abs());

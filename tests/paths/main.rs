@@ -25,6 +25,7 @@ mod records_on_disk;
 mod reference_paths;
 mod releases;
 mod resumed;
+mod semi_periodic;
 mod small_without_factor;
 mod strips;
 mod ties;

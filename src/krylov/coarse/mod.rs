@@ -5,7 +5,6 @@ mod bilinear;
 
 use nalgebra::DMatrix;
 
-use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::krylov::single::product;
@@ -54,7 +53,7 @@ impl CoarseSpace {
         if counts.0 * counts.1 < FEWEST {
             return None;
         }
-        let wraps = table.boundary() == Boundary::Periodic;
+        let wraps = table.boundary().repeats();
         Some(Self {
             basis: BilinearBasis::new(grid.shape(), counts, wraps),
             aggregates: Aggregates::new(table),

@@ -286,6 +286,10 @@ impl Iterations for ConjugateGradient {
         Ok(())
     }
 
+    fn convolutions(&self) -> usize {
+        self.solutions.as_ref().map_or(0, Solutions::convolutions)
+    }
+
     fn bytes(&self, nodes: usize, contact: usize) -> usize {
         Self::bytes_of(nodes, contact)
     }

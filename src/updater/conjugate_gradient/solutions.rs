@@ -93,6 +93,11 @@ impl Solutions {
         self.neighbourhood.grid()
     }
 
+    /// Number of convolutions so far.
+    pub(super) fn convolutions(&self) -> usize {
+        self.solver.convolutions()
+    }
+
     /// Number of nodes in contact that there is a solution or a start for.
     pub(super) fn count(&self) -> usize {
         self.now.count

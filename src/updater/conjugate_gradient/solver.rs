@@ -25,6 +25,11 @@ impl Solver {
         }
     }
 
+    /// Number of convolutions so far.
+    pub(super) fn convolutions(&self) -> usize {
+        self.operator.convolutions()
+    }
+
     /// The contact set.
     pub(super) fn set(&self) -> &NodeSet {
         &self.set
