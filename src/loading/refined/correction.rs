@@ -158,8 +158,9 @@ fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
     // With unit diagonal.
     let (own, other) = if determinant > LEAST_DETERMINANT {
         (1.0 / determinant, -correlation / determinant)
-    } else if determinant > -LEAST_DETERMINANT {
-        (0.25, 0.25_f64.copysign(correlation))
+    } else if correlation.is_finite() {
+        let own = 0.5 / (1.0 + correlation.abs());
+        (own, own.copysign(correlation))
     } else {
         return None;
     };

@@ -3,6 +3,7 @@
 mod both;
 mod equilibrium;
 mod galerkin;
+mod groups;
 mod instants;
 mod local;
 mod plastic_sums;
@@ -14,6 +15,7 @@ mod solver;
 mod tests;
 mod tolerances;
 mod tuning;
+mod wide;
 
 use super::{
     Behind, Beside, Iterations, Left, LinearUpdater, Method, Proposal, Schur, Solution, Solved,
