@@ -281,3 +281,97 @@ impl Neighbourhood {
         Wide { local, places, nearest: nearest_count, groups, sides: self.sides() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq, Problem};
+
+    fn flat(grid: Grid, periodic: bool) -> Result<Problem, Error> {
+        let surface = HeightMap::new(nalgebra::DMatrix::zeros(grid.nx(), grid.ny()))?;
+        if periodic {
+            Problem::new(&surface, &PeriodicBoussinesq::new(grid, 1.0)?)
+        } else {
+            Problem::new(&surface, &Boussinesq::new(grid, 1.0)?)
+        }
+    }
+
+    /// All contact nodes closer than 32 cells answer, once; those of a group alike, and what they carry is that of the group.
+    #[test]
+    fn all_nodes_in_reach_answer() -> Result<(), Error> {
+        for periodic in [false, true] {
+            let grid = Grid::square(80, 1.0)?;
+            let problem = flat(grid, periodic)?;
+            let is_in = |node: usize| node % 7 != 2 && node % 3 != 1;
+            let mut set = NodeSet::new(grid.nodes());
+            set.assign(is_in);
+            let neighbourhood = Neighbourhood::new(&problem);
+            for node in [2, 9 + 80 * 40] {
+                let wide = neighbourhood.solve_wide(problem.table(), &set, node);
+                let mut found = wide.local.contact.clone();
+                found.sort_unstable();
+                let expected: Vec<u32> = (0..grid.nodes())
+                    .filter(|&other| {
+                        let [x, y] = offset(grid, problem.boundary(), node, other);
+                        // On a periodic grid no node is met twice.
+                        let twice = periodic && (x.abs() == 40.0 || y.abs() == 40.0);
+                        is_in(other) && x * x + y * y < 1023.5 && !twice
+                    })
+                    .map(|other| other as u32)
+                    .collect();
+                assert_eq!(found, expected);
+                let mut next = wide.nearest;
+                assert!((SINGLY..SINGLY + 8).contains(&next), "{next}");
+                for group in &wide.groups {
+                    let [first, end] = group.members;
+                    assert_eq!(first, next);
+                    let weights = &wide.local.weights[first..end];
+                    assert!(weights.iter().all(|x| *x == weights[0]));
+                    let sum: f64 = weights.iter().sum();
+                    assert!((sum - group.pressure).abs() < 1e-12);
+                    let shares: f64 = group.points().iter().map(|(_, share)| share).sum();
+                    assert!((shares - 1.0).abs() < 1e-12);
+                    next = end;
+                }
+                assert_eq!(next, wide.local.contact.len());
+            }
+        }
+        Ok(())
+    }
+
+    /// A contact and its mirror image answer alike.
+    #[test]
+    fn mirror_images_answer_alike() -> Result<(), Error> {
+        let grid = Grid::square(63, 1.0)?;
+        let problem = flat(grid, false)?;
+        let is_in = |node: usize| node % 5 != 3 && node % 11 != 4;
+        let image = |node: usize| {
+            let (ix, iy) = grid.coordinates(node);
+            grid.index(iy, 62 - ix)
+        };
+        let watched = (20 * 63..).find(|&node| !is_in(node)).unwrap_or_default();
+        let mut answers = Vec::new();
+        for is_image in [false, true] {
+            let mut nodes = vec![false; grid.nodes()];
+            for node in (0..grid.nodes()).filter(|&node| is_in(node)) {
+                nodes[if is_image { image(node) } else { node }] = true;
+            }
+            let mut set = NodeSet::new(grid.nodes());
+            set.assign(|node| nodes[node]);
+            let node = if is_image { image(watched) } else { watched };
+            let neighbourhood = Neighbourhood::new(&problem);
+            let Wide { local, .. } = neighbourhood.solve_wide(problem.table(), &set, node);
+            let mut weights = vec![0.0; grid.nodes()];
+            for (&node, x) in local.contact.iter().zip(&local.weights) {
+                weights[node as usize] = *x;
+            }
+            answers.push(weights);
+        }
+        for node in 0..grid.nodes() {
+            let error = (answers[0][node] - answers[1][image(node)]).abs();
+            // Single precision, and other representatives of a group: those of large ones are a sample.
+            assert!(error < 1e-4, "{node}: {error:e}");
+        }
+        Ok(())
+    }
+}

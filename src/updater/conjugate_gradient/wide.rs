@@ -227,3 +227,6 @@ pub(super) fn convolution(table: &KernelTable, [hx, hy]: [i32; 2]) -> Option<Con
     let grid = Grid::new(nx, ny, grid.dx(), grid.dy()).ok()?;
     Convolution::from_table(&table.patch(grid)).ok()
 }
+
+#[cfg(test)]
+mod tests;
