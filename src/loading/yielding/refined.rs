@@ -10,6 +10,7 @@ use super::pinned::{self, Passed};
 use super::settled::{self, Beginning};
 use super::{Carried, Plastic, Slack, Trial, contradiction, survey};
 use crate::Error;
+use crate::contact::ContactSequence;
 use crate::loading::gap_field::GapLine;
 use crate::loading::refined::candidates::{cut, with_ties};
 use crate::loading::refined::correction::{self, AtEnd, Correction};
@@ -18,12 +19,12 @@ use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, PART, REMEMBERED, SLACK_OF_RATE, TRUSTED,
-    WATCHED, WATCHED_UNSETTLED,
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, PART, REMEMBERED,
+    SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::{Behind, Beside, Iterations, Proposal, Schur, WindowFactor};
-use crate::{Boundary, UpdaterError};
+use crate::{Boundary, Problem, UpdaterError};
 
 /// Finds events of both kinds in windows that are corrected at their end.
 #[derive(Debug)]
@@ -155,7 +156,7 @@ impl RefinedYielding {
         tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         let approach = run.scalars.approach();
-        let slack = slack(tolerances, approach);
+        let slack = slack(run, (&run.problem, &run.contact), tolerances, approach);
         self.ranked = None;
         self.rates = survey(run, plastic, &mut self.ranking, slack)?;
         self.ranked = Some((run.contact.revision(), approach));
@@ -323,7 +324,8 @@ impl RefinedYielding {
             self.rate_span = time.max(self.last_span);
             let at = (start + time, self.rate_span);
             self.go_to(run, plastic, iterations, &trial, at)?;
-            let slack = slack(tolerances, start + time);
+            let there = (&trial.problem, &trial.contact);
+            let slack = slack(run, there, tolerances, start + time);
             let Some(until) = contradiction(run, plastic, &trial, (start + time, slack)) else {
                 break trial;
             };
@@ -505,9 +507,17 @@ impl RefinedYielding {
     }
 }
 
-/// By how much solutions may contradict what contact that grows does.
-fn slack(tolerances: &WindowTolerances, approach: f64) -> Slack {
-    Slack { gap: tolerances.overlap(approach), rate: SLACK_OF_RATE }
+/// By how much the solution on a contact at an approach may contradict what contact that grows does. What is left of gaps in contact says
+/// how far pressures are off: more than the gaps of other nodes, which see all of it from afar.
+fn slack(
+    run: &LoadingRun,
+    (problem, contact): (&Problem, &ContactSequence),
+    tolerances: &WindowTolerances,
+    approach: f64,
+) -> Slack {
+    let gap = tolerances.overlap(approach);
+    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
+    Slack { gap, pressure: OF_RESIDUAL * left.fold(gap, f64::max), rate: SLACK_OF_RATE }
 }
 
 /// How many of some events come before one more than `touches` nodes touch.
