@@ -1,6 +1,6 @@
 //! Where a path ends, and why.
 
-use super::state::LoadingState;
+use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactTarget;
 use crate::{Error, Grid};
 
@@ -224,7 +224,8 @@ impl Limits {
         if let Some((end, state)) = first {
             return Some((end, last.at_limit(state)));
         }
-        let beyond = next.contact.contact_nodes > last.contact.contact_nodes;
+        // What comes next is one more node, or a yield behind the last one.
+        let beyond = next.event != ContactEvent::Release;
         let end = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten();
         end.map(|end| (end, None))
     }

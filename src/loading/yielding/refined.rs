@@ -19,7 +19,7 @@ use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, PART, REMEMBERED,
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART, REMEMBERED,
     SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::loading::window::{Course, Window, WindowEvent};
@@ -42,6 +42,8 @@ pub(in crate::loading) struct RefinedYielding {
     rate_span: f64,
     /// The part of a pivot that matrices were off by lately, at worst.
     left_out: f64,
+    /// By how much pressures at hand may be off, in terms of what they displace.
+    left: f64,
 }
 
 /// The nodes to watch.
@@ -93,6 +95,7 @@ impl RefinedYielding {
             last_span: 0.0,
             rate_span: 0.0,
             left_out: 0.0,
+            left: 0.0,
         }
     }
 
@@ -158,6 +161,7 @@ impl RefinedYielding {
         let approach = run.scalars.approach();
         let slack = slack(run, (&run.problem, &run.contact), tolerances, approach);
         self.ranked = None;
+        self.left = slack.pressure;
         self.rates = survey(run, plastic, &mut self.ranking, slack)?;
         self.ranked = Some((run.contact.revision(), approach));
         Ok(())
@@ -477,8 +481,10 @@ impl RefinedYielding {
             |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
-        // What their times cannot be told apart by.
+        // What their times cannot be told apart by, and what the solution at hand leaves open of them.
         let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        let open = group.iter().map(|&node| self.left / closing(run, node, places[node]));
+        let most_late = open.fold(error, f64::max);
         group.sort_unstable();
         let kind = |node: usize| match run.contact.contains(node) {
             true => ContactEvent::Yield,
@@ -486,17 +492,28 @@ impl RefinedYielding {
         };
         let mut touched = 0;
         let within = |&(_, kind): &(usize, ContactEvent)| {
+            let goes_on = touched < touches;
             touched += usize::from(kind == ContactEvent::Touch);
-            touched <= touches
+            goes_on
         };
         let events: Vec<(usize, ContactEvent)> =
             group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
         let approach = run.scalars.approach() + time;
         let trial = Trial::of(run, plastic, events.iter().copied())?;
-        self.last_span = self.last_span.max(time);
         // However little is left open by so many nodes: rates must be exact.
         self.rate_span = f64::INFINITY;
         self.go_to(run, plastic, iterations, &trial, (approach, self.rate_span))?;
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
+        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        let slack_there = slack(run, (&trial.problem, &trial.contact), tolerances, approach);
+        let late = lateness(run, plastic, &trial, (approach, slack_there));
+        let late = if late <= most_late { late } else { 0.0 };
+        let (time, approach, error) = (time + late, approach + late, error.max(late));
+        if late > 0.0 {
+            let at = [approach, self.rate_span];
+            run.field.advance(&trial.problem, &trial.contact, iterations, at)?;
+        }
+        self.last_span = self.last_span.max(time);
         let before = Carried::of(run, plastic);
         let passed = Passed { start: run.scalars, before, span: time };
         let rates = self.rates;
@@ -508,7 +525,7 @@ impl RefinedYielding {
 }
 
 /// By how much the solution on a contact at an approach may contradict what contact that grows does. What is left of gaps in contact says
-/// how far pressures are off: more than the gaps of other nodes, which see all of it from afar.
+/// how far pressures are off, and gaps elsewhere: by less, for they see all of it from afar.
 fn slack(
     run: &LoadingRun,
     (problem, contact): (&Problem, &ContactSequence),
@@ -517,17 +534,42 @@ fn slack(
 ) -> Slack {
     let gap = tolerances.overlap(approach);
     let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
-    Slack { gap, pressure: OF_RESIDUAL * left.fold(gap, f64::max), rate: SLACK_OF_RATE }
+    let left = left.fold(0.0, f64::max);
+    Slack {
+        gap: gap.max(OF_RESIDUAL_BEYOND * left),
+        pressure: OF_RESIDUAL * left.max(gap),
+        rate: SLACK_OF_RATE,
+    }
 }
 
-/// How many of some events come before one more than `touches` nodes touch.
+/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
+/// a solution may be off by.
+fn lateness(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    trial: &Trial,
+    (approach, slack): (f64, Slack),
+) -> f64 {
+    let Trial { contact, problem, .. } = trial;
+    let mut has_yielded = vec![false; problem.grid().nodes()];
+    trial.yielded.iter().for_each(|&node| has_yielded[node] = true);
+    let depths = run.field.lines(problem, contact, approach).filter_map(|(node, line)| {
+        let is_short = line.gap > slack.gap && (has_yielded[node] || plastic.has_yielded(node));
+        (is_short && line.closing > 0.0).then(|| line.gap / line.closing)
+    });
+    let tension = slack.pressure / problem.table().self_influence();
+    let pressures = run.field.pressures(contact, approach).zip(&run.field.solution().rate);
+    let pressures = pressures.filter_map(|((_, pressure), &rate)| {
+        (pressure < -tension && rate > 0.0).then(|| -pressure / rate)
+    });
+    depths.chain(pressures).fold(0.0, f64::max)
+}
+
+/// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
 fn within(events: &[Event], touches: usize) -> usize {
-    let mut touched = 0;
-    let is_within = |event: &&Event| {
-        touched += usize::from(event.kind == ContactEvent::Touch);
-        touched <= touches
-    };
-    events.iter().take_while(is_within).count().max(1)
+    let touching = |(_, event): &(usize, &Event)| event.kind == ContactEvent::Touch;
+    let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
+    last.map_or(events.len(), |(place, _)| place + 1)
 }
 
 /// The place of each node in the contact.
