@@ -157,7 +157,7 @@ type Shape = fn(f64, f64) -> f64;
 /// Symmetry, plateaus, steps: nodes that touch or yield together.
 #[test]
 fn hard_shapes_have_the_events_of_the_factor() {
-    let shapes: [(&str, Shape); 5] = [
+    let shapes: [(&str, Shape); 6] = [
         ("sphere", |x, y| -0.1 * (x * x + y * y)),
         ("waves", |x, y| {
             let wave = |x: f64| (2.0 * std::f64::consts::TAU * x).cos();
@@ -165,8 +165,12 @@ fn hard_shapes_have_the_events_of_the_factor() {
         }),
         ("punch", |x, y| if x.abs().max(y.abs()) < 0.25 { 0.0 } else { -2e-3 }),
         ("steps", |x, y| (20.0 * (x * x - 0.3 * y + x * y)).round() * 1e-3),
-        ("spike", |x, y| if x.hypot(y) < 0.03 { 2e-3 } else { 0.0 }),
+        ("spike", |x, y| if x.hypot(y) < 0.04 { 2e-3 } else { 0.0 }),
+        ("plateaus", |x, y| if x * y > 0.02 { 1e-3 } else { 0.0 }),
     ];
+    // Where one row of gaps is left beside a spike, a thousandth of the initial gap wide, loads double while the approach grows by a few parts
+    // in 10⁴: measured 1.5e-4, which approaches that are off by 2e-7, of estimated 3e-6, make.
+    let hard = Tolerances { load: 3e-4, ..BETWEEN };
     for (nx, ny, aspect) in [(20, 20, 1.0), (17, 14, 3.0)] {
         let grid = Grid::new(nx, ny, aspect / nx as f64, 1.0 / nx as f64).unwrap();
         for (shape, height) in shapes {
@@ -176,11 +180,13 @@ fn hard_shapes_have_the_events_of_the_factor() {
             let surface = HeightMap::new(heights).unwrap();
             for (name, kernel) in half_spaces(grid) {
                 for hardness in [3e-3, 3e-2] {
-                    println!("{shape} {nx} {name} {hardness}");
                     let builder = || LoadingSolver::builder(&surface, &kernel).hardness(hardness);
                     let exact = all(builder().updater(RecursiveCholesky::new()));
                     let found = all(builder().updater(ConjugateGradient::new()));
-                    compare(&format!("{shape} {nx} {name} {hardness}"), &found, &exact, &BETWEEN);
+                    let context = format!("{shape} {nx} {name} {hardness}");
+                    let worst = compare(&context, &found, &exact, &hard);
+                    println!("{context}: {worst:.2} of the estimate");
+                    assert!(worst <= 1.0, "{context}: {worst}");
                 }
             }
         }
@@ -336,7 +342,11 @@ fn paths_end_where_they_are_to_end() {
                     builder().updater(ConjugateGradient::new()).until(target).build().unwrap();
                 let last = path.by_ref().last().unwrap().unwrap();
                 assert_eq!(path.end(), Some(end), "{context}");
-                if end != LoadingEnd::AreaFraction {
+                if end == LoadingEnd::AreaFraction {
+                    let exact = builder().until(target).build().unwrap().last().unwrap().unwrap();
+                    assert_eq!(event(&last), event(&exact), "{context}");
+                    assert_eq!(last.step, exact.step, "{context}");
+                } else {
                     assert_eq!(last.contact.contact_nodes, contact.contact_nodes, "{context}");
                 }
                 path.verify().unwrap();
@@ -345,6 +355,36 @@ fn paths_end_where_they_are_to_end() {
                 // Loads between the ends of windows are off by 1e-5.
                 let off = last.contact.approach / states[600].contact.approach - 1.0;
                 assert!(off.abs() < 1e-4, "{context}: {off:e}");
+            }
+        }
+    }
+}
+
+/// Many nodes yield behind full contact, which ends a path that is to go there, with a factor or without.
+#[test]
+fn full_contact_may_be_the_end() {
+    let grid = Grid::square(20, 1.0).unwrap();
+    let surface = self_affine(&grid, 0.8, 5e-3, 6);
+    for (name, kernel) in half_spaces(grid) {
+        for hardness in [0.02, 0.05, 0.2] {
+            let builder = || {
+                let builder = LoadingSolver::builder(&surface, &kernel).hardness(hardness);
+                builder.max_area_fraction(1.0)
+            };
+            let exact = all(builder().updater(RecursiveCholesky::new()));
+            let mut path = builder().updater(ConjugateGradient::new()).build().unwrap();
+            let found: Vec<_> = path.by_ref().map(Result::unwrap).collect();
+            let context = format!("{name} {hardness}");
+            assert_eq!(path.end(), Some(LoadingEnd::AreaFraction), "{context}");
+            let last = found.last().unwrap();
+            assert_eq!((last.event, last.contact.contact_nodes), (ContactEvent::Touch, 400));
+            assert!(last.contact.plastic.unwrap().yielded_nodes < 400, "{context}");
+            assert_eq!(found.len(), exact.len(), "{context}");
+            for (found, exact) in found.iter().zip(&exact) {
+                assert_eq!(event(found), event(exact), "{context}, step {}", exact.step);
+                let apart = (found.contact.approach - exact.contact.approach).abs();
+                let allowed = found.approach_error + 1e-9 * exact.contact.approach;
+                assert!(apart <= allowed, "{context}: {apart:e} of {allowed:e}, {found:?}");
             }
         }
     }
@@ -393,13 +433,17 @@ fn the_default_hands_over_at_the_same_events() {
     let grid = Grid::square(40, 1.0).unwrap();
     let surface = self_affine(&grid, 0.7, 5e-3, 6);
     let (_, kernel) = half_spaces(grid).into_iter().next().unwrap();
-    let builder = || LoadingSolver::builder(&surface, &kernel).hardness(0.04);
+    let builder = || LoadingSolver::builder(&surface, &kernel).hardness(0.2);
     let exact = all(builder().updater(RecursiveCholesky::new()));
+    let elastic =
+        |s: &LoadingState| s.contact.contact_nodes - s.contact.plastic.unwrap().yielded_nodes;
+    println!("at most {:?} elastic nodes", exact.iter().map(elastic).max());
     let fixed = builder().build().unwrap().bytes();
     let (mut seams, mut asked) = (Vec::new(), 0);
-    for more in [1_150_000, 1_200_000, 1_300_000, 2_200_000] {
-        let budgeted = || builder().updater(Handover::new()).memory_budget(fixed + more);
-        let mut path = budgeted().build().unwrap();
+    for more in [2_700_000, 3_200_000, 4_500_000] {
+        let budgeted =
+            |room: usize| builder().updater(Handover::new()).memory_budget(fixed + more + room);
+        let mut path = budgeted(0).build().unwrap();
         let (mut found, mut at, mut seam) = (Vec::new(), None, 0);
         while let Some(state) = path.next() {
             found.push(state.unwrap());
@@ -420,13 +464,16 @@ fn the_default_hands_over_at_the_same_events() {
         // On both sides of it a path can be taken up again, and its states asked for their pressures.
         for k in [seam.saturating_sub(40).max(1), seam + 200] {
             let history: History = found[..k].iter().copied().collect();
-            let mut again = budgeted().resume(&history).unwrap();
+            // A factor is built anew in blocks of 256 nodes, wider than the windows for which it had room.
+            let room = if k < seam { 2_000_000 } else { 0 };
+            let mut again = budgeted(room).resume(&history).unwrap();
+            assert_eq!(again.handed_over_at().is_some(), k > seam, "budget {more}, {k}");
             let rest: Vec<_> = again.by_ref().map(Result::unwrap).collect();
             let whole: Vec<_> = history.states().iter().copied().chain(rest).collect();
             compare(&format!("budget {more}, resumed at {k}"), &whole, &exact, &BETWEEN);
             // Iterations for an earlier state need as much room as those of the path.
             let pressure = match path.pressure_at(&found[k / 2]) {
-                Err(Error::MemoryBudget { .. }) if more < 1_900_000 => continue,
+                Err(Error::MemoryBudget { .. }) if more < 3_000_000 => continue,
                 pressure => pressure.unwrap(),
             };
             let load = pressure.sum() * grid.cell_area();

@@ -19,8 +19,8 @@ use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART, REMEMBERED,
-    SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART,
+    REMEMBERED, SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::{Behind, Beside, Iterations, Proposal, Schur, WindowFactor};
