@@ -54,7 +54,8 @@
 //! With a hardness `RefinedYielding` does the same with events of both kinds: its matrices are those of
 //! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may touch and for nodes
 //! that may yield. All that is said above holds for its states; what nodes that touch and nodes that yield make of the error of a matrix may
-//! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least.
+//! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least. Nodes that yield
+//! together get the approach at which their plastic depths begin, by the solution behind them.
 //!
 //! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
 //!

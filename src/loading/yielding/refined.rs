@@ -679,3 +679,20 @@ impl Trial {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Touches and yields that alternate: what comes up to a number of touches.
+    #[test]
+    fn a_path_ends_with_its_last_touch() {
+        use ContactEvent::{Touch, Yield};
+        let rates = Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] };
+        let event = |kind| Event { position: 0, time: 1.0, kind, closing: 1.0, rates };
+        let events = [Touch, Yield, Yield, Touch, Yield].map(event);
+        let found = [1, 2, 3, 9].map(|touches| within(&events, touches));
+        assert_eq!(found, [1, 4, 5, 5]);
+        assert_eq!(within(&events[1..3], 1), 2);
+    }
+}
