@@ -55,7 +55,9 @@
 //! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may touch and for nodes
 //! that may yield. All that is said above holds for its states; what nodes that touch and nodes that yield make of the error of a matrix may
 //! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least. Nodes that yield
-//! together get the approach at which their plastic depths begin, by the solution behind them.
+//! together get the approach at which their plastic depths begin, by the solution behind them. Even so estimates are no bounds where few nodes
+//! are elastic: with H = 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by more, 2.3 times at
+//! worst; all events were those of the factor, 18 of them in another order within ties.
 //!
 //! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
 //!

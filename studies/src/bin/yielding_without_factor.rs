@@ -110,6 +110,7 @@ struct Compared {
     worst_error: f64,
     worst_load: f64,
     exceeded: usize,
+    worst_ratio: f64,
 }
 
 impl Compared {
@@ -154,15 +155,20 @@ impl Compared {
         if exact > 0.0 {
             self.worst_error = self.worst_error.max(error / exact);
         }
-        self.exceeded += usize::from(error > estimate + TIE * exact);
+        let allowed = estimate + TIE * exact;
+        self.exceeded += usize::from(error > allowed);
+        if allowed > 0.0 {
+            self.worst_ratio = self.worst_ratio.max(error / allowed);
+        }
     }
 
     fn told(&self) -> String {
         let Self { places, ties, beyond, worst_error, worst_load, exceeded, .. } = self;
         format!(
             "{places} places differ ({ties} events in ties, {beyond} not; {} not met again yet); approaches off by {worst_error:.1e}, loads by \
-             {worst_load:.1e} at worst; {exceeded} approaches off by more than their estimate",
-            self.found.len()
+             {worst_load:.1e} at worst; {exceeded} approaches off by more than their estimate, by a factor of {:.2} at worst",
+            self.found.len(),
+            self.worst_ratio
         )
     }
 }
