@@ -69,7 +69,8 @@ pub(super) const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 pub(super) const OF_SPACING: f64 = 1e-3;
 /// The same of a window in which nodes yield as well: what pressures of nodes that touched and overlaps of nodes that yielded make of the
 /// error of a matrix may cancel at the window's end, and not before. On the four paths of `tests/paths/hardness_without_factor.rs` and
-/// on 128² errors come to 0.64 of their estimates; with H = 0.05 E* h′ on 256², 0.2 % of them exceed these, by 2.3 times at worst. Half: to 1.01 of them, a twentieth fewer convolutions. Twice: a twentieth more.
+/// on 128² errors come to 0.64 of their estimates; with H = 0.05 E* h′ on 256², 0.2 % of them exceed these, by 2.3 times at worst. Half: to
+/// 1.01 of them, a twentieth fewer convolutions. Twice: a twentieth more.
 pub(super) const OF_SPACING_OF_BOTH: f64 = 1e-2;
 /// To this comes what closing rates may be off by, over the rate. Half or twice: a twentieth of the near ties fewer or more.
 pub(super) const RATE_ERROR: f64 = 5e-7;

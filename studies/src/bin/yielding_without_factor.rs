@@ -208,7 +208,7 @@ fn run(options: &Options) -> Result<(), Error> {
                 None => println!("the path with a factor has ended before event {count}"),
             }
         }
-        if count % options.every == 0 {
+        if count.is_multiple_of(options.every) {
             tell(count, &iterated, &exact, &compared);
         }
     }
