@@ -66,10 +66,6 @@ impl<U: LinearUpdater> Phase<U> {
         let Self::Factor { updater, may_end: true } = self else {
             return None;
         };
-        if run.plastic.is_some() {
-            // The factor holds elastic nodes only, which are few.
-            return None;
-        }
         let nodes = run.problem.grid().nodes();
         let iterations: Box<dyn Iterations> = Box::<ConjugateGradient>::default();
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);

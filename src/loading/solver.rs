@@ -50,7 +50,7 @@ pub struct LoadingSolver<U = Handover> {
     /// The solver of the path.
     pub(super) phase: Phase<U>,
     pub(super) procedure: Procedure,
-    /// Nodes in contact when the factor was given up.
+    /// Elastic nodes in contact when the factor was given up.
     pub(super) handed_over_at: Option<usize>,
     pub(super) rule: ContactRule,
     pub(super) limits: Limits,
@@ -267,7 +267,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
     }
 
-    /// Number of nodes in contact when the factor of [`Handover`] was given up, `None` while it is in use.
+    /// Number of elastic nodes in contact when the factor of [`Handover`] was given up, `None` while it is in use.
     #[must_use]
     pub fn handed_over_at(&self) -> Option<usize> {
         self.handed_over_at

@@ -11,6 +11,7 @@ mod flat;
 mod foreign_states;
 mod handover;
 mod hardness;
+mod hardness_without_factor;
 mod inexact_updaters;
 mod layers;
 mod long_cells;
