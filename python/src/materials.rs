@@ -10,7 +10,7 @@ use crate::results::result;
 
 /// A body by its name, or by Young's modulus and Poisson's ratio.
 #[derive(FromPyObject)]
-enum Body {
+pub(crate) enum Body {
     #[pyo3(transparent)]
     Numbers((f64, f64)),
     #[pyo3(transparent)]
@@ -18,15 +18,24 @@ enum Body {
 }
 
 impl Body {
-    fn numbers(&self) -> Fallible<(f64, f64)> {
+    /// Young's modulus \[Pa\] and Poisson's ratio.
+    pub(crate) fn numbers(&self) -> Fallible<(f64, f64)> {
         match self {
             Self::Numbers(numbers) => Ok(*numbers),
-            Self::Named(name) => {
-                let material = named(name)?;
-                Ok((material.youngs_modulus, material.poissons_ratio))
-            }
+            Self::Named(name) => named_numbers(name),
         }
     }
+
+    /// Whether it was given by this word.
+    pub(crate) fn is(&self, word: &str) -> bool {
+        matches!(self, Self::Named(name) if name == word)
+    }
+}
+
+/// Those of the material of a name.
+pub(crate) fn named_numbers(name: &str) -> Fallible<(f64, f64)> {
+    let material = named(name)?;
+    Ok((material.youngs_modulus, material.poissons_ratio))
 }
 
 fn named(name: &str) -> Fallible<&'static Material> {
