@@ -13,7 +13,10 @@
 //! `ℓ = δ + max g + |C| |p|`. In contact that is the error of a gap, and of a displacement elsewhere it is
 //! `‖C_OI C_II⁻¹‖` times as much, in the maximum norm; of a pressure `‖C_II⁻¹‖` times as much. The norms are those of
 //! the very set. Where nodes have yielded they are the greatest of all sets before: a window of events is computed from the equations
-//! at its beginning, of more elastic nodes.
+//! at its beginning, of more elastic nodes. What a window says of gaps, `g_Y = B⁻¹ b_Y` and `r_Y = −B⁻¹ y_Y` of nodes that yielded in it, has
+//! `B = (C_II⁻¹)_YY` and the pressures `b_Y` and rates `y_Y` solved for at its beginning: columns with residuals as above are off by
+//! `‖C_II⁻¹‖` times as much, and `‖B⁻¹‖ ≤ ‖C‖` since `B⁻¹` is a Schur complement. So scalars and rates, which windows carry on, are off by the
+//! product of both norms instead of `1 + ‖C_OI C_II⁻¹‖`; fields are solved for on the very set.
 
 use asperity::{Boundary, ContactGrowth, InfluenceKernel, LoadingState, MeanDisplacement};
 use asperity_testing::dense::{influence_matrix, initial_gap};
@@ -271,11 +274,13 @@ pub(crate) enum Node {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Norms {
     /// `‖C_II⁻¹‖`.
-    inverse: f64,
+    pub(crate) inverse: f64,
     /// `1 + ‖C_OI C_II⁻¹‖`.
     pub(crate) carried: f64,
     /// `Σ |y₂|`.
     rate: f64,
+    /// What cancels in a closing rate.
+    closing: f64,
 }
 
 impl Norms {
@@ -285,6 +290,7 @@ impl Norms {
             inverse: self.inverse.max(other.inverse),
             carried: self.carried.max(other.carried),
             rate: self.rate.max(other.rate),
+            closing: self.closing.max(other.closing),
         }
     }
 }
@@ -317,6 +323,8 @@ pub(crate) struct Instant {
     /// What cancels in a gap.
     pub(crate) lengths: f64,
     pub(crate) gap_error: f64,
+    /// What gaps are off by if they have come through a window of events.
+    pub(crate) carried_error: f64,
     pub(crate) pressure_error: f64,
 }
 
@@ -359,20 +367,30 @@ impl<'a> ContactSet<'a> {
             load,
             factor,
             residual,
-            norms: Norms { inverse: norm(&inverse), carried, rate: 0.0 },
+            norms: Norms { inverse: norm(&inverse), carried, rate: 0.0, closing: 0.0 },
             rate: DVector::zeros(0),
             closing: DVector::zeros(0),
             closing_error: 0.0,
         };
         let rate = set.solve(&ones);
         let (displacement, lengths) = dense.displace(&rate);
-        let lengths = 1.0 + lengths;
         set.norms.rate = rate.abs().sum();
+        set.norms.closing = 1.0 + lengths;
         set.norms = set.norms.max(before);
-        set.closing_error = set.norms.carried * (lengths * Dense::rounding(all) + residual);
+        let rounding = set.norms.closing * Dense::rounding(all);
+        set.closing_error = set.through_windows() * rounding + set.norms.carried * residual;
         set.closing = displacement.map(|u| 1.0 - u);
         set.rate = rate;
         Some(set)
+    }
+
+    /// What rounding errors of gaps are carried on by in a window of events.
+    fn through_windows(&self) -> f64 {
+        let carried = self.norms.carried;
+        match self.states.contains(&Node::Yielded) {
+            true => carried.max(norm(&self.dense.influence) * self.norms.inverse),
+            false => carried,
+        }
     }
 
     /// `C_II⁻¹ b`, on the whole grid.
@@ -409,14 +427,16 @@ impl<'a> ContactSet<'a> {
         let (displacement, lengths) = dense.displace(&pressure);
         let gap = &dense.gap + &displacement - DVector::from_element(dense.nodes(), own_approach);
         let lengths = own_approach.abs() + dense.gap.max() + lengths;
-        let residual = self.residual * own_approach.abs();
-        let gap_error = self.norms.carried * (Dense::rounding(dense.nodes()) * lengths + residual);
+        let rounding = Dense::rounding(dense.nodes()) * lengths;
+        let residual = self.norms.carried * self.residual * own_approach.abs();
+        let gap_error = self.norms.carried * rounding + residual;
         Instant {
             pressure,
             displacement,
             gap,
             lengths,
             gap_error,
+            carried_error: self.through_windows() * rounding + residual,
             pressure_error: self.norms.inverse * gap_error,
         }
     }
@@ -439,7 +459,8 @@ impl<'a> ContactSet<'a> {
         let energy = instant.pressure.dot(&instant.displacement) - gauge * sum * sum;
         let lengths = instant.lengths + gauge.abs() * sum.abs();
         let pressures = instant.pressure.abs().sum();
-        let error = pressures * (Dense::rounding(self.dense.nodes()) * lengths + instant.gap_error);
+        let error =
+            pressures * (Dense::rounding(self.dense.nodes()) * lengths + instant.carried_error);
         (0.5 * energy, error)
     }
 

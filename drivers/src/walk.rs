@@ -215,27 +215,28 @@ impl<'a> Walk<'a> {
         if let (Some((set, instant)), Some(last)) = (&before, last) {
             self.check_scalars(&found, set, instant)?;
             self.check_signs(set, instant)?;
+            // Where no node has yielded, both errors are the same.
             if let Some(node) = node {
                 let size = instant.gap[node].abs();
                 let (what, value, allowed) = if state.event == ContactEvent::Yield {
                     let hardness = self.hardness(node);
                     let left = hardness - instant.pressure[node];
-                    let allowed = instant.pressure_error + TIE * hardness;
+                    let allowed = set.norms.inverse * instant.carried_error + TIE * hardness;
                     ("pressure missing where a node yields", left, allowed)
                 } else if set.contains(node) {
                     let value = instant.pressure[node];
                     ("pressure of the node that leaves", value, instant.pressure_error)
                 } else {
-                    let allowed = instant.gap_error + TIE * instant.lengths;
+                    let allowed = instant.carried_error + TIE * instant.lengths;
                     ("gap of the node that touches", size, allowed)
                 };
                 self.tally.close(what, value, 0.0, allowed)?;
             }
-            let allowed = set.sum_error(instant.gap_error);
+            let allowed = set.sum_error(instant.carried_error);
             let change = found.sum - self.dense.own_sum(last.contact.load);
             self.tally.not_negative("growth of the load", change, allowed)?;
             let change = found.own_approach - self.dense.of(&last).own_approach;
-            self.tally.not_negative("growth of the approach", change, instant.gap_error)?;
+            self.tally.not_negative("growth of the approach", change, instant.carried_error)?;
         } else if last.is_none() {
             let first =
                 (state.step, state.contact.approach, state.contact.load, state.contact.energy);
@@ -319,12 +320,12 @@ impl<'a> Walk<'a> {
     ) -> Result<(), Violation> {
         let tally = &mut self.tally;
         let sum = instant.pressure.sum();
-        let allowed = set.sum_error(instant.gap_error);
+        let allowed = set.sum_error(instant.carried_error);
         tally.close("load", found.sum, sum, allowed)?;
         let overlap: f64 = set.all(Node::Yielded).map(|node| instant.gap[node]).sum();
         let gap = instant.gap.mean() - overlap / self.dense.nodes() as f64;
-        self.gap_error = self.gap_error.max(instant.gap_error);
-        let allowed = self.gap_error + instant.gap_error;
+        self.gap_error = self.gap_error.max(instant.carried_error);
+        let allowed = self.gap_error + instant.carried_error;
         tally.close("mean gap", found.mean_gap, gap, allowed)?;
         if let Some(plastic) = found.plastic {
             let [expected, errors] = set.plastic(instant, allowed);
@@ -343,7 +344,7 @@ impl<'a> Walk<'a> {
         instant: &Instant,
     ) -> Result<(), Violation> {
         if let Some(plastic) = found.plastic {
-            let [expected, errors] = set.plastic(instant, instant.gap_error);
+            let [expected, errors] = set.plastic(instant, instant.carried_error);
             for (k, what) in
                 ["plastic volume by load", "plastic work by load"].into_iter().enumerate()
             {

@@ -126,7 +126,7 @@ impl<'a> Bed<'a> {
     ///
     /// [`BedError::Empty`]; [`BedError::NotFromFirstTouch`]; [`BedError::NotElasticGrowth`] if a node leaves the contact or
     /// yields; [`BedError::NotMonotone`] for loads or approaches that fall, mean gaps that rise, and scalars that are not finite;
-    /// [`BedError::NoStiffness`].
+    /// [`BedError::NoStiffness`]; [`Error::NotFinite`] if an energy overflows.
     pub fn new(history: &'a History) -> Result<Self, Error> {
         let states = history.states();
         let Some(first) = states.first() else {
@@ -143,7 +143,10 @@ impl<'a> Bed<'a> {
             check_event(state)?;
             check_growth(before, state)?;
             let (now, last) = (&state.contact, &before.contact);
-            energy += 0.5 * (last.load + now.load) * (now.approach - last.approach);
+            energy += (0.5 * last.load + 0.5 * now.load) * (now.approach - last.approach);
+            if !energy.is_finite() {
+                return Err(Error::NotFinite { step: state.step });
+            }
             energies.push(energy);
             before = state;
         }
@@ -256,7 +259,10 @@ impl<'a> Bed<'a> {
         }
         // The first knot has the load 0.
         let interval = self.loads.partition_point(|knot| *knot <= load).saturating_sub(1);
-        Ok(self.within(interval, load))
+        let state = self.within(interval, load);
+        let is_finite = state.approach.is_finite() && state.energy.is_finite();
+        Error::require("load", load, is_finite, "one whose approach and energy are numbers")?;
+        Ok(state)
     }
 
     /// The elastic state at an approach.
