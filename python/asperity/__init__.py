@@ -29,7 +29,7 @@ Where to find it
     leakage through the gap
 ``shear``
     tangential loads: partial slip, stiffness, dissipation
-``Prony``, ``creep``, ``steady_cycle``
+``Prony``, ``creep``, ``steady_cycles``
     viscoelastic bodies over time
 ``conductance``, ``interface_table``
     heat and current through a joint; its laws for finite elements
@@ -54,6 +54,7 @@ from asperity import errors, results
 from asperity._asperity import (
     EVENTS,
     Creep,
+    CreepSteps,
     HalfSpace,
     History,
     InterfaceTable,
@@ -90,11 +91,13 @@ from asperity._asperity import (
     patches,
     pressure_distribution,
     read,
+    save_fields,
     self_affine,
     set_threads,
     shear,
     solve,
     steady_cycle,
+    steady_cycles,
     sweep,
     threads,
     wave,
@@ -105,6 +108,7 @@ __all__ = [
     "AsperityError",
     "AsperityWarning",
     "Creep",
+    "CreepSteps",
     "EVENTS",
     "HalfSpace",
     "History",
@@ -144,11 +148,13 @@ __all__ = [
     "pressure_distribution",
     "read",
     "results",
+    "save_fields",
     "self_affine",
     "set_threads",
     "shear",
     "solve",
     "steady_cycle",
+    "steady_cycles",
     "sweep",
     "threads",
     "wave",

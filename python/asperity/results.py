@@ -370,26 +370,31 @@ class LeakCurve:
     Attributes
     ----------
     states : list of State
-    load, mean_pressure, area_fraction : ndarray of float
-        Of the states [N, Pa, -].
+    load, mean_pressure, area_fraction, mean_gap : ndarray of float
+        Of the states [N, Pa, -, m].
     leak_rate, mean_field_leak_rate : ndarray of float
         [m³/s]
-    permeability : ndarray of float
-        [m³/(Pa s)]
-    constriction_gap : ndarray of float
-        Gap of the narrowest place of the widest channel [m]; NaN if nothing leaks.
+    permeability, transverse_permeability : ndarray of float
+        Along the flow and across [m³/(Pa s)]; across NaN on a free boundary.
+    constrictions : list of CriticalConstriction or None
+        The narrowest place of the widest channel; None where nothing leaks.
+    imbalance : ndarray of float
+        What is lost at all nodes together over the leak rate.
     closing : State or None
-        The state at which the last channel closes.
+        The state at which the last channel closes; None if the path does not reach it, and if nodes leave the contact.
     """
 
     states: list[State]
     load: NDArray[np.float64] = field(compare=False)
     mean_pressure: NDArray[np.float64] = field(compare=False)
     area_fraction: NDArray[np.float64] = field(compare=False)
+    mean_gap: NDArray[np.float64] = field(compare=False)
     leak_rate: NDArray[np.float64] = field(compare=False)
     mean_field_leak_rate: NDArray[np.float64] = field(compare=False)
     permeability: NDArray[np.float64] = field(compare=False)
-    constriction_gap: NDArray[np.float64] = field(compare=False)
+    transverse_permeability: NDArray[np.float64] = field(compare=False)
+    constrictions: list[CriticalConstriction | None]
+    imbalance: NDArray[np.float64] = field(compare=False)
     closing: State | None
 
 
@@ -445,7 +450,9 @@ class SlipCycle:
     stick_load : float
         Nodes in contact at this load stick throughout [N].
     slipping_nodes : int
-        Below some 50 of them the dissipation is that of the grid.
+        Nodes that slip.
+    has_few_nodes : bool
+        So few that the dissipation is that of the grid: below some 50.
     """
 
     amplitude: float
@@ -456,6 +463,7 @@ class SlipCycle:
     loss_factor: float
     stick_load: float
     slipping_nodes: int
+    has_few_nodes: bool
 
 
 @dataclass(frozen=True)

@@ -285,6 +285,12 @@ fn of_kernel(error: &KernelError) -> Described {
 
 fn of_updater(error: &UpdaterError) -> Described {
     match error {
+        UpdaterError::UpdaterMismatch { quantity, expected, found } => {
+            (VALUE, "UpdaterMismatch", numbers![quantity, expected, found])
+        }
+        UpdaterError::UpdaterWrong { quantity, contact_nodes, error, tolerance } => {
+            (VALUE, "UpdaterWrong", numbers![quantity, contact_nodes, error, tolerance])
+        }
         UpdaterError::ContactNotClosed { quantity, ix, iy, value, tolerance } => {
             (CONVERGENCE, "ContactNotClosed", numbers![quantity, ix, iy, value, tolerance])
         }
@@ -299,6 +305,7 @@ fn of_updater(error: &UpdaterError) -> Described {
 
 fn of_bed(error: &BedError) -> Described {
     match error {
+        BedError::Empty => (VALUE, "EmptyPath", Vec::new()),
         BedError::NotFromFirstTouch { load, approach } => {
             (VALUE, "NotFromFirstTouch", numbers![load, approach])
         }

@@ -381,7 +381,7 @@ impl HalfSpace {
         }
     }
 
-    /// Displacement over pressure of waves [m/Pa]: what the body is, as a function of the wave number.
+    /// Displacement over pressure of waves [m/Pa] of a body with layers: what it is, as a function of the wave number.
     ///
     /// Parameters
     /// ----------
@@ -391,18 +391,19 @@ impl HalfSpace {
     /// Returns
     /// -------
     /// ndarray of float
-    ///     Without layers ``2 / (e_star * q)``; NaN for a body of your own.
+    ///     That of a half-space would be ``2 / (e_star * q)``, which is what short waves see.
     fn compliance<'py>(
         &self,
         py: Python<'py>,
         wave_numbers: &Bound<'py, PyAny>,
     ) -> Fallible<Bound<'py, PyArray1<f64>>> {
         let waves = Found::of(wave_numbers, "wave_numbers", Kind::Real)?.list()?;
-        let of = |q: &f64| match &self.body {
-            Body::Layers { body, .. } => body.compliance(*q),
-            _ => self.e_star.map_or(f64::NAN, |e_star| 2.0 / (e_star * q.abs())),
+        let Body::Layers { body, .. } = &self.body else {
+            return Err(Failure::arguments(
+                "the body has no layers: its compliance is 2 / (e_star q)",
+            ));
         };
-        Ok(column(py, waves.iter().map(of).collect()))
+        Ok(column(py, waves.iter().map(|q| body.compliance(*q)).collect()))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyTuple>> {

@@ -8,13 +8,12 @@ use asperity::loading;
 use pyo3::prelude::*;
 
 use crate::errors::{Failure, Fallible};
-use crate::history::{History, Setting};
+use crate::history::History;
 use crate::path::{Engine, LoadingPath};
 
 /// The states of a path, and the path itself where fields are to be had.
 pub(crate) struct Increments {
     pub(crate) history: Arc<loading::History>,
-    pub(crate) setting: Setting,
     path: Option<Py<LoadingPath>>,
 }
 
@@ -22,18 +21,19 @@ impl Increments {
     /// Of a path with its states so far, or of a history.
     pub(crate) fn of(object: &Bound<'_, PyAny>) -> Fallible<Self> {
         if let Ok(path) = object.cast::<LoadingPath>() {
-            let history = path.get().history_now(object.py());
-            return Ok(Self {
-                history: history.history,
-                setting: history.setting,
-                path: Some(path.clone().unbind()),
-            });
+            let history = path.get().history_now(object.py()).history;
+            return Ok(Self { history, path: Some(path.clone().unbind()) });
         }
         let Ok(history) = object.cast::<History>() else {
             return Err(Failure::arguments("a LoadingPath or a History is needed"));
         };
-        let history = history.get();
-        Ok(Self { history: Arc::clone(&history.history), setting: history.setting, path: None })
+        Ok(Self { history: Arc::clone(&history.get().history), path: None })
+    }
+
+    /// The same once more.
+    pub(crate) fn again(&self, py: Python<'_>) -> Self {
+        let path = self.path.as_ref().map(|path| path.clone_ref(py));
+        Self { history: Arc::clone(&self.history), path }
     }
 
     /// The bed of the path.

@@ -11,6 +11,7 @@ use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
+use crate::materials::{self, Body};
 
 const CARRIERS: [(&str, Carrier); 2] = [("heat", Carrier::Heat), ("current", Carrier::Current)];
 
@@ -129,9 +130,11 @@ pub(crate) struct InterfaceTable {
 /// carrier, e_star, gap
 ///     As of `conductance`.
 /// friction : float, optional
-///     Coefficient of friction, for tangential stiffness and slip limit; with a compliance ratio.
+///     Coefficient of friction, for tangential stiffness and slip limit; with bodies or their ratio of compliances.
+/// bodies : (body, body), optional
+///     Both bodies, as of `shear`: they have the ratio of compliances.
 /// compliance_ratio : float, optional
-///     Tangential over normal compliance, E*/G*.
+///     In place of bodies: tangential over normal compliance, E*/G*.
 /// tolerance : float
 ///     Greatest relative error of linear interpolation.
 ///
@@ -139,7 +142,7 @@ pub(crate) struct InterfaceTable {
 /// -------
 /// InterfaceTable
 #[pyfunction]
-#[pyo3(signature = (path, *, resistivity=None, carrier="heat", e_star=None, gap=None, friction=None, compliance_ratio=None, tolerance=0.01))]
+#[pyo3(signature = (path, *, resistivity=None, carrier="heat", e_star=None, gap=None, friction=None, bodies=None, compliance_ratio=None, tolerance=0.01))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn interface_table(
     py: Python<'_>,
@@ -149,6 +152,7 @@ fn interface_table(
     e_star: Option<f64>,
     gap: Option<(f64, f64)>,
     friction: Option<f64>,
+    bodies: Option<(Body, Body)>,
     compliance_ratio: Option<f64>,
     tolerance: f64,
 ) -> Fallible<InterfaceTable> {
@@ -158,10 +162,18 @@ fn interface_table(
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
         builder = builder.conduction(made);
     }
-    match (friction, compliance_ratio) {
-        (Some(friction), Some(ratio)) => builder = builder.friction(friction, ratio),
-        (None, None) => {}
-        _ => return Err(Failure::arguments("friction and compliance_ratio go together")),
+    match (friction, bodies, compliance_ratio) {
+        (Some(friction), None, Some(ratio)) => builder = builder.friction(friction, ratio),
+        (Some(friction), Some(bodies), None) => {
+            let friction = materials::friction(friction, &bodies)?;
+            builder = builder.friction(friction.coefficient(), friction.compliance_ratio());
+        }
+        (None, None, None) => {}
+        _ => {
+            return Err(Failure::arguments(
+                "friction goes together with one of bodies and compliance_ratio",
+            ));
+        }
     }
     Ok(InterfaceTable { table: detached(py, || builder.build())?? })
 }
@@ -178,19 +190,15 @@ impl InterfaceTable {
     fn columns<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
         let all = self.table.rows();
         let columns = PyDict::new(py);
-        let given: [(&str, fn(&InterfaceRow) -> Option<f64>); 5] = [
-            ("pressure", |row| Some(row.pressure)),
-            ("overclosure", |row| Some(row.overclosure)),
-            ("conductance", |row| row.conductance),
-            ("tangential_stiffness", |row| row.tangential_stiffness),
-            ("slip_limit", |row| row.slip_limit),
-        ];
-        for (name, get) in given {
+        let put = |name: &str, get: fn(&InterfaceRow) -> Option<f64>| {
             let values: Option<Vec<f64>> = all.iter().map(get).collect();
-            if let Some(values) = values {
-                columns.set_item(name, column(py, values))?;
-            }
-        }
+            values.map_or(Ok(()), |values| columns.set_item(name, column(py, values)))
+        };
+        put("pressure", |row| Some(row.pressure))?;
+        put("overclosure", |row| Some(row.overclosure))?;
+        put("conductance", |row| row.conductance)?;
+        put("tangential_stiffness", |row| row.tangential_stiffness)?;
+        put("slip_limit", |row| row.slip_limit)?;
         Ok(columns)
     }
 

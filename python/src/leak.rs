@@ -1,8 +1,8 @@
 //! Leakage through the gap.
 
+use asperity::Boundary;
 use asperity::leak::{self, CriticalConstriction, Leak, LeakPoint};
 use asperity::surface::Axis;
-use asperity::{Boundary, Grid};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -119,10 +119,7 @@ impl Seal {
         periodic: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
         let found = Found::of(gap, "gap", Kind::Real)?;
-        let (count, columns) = found.rows_and_columns()?;
-        let (x, y) = size.x_and_y();
-        let y = y.unwrap_or(x / columns.max(1) as f64 * count as f64);
-        let grid = Grid::with_sides(columns, count, x, y)?;
+        let grid = size.grid(found.rows_and_columns()?)?;
         let gap = found.on(&grid)?;
         let contact = Found::of(contact_map, "contact_map", Kind::Truth)?.map_on(&grid)?;
         let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
@@ -153,16 +150,21 @@ impl Seal {
         let values = |get: &dyn Fn(&LeakPoint) -> f64| {
             column(py, curve.points.iter().map(get).collect::<Vec<f64>>())
         };
+        let constrictions = curve.points.iter().map(|point| narrowest(py, point.constriction));
+        let constrictions: Vec<_> = constrictions.collect::<Fallible<_>>()?;
         let known: Vec<State> = curve.points.iter().map(|point| State::new(point.state)).collect();
         result!(py, "LeakCurve", {
             states: known,
             load: values(&|point| point.state.contact.load),
             mean_pressure: values(&|point| point.state.contact.mean_pressure()),
             area_fraction: values(&|point| point.state.contact.contact_area_fraction),
+            mean_gap: values(&|point| point.state.contact.mean_gap),
             leak_rate: values(&|point| point.leak_rate),
             mean_field_leak_rate: values(&|point| point.mean_field_leak_rate),
             permeability: values(&|point| point.permeability),
-            constriction_gap: values(&|point| point.constriction.map_or(f64::NAN, |c| c.gap)),
+            transverse_permeability: values(&|p| p.transverse_permeability.unwrap_or(f64::NAN)),
+            constrictions: constrictions,
+            imbalance: values(&|point| point.imbalance),
             closing: curve.closing.map(State::new),
         })
     }
@@ -173,8 +175,11 @@ impl Seal {
     }
 }
 
-fn of_leak<'py>(py: Python<'py>, leak: Leak) -> Fallible<Bound<'py, PyAny>> {
-    let constriction = |found: CriticalConstriction| {
+fn narrowest<'py>(
+    py: Python<'py>,
+    constriction: Option<CriticalConstriction>,
+) -> Fallible<Option<Bound<'py, PyAny>>> {
+    let of = |found: CriticalConstriction| {
         result!(py, "CriticalConstriction", {
             row: found.node.1,
             column: found.node.0,
@@ -183,6 +188,10 @@ fn of_leak<'py>(py: Python<'py>, leak: Leak) -> Fallible<Bound<'py, PyAny>> {
             dissipation: found.dissipation,
         })
     };
+    constriction.map(of).transpose()
+}
+
+fn of_leak<'py>(py: Python<'py>, leak: Leak) -> Fallible<Bound<'py, PyAny>> {
     let sections: Bound<'py, PyArray1<f64>> = column(py, leak.sections);
     let fields = PyDict::new(py);
     fields.set_item("leak_rate", leak.leak_rate)?;
@@ -190,7 +199,7 @@ fn of_leak<'py>(py: Python<'py>, leak: Leak) -> Fallible<Bound<'py, PyAny>> {
     let across = leak.transverse_permeability.unwrap_or(f64::NAN);
     fields.set_item("transverse_permeability", across)?;
     fields.set_item("mean_field_leak_rate", leak.mean_field_leak_rate)?;
-    fields.set_item("constriction", leak.constriction.map(constriction).transpose()?)?;
+    fields.set_item("constriction", narrowest(py, leak.constriction)?)?;
     fields.set_item("pressure", rows(py, leak.pressure)?)?;
     fields.set_item("flux_x", rows(py, leak.flux_x)?)?;
     fields.set_item("flux_y", rows(py, leak.flux_y)?)?;

@@ -1,6 +1,7 @@
 //! Moduli and hardnesses of bodies.
 
 use asperity::material::{BRINELL, Material, VICKERS};
+use asperity::slip::Friction;
 use asperity::{Error, composite_modulus as composite, plane_strain_modulus as plane_strain};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -30,6 +31,21 @@ impl Body {
     pub(crate) fn is(&self, word: &str) -> bool {
         matches!(self, Self::Named(name) if name == word)
     }
+}
+
+/// Friction between two bodies, of which the second may be rigid.
+pub(crate) fn friction(coefficient: f64, (first, second): &(Body, Body)) -> Fallible<Friction> {
+    let second = if second.is("rigid") { None } else { Some(second.numbers()?) };
+    Ok(Friction::between(coefficient, first.numbers()?, second)?)
+}
+
+/// E* of two bodies, of which the second may be rigid \[Pa\].
+pub(crate) fn modulus((first, second): &(Body, Body)) -> Fallible<f64> {
+    let (e, nu) = first.numbers()?;
+    if second.is("rigid") {
+        return Ok(plane_strain(e, nu)?);
+    }
+    Ok(composite((e, nu), second.numbers()?)?)
 }
 
 /// Those of the material of a name.

@@ -2,7 +2,7 @@
 
 use asperity::bed::{Bed, Superposition};
 use asperity::creep::{
-    Corners, Course, Creep as OfLoad, CreepState, Relaxation, Steps, Unloading, ViscoelasticBed,
+    Corners, Course, Creep as OfLoad, CreepState, Prony as Law, Relaxation, Steps, Unloading,
 };
 use asperity::{Error, LoadingState};
 use numpy::{PyArray1, PyArray2};
@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::prony::Prony;
+use super::steps::CreepSteps;
 use crate::arrays::{Found, Kind, column, rows};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
-use crate::path::Superposed;
 use crate::state::State;
 
 /// The contact of viscoelastic bodies under a history of load or approach, from the elastic path: made by `creep`.
@@ -61,6 +61,7 @@ pub(crate) struct Creep {
 #[pyfunction]
 #[pyo3(signature = (path, prony, times, *, load=None, approach=None))]
 fn creep(
+    py: Python<'_>,
     path: &Bound<'_, PyAny>,
     prony: Py<Prony>,
     times: &Bound<'_, PyAny>,
@@ -79,7 +80,7 @@ fn creep(
         _ => return Err(Failure::arguments("give one of load and approach")),
     };
     let creep = Creep { increments, prony, course };
-    creep.grown(|_| Ok(()))?;
+    creep.grown(py, |_| Ok(()))?;
     Ok(creep)
 }
 
@@ -89,7 +90,14 @@ enum Grown<'a> {
     Approach(Relaxation<'a>),
 }
 
-impl Grown<'_> {
+impl<'a> Grown<'a> {
+    fn on(bed: &'a Bed<'a>, prony: &Law, course: &Course) -> Result<Self, Error> {
+        Ok(match course {
+            Course::Load(load) => Self::Load(OfLoad::new(bed, prony, load)?),
+            Course::Approach(approach) => Self::Approach(Relaxation::new(bed, prony, approach)?),
+        })
+    }
+
     fn at(&self, time: f64) -> Result<CreepState, Error> {
         match self {
             Self::Load(creep) => creep.at(time),
@@ -113,28 +121,39 @@ impl Grown<'_> {
 }
 
 impl Creep {
-    fn grown<T>(&self, ask: impl FnOnce(&Grown) -> Result<T, Error>) -> Fallible<T> {
-        let bed = self.increments.bed()?;
-        Ok(ask(&self.on(&bed)?)?)
+    /// What the contact of the library says, as long as it grows.
+    fn grown<T: Send>(
+        &self,
+        py: Python<'_>,
+        ask: impl FnOnce(&Grown) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let (history, prony, course) = (&*self.increments.history, self.law(), &self.course);
+        Ok(detached(py, || {
+            let bed = Bed::new(history)?;
+            ask(&Grown::on(&bed, prony, course)?)
+        })??)
     }
 
-    fn on<'a>(&self, bed: &'a Bed<'a>) -> Result<Grown<'a>, Error> {
-        let prony = &self.prony.get().prony;
-        Ok(match &self.course {
-            Course::Load(load) => Grown::Load(OfLoad::new(bed, prony, load)?),
-            Course::Approach(approach) => Grown::Approach(Relaxation::new(bed, prony, approach)?),
-        })
-    }
-
-    /// The single unloading of a history of load.
-    fn unloaded<T>(&self, ask: impl FnOnce(&Unloading) -> Result<T, Error>) -> Fallible<T> {
-        let bed = self.increments.bed()?;
-        match self.on(&bed)? {
-            Grown::Load(creep) => Ok(ask(&Unloading::new(&creep)?)?),
-            Grown::Approach(_) => Err(Failure::arguments(
+    /// The same of a single unloading, under a load.
+    fn unloaded<T: Send>(
+        &self,
+        py: Python<'_>,
+        ask: impl FnOnce(&Unloading) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let Course::Load(load) = &self.course else {
+            return Err(Failure::arguments(
                 "a single unloading is solved under a load: `follow` steps through approaches",
-            )),
-        }
+            ));
+        };
+        let (history, prony) = (&*self.increments.history, self.law());
+        Ok(detached(py, || {
+            let bed = Bed::new(history)?;
+            ask(&Unloading::new(&OfLoad::new(&bed, prony, load)?)?)
+        })??)
+    }
+
+    fn law(&self) -> &Law {
+        &self.prony.get().prony
     }
 
     fn field_of<'py>(
@@ -142,15 +161,15 @@ impl Creep {
         py: Python<'py>,
         superposition: Superposition,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        let field = self.increments.field(py, |engine, bed| {
-            engine.superposed(Superposed::Pressure, &superposition, bed)
-        })?;
+        let field = self
+            .increments
+            .field(py, |engine, bed| engine.superposed_pressure(&superposition, bed))?;
         rows(py, field)
     }
 }
 
 /// States over time as columns.
-fn columns<'py>(py: Python<'py>, states: &[CreepState]) -> Fallible<Bound<'py, PyDict>> {
+pub(super) fn columns<'py>(py: Python<'py>, states: &[CreepState]) -> Fallible<Bound<'py, PyDict>> {
     let of = |get: fn(&CreepState) -> f64| column(py, states.iter().map(get).collect::<Vec<f64>>());
     let columns = PyDict::new(py);
     columns.set_item("time", of(|state| state.time))?;
@@ -169,8 +188,8 @@ fn columns<'py>(py: Python<'py>, states: &[CreepState]) -> Fallible<Bound<'py, P
 impl Creep {
     /// When the contact recedes for the first time [s]; None if it never does.
     #[getter]
-    fn recession(&self) -> Fallible<Option<f64>> {
-        self.grown(|grown| {
+    fn recession(&self, py: Python<'_>) -> Fallible<Option<f64>> {
+        self.grown(py, |grown| {
             Ok(match grown {
                 Grown::Load(creep) => creep.recession().map(|recession| recession.time),
                 Grown::Approach(relaxation) => relaxation.recession(),
@@ -181,7 +200,7 @@ impl Creep {
     /// When each state of the path is reached [s]: as many as are before the contact recedes.
     #[getter]
     fn touch_times<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray1<f64>>> {
-        let times = self.grown(|grown| {
+        let times = self.grown(py, |grown| {
             Ok(match grown {
                 Grown::Load(creep) => creep.times(),
                 Grown::Approach(relaxation) => relaxation.times(),
@@ -208,9 +227,9 @@ impl Creep {
     ///     Of the kind ``"ContactRecedes"`` behind `recession`, and ``"PathEnds"`` if the path does not reach as far.
     fn at<'py>(&self, py: Python<'py>, times: &Bound<'py, PyAny>) -> Fallible<Bound<'py, PyDict>> {
         let times = Found::of(times, "times", Kind::Real)?.list()?;
-        let states =
-            self.grown(|grown| times.iter().map(|time| grown.at(*time)).collect::<Result<_, _>>())?;
-        let states: Vec<CreepState> = states;
+        let states = self.grown(py, |grown| {
+            times.iter().map(|time| grown.at(*time)).collect::<Result<Vec<_>, _>>()
+        })?;
         columns(py, &states)
     }
 
@@ -225,8 +244,8 @@ impl Creep {
     /// -------
     /// State
     ///     Its load is the effective one, and its pressure not that of the time.
-    fn path_state(&self, time: f64) -> Fallible<State> {
-        Ok(State::new(self.grown(|grown| grown.path_state(time))?))
+    fn path_state(&self, py: Python<'_>, time: f64) -> Fallible<State> {
+        Ok(State::new(self.grown(py, |grown| grown.path_state(time))?))
     }
 
     /// Pressure [Pa] at a time.
@@ -248,7 +267,33 @@ impl Creep {
         time: f64,
         pieces: usize,
     ) -> Fallible<Bound<'py, PyArray2<f64>>> {
-        self.field_of(py, self.grown(|grown| grown.pressure(time, pieces))?)
+        self.field_of(py, self.grown(py, |grown| grown.pressure(time, pieces))?)
+    }
+
+    /// Gap [m] at a time: none in contact.
+    ///
+    /// Parameters
+    /// ----------
+    /// time : float
+    ///     [s]
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float, [row, column]
+    fn gap<'py>(&self, py: Python<'py>, time: f64) -> Fallible<Bound<'py, PyArray2<f64>>> {
+        let field = match &self.course {
+            Course::Load(_) => {
+                let state = self.grown(py, |grown| grown.path_state(time))?;
+                self.increments.field(py, |engine, _| engine.gap_at(&state))?
+            }
+            Course::Approach(approach) => {
+                let prony = self.law();
+                self.increments.field(py, |engine, bed| {
+                    engine.relaxed_gap(&Relaxation::new(bed, prony, approach)?, time)
+                })?
+            }
+        };
+        rows(py, field)
     }
 
     /// States of a single unloading under a load, in closed form: contact that has grown and recedes once.
@@ -269,7 +314,7 @@ impl Creep {
         times: &Bound<'py, PyAny>,
     ) -> Fallible<Bound<'py, PyDict>> {
         let times = Found::of(times, "times", Kind::Real)?.list()?;
-        let states = self.unloaded(|unloading| {
+        let states = self.unloaded(py, |unloading| {
             times.iter().map(|time| unloading.at(*time)).collect::<Result<Vec<_>, _>>()
         })?;
         let columns = PyDict::new(py);
@@ -284,34 +329,64 @@ impl Creep {
         Ok(columns)
     }
 
-    /// Follow the history in steps of time, whatever it is: receding and returning contact included.
+    /// Times for `follow`, and for curves: close behind each corner, and further apart as its memory fades.
     ///
     /// Parameters
     /// ----------
     /// end : float
-    ///     Until when [s].
+    ///     The last of them [s].
+    /// steps : int
+    ///     The least number of steps from one corner to the next.
     /// halvings : int
-    ///     How often the steps are halved: each time leaves a third of the error, some 1e-4 of the approach without.
+    ///     How often all steps are halved: each time leaves a quarter of the error, some 1e-4 of the approach without.
     ///
     /// Returns
     /// -------
-    /// dict of str to ndarray
-    ///     As of `at`, one value for each step.
-    #[pyo3(signature = (end, halvings=0))]
-    fn follow<'py>(
+    /// ndarray of float
+    ///     [s], all corners among them.
+    #[pyo3(signature = (end, *, steps=60, halvings=0))]
+    fn step_times<'py>(
         &self,
         py: Python<'py>,
         end: f64,
+        steps: usize,
         halvings: u32,
-    ) -> Fallible<Bound<'py, PyDict>> {
-        let prony = &self.prony.get().prony;
-        let states = detached(py, || {
-            let steps = (0..halvings.min(16)).fold(Steps::default(), |steps, _| steps.halved());
-            let times = steps.times(prony, self.course.corners(), end)?;
-            let bed = self.increments.bed()?;
-            ViscoelasticBed::new(&bed, prony)?.follow(&self.course, &times)
-        })??;
-        columns(py, &states)
+    ) -> Fallible<Bound<'py, PyArray1<f64>>> {
+        // More than this many would be more times than there is memory for.
+        for (quantity, value, most) in
+            [("number of steps", steps, 1_000_000), ("number of halvings", halvings as usize, 12)]
+        {
+            if value > most {
+                let value = value as f64;
+                let expected = "at most a million steps, halved at most 12 times";
+                return Err(Error::OutOfRange { quantity, value, expected }.into());
+            }
+        }
+        let least = Steps { least: steps, ..Steps::default() };
+        let steps = (0..halvings).fold(least, |steps, _| steps.halved());
+        let times = detached(py, || steps.times(self.law(), self.course.corners(), end))??;
+        Ok(column(py, times))
+    }
+
+    /// Follow the history in steps of time, whatever it is: receding and returning contact included.
+    ///
+    /// Parameters
+    /// ----------
+    /// times : array_like of float
+    ///     Ends of the steps [s], ascending, as of `step_times`. Corners of the history are steps of their own besides.
+    ///
+    /// Returns
+    /// -------
+    /// CreepSteps
+    ///     The states at these times, each just after a jump there, and the fields of the last one.
+    ///
+    /// Raises
+    /// ------
+    /// AsperityError
+    ///     Of the kind ``"BedEnds"`` if the path does not reach as far.
+    fn follow(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> Fallible<CreepSteps> {
+        let times = Found::of(times, "times", Kind::Real)?.list()?;
+        CreepSteps::follow(py, &self.increments, self.law(), &self.course, times)
     }
 
     fn __repr__(&self) -> String {

@@ -22,6 +22,19 @@ use crate::errors::Fallible;
 #[pyclass(frozen, module = "asperity")]
 pub(crate) struct Prony {
     pub(crate) prony: creep::Prony,
+    /// The method that has made it, and its arguments: made again, it is the same to the last digit.
+    made: (&'static str, Py<PyTuple>),
+}
+
+impl Prony {
+    fn new<'py>(
+        py: Python<'py>,
+        prony: creep::Prony,
+        method: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+    ) -> Fallible<Self> {
+        Ok(Self { prony, made: (method, arguments.into_pyobject(py)?.unbind()) })
+    }
 }
 
 /// Times and amounts of some terms.
@@ -46,8 +59,9 @@ impl Prony {
     /// -------
     /// Prony
     #[staticmethod]
-    fn relaxation(equilibrium: f64, terms: Terms) -> Fallible<Self> {
-        Ok(Self { prony: creep::Prony::relaxation(equilibrium, &terms)? })
+    fn relaxation(py: Python<'_>, equilibrium: f64, terms: Terms) -> Fallible<Self> {
+        let made = creep::Prony::relaxation(equilibrium, &terms)?;
+        Self::new(py, made, "relaxation", (equilibrium, terms))
     }
 
     /// From creep.
@@ -66,8 +80,9 @@ impl Prony {
     /// Prony
     #[staticmethod]
     #[pyo3(signature = (instantaneous, terms, fluidity=0.0))]
-    fn creep(instantaneous: f64, terms: Terms, fluidity: f64) -> Fallible<Self> {
-        Ok(Self { prony: creep::Prony::creep(instantaneous, &terms, fluidity)? })
+    fn creep(py: Python<'_>, instantaneous: f64, terms: Terms, fluidity: f64) -> Fallible<Self> {
+        let made = creep::Prony::creep(instantaneous, &terms, fluidity)?;
+        Self::new(py, made, "creep", (instantaneous, terms, fluidity))
     }
 
     /// As parts of the instantaneous modulus, which is that of the path: the form of finite elements.
@@ -81,8 +96,9 @@ impl Prony {
     /// -------
     /// Prony
     #[staticmethod]
-    fn shares(terms: Terms) -> Fallible<Self> {
-        Ok(Self { prony: creep::Prony::shares(&terms)? })
+    fn shares(py: Python<'_>, terms: Terms) -> Fallible<Self> {
+        let made = creep::Prony::shares(&terms)?;
+        Self::new(py, made, "shares", (terms,))
     }
 
     /// A body that does not creep.
@@ -96,8 +112,8 @@ impl Prony {
     /// -------
     /// Prony
     #[staticmethod]
-    fn elastic(modulus: f64) -> Fallible<Self> {
-        Ok(Self { prony: creep::Prony::elastic(modulus)? })
+    fn elastic(py: Python<'_>, modulus: f64) -> Fallible<Self> {
+        Self::new(py, creep::Prony::elastic(modulus)?, "elastic", (modulus,))
     }
 
     /// The plane-strain modulus E(t) / (1 - nu²) of a body whose E(t) this is.
@@ -110,8 +126,9 @@ impl Prony {
     /// Returns
     /// -------
     /// Prony
-    fn plane_strain(&self, poisson: f64) -> Fallible<Self> {
-        Ok(Self { prony: self.prony.plane_strain(poisson)? })
+    fn plane_strain(slf: &Bound<'_, Self>, poisson: f64) -> Fallible<Self> {
+        let made = slf.get().prony.plane_strain(poisson)?;
+        Self::new(slf.py(), made, "plane_strain", (slf, poisson))
     }
 
     /// This body on top of another one: creep functions add up.
@@ -124,8 +141,9 @@ impl Prony {
     /// Returns
     /// -------
     /// Prony
-    fn in_series(&self, other: PyRef<'_, Self>) -> Fallible<Self> {
-        Ok(Self { prony: self.prony.in_series(&other.prony)? })
+    fn in_series(slf: &Bound<'_, Self>, other: &Bound<'_, Self>) -> Fallible<Self> {
+        let made = slf.get().prony.in_series(&other.get().prony)?;
+        Self::new(slf.py(), made, "in_series", (slf, other))
     }
 
     /// The same modulus over another one: over the E* of a path.
@@ -138,8 +156,9 @@ impl Prony {
     /// Returns
     /// -------
     /// Prony
-    fn relative_to(&self, modulus: f64) -> Fallible<Self> {
-        Ok(Self { prony: self.prony.relative_to(modulus)? })
+    fn relative_to(slf: &Bound<'_, Self>, modulus: f64) -> Fallible<Self> {
+        let made = slf.get().prony.relative_to(modulus)?;
+        Self::new(slf.py(), made, "relative_to", (slf, modulus))
     }
 
     /// The creep function J(t) [1/Pa].
@@ -214,11 +233,11 @@ impl Prony {
         self.prony == other.prony
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyTuple>> {
-        let (py, this) = (slf.py(), slf.get());
-        let restore = py.get_type::<Self>().getattr("relaxation")?;
-        let state = (this.equilibrium_modulus(), this.relaxation_terms());
-        Ok((restore, state).into_pyobject(py)?)
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> Fallible<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, (method, arguments)) = (slf.py(), &slf.get().made);
+        Ok((py.get_type::<Self>().getattr(*method)?, arguments.bind(py).clone()))
     }
 
     fn __repr__(&self) -> String {

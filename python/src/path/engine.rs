@@ -2,6 +2,7 @@
 
 use asperity::bed::{Bed, Superposition};
 use asperity::contact::Certificate;
+use asperity::creep::{Relaxation, ViscoelasticBed};
 use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::loading::{History, LoadingEnd};
 use asperity::nalgebra::DMatrix;
@@ -32,12 +33,10 @@ pub(crate) trait Engine: Send + Sync {
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
     fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error>;
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
-    fn superposed(
-        &mut self,
-        what: Superposed,
-        of: &Superposition,
-        bed: &Bed,
-    ) -> Result<DMatrix<f64>, Error>;
+    fn superposed_pressure(&mut self, of: &Superposition, bed: &Bed)
+    -> Result<DMatrix<f64>, Error>;
+    fn relaxed_gap(&mut self, of: &Relaxation, time: f64) -> Result<DMatrix<f64>, Error>;
+    fn stepped_gap(&mut self, of: &ViscoelasticBed, pieces: usize) -> Result<DMatrix<f64>, Error>;
     fn sheared(
         &mut self,
         what: Sheared,
@@ -52,13 +51,6 @@ pub(crate) trait Engine: Send + Sync {
         history: &History,
         states: usize,
     ) -> Result<LeakCurve, Error>;
-}
-
-/// Fields of a superposition of increments.
-#[derive(Clone, Copy)]
-pub(crate) enum Superposed {
-    Pressure,
-    Displacement,
 }
 
 /// Fields under a tangential load.
@@ -146,16 +138,20 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
         Self::certificate_at(self, state)
     }
 
-    fn superposed(
+    fn superposed_pressure(
         &mut self,
-        what: Superposed,
         of: &Superposition,
         bed: &Bed,
     ) -> Result<DMatrix<f64>, Error> {
-        match what {
-            Superposed::Pressure => of.pressure(bed, self),
-            Superposed::Displacement => of.displacement(bed, self),
-        }
+        of.pressure(bed, self)
+    }
+
+    fn relaxed_gap(&mut self, of: &Relaxation, time: f64) -> Result<DMatrix<f64>, Error> {
+        of.gap(time, self)
+    }
+
+    fn stepped_gap(&mut self, of: &ViscoelasticBed, pieces: usize) -> Result<DMatrix<f64>, Error> {
+        of.gap(pieces, self)
     }
 
     fn sheared(

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-pub(crate) use self::engine::{Engine, Sheared, Superposed};
+pub(crate) use self::engine::{Engine, Sheared};
 use self::inner::Inner;
 pub(crate) use self::setup::{Hardness, warn_of};
 use crate::arrays::{column, rows, shape};
