@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
+import os
 import pickle
+import signal
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -32,6 +37,7 @@ def test_series() -> None:
     np.testing.assert_allclose(rubber.relaxation_at(times), relaxed, rtol=1e-12)
     # The other form of the same body.
     again = asp.Prony.creep(1.0, rubber.creep_terms)
+    # To the rounding of two conversions.
     np.testing.assert_allclose(again.relaxation_at(times), relaxed, rtol=1e-9)
     assert rubber.relaxation_terms == TERMS
     solid = asp.Prony.creep(1.0, [(2.0, 1.0)])
@@ -62,9 +68,12 @@ def test_creep_under_a_load(path: asp.LoadingPath) -> None:
     states = held.at(times)
     np.testing.assert_allclose(states["effective_load"], load * rubber.creep_at(times), rtol=1e-12)
     np.testing.assert_allclose(states["load"], load)
-    same = path.history.at(load=states["effective_load"])
-    for name in ("approach", "contact_nodes", "contact_area", "area_fraction", "mean_gap"):
-        np.testing.assert_allclose(states[name], getattr(same, name), rtol=1e-12, err_msg=name)
+    # Contact and gaps are those of the path at the effective load.
+    for k, effective in enumerate(states["effective_load"]):
+        same = path.history.at(load=effective)
+        assert states["contact_nodes"][k] == same.contact_nodes
+        for name in ("approach", "contact_area", "area_fraction", "mean_gap"):
+            assert states[name][k] == pytest.approx(getattr(same, name), rel=1e-12), name
     state = held.path_state(1.0)
     assert state.load == states["effective_load"][2]
     # The pressure bears the load, and no more than the contact of the time.
@@ -75,9 +84,22 @@ def test_creep_under_a_load(path: asp.LoadingPath) -> None:
     touched = held.touch_times
     assert (np.diff(touched) >= 0.0).all() and touched[0] == 0.0
     np.testing.assert_allclose(rubber.creep_at(touched[-1:]) * load, path.history.load[len(touched) - 1], rtol=1e-6)
-    followed = held.follow(20.0, halvings=1)
-    exact = held.at(followed["time"])
-    np.testing.assert_allclose(followed["approach"], exact["approach"], rtol=2e-3)
+    np.testing.assert_array_equal(held.gap(1.0), path.gap(state))
+    # In steps the same, and a quarter of the error in steps half as long.
+    worst = []
+    for halvings in (0, 1):
+        followed = held.follow(held.step_times(20.0, halvings=halvings))
+        found = followed.columns()
+        exact = held.at(found["time"])
+        assert len(followed) == len(exact["time"]) and found["time"][-1] == 20.0 and followed.halvings == 0
+        worst.append((abs(found["approach"] - exact["approach"]) / exact["approach"][-1]).max())
+    assert worst[0] < 1e-3 and worst[1] < 0.35 * worst[0]
+    # The fields of the last state bear its load and have its mean gap; forty pieces leave some 1e-3 of the greatest pressure.
+    pressure, gap = followed.pressure(), followed.gap()
+    assert pressure.sum() * np.prod(path.surface.cell) == pytest.approx(load, rel=1e-9)
+    assert gap.mean() == pytest.approx(found["mean_gap"][-1], rel=2e-3)
+    assert ((gap == 0.0).sum()) >= found["contact_nodes"][-1] and (gap >= 0.0).all()
+    np.testing.assert_allclose(pressure, held.pressure(20.0), atol=5e-3 * pressure.max())
 
 
 def test_relaxation_at_an_approach(path: asp.LoadingPath) -> None:
@@ -91,8 +113,13 @@ def test_relaxation_at_an_approach(path: asp.LoadingPath) -> None:
     pressure = held.pressure(0.1)
     full = path.pressure(path.history.at(approach=approach))
     np.testing.assert_allclose(pressure, full * rubber.relaxation_at([0.1])[0], atol=1e-6 * full.max())
+    np.testing.assert_array_equal(held.gap(0.1), path.gap(path.history.at(approach=approach)))
     with pytest.raises(ValueError, match="single unloading"):
         held.unloading([1.0])
+    # Lifted off, the surfaces are apart.
+    lifted = asp.creep(path, rubber, [0.0], approach=[-1e-6])
+    np.testing.assert_array_equal(lifted.gap(1.0), -path.surface.z + 1e-6)
+    assert lifted.at([1.0])["contact_nodes"][0] == 0
 
 
 def test_unloading(path: asp.LoadingPath) -> None:
@@ -101,14 +128,20 @@ def test_unloading(path: asp.LoadingPath) -> None:
     assert ramp.recession is not None and 0.9 < ramp.recession < 1.3
     with pytest.raises(errors.AsperityError) as info:
         ramp.at([1.9])
-    assert info.value.kind == "ContactRecedes" and info.value.time == 1.9
+    assert info.value.kind == "ContactRecedes" and info.value.time == ramp.recession
+    assert info.value.effective_load > load
     back = ramp.unloading([1.5, 1.8])
     assert (back["contact_time"] < 1.5).all() and (np.diff(back["contact_area"]) < 0.0).all()
     np.testing.assert_allclose(back["load"], [0.5 * load, 0.2 * load])
-    steps = ramp.follow(1.5, halvings=2)
-    assert steps["contact_area"][-1] == pytest.approx(back["contact_area"][0], rel=0.02)
-    with pytest.raises(ValueError, match="History"):
-        ramp.pressure(0.5)
+    steps = ramp.follow(ramp.step_times(1.5, halvings=2))
+    assert steps.columns()["contact_area"][-1] == pytest.approx(back["contact_area"][0], rel=0.02)
+    # Fields need the path.
+    for ask in (lambda: ramp.pressure(0.5), lambda: ramp.gap(0.5), steps.pressure, steps.gap):
+        with pytest.raises(ValueError, match="History"):
+            ask()
+    fields = asp.creep(path, rubber, [0.0, 1.0, 2.0], load=[0.0, load, 0.0]).follow(ramp.step_times(1.5))
+    contact = fields.columns()["contact_nodes"][-1]
+    assert (fields.pressure() > 0.0).sum() == contact <= (fields.gap() == 0.0).sum()
 
 
 def test_cycles(path: asp.LoadingPath) -> None:
@@ -127,22 +160,119 @@ def test_cycles(path: asp.LoadingPath) -> None:
     assert info.value.kind == "NoSteadyCycle"
 
 
-def test_the_creep_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
-    record = tmp_path / "path.npz"
-    program("path", "--nodes", 48, "--max-area-fraction", 0.5, "--record", record, "--out", tmp_path / "out")
+def csv(file: Path) -> dict[str, np.ndarray]:
+    """A table of the program: its numbers have all their digits."""
+    table = np.genfromtxt(file, delimiter=",", names=True)
+    return {name: table[name] for name in table.dtype.names}
+
+
+@pytest.fixture(scope="module")
+def record(program: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("creep")
+    surface = ["--nodes", 48, "--material", "rubber", "--periodic", "love", "--max-area-fraction", 0.7]
+    program("path", *surface, "--record", folder / "path.npz", "--out", folder / "out")
+    return folder / "path.npz"
+
+
+def same(columns: dict[str, np.ndarray], out: Path, fields: dict[str, np.ndarray]) -> None:
+    """Asserts that states are those of creep.csv, and fields those beside it."""
+    table = csv(out / "creep.csv")
+    table["area_fraction"] = table.pop("contact_area_fraction")
+    for name, column in table.items():
+        np.testing.assert_array_equal(columns[name], column, err_msg=name)
+    for name, field in fields.items():
+        np.testing.assert_array_equal(field, np.load(out / f"{name}.npy").T, err_msg=name)
+
+
+def test_the_creep_of_the_program(program: Callable[..., str], record: Path, tmp_path: Path) -> None:
+    """A load that is held: states, passages, cycles and fields, bit for bit."""
     path = asp.open(record)
-    load = 0.2 * path.history.load[-1]
-    words = ["--prony", "0.1,0.3", "10,0.2", "--load", repr(float(load)), "--json", "--out", tmp_path / "creep"]
-    told = json.loads(program("creep", record, *words))
-    held = asp.creep(path, asp.Prony.shares(TERMS), [0.0, 0.0], load=[0.0, load])
-    last = held.at([told["time"]])
-    for name in ("load", "effective_load", "approach", "contact_nodes", "mean_gap"):
-        assert last[name][0] == told[name], name
-    table = np.genfromtxt(tmp_path / "creep" / "creep.csv", delimiter=",", names=True)
-    table = table[table["load"] > 0.0]
-    states = held.at(table["time"])
-    for name in ("effective_load", "load", "approach", "mean_gap"):
-        np.testing.assert_array_equal(states[name], table[name], err_msg=name)
+    load = 0.3 * path.history.load[-1]
+    options = ["--prony", "0.1,0.3", "10,0.2", "--load", repr(float(load)), "--time", "50", "--steps", "40"]
+    told = json.loads(program("creep", record, *options, "--fields", "npy", "--json", "--out", tmp_path))
+    assert told["method"] == "closed form" and told["enough_until"] is None
+    rubber = asp.Prony.shares(TERMS)
+    held = asp.creep(path, rubber, [0.0, 0.0], load=[0.0, load])
+    states = held.at(held.step_times(50.0, steps=40))
+    same(states, tmp_path, {"pressure": held.pressure(50.0), "gap": held.gap(50.0)})
+    assert {name: states[name][-1] for name in ("load", "effective_load", "approach", "contact_nodes", "mean_gap")} == {
+        name: told[name] for name in ("load", "effective_load", "approach", "contact_nodes", "mean_gap")
+    }
+    # When the contact percolates, and when the last channel closes.
+    passages = asp.patches(path, connectivity=4).percolation()
+    times = held.touch_times
+    for name, state in {
+        "percolates_x": passages.contact_x,
+        "percolates_y": passages.contact_y,
+        "seals_x": passages.leak_x,
+        "seals_y": passages.leak_y,
+    }.items():
+        time = times[state.step - 1] if state is not None and state.step <= len(times) else np.inf
+        assert told[name] == (time if time <= 50.0 else None), name
+    assert told["seals_x"] is not None
+    # Cycles, from the highest frequency on, on the states that they need: no more than 1500, and so all of them.
+    high = 20.0 / (math.tau * rubber.relaxation_terms[0][0])
+    low = 1.0 / (20.0 * math.tau * rubber.creep_terms[-1][0])
+    count = math.ceil(math.log10(high / low) * 5.0)
+    periods = [1.0 / (high * (low / high) ** (k / count)) for k in range(count + 1)]
+    greatest = rubber.creep_at([np.inf])[0] * (load + 0.2 * load)
+    within = int(np.searchsorted(path.history.load, greatest, side="right")) + 1
+    assert within <= 1500
+    settings = {"mean_load": load, "amplitude": 0.2 * load, "steps": 64, "tolerance": 1e-4, "most": 40}
+    cycles = asp.steady_cycles(path.history[:within], rubber, periods=periods, **settings)  # type: ignore[arg-type]
+    table = csv(tmp_path / "cycles.csv")
+    np.testing.assert_array_equal([1.0 / cycle.period for cycle in reversed(cycles)], table.pop("frequency"))
+    for name, column in table.items():
+        np.testing.assert_array_equal([getattr(cycle, name) for cycle in reversed(cycles)], column, err_msg=name)
+
+
+def test_the_relaxation_of_the_program(program: Callable[..., str], record: Path, tmp_path: Path) -> None:
+    path = asp.open(record)
+    approach = 0.6 * path.history.approach[-1]
+    options = ["--prony", "0.1,0.3", "10,0.2", "--approach", repr(float(approach)), "--ramp", "0.5", "--time", "50"]
+    program("creep", record, *options, "--fields", "npy", "--out", tmp_path)
+    held = asp.creep(path, asp.Prony.shares(TERMS), [0.0, 0.5], approach=[0.0, approach])
+    states = held.at(held.step_times(50.0))
+    same(states, tmp_path, {"pressure": held.pressure(50.0), "gap": held.gap(50.0)})
+
+
+def test_receding_contact_of_the_program(program: Callable[..., str], record: Path, tmp_path: Path) -> None:
+    """In steps, and in steps half as long, of which the program keeps every second."""
+    path = asp.open(record)
+    end = float(path.history.load[-1])
+    times, loads = [0.0, 1.0, 3.0, 3.0, 6.0], [0.0, 0.4 * end, 0.05 * end, 0.3 * end, 0.1 * end]
+    lines = [f"{time!r},{load!r}" for time, load in zip(times, loads, strict=True)]
+    (tmp_path / "load.csv").write_text("\n".join(["time,load", *lines]) + "\n")
+    options = ["--prony", "0.1,0.3", "10,0.2", "--history", tmp_path / "load.csv", "--fields", "npy", "--json"]
+    told = json.loads(program("creep", record, *options, "--out", tmp_path))
+    assert told["method"] == "steps" and 1.0 <= told["recedes"] < 1.2
+    course = asp.creep(path, asp.Prony.shares(TERMS), times, load=loads)
+    assert course.recession == told["recedes"]
+    coarse = course.step_times(6.0)
+    fine = np.empty(2 * len(coarse) - 1)
+    fine[::2], fine[1::2] = coarse, 0.5 * (coarse[:-1] + coarse[1:])
+    steps = course.follow(fine)
+    columns = {name: column[::2] for name, column in steps.columns().items()}
+    same(columns, tmp_path, {"pressure": steps.pressure(), "gap": steps.gap()})
+    rough = course.follow(coarse).columns()
+    parts = [abs(columns[name] - rough[name]).max() / abs(columns[name]).max() for name in ("approach", "area_fraction")]
+    assert max(parts) / 3.0 == told["step_error"]
+
+
+def test_ctrl_c_while_stepping(path: asp.LoadingPath) -> None:
+    """The wait ends, and nothing is locked."""
+    if not hasattr(os, "fork"):
+        pytest.skip("signals of POSIX")
+    load = 0.3 * path.history.load[-1]
+    cycling = asp.creep(path, asp.Prony.shares(TERMS), np.arange(1000.0), load=load * (1.0 + 0.5 * np.sin(np.arange(1000.0))))
+    timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        while True:
+            cycling.follow(cycling.step_times(999.0, steps=500))
+    assert time.monotonic() - start < 5.0
+    assert path.pressure().max() > 0.0
 
 
 def test_what_cannot_creep(path: asp.LoadingPath) -> None:
@@ -158,3 +288,41 @@ def test_what_cannot_creep(path: asp.LoadingPath) -> None:
         asp.creep(path, rubber, [0.0, 1.0], load=[0.0])
     with pytest.raises(errors.AsperityError):
         asp.creep(path, rubber, [1.0, 0.0], load=[0.0, 1.0])
+    beyond = asp.creep(path, rubber, [0.0, 1.0, 2.0], load=[0.0, 0.95 * end, 0.0])
+    with pytest.raises(errors.AsperityError) as info:
+        beyond.follow([0.0, 1.0, 1e4, 0.5])
+    assert info.value.kind in ("BedEnds", "OutOfRange")
+    with pytest.raises(errors.AsperityError) as info:
+        asp.creep(path, rubber, [0.0, 100.0], load=[0.0, end]).follow([0.0, 100.0])
+    assert info.value.kind == "BedEnds" and info.value.path_ends == pytest.approx(end)
+    for hostile in ([np.nan], [np.inf], [[0.0]], ["a"], [1j], None):
+        with pytest.raises((errors.AsperityError, TypeError)):
+            held.at(hostile)  # type: ignore[arg-type]
+        with pytest.raises((errors.AsperityError, TypeError)):
+            held.follow(hostile)  # type: ignore[arg-type]
+        with pytest.raises((errors.AsperityError, TypeError)):
+            asp.creep(path, rubber, hostile, load=0.5 * end)  # type: ignore[arg-type]
+    for pieces in (0, -1):
+        with pytest.raises((errors.AsperityError, OverflowError)):
+            held.pressure(0.0, pieces=pieces)
+    for steps, halvings in ((10**8, 0), (2**63, 0), (60, 24), (60, 2**31), (-1, 0)):
+        with pytest.raises((errors.AsperityError, OverflowError)):
+            held.step_times(1.0, steps=steps, halvings=halvings)
+    for end_time in (np.nan, np.inf):
+        with pytest.raises(errors.AsperityError):
+            held.step_times(end_time)
+    with pytest.raises(errors.AsperityError):
+        asp.steady_cycles(path, rubber, mean_load=1.0, amplitude=2.0, periods=[1.0])
+    for steps in (7, 10**12, 2**63):
+        with pytest.raises(errors.AsperityError):
+            asp.steady_cycle(path, rubber, mean_load=1e-3 * end, amplitude=1e-4 * end, period=1.0, steps=steps)
+    assert asp.steady_cycles(path, rubber, mean_load=1e-3 * end, amplitude=1e-4 * end, periods=[]) == []
+    hard = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(4e6, boundary="free"), area_fraction=0.1, hardness=1e5)
+    hard.run(check=False)
+    with pytest.raises(errors.AsperityError) as info:
+        asp.creep(hard, rubber, [0.0], load=[1e-3])
+    assert info.value.kind == "NotElasticGrowth"
+    empty = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(4e6, boundary="free"), area_fraction=0.1)
+    with pytest.raises(errors.AsperityError) as info:
+        asp.creep(empty, rubber, [0.0], load=[1e-3])
+    assert info.value.kind == "EmptyPath"

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
+from conftest import DATA
 
 import asperity as asp
 from asperity import errors
@@ -48,28 +51,46 @@ def test_the_channel_is_where_it_is() -> None:
     np.testing.assert_allclose(turned.flux_y.T, leak.flux_x, rtol=1e-9, atol=1e-30)
 
 
-def test_the_leak_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("along", ["x", "y"])
+def test_the_leak_of_the_program(along: Literal["x", "y"], program: Callable[..., str], tmp_path: Path) -> None:
+    """The curve and single states, bit for bit, on a periodic surface that is no square."""
     record = tmp_path / "path.npz"
-    program("path", "--nodes", 64, "--max-area-fraction", 0.6, "--record", record, "--out", tmp_path / "out")
-    words = ["--viscosity", "1e-3", "--pressure-drop", "1e5", "--along", "x", "--states", 8, "--json"]
-    told = json.loads(program("leak", record, *words, "--out", tmp_path / "out"))
+    surface = ["--surface", DATA / "periodic_32x24.npy", "--side", repr(32 * 2e-5), "--side-y", repr(24 * 3e-5)]
+    ends = ["--e-star", "1", "--periodic", "love", "--max-area-fraction", "1", "--record", record, "--out", tmp_path / "out"]
+    program("path", *surface, *ends)
     path = asp.open(record)
-    seal = asp.Seal(1e-3, 1e5, along="x")
-    curve = seal.curve(path, states=8)
-    points = told["states"][: len(curve.states)]
-    assert [state.step for state in curve.states] == [point["step"] for point in points]
-    for name in ("load", "mean_pressure", "leak_rate", "mean_field_leak_rate", "permeability"):
+    loads = [0.2 * path.history.load[200], 0.5 * path.history.load[200]]
+    words = ["--viscosity", "1e-3", "--pressure-drop", "1e5", "--along", along, "--states", 12, "--json"]
+    more = [word for load in loads for word in ("--load", repr(float(load)))]
+    told = json.loads(program("leak", record, *words, *more, "--out", tmp_path))["states"]
+    seal = asp.Seal(1e-3, 1e5, along=along)
+    curve = seal.curve(path, states=12)
+    points = told[: len(curve.states)]
+    assert [state.step for state in curve.states] == [point["step"] for point in points] and curve.closing is not None
+    for name in ("load", "mean_pressure", "mean_gap", "leak_rate", "mean_field_leak_rate", "permeability", "imbalance"):
         np.testing.assert_array_equal(getattr(curve, name), [point[name] for point in points], err_msg=name)
+    across = [np.nan if point["transverse_permeability"] is None else point["transverse_permeability"] for point in points]
+    np.testing.assert_array_equal(curve.transverse_permeability, across)
     assert curve.area_fraction.tolist() == [point["contact_area_fraction"] for point in points]
-    # One state: the narrowest place has its row and its column.
-    there = points[len(points) // 2]
-    leak = seal.leak(path, path.history.at(load=there["load"]))
-    assert leak.leak_rate == there["leak_rate"] and leak.constriction is not None
-    assert [leak.constriction.column, leak.constriction.row] == there["constriction"]["node"]
-    gap = path.gap(path.history.at(load=there["load"]))
-    assert gap[leak.constriction.row, leak.constriction.column] == leak.constriction.gap == there["constriction"]["gap"]
-    again = seal.leak_of(gap, path.contact_map(path.history.at(load=there["load"])), path.surface.size, periodic=False)
-    assert again.leak_rate == leak.leak_rate
+    # The narrowest place has its row and its column.
+    for found, point in zip(curve.constrictions, points, strict=True):
+        place = point["constriction"]
+        assert (found is None) == (place is None)
+        if found is not None:
+            assert [found.column, found.row] == place["node"]
+            assert (found.gap, found.pressure_drop, found.dissipation) == (place["gap"], place["pressure_drop"], place["dissipation"])
+    for load, there in zip(loads, told[len(points) :], strict=True):
+        state = path.history.at(load=load)
+        leak = seal.leak(path, state)
+        for name in ("leak_rate", "mean_field_leak_rate", "permeability", "transverse_permeability", "imbalance", "flowing_nodes", "pools"):
+            assert getattr(leak, name) == there[name], name
+        assert leak.constriction is not None and there["load"] == state.load
+        gap = path.gap(state)
+        assert gap[leak.constriction.row, leak.constriction.column] == leak.constriction.gap == there["constriction"]["gap"]
+        again = seal.leak_of(gap, path.contact_map(state), path.surface.size, periodic=True)
+        assert again.leak_rate == leak.leak_rate
+        np.testing.assert_array_equal(again.pressure, leak.pressure)
+    assert pickle.loads(pickle.dumps(curve)) == curve
 
 
 def test_what_does_not_leak() -> None:
@@ -79,3 +100,23 @@ def test_what_does_not_leak() -> None:
         asp.Seal(1e-3, 1e5, along="z")  # type: ignore[arg-type]
     with pytest.raises(errors.AsperityError):
         asp.Seal(1e-3, 1e5, along="x").leak_of(np.ones((4, 4)), np.zeros((4, 5), dtype=bool), 1.0, periodic=False)
+    seal, contact = asp.Seal(1e-3, 1e5, along="x"), np.zeros((4, 4), dtype=bool)
+    for gap in (np.full((4, 4), np.nan), np.full((4, 4), np.inf), np.full((4, 4), -1.0), np.ones(4), np.ones((4, 4)) * 1j, "gap", None):
+        with pytest.raises((errors.AsperityError, TypeError)):
+            seal.leak_of(gap, contact, 1.0, periodic=False)  # type: ignore[arg-type]
+    for size in (0.0, -1.0, np.nan, (1.0, np.inf)):
+        with pytest.raises(errors.AsperityError):
+            seal.leak_of(np.ones((4, 4)), contact, size, periodic=False)
+    with pytest.raises(errors.AsperityError):
+        seal.leak_of(np.ones((4, 4)), np.zeros((4, 4)), 1.0, periodic=False)
+    for viscosity, drop in ((np.nan, 1.0), (1.0, np.inf), (-1.0, 1.0), (1.0, 0.0)):
+        with pytest.raises(errors.AsperityError):
+            asp.Seal(viscosity, drop, along="x")
+    path = asp.load_path(asp.example_surface(nodes=16, short_cutoff=2.5e-3), asp.HalfSpace(1e9, boundary="love"), nodes=20, check=False)
+    with pytest.raises(errors.AsperityError):
+        seal.leak(path)
+    path.run(check=False)
+    for states in (0, 1):
+        with pytest.raises(errors.AsperityError):
+            seal.curve(path, states=states)
+    assert seal.curve(path, states=2).closing is None

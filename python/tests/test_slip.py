@@ -46,13 +46,13 @@ def test_a_sphere() -> None:
         assert state.stick_area == pytest.approx(np.pi * stick**2, rel=0.06)
         t = share
         loop = 1.0 - (1.0 - t) ** (5 / 3) - 5 * t / 6 * (1.0 + (1.0 - t) ** (2 / 3))
-        lost = 9 * (mu * load) ** 2 * kappa / (5 * a * e_star) * loop
+        lost = 18 * (mu * load) ** 2 * kappa / (5 * a * e_star) * loop
         assert joint.cycle(share * mu * load).dissipation == pytest.approx(lost, rel=0.05)
 
 
 def test_fields_bear_the_load(path: asp.LoadingPath, joint: asp.PartialSlip) -> None:
     load = 70.0
-    cell = path.surface.cell_area if hasattr(path.surface, "cell_area") else np.prod(path.surface.cell)
+    cell = np.prod(path.surface.cell)
     traction, zones, slip = joint.traction(load), joint.zones(load), joint.slip(load)
     assert traction.shape == zones.shape == slip.shape == path.surface.shape and zones.dtype == np.int8
     assert traction.sum() * cell == pytest.approx(load, rel=1e-6)
@@ -101,29 +101,71 @@ def test_any_history(path: asp.LoadingPath, joint: asp.PartialSlip) -> None:
     # Histories without their path know all but fields.
     same = asp.shear(path.history, friction=0.3, bodies=STEEL, load=400.0)
     assert same.monotone(amplitude) == joint.monotone(amplitude)
-    with pytest.raises(ValueError, match="History"):
-        same.traction(amplitude)
+    for field in (same.traction, same.slip, same.zones, same.friction_work):
+        with pytest.raises(ValueError, match="History"):
+            field(amplitude)
 
 
-def test_the_slip_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
-    record = tmp_path / "path.npz"
-    program("path", "--nodes", 64, "--max-area-fraction", 0.1, "--record", record, "--out", tmp_path / "out")
-    bodies = ["--material", "steel", "--against", "aluminium"]
-    told = json.loads(program("slip", record, "--friction", "0.25", *bodies, "--json", "--out", tmp_path / "slip"))
+def csv(file: Path) -> dict[str, np.ndarray]:
+    """A table of the program: its numbers have all their digits."""
+    table = np.genfromtxt(file, delimiter=",", names=True)
+    return {name: table[name] for name in table.dtype.names}
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_the_slip_of_the_program(periodic: bool, program: Callable[..., str], tmp_path: Path) -> None:
+    """States, cycles, elements and a history, bit for bit."""
+    record, out = tmp_path / "path.npz", tmp_path / "slip"
+    surroundings = ["--periodic", "love"] if periodic else []
+    pair = ["--material", "steel", "--against", "aluminium"]
+    program("path", "--nodes", 64, "--max-area-fraction", 0.1, *pair, *surroundings, "--record", record, "--out", tmp_path)
     path = asp.open(record)
-    with pytest.warns(asp.AsperityWarning, match="beta") if told["warnings"] else pytest.warns(None):  # type: ignore[call-overload]
-        joint = asp.shear(path, friction=0.25, bodies=("steel", "aluminium"))
+    end = float(path.history.load[-1])
+    corners = [(0.5 * end, 0.0), (0.5 * end, 0.08 * end), (0.9 * end, -0.05 * end), (0.6 * end, 0.02 * end), (0.7 * end, 0.1 * end)]
+    lines = [f"{load!r},{force!r}" for load, force in corners]
+    (tmp_path / "shear.csv").write_text("\n".join(["load,tangential_load", *lines]) + "\n")
+    options = ["--friction", "0.25", *pair, "--load", repr(0.9 * end), "--history", tmp_path / "shear.csv"]
+    told = json.loads(program("slip", record, *options, "--json", "--out", out))
+    assert told["warnings"] and all("beta" in word or "β" in word for word in told["warnings"])
+    with pytest.warns(asp.AsperityWarning, match="Dundurs' beta is 0.1"):
+        joint = asp.shear(path, friction=0.25, bodies=("steel", "aluminium"), load=0.9 * end)
     state, cycle = joint.monotone(told["tangential_load"]), joint.cycle(told["tangential_load"])
-    for name in ("load", "displacement", "stick_area", "slip_area", "stick_nodes", "slipping_nodes", "tangential_stiffness"):
+    kept = {"load", "tangential_load", "displacement", "interfacial_displacement", "stick_area", "slip_area", "stick_nodes"}
+    for name in kept | {"slipping_nodes", "tangential_stiffness"}:
         assert getattr(state, name) == told[name], name
     for name in ("dissipation", "secant_stiffness", "loss_factor"):
         assert getattr(cycle, name) == told[name], name
-    for name in ("sliding_load", "sliding_displacement", "compliance_ratio", "dundurs_beta"):
+    for name in ("sliding_load", "sliding_displacement", "compliance_ratio", "dundurs_beta", "friction"):
         assert getattr(joint, name) == told[name], name
-    table = np.genfromtxt(tmp_path / "slip" / "iwan.csv", delimiter=",", names=True)
-    elements = joint.jenkins_elements()
-    for name in table.dtype.names:
-        np.testing.assert_array_equal(elements[name], table[name])
+    table = csv(out / "slip.csv")
+    loading = joint.loading(table["tangential_load"])
+    table = {"loading": table, "cycles": csv(out / "cycles.csv"), "elements": csv(out / "iwan.csv")}
+    cycles = joint.cycles(table["cycles"]["amplitude"])
+    # The element that slips first is at the top there.
+    elements = {name: column[::-1] for name, column in joint.jenkins_elements().items()}
+    for kind, columns in {"loading": loading, "cycles": cycles, "elements": elements}.items():
+        for name, column in table[kind].items():
+            np.testing.assert_array_equal(columns[name], column, err_msg=f"{kind} {name}")
+    # The program goes in 24 parts from row to row.
+    way, before = [], (0.0, 0.0)
+    for corner in corners:
+        parts = [part / 24 for part in range(1, 24)]
+        way += [tuple(a + share * (b - a) for a, b in zip(before, corner, strict=True)) for share in parts] + [corner]
+        before = corner
+    followed = joint.follow(*zip(*way, strict=True))
+    for name, column in csv(out / "history.csv").items():
+        np.testing.assert_array_equal(followed[name][23::24], column, err_msg=name)
+    assert followed["dissipation"][-1] == told["history_dissipation"]
+    # Parts change nothing but the last digits.
+    straight = joint.follow(*zip(*corners, strict=True))
+    np.testing.assert_allclose(straight["displacement"], followed["displacement"][23::24], rtol=1e-9)
+
+
+def test_bodies_of_another_path(path: asp.LoadingPath) -> None:
+    with pytest.warns(asp.AsperityWarning, match="only their ratio"):
+        asp.shear(path, friction=0.3, bodies=("glass", "glass"))
+    # A history does not know its modulus.
+    asp.shear(path.history, friction=0.3, bodies=("glass", "glass"))
 
 
 def test_what_a_joint_cannot_do(path: asp.LoadingPath, joint: asp.PartialSlip) -> None:
@@ -139,13 +181,28 @@ def test_what_a_joint_cannot_do(path: asp.LoadingPath, joint: asp.PartialSlip) -
     assert info.value.kind == "PathEndsBefore"
     with pytest.raises(ValueError, match="LoadingPath"):
         asp.shear(3, friction=0.3, bodies=STEEL)  # type: ignore[arg-type]
+    for hostile in (np.nan, np.inf, -np.inf):
+        for ask in (joint.monotone, joint.cycle, joint.cycle_of_displacement, joint.traction, joint.slip, joint.friction_work, joint.zones):
+            with pytest.raises(errors.AsperityError):
+                ask(hostile)
+        with pytest.raises(errors.AsperityError):
+            joint.follow([100.0], [hostile])
+        with pytest.raises(errors.AsperityError):
+            asp.shear(path, friction=hostile, bodies=STEEL)
+    for words in (["a"], [1j], [[1.0]], None, [object()]):
+        with pytest.raises((errors.AsperityError, TypeError)):
+            joint.follow(words, words)  # type: ignore[arg-type]
+        with pytest.raises((errors.AsperityError, TypeError)):
+            joint.cycles(words)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="shape"):
+        joint.follow([1.0, 2.0], [0.0, 0.0, 0.0])
     hard = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(115e9, boundary="free"), area_fraction=0.1, hardness=2e9)
     hard.run(check=False)
     with pytest.raises(errors.AsperityError) as info:
         asp.shear(hard, friction=0.3, bodies=STEEL)
     assert info.value.kind == "NotElasticGrowth"
-    # Against a rigid body, of Poisson's ratio 1/2: nothing is coupled, and nothing warns.
-    asp.shear(path, friction=0.3, bodies=((1e9, 0.5), "rigid"))
+    # Against a rigid body, of Poisson's ratio 1/2 and the E* of the path: nothing is coupled, and nothing warns.
+    asp.shear(path, friction=0.3, bodies=((115e9 * 0.75, 0.5), "rigid"))
     asp.shear(path, friction=0.3, bodies=("steel", "rigid"), check=False)
     with pytest.warns(asp.AsperityWarning, match="beta"):
         asp.shear(path, friction=0.3, bodies=("steel", "rigid"))

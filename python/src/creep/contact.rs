@@ -168,6 +168,9 @@ impl Creep {
     }
 }
 
+/// Times that there is memory for, and patience.
+const MOST_TIMES: usize = 10_000_000;
+
 /// States over time as columns.
 pub(super) fn columns<'py>(py: Python<'py>, states: &[CreepState]) -> Fallible<Bound<'py, PyDict>> {
     let of = |get: fn(&CreepState) -> f64| column(py, states.iter().map(get).collect::<Vec<f64>>());
@@ -352,15 +355,13 @@ impl Creep {
         steps: usize,
         halvings: u32,
     ) -> Fallible<Bound<'py, PyArray1<f64>>> {
-        // More than this many would be more times than there is memory for.
-        for (quantity, value, most) in
-            [("number of steps", steps, 1_000_000), ("number of halvings", halvings as usize, 12)]
-        {
-            if value > most {
-                let value = value as f64;
-                let expected = "at most a million steps, halved at most 12 times";
-                return Err(Error::OutOfRange { quantity, value, expected }.into());
-            }
+        let corners = self.course.corners().corners().len();
+        let count = steps.saturating_mul(corners).saturating_mul(1 << halvings.min(24));
+        if count > MOST_TIMES {
+            let (quantity, value) = ("number of steps in all", count as f64);
+            return Err(
+                Error::OutOfRange { quantity, value, expected: "at most ten million" }.into()
+            );
         }
         let least = Steps { least: steps, ..Steps::default() };
         let steps = (0..halvings).fold(least, |steps, _| steps.halved());
