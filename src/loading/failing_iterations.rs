@@ -8,9 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-use asperity_testing::dense::{complementary, from_first_touch};
 use nalgebra::{DMatrix, DVector};
 
+use super::complementary::{complementary, from_first_touch};
 use crate::contact::ContactSequence;
 use crate::kernel::KernelTable;
 use crate::loading::LoadingEnd;

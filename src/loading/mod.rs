@@ -59,6 +59,8 @@
 //! within 10⁻⁹ of the approach with another one.
 
 mod builder;
+#[cfg(test)]
+mod complementary;
 mod cost;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

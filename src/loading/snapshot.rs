@@ -1,6 +1,6 @@
 //! The solution at a state, and whether the state lies on the path.
 
-use super::tuning::{ESTIMATED, RECOGNISED};
+use super::tuning::{ESTIMATED, RECOGNISED, TOLERANCE};
 use nalgebra::DMatrix;
 
 use super::phase::Phase;
@@ -90,8 +90,8 @@ impl Snapshot {
         let cell_area = run.problem.grid().cell_area();
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
-        // At first touch nothing is left but the rounding of lengths as long as the greatest gap.
-        let rounding = f64::EPSILON * self.stiffness * run.problem.greatest_gap();
+        // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is closed to.
+        let rounding = TOLERANCE * self.stiffness * self.lengths(run);
         // NaN is refused as well.
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
         if !same_load || !state.contact.approach.is_finite() {
@@ -134,6 +134,13 @@ impl Snapshot {
             return Err(not_on_path(state, quantity, least, "no overlap"));
         }
         Ok(())
+    }
+
+    /// What cancels in a gap: the greatest initial one, the approach, and displacements under nodes that have yielded.
+    fn lengths(&self, run: &LoadingRun) -> f64 {
+        let yielded: f64 = self.yielded.iter().map(|&node| self.pressure[node]).sum();
+        let displaced = run.problem.table().self_influence() * yielded;
+        run.problem.greatest_gap() + self.approach.abs() + displaced
     }
 
     /// Greatest error of gaps at a state.

@@ -134,6 +134,10 @@ pub(super) const OF_RESIDUAL: f64 = 8.0;
 /// triangular solves, whose errors stay below 1e-13 of the greatest displacement; the condition of the
 /// influence matrix grows with the side of the grid only, so that pressures lose two or three digits.
 pub(super) const TOLERANCE: f64 = 1e-10;
+/// How many times as long as wide cells may be for that to hold of plastic depths: they are off as the pressures are at which nodes
+/// yield, and the condition is some 20 times the ratio of the sides (4 × 8 nodes, 2600 : 1: 5·10⁴, a depth off by 1.1·10⁻¹⁰). On longer cells
+/// the tolerance grows with the ratio.
+pub(super) const SQUARE: f64 = 250.0;
 /// How far a state of a path may be off, relative to its load, pressures and lengths, to be recognised: an exact path is right to
 /// some 10⁻¹².
 pub(super) const RECOGNISED: f64 = 1e-6;

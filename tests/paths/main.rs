@@ -14,6 +14,7 @@ mod hardness;
 mod inexact_updaters;
 mod layers;
 mod long_cells;
+mod patches_of_tamaas;
 mod path_properties;
 mod periodic_paths;
 mod physical_mean;

@@ -25,10 +25,10 @@ use super::run::LoadingRun;
 use super::scalars::{PlasticScalars, Rates};
 use super::state::ContactEvent;
 use super::sum::Sum;
-use super::tuning::{OF_RESIDUAL, TOLERANCE};
+use super::tuning::{OF_RESIDUAL, SQUARE, TOLERANCE};
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
-use crate::{Error, Problem};
+use crate::{Error, Grid, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
 use plastic::Displaced;
 pub(super) use plastic::Plastic;
@@ -106,6 +106,12 @@ fn contact_behind(
     Ok((contact, yielded, departures))
 }
 
+/// How many times as long as wide a cell is.
+fn cell_ratio(grid: &Grid) -> f64 {
+    let ratio = grid.dx() / grid.dy();
+    ratio.max(1.0 / ratio)
+}
+
 /// By how much a solution may contradict what contact that grows does.
 #[derive(Debug, Clone, Copy)]
 struct Slack {
@@ -155,7 +161,8 @@ impl Yielding {
         };
         let approach = run.scalars.approach();
         run.renew_field(updater, approach)?;
-        let gap = TOLERANCE * (run.problem.greatest_gap() + approach);
+        let tolerance = TOLERANCE * (cell_ratio(&run.problem.grid()) / SQUARE).max(1.0);
+        let gap = tolerance * (run.problem.greatest_gap() + approach);
         let slack = Slack { gap, rate: TOLERANCE };
         let rates = survey(run, &plastic, &mut self.ranking, slack)?;
         if self.ranking.is_empty() {
