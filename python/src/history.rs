@@ -81,7 +81,7 @@ pub(crate) struct Setting {
 
 /// The states of a path in the order of loading, as columns: new arrays of NumPy with one value for each state.
 ///
-/// A sequence of `State`; a slice of it is a history of fewer states. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
+/// A sequence of `State`; a slice of it is a history of fewer states, enough for slip, creep and conductance. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
 /// linear in the approach.
 ///
 /// Examples
@@ -110,6 +110,11 @@ enum Place<'py> {
 impl History {
     pub(crate) fn states(&self) -> &[LoadingState] {
         self.history.states()
+    }
+
+    /// Whether no event is left out, so that the states tell which nodes are in contact.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.history.events().iter().zip(1..).all(|(state, step)| state.step == step)
     }
 
     fn reals<'py>(
@@ -270,9 +275,12 @@ impl History {
         self.reals(py, |state| state.contact.contact_area_fraction)
     }
 
-    /// Contact area [m²] without what whole cells count too much along the edges of patches.
+    /// Contact area [m²] without what whole cells count too much along the edges of patches; NaN if states are left out.
     #[getter]
     fn corrected_area<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray1<f64>>> {
+        if !self.is_whole() {
+            return Ok(self.reals(py, |_| f64::NAN));
+        }
         let mut edge = ContactEdge::new(self.setting.grid, self.setting.boundary);
         let areas = self.states().iter().map(|state| {
             edge.follow(state.event, state.node)?;

@@ -85,21 +85,31 @@ def test_creep_under_a_load(path: asp.LoadingPath) -> None:
     assert (np.diff(touched) >= 0.0).all() and touched[0] == 0.0
     np.testing.assert_allclose(rubber.creep_at(touched[-1:]) * load, path.history.load[len(touched) - 1], rtol=1e-6)
     np.testing.assert_array_equal(held.gap(1.0), path.gap(state))
-    # In steps the same, and a quarter of the error in steps half as long.
-    worst = []
-    for halvings in (0, 1):
-        followed = held.follow(held.step_times(20.0, halvings=halvings))
-        found = followed.columns()
-        exact = held.at(found["time"])
-        assert len(followed) == len(exact["time"]) and found["time"][-1] == 20.0 and followed.halvings == 0
-        worst.append((abs(found["approach"] - exact["approach"]) / exact["approach"][-1]).max())
-    assert worst[0] < 1e-3 and worst[1] < 0.35 * worst[0]
+    # In steps the same: a pressure that is held is linear in each of them, and the rest is rounding of 3000 increments.
+    followed = held.follow(held.step_times(20.0))
+    found = followed.columns()
+    exact = held.at(found["time"])
+    assert len(followed) == len(exact["time"]) and found["time"][-1] == 20.0 and followed.halvings == 0
+    np.testing.assert_allclose(found["approach"], exact["approach"], rtol=1e-12)
     # The fields of the last state bear its load and have its mean gap; forty pieces leave some 1e-3 of the greatest pressure.
     pressure, gap = followed.pressure(), followed.gap()
     assert pressure.sum() * np.prod(path.surface.cell) == pytest.approx(load, rel=1e-9)
     assert gap.mean() == pytest.approx(found["mean_gap"][-1], rel=2e-3)
     assert ((gap == 0.0).sum()) >= found["contact_nodes"][-1] and (gap >= 0.0).all()
     np.testing.assert_allclose(pressure, held.pressure(20.0), atol=5e-3 * pressure.max())
+
+
+def test_steps_converge(path: asp.LoadingPath) -> None:
+    """Under a load that grows, a quarter of the error is left in steps half as long."""
+    rubber, load = asp.Prony.shares(TERMS), 0.4 * path.history.load[-1]
+    ramp = asp.creep(path, rubber, [0.0, 1.0], load=[0.0, load])
+    worst = []
+    for halvings in (0, 1):
+        found = ramp.follow(ramp.step_times(20.0, halvings=halvings)).columns()
+        exact = ramp.at(found["time"])
+        worst.append((abs(found["approach"] - exact["approach"]) / exact["approach"][-1]).max())
+    # Some 1e-4 as documented; the order is 2 but for increments that join within a step.
+    assert 1e-9 < worst[0] < 1e-3 and worst[1] < 0.35 * worst[0], worst
 
 
 def test_relaxation_at_an_approach(path: asp.LoadingPath) -> None:

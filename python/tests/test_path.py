@@ -366,8 +366,11 @@ def test_slices_of_a_history(free_surface: asp.Surface, unit_half_space: asp.Hal
     with pytest.raises(IndexError):
         history[60]
     # What follows nodes from state to state says so; what is made of increments takes fewer of them.
-    with pytest.raises(asp.AsperityError):
+    with pytest.raises(asp.AsperityError, match="left out"):
         asp.patches(every)
+    assert np.isnan(every.corrected_area).all() and len(every.columns()["corrected_area"]) == 15
+    np.testing.assert_array_equal(history[:30].corrected_area, history.corrected_area[:30])
+    assert asp.patches(history[:30]).number.tolist() == asp.patches(history).number[:30].tolist()
     assert asp.shear(every, friction=0.3, compliance_ratio=1.0).sliding_load == pytest.approx(0.3 * every.load[-1])
 
 
