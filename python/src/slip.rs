@@ -1,6 +1,7 @@
 //! Partial slip under a tangential load.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::bed::Bed;
@@ -10,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Found, Kind, column, rows};
-use crate::compute::{detached, interruptible};
+use crate::compute::{cancellable, detached};
 use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
 use crate::materials::{self, Body};
@@ -350,10 +351,12 @@ impl PartialSlip {
         let found = Found::of(tangential_load, "tangential_load", Kind::Real)?;
         let tangential = found.list_of(loads.len())?;
         let (history, friction) = (Arc::clone(&self.increments.history), self.friction);
-        let followed = interruptible(py, move || {
+        let followed = cancellable(py, move |is_left| {
             let bed = Bed::new(&history)?;
             let mut history = SlipHistory::new(&bed, friction);
-            let steps = loads.iter().zip(&tangential).map(|(load, tangential)| {
+            let corners = loads.iter().zip(&tangential);
+            let goes_on = corners.take_while(|_| !is_left.load(Ordering::Relaxed));
+            let steps = goes_on.map(|(load, tangential)| {
                 let state = history.to(*load, *tangential)?;
                 Ok((state, history.dissipation(), history.stored_energy()?))
             });

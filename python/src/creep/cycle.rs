@@ -1,6 +1,7 @@
 //! Steady cycles of load.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::bed::Bed;
@@ -10,7 +11,7 @@ use pyo3::prelude::*;
 
 use super::prony::Prony;
 use crate::arrays::{Found, Kind, column};
-use crate::compute::interruptible;
+use crate::compute::cancellable;
 use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
 use crate::results::result;
@@ -101,12 +102,13 @@ fn cycles(
     periods: Vec<f64>,
     settings: CycleSettings,
 ) -> Fallible<Vec<Cycle>> {
-    Ok(interruptible(py, move || {
+    Ok(cancellable(py, move |is_left| {
         let bed = Bed::new(&history)?;
         let mut contact = ViscoelasticBed::new(&bed, &prony)?;
         contact.settle(mean_load)?;
+        let goes_on = periods.iter().take_while(|_| !is_left.load(Ordering::Relaxed));
         let run = |period: &f64| contact.cycle(mean_load, amplitude, *period, settings);
-        periods.iter().map(run).collect::<Result<_, Error>>()
+        goes_on.map(run).collect::<Result<_, Error>>()
     })??)
 }
 

@@ -1,6 +1,7 @@
 //! Any history of viscoelastic contact, in steps of time.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::bed::Bed;
@@ -11,7 +12,7 @@ use pyo3::types::PyDict;
 
 use super::contact::columns;
 use crate::arrays::rows;
-use crate::compute::interruptible;
+use crate::compute::cancellable;
 use crate::errors::Fallible;
 use crate::increments::Increments;
 
@@ -35,11 +36,17 @@ impl CreepSteps {
         times: Vec<f64>,
     ) -> Fallible<Self> {
         let given = (Arc::clone(&increments.history), prony.clone(), course.clone(), times.clone());
-        let (states, halvings) = interruptible(py, move || {
+        let (states, halvings) = cancellable(py, move |is_left| {
             let (history, prony, course, times) = given;
             let bed = Bed::new(&history)?;
             let mut contact = ViscoelasticBed::new(&bed, &prony)?;
-            let states = contact.follow(&course, &times)?;
+            let mut states = Vec::with_capacity(times.len());
+            for time in times {
+                if is_left.load(Ordering::Relaxed) {
+                    break;
+                }
+                states.extend(contact.follow(&course, &[time])?);
+            }
             Ok::<_, Error>((states, contact.halvings()))
         })??;
         Ok(Self {
