@@ -282,10 +282,9 @@ mod tests {
             let case = Case { load: 2.0 + off, stiffness, error, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{off}");
         }
-        // At first touch half of the rounding of 8 m.
-        for (load, refused) in [(4.0, false), (-4.0, false), (4.5, true)] {
-            let case =
-                Case { pressures: &[(0, 0.0)], approach: 0.0, load: load * f64::EPSILON, ..ALONE };
+        // At first touch half of what 8 m are closed to, 10⁻¹⁰ of them.
+        for (load, refused) in [(3.9e-10, false), (-3.9e-10, false), (4.1e-10, true)] {
+            let case = Case { pressures: &[(0, 0.0)], approach: 0.0, load, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{load}");
         }
         Ok(())
@@ -311,13 +310,13 @@ mod tests {
             let case = pulled(&pressures);
             assert_eq!(case.refused()?, refused, "{least:e}");
         }
-        // At first touch the rounding of the load, 4 ε, over the cell area.
-        for (least, refused) in [(1.75, None), (2.25, refused)] {
+        // At first touch what the load may be off by, 4·10⁻¹⁰, over the cell area.
+        for (least, refused) in [(1.9e-10, None), (2.1e-10, refused)] {
             let case = Case {
                 gaps: &[0.0, 8.0, 0.0],
                 contact: &[0, 2],
                 step: 2,
-                pressures: &[(0, least * f64::EPSILON), (2, -least * f64::EPSILON)],
+                pressures: &[(0, least), (2, -least)],
                 approach: 0.0,
                 load: 0.0,
                 ..ALONE
