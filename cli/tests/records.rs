@@ -61,6 +61,16 @@ fn are_alike(found: &Path, expected: &Path) -> Done {
     Ok(())
 }
 
+/// Every byte is the same.
+fn are_identical(found: &Path, expected: &Path) -> Done {
+    let (found, expected) = (fs::read_to_string(found)?, fs::read_to_string(expected)?);
+    for (line, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(found, expected, "line {line}");
+    }
+    assert_eq!(found.len(), expected.len());
+    Ok(())
+}
+
 const PATH: &str = "path --nodes 64 --updater cholesky";
 
 /// What a record holds is read from it: the same states, table, fields and picture as of a path that was to end there. The
@@ -150,6 +160,40 @@ fn a_record_grows_with_its_path() -> Done {
     Ok(())
 }
 
+/// A path that goes on from its record has the file of the path that was not interrupted, byte for byte: with a factor, without one,
+/// and where the default gives it up on the way.
+#[test]
+fn a_path_in_parts_is_the_whole_one() -> Done {
+    let folder = Scratch::new("records-parts")?;
+    for (k, path) in [
+        "--updater cholesky",
+        "--updater iterative",
+        "--updater iterative --periodic love",
+        "--updater iterative --periodic spectral",
+        "--memory-budget 8e6",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (updater, kernel) = path.split_once(" --periodic").unwrap_or((path, ""));
+        let kernel = if kernel.is_empty() { "" } else { &path[updater.len()..] };
+        let record = format!("r{k}.npz");
+        let whole = format!("path --nodes 64 {updater} {kernel} --max-load 60000 --out whole{k}");
+        printed(&folder.0, &whole)?;
+        let first = format!("path --nodes 64 {updater} {kernel} --max-load 1500 --record {record}");
+        printed(&folder.0, &first)?;
+        for load in [20_000, 40_000, 60_000] {
+            let more = format!("path --resume {record} {updater} --max-load {load} --out parts{k}");
+            printed(&folder.0, &more)?;
+        }
+        let files = ["parts", "whole"].map(|name| folder.join(format!("{name}{k}/path.csv")));
+        let lines = fs::read_to_string(&files[1])?.lines().count();
+        assert!(lines > 400, "{path}: {lines}");
+        are_identical(&files[0], &files[1])?;
+    }
+    Ok(())
+}
+
 /// A path that breaks off for want of memory leaves its record, all files and the fields of its last state.
 #[test]
 fn a_small_budget_loses_nothing() -> Done {
@@ -223,7 +267,7 @@ fn interrupted_paths_go_on() -> Done {
         assert!(said.contains(&told), "{said}");
         let again = format!("path --resume {record} --updater cholesky --out out");
         printed(&folder.0, &again)?;
-        are_alike(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
+        are_identical(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
         fs::remove_dir_all(folder.join("out"))?;
     }
     // What a batch system sends does the same.

@@ -1,6 +1,7 @@
 //! The solution of the path, the one before it, and solutions apart from them.
 
 mod behind;
+mod kept;
 
 use std::mem;
 
