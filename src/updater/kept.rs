@@ -24,7 +24,7 @@ pub struct Kept {
     pub proposed: Vec<usize>,
     pub proposed_beside: usize,
     pub row_sums: Vec<f64>,
-    /// Row sums with the contact eliminated, on a free half-space: for how many nodes they were solved, the solution, and the start of
+    /// Row sums with the contact eliminated, unless the half-space is periodic: for how many nodes they were solved, the solution, and the start of
     /// the next one on the contact. They are solved for when they are stale, so that they depend on the windows before.
     pub sums_of: usize,
     pub sums: KeptField,

@@ -42,7 +42,7 @@ impl Solutions {
             ..Kept::default()
         };
         // Elsewhere no one asks for them.
-        if problem.boundary() == Boundary::Free {
+        if problem.boundary() != Boundary::Periodic {
             let (field, start) = self.sums.parts();
             all.sums_of = self.sums.count();
             all.sums = kept(field);
@@ -115,7 +115,7 @@ impl Solutions {
         for (field, most) in [(&load, left.load), (&rate, left.rate)] {
             restored.solver.check(field, UNSPOILT * most)?;
         }
-        if problem.boundary() == Boundary::Free {
+        if problem.boundary() != Boundary::Periodic {
             check_count(count, kept.sums_start.len())?;
             check_count(0, kept.sums_of.saturating_sub(count))?;
             let start = spread(problem, restored.solver.set(), &kept.sums_start)?;
