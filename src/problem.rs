@@ -54,7 +54,18 @@ impl Problem {
     ///
     /// [`KernelError::SymbolNotPositive`]: crate::KernelError::SymbolNotPositive
     pub fn new(surface: &dyn Surface, kernel: &dyn InfluenceKernel) -> Result<Self, Error> {
-        let table = KernelTable::new(kernel)?.regular();
+        Self::of(surface, KernelTable::new(kernel)?.regular())
+    }
+
+    /// The same for a path with a hardness, on which no kernel promises more than that contact grows: large gauges then only cost digits.
+    pub(crate) fn with_hardness(
+        surface: &dyn Surface,
+        kernel: &dyn InfluenceKernel,
+    ) -> Result<Self, Error> {
+        Self::of(surface, KernelTable::new(kernel)?.regular_for(ContactGrowth::Monotone))
+    }
+
+    fn of(surface: &dyn Surface, table: KernelTable) -> Result<Self, Error> {
         let convolution = Convolution::from_table(&table)?;
         convolution.check_definite(&table)?;
         let heights = HeightMap::sample(surface, &table.grid())?;

@@ -143,12 +143,12 @@ impl Dense {
     }
 
     /// The same problem in the gauge in which paths are computed: the kernel's own, unless it is far above a good one or
-    /// lets a coefficient be negative. An approach that is reported for mean planes goes with the load by that gauge,
+    /// lets a coefficient be negative; with a hardness nothing is convex. An approach that is reported for mean planes goes with the load by that gauge,
     /// and by another one only as well as the load is known.
     pub(crate) fn in_gauge_of_paths(self, growth: ContactGrowth) -> Self {
         let least = self.influence.column(0).min();
         let greatest = match growth {
-            ContactGrowth::Convex => 1e3,
+            ContactGrowth::Convex if self.hardness.is_none() => 1e3,
             _ => 10.0,
         };
         self.in_gauge(|own, good| match own / good {

@@ -253,7 +253,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let budget = self.memory_budget.unwrap_or_else(memory::default_budget);
         let (grid, boundary) = (self.kernel.grid(), self.kernel.boundary());
         let mut fixed_bytes = fixed_bytes(&grid, boundary, budget)?;
-        let problem = Problem::new(self.surface, self.kernel)?;
+        let problem = match self.hardness {
+            Limit::None => Problem::new(self.surface, self.kernel)?,
+            _ => Problem::with_hardness(self.surface, self.kernel)?,
+        };
         // A user-defined kernel may say something else when it is asked again.
         grid.check_shape(problem.grid().shape())?;
         let limits = self.limits(&problem)?;

@@ -268,22 +268,24 @@ impl KernelTable {
     /// others nearer, so that they touch before the approach that bounds a window; and in the zero gauge
     /// the matrix of full contact is singular.
     pub(crate) fn regular(self) -> Self {
+        let growth = self.growth;
+        self.regular_for(growth)
+    }
+
+    /// The same for paths on which contact is only relied on to grow as told, whatever the kernel promises.
+    pub(crate) fn regular_for(self, growth: ContactGrowth) -> Self {
         let Some(gauge) = self.gauge() else {
             return self;
         };
         let least = self.least();
-        match of_coefficients(gauge, least) {
-            good if least < 0.0 => self.in_gauge(good),
-            good if gauge > self.greatest_gauge() * good => self.in_gauge(LARGE_GAUGE * good),
-            _ => self,
-        }
-    }
-
-    /// The greatest gauge to follow paths in, as a multiple of a good one.
-    fn greatest_gauge(&self) -> f64 {
-        match self.growth {
+        let greatest = match growth {
             ContactGrowth::Convex => GREATEST_CONVEX_GAUGE,
             _ => LARGE_GAUGE,
+        };
+        match of_coefficients(gauge, least) {
+            good if least < 0.0 => self.in_gauge(good),
+            good if gauge > greatest * good => self.in_gauge(LARGE_GAUGE * good),
+            _ => self,
         }
     }
 
