@@ -186,7 +186,7 @@ fn a_path_in_parts_is_the_whole_one() -> Done {
             let more = format!("path --resume {record} {updater} --max-load {load} --out parts{k}");
             printed(&folder.0, &more)?;
         }
-        let files = ["parts", "whole"].map(|name| folder.join(format!("{name}{k}/path.csv")));
+        let files = ["parts", "whole"].map(|name| folder.join(&format!("{name}{k}/path.csv")));
         let lines = fs::read_to_string(&files[1])?.lines().count();
         assert!(lines > 400, "{path}: {lines}");
         are_identical(&files[0], &files[1])?;
