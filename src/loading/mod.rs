@@ -69,6 +69,7 @@
 
 mod builder;
 #[cfg(test)]
+#[allow(clippy::panic)]
 mod complementary;
 mod cost;
 mod factor_log;

@@ -559,9 +559,9 @@ fn lateness(
     });
     let tension = slack.pressure / problem.table().self_influence();
     let pressures = run.field.pressures(contact, approach).zip(&run.field.solution().rate);
-    let pressures = pressures.filter_map(|((_, pressure), &rate)| {
-        (pressure < -tension && rate > 0.0).then(|| -pressure / rate)
-    });
+    let pressures = pressures
+        .filter(|&((_, pressure), &rate)| pressure < -tension && rate > 0.0)
+        .map(|((_, pressure), &rate)| -pressure / rate);
     depths.chain(pressures).fold(0.0, f64::max)
 }
 
