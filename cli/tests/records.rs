@@ -180,7 +180,8 @@ fn a_path_in_parts_is_the_whole_one() -> Done {
         let record = format!("r{k}.npz");
         let whole = format!("path --nodes 64 {updater} {kernel} --max-load 300000 --out whole{k}");
         printed(&folder.0, &whole)?;
-        let first = format!("path --nodes 64 {updater} {kernel} --max-load 20000 --record {record}");
+        let first =
+            format!("path --nodes 64 {updater} {kernel} --max-load 20000 --record {record}");
         printed(&folder.0, &first)?;
         for load in [100_000, 200_000, 300_000] {
             let more = format!("path --resume {record} {updater} --max-load {load} --out parts{k}");
