@@ -170,7 +170,7 @@ fn a_path_in_parts_is_the_whole_one() -> Done {
         "--updater iterative",
         "--updater iterative --periodic love",
         "--updater iterative --periodic spectral",
-        "--memory-budget 8e6",
+        "--memory-budget 6e6",
     ]
     .into_iter()
     .enumerate()
@@ -178,11 +178,12 @@ fn a_path_in_parts_is_the_whole_one() -> Done {
         let (updater, kernel) = path.split_once(" --periodic").unwrap_or((path, ""));
         let kernel = if kernel.is_empty() { "" } else { &path[updater.len()..] };
         let record = format!("r{k}.npz");
-        let whole = format!("path --nodes 64 {updater} {kernel} --max-load 60000 --out whole{k}");
+        let whole = format!("path --nodes 64 {updater} {kernel} --max-load 300000 --out whole{k}");
         printed(&folder.0, &whole)?;
-        let first = format!("path --nodes 64 {updater} {kernel} --max-load 1500 --record {record}");
+        let first =
+            format!("path --nodes 64 {updater} {kernel} --max-load 20000 --record {record}");
         printed(&folder.0, &first)?;
-        for load in [20_000, 40_000, 60_000] {
+        for load in [100_000, 200_000, 300_000] {
             let more = format!("path --resume {record} {updater} --max-load {load} --out parts{k}");
             printed(&folder.0, &more)?;
         }
