@@ -24,18 +24,13 @@ fn is_in(grid: Grid) -> impl Fn(usize) -> bool {
 }
 
 /// The answers to some nodes, and their complement relative to the coefficient of a node on itself.
-fn complement(
-    problem: &Problem,
-    watched: &[usize],
-) -> (Vec<Wide>, nalgebra::DMatrix<f64>) {
+fn complement(problem: &Problem, watched: &[usize]) -> (Vec<Wide>, nalgebra::DMatrix<f64>) {
     let grid = problem.grid();
     let mut set = NodeSet::new(grid.nodes());
     set.assign(is_in(grid));
     let neighbourhood = Neighbourhood::new(problem);
-    let answers: Vec<Wide> = watched
-        .iter()
-        .map(|&node| neighbourhood.solve_wide(problem.table(), &set, node))
-        .collect();
+    let answers: Vec<Wide> =
+        watched.iter().map(|&node| neighbourhood.solve_wide(problem.table(), &set, node)).collect();
     let size = watched.len();
     let mut matrix = nalgebra::DMatrix::zeros(size, size);
     schur(problem, &answers, &neighbourhood, matrix.as_mut_slice());
@@ -75,8 +70,10 @@ fn complements_are_those_of_their_sources() -> Result<(), Error> {
     for periodic in [false, true] {
         let grid = Grid::new(200, 40, 1.0, 1.0)?;
         let problem = flat(grid, periodic)?;
-        let nodes =
-            watched(grid, &[(10, 20), (16, 22), (40, 5), (60, 30), (100, 20), (150, 10), (190, 20)]);
+        let nodes = watched(
+            grid,
+            &[(10, 20), (16, 22), (40, 5), (60, 30), (100, 20), (150, 10), (190, 20)],
+        );
         let (answers, found) = complement(&problem, &nodes);
         let unit = problem.table().self_influence();
         for (j, b) in answers.iter().enumerate() {
