@@ -3,6 +3,18 @@
 //! ```text
 //! cargo run --release --example choose_at_run_time
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! surface  half-space  load at 10 % contact [N]
+//! sphere   free                        1.3262e1
+//! sphere   periodic                    1.3418e1
+//! sphere   spectral                    1.3390e1
+//! rough    free                        1.0573e4
+//! rough    periodic                    1.0324e4
+//! rough    spectral                    1.0182e4
+//! ```
 
 use asperity::surface::Paraboloid;
 use asperity::{

@@ -3,6 +3,16 @@
 //! ```text
 //! cargo run --release --example coated_body
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! 5 µm of               contact [%]  greatest pressure [GPa]  K_i [GN/m]
+//! steel                        5.80                     6.63        0.46
+//! titanium nitride             4.86                     7.93        0.46
+//! silver                       7.11                     5.21        0.46
+//! PTFE                        64.39                     0.61        0.60
+//! ```
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::surface::Amplitude;

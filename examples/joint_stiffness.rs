@@ -7,6 +7,22 @@
 //! ```text
 //! cargo run --release --example joint_stiffness
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! half-space  pressure [MPa]  contact [%]  mean gap [µm]  interfacial [N/m³]  contact [N/m³]
+//! periodic              50.0         2.50          1.625            1.156e14               -
+//! periodic              90.0         4.29          1.359            1.950e14               -
+//! periodic             100.0         4.86          1.311            2.241e14               -
+//! periodic             110.0         5.29          1.269            2.437e14               -
+//! free                  50.0         2.42          1.633            1.165e14        6.042e13
+//! free                  90.0         4.22          1.377            2.023e14        7.800e13
+//! free                 100.0         4.63          1.329            2.221e14        8.087e13
+//! free                 110.0         5.14          1.287            2.488e14        8.436e13
+//!
+//! the interface of the joint at its preload of 40000 N: 8.962e10 N/m
+//! ```
 
 use asperity::surface::Amplitude;
 use asperity::{

@@ -6,6 +6,16 @@
 //! ```text
 //! cargo run --release --example own_kernel
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! coating [m/Pa]    load [N]  radius of contact [m]
+//!            0e0    5.0000e1              1.2087e-4
+//!          1e-16    5.0000e1              1.2714e-4
+//!          1e-15    5.0000e1              1.5671e-4
+//!          1e-14    5.0000e1              2.4746e-4
+//! ```
 
 use asperity::surface::Paraboloid;
 use asperity::{Boundary, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver};

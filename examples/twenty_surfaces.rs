@@ -6,6 +6,18 @@
 //! ```text
 //! cargo run --release --example twenty_surfaces
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! pressure [MPa]      contact [%]       mean gap [µm]    interfacial stiffness [GN/m³]
+//!              2     0.216 ± 0.040      2.7456 ± 0.2617             9532 ± 1748
+//!              5     0.435 ± 0.094      2.4989 ± 0.2077            16897 ± 4635
+//!             10     0.797 ± 0.163      2.2630 ± 0.1424            30094 ± 8370
+//!             20     1.461 ± 0.191      1.9982 ± 0.0813            52927 ± 9303
+//!             50     3.353 ± 0.267      1.6158 ± 0.0480           114574 ± 10903
+//!            100     6.407 ± 0.367      1.3052 ± 0.0369           216126 ± 14542
+//! ```
 
 use asperity::loading::History;
 use asperity::surface::Amplitude;

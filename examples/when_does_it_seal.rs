@@ -9,6 +9,20 @@
 //! ```text
 //! cargo run --release --example when_does_it_seal
 //! ```
+//!
+//! It prints:
+//!
+//! ```text
+//! joined across      event                       load [MPa]   contact [%]   mean gap [µm]
+//! sides, corners     a patch along x                  39.63         48.45           0.261
+//! sides, corners     a patch along y                  29.45         38.76           0.373
+//! sides, corners     no channel along x               29.45         38.76           0.373
+//! sides, corners     no channel along y               39.63         48.45           0.261
+//! sides              a patch along x                  39.63         48.45           0.261
+//! sides              a patch along y                  33.35         42.76           0.324
+//! sides              no channel along x               33.35         42.76           0.324
+//! sides              no channel along y               39.63         48.45           0.261
+//! ```
 
 use asperity::loading::History;
 use asperity::patches::{Connectivity, Percolation, contact_sequence};

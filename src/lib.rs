@@ -41,7 +41,7 @@
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
 //! | superpose increments of a path | [`bed`] |
-//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
+//! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
 //! | limit memory and time | [`updater`], and the trait [`LinearUpdater`] |
 //! | compare with closed forms | [`reference`](mod@reference) |
@@ -74,12 +74,21 @@
 //! between two exact solutions carry an estimate of their error ([`loading`]). Results are bit for bit the same with any
 //! number of threads, and without the feature `rayon`.
 //!
+//! # Features
+//!
+//! | feature | default | |
+//! |---|---|---|
+//! | `io` | yes | files of instruments, and records of paths on disk; without it surfaces are read from NumPy files only |
+//! | `rayon` | yes | threads; they change no result by a single bit |
+//! | `serde` | with `io` | grids, states, certificates, solutions and records as data of any format that serde knows |
+//!
 //! # Limits of the model
 //!
 //! Contact is frictionless and without adhesion, and slopes are small. It is elastic, and unloading retraces loading, unless a
 //! hardness is given ([`LoadingBuilder::hardness`](loading::LoadingBuilder::hardness)): compare the greatest pressure with it.
 
 #![warn(missing_debug_implementations)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod bed;
 mod cell_response;
@@ -120,7 +129,7 @@ pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterErro
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,
-    PeriodicBoussinesq, Spectral,
+    PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral,
 };
 pub use loading::{ContactEvent, ContactRule, LoadingSolver, LoadingState};
 pub use problem::Problem;
@@ -131,6 +140,11 @@ pub use warning::Warning;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The same of the page that the package has instead.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/crate.md")]
+struct CratePage;
 
 /// The same of the page that leads from a file to its contact.
 #[cfg(all(doctest, feature = "io"))]

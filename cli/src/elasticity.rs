@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use asperity::kernel::{KernelOrigin, LayeredBody};
 use asperity::material::Material as Known;
-use asperity::{Error, Grid, InfluenceKernel, composite_modulus, plane_strain_modulus};
+use asperity::{Boundary, Error, Grid, InfluenceKernel, composite_modulus, plane_strain_modulus};
 use asperity_cli::half_space::{Periodic, half_space, layered};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -80,6 +80,12 @@ impl Bodies {
             KernelOrigin::Boussinesq { e_star } => Ok((None, plain(e_star))),
             KernelOrigin::PeriodicBoussinesq { e_star } => Ok((love, plain(e_star))),
             KernelOrigin::Spectral { e_star } => Ok((spectral, plain(e_star))),
+            KernelOrigin::SemiPeriodicBoussinesq { e_star, boundary: Boundary::PeriodicY } => {
+                Ok((Some(Periodic::Y), plain(e_star)))
+            }
+            KernelOrigin::SemiPeriodicBoussinesq { e_star, .. } => {
+                Ok((Some(Periodic::X), plain(e_star)))
+            }
             KernelOrigin::Layered { body } => Ok((None, layers(body))),
             KernelOrigin::PeriodicLayered { body } => Ok((love, layers(body))),
             KernelOrigin::SpectralLayered { body } => Ok((spectral, layers(body))),

@@ -61,6 +61,16 @@ fn are_alike(found: &Path, expected: &Path) -> Done {
     Ok(())
 }
 
+/// Every byte is the same.
+fn are_identical(found: &Path, expected: &Path) -> Done {
+    let (found, expected) = (fs::read_to_string(found)?, fs::read_to_string(expected)?);
+    for (line, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(found, expected, "line {line}");
+    }
+    assert_eq!(found.len(), expected.len());
+    Ok(())
+}
+
 const PATH: &str = "path --nodes 64 --updater cholesky";
 
 /// What a record holds is read from it: the same states, table, fields and picture as of a path that was to end there. The
@@ -150,6 +160,40 @@ fn a_record_grows_with_its_path() -> Done {
     Ok(())
 }
 
+/// A path that goes on from its record has the file of the path that was not interrupted, byte for byte: with a factor, without one,
+/// and where the default gives it up on the way.
+#[test]
+fn a_path_in_parts_is_the_whole_one() -> Done {
+    let folder = Scratch::new("records-parts")?;
+    for (k, path) in [
+        "--updater cholesky",
+        "--updater iterative",
+        "--updater iterative --periodic love",
+        "--updater iterative --periodic spectral",
+        "--memory-budget 8e6",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (updater, kernel) = path.split_once(" --periodic").unwrap_or((path, ""));
+        let kernel = if kernel.is_empty() { "" } else { &path[updater.len()..] };
+        let record = format!("r{k}.npz");
+        let whole = format!("path --nodes 64 {updater} {kernel} --max-load 60000 --out whole{k}");
+        printed(&folder.0, &whole)?;
+        let first = format!("path --nodes 64 {updater} {kernel} --max-load 1500 --record {record}");
+        printed(&folder.0, &first)?;
+        for load in [20_000, 40_000, 60_000] {
+            let more = format!("path --resume {record} {updater} --max-load {load} --out parts{k}");
+            printed(&folder.0, &more)?;
+        }
+        let files = ["parts", "whole"].map(|name| folder.join(&format!("{name}{k}/path.csv")));
+        let lines = fs::read_to_string(&files[1])?.lines().count();
+        assert!(lines > 400, "{path}: {lines}");
+        are_identical(&files[0], &files[1])?;
+    }
+    Ok(())
+}
+
 /// A path that breaks off for want of memory leaves its record, all files and the fields of its last state.
 #[test]
 fn a_small_budget_loses_nothing() -> Done {
@@ -223,7 +267,7 @@ fn interrupted_paths_go_on() -> Done {
         assert!(said.contains(&told), "{said}");
         let again = format!("path --resume {record} --updater cholesky --out out");
         printed(&folder.0, &again)?;
-        are_alike(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
+        are_identical(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
         fs::remove_dir_all(folder.join("out"))?;
     }
     // What a batch system sends does the same.
@@ -328,6 +372,49 @@ fn a_path_on_layers_goes_on() -> Done {
         )?;
     }
     printed(&folder.0, "patches free.npz --out patches")?;
+    Ok(())
+}
+
+/// Surfaces that repeat along one side: said, kept, gone on with, taken apart and leaked through.
+#[test]
+fn a_path_that_repeats_along_one_side_goes_on() -> Done {
+    let folder = Scratch::new("records-one-side")?;
+    for (along, across) in [("x", "y"), ("y", "x")] {
+        let said_of = format!("periodic along {along} and free along {across}, Love kernel");
+        let line = format!("{PATH} --periodic {along}");
+        let first =
+            format!("{line} --max-area-fraction 0.1 --record {along}.npz --out {along}_first");
+        let first = run(&folder.0, &first)?;
+        assert!(said(&first).contains(&format!("half-space {said_of}")), "{}", said(&first));
+        assert!(said(&first).contains("K: contact stiffness"), "{}", said(&first));
+        let settings = fs::read_to_string(folder.join(&format!("{along}_first/settings.json")))?;
+        assert!(settings.contains(&said_of), "{settings}");
+        let more = format!(
+            "path --updater cholesky --resume {along}.npz --max-area-fraction 0.2 --out {along}_more"
+        );
+        assert!(said(&run(&folder.0, &more)?).contains(&said_of));
+        printed(&folder.0, &format!("{line} --max-area-fraction 0.2 --out {along}_whole"))?;
+        are_alike(
+            &folder.join(&format!("{along}_more/path.csv")),
+            &folder.join(&format!("{along}_whole/path.csv")),
+        )?;
+        let patches = run(&folder.0, &format!("patches {along}.npz --out {along}_patches"))?;
+        let boundary = format!("along {along} periodic boundary");
+        assert!(
+            patches.status.success() && said(&patches).contains(&boundary),
+            "{}",
+            said(&patches)
+        );
+        for (flow, sides) in [(along, "sides closed"), (across, "sides joined")] {
+            let leak = format!(
+                "leak {along}.npz --viscosity 1e-3 --pressure-drop 1e5 --along {flow} --states 3 --out {along}_{flow}"
+            );
+            let leak = run(&folder.0, &leak)?;
+            assert!(leak.status.success() && said(&leak).contains(sides), "{}", said(&leak));
+        }
+    }
+    let both = run(&folder.0, &format!("{PATH} --layer steel,1e-6 --base rigid --periodic x"))?;
+    is_refused(&both, &["layers repeat", "love"]);
     Ok(())
 }
 

@@ -65,7 +65,15 @@ pub(crate) fn same_path(
         return Ok(());
     };
     let initial = first.contact.mean_gap;
-    let place: HashMap<_, _> = exact.iter().enumerate().map(|(k, s)| (s.node, k)).collect();
+    // A node may touch and yield.
+    let place: HashMap<_, _> =
+        exact.iter().enumerate().map(|(k, s)| ((s.event, s.node), k)).collect();
+    let last = exact.last().map(|state| state.contact);
+    let plastic = last.and_then(|contact| contact.plastic).unwrap_or_default();
+    // Where nodes yield the energy falls again, and to nothing on a periodic half-space.
+    let yields = plastic.yielded_nodes > 0;
+    let energies = exact.iter().map(|state| state.contact.energy);
+    let greatest = if yields { energies.fold(0.0, f64::max) } else { 0.0 };
     // Of the approach that is computed with, in which the load is contained.
     let computed = |state: &LoadingState| state.contact.approach + uniform(state.contact.load);
     // States at one approach joined together, as a window began: they are ties as far as they say themselves.
@@ -84,25 +92,31 @@ pub(crate) fn same_path(
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
         let context = || format!("{state:?} in place of {expected:?}");
         ensure!(
-            (state.step, state.contact.contact_nodes)
-                == (expected.step, expected.contact.contact_nodes),
+            state.step == expected.step
+                && (yields || state.contact.contact_nodes == expected.contact.contact_nodes),
             "{}",
             context()
         );
-        let Some(&own) = place.get(&state.node) else {
+        let Some(&own) = place.get(&(state.event, state.node)) else {
             return Err(Violation::new(context()));
         };
         let apart = (exact[own].contact.approach - expected.contact.approach).abs();
         // Between its place and the one where it was found, as far as the path goes.
         let uncertain = found.iter().take(own.max(k) + 1).skip(own.min(k));
         let uncertain = uncertain.fold(0.0, |most: f64, state| most.max(state.approach_error));
-        if state.node != expected.node && apart > tie(k).max(bounds.order * uncertain) {
+        let is_other = (state.event, state.node) != (expected.event, expected.node);
+        if is_other && apart > tie(k).max(bounds.order * uncertain) {
             return Err(Violation::new(format!("{}: {apart:e} apart", context())));
         }
         let next = exact.get(k + 1).map_or(f64::INFINITY, |next| next.contact.approach);
         if next - expected.contact.approach <= tie(k) || expected.contact.approach <= tie(k) {
             continue;
         }
+        ensure!(
+            is_other || state.contact.contact_nodes == expected.contact.contact_nodes,
+            "{}",
+            context()
+        );
         // What the state itself says of its approach, and what follows from it.
         let error = bounds.excess * state.approach_error;
         let rate = |state: &LoadingState| {
@@ -111,7 +125,12 @@ pub(crate) fn same_path(
         };
         // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
         let before = k.checked_sub(1).and_then(|before| rate(&exact[before]));
-        let by_error = error * rate(expected).or(before).unwrap_or(0.0);
+        // A yield takes from it, on a plateau all of it.
+        let rate = match (rate(expected), before) {
+            (Some(here), Some(before)) if yields => Some(here.max(before)),
+            (here, before) => here.or(before),
+        };
+        let by_error = error * rate.unwrap_or(0.0);
         let mut scalars = [
             (
                 "approach",
@@ -129,7 +148,7 @@ pub(crate) fn same_path(
                 "energy",
                 state.contact.energy,
                 expected.contact.energy,
-                3.0 * bounds.load * expected.contact.energy
+                3.0 * bounds.load * expected.contact.energy.max(greatest)
                     + (expected.contact.load + by_error) * error,
             ),
             (
@@ -155,6 +174,16 @@ pub(crate) fn same_path(
                 }
                 (a, b) => ensure!(a == b, "{}", context()),
             }
+        }
+        if let (Some(a), Some(b), Some(last)) =
+            (state.contact.plastic, expected.contact.plastic, last)
+        {
+            ensure!(is_other || a.yielded_nodes == b.yielded_nodes, "{}", context());
+            // What is yielded sinks no faster than the approach, under no more than the last load.
+            let volume = bounds.load * plastic.volume + error * last.contact_area;
+            let work = bounds.load * plastic.work + error * last.load;
+            scalars.push(("plastic volume", a.volume, b.volume, volume));
+            scalars.push(("plastic work", a.work, b.work, work));
         }
         for (what, a, b, allowed) in scalars {
             tally.close(what, a, b, allowed).map_err(|violation| violation.during(context()))?;

@@ -60,9 +60,7 @@ impl<'a> Trial<'a> {
         let (mut tally, expected) = self
             .follow(&reference, &[], draw)
             .map_err(|violation| violation.during("by default"))?;
-        let is_elastic = self.sample.hardness.is_none();
-        let iterations =
-            is_elastic && self.circumstances.error < WELL_CONDITIONED && draw.once_in(2);
+        let iterations = self.circumstances.error < WELL_CONDITIONED && draw.once_in(2);
         let mut variant = Variant::draw(draw, iterations);
         let from = match draw.once_in(3) {
             true if variant.rule == ContactRule::FirstContact => draw.whole(0, expected.len()),

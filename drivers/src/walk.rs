@@ -383,15 +383,17 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// At the approach of a state that may have come through a window.
     fn check_signs(&mut self, set: &ContactSet<'_>, instant: &Instant) -> Result<(), Violation> {
-        let length = instant.gap_error + TIE * instant.lengths;
+        let length = instant.carried_error + TIE * instant.lengths;
         for (node, state) in set.states().iter().enumerate() {
             let (pressure, gap) = (instant.pressure[node], instant.gap[node]);
             match state {
                 Node::Out => self.tally.not_negative("a gap", gap, length)?,
                 Node::Yielded => self.tally.not_negative("a plastic depth", -gap, length)?,
                 Node::Elastic => {
-                    let (error, hardness) = (instant.pressure_error, self.hardness(node));
+                    let error = set.norms.inverse * instant.carried_error;
+                    let hardness = self.hardness(node);
                     self.tally.not_negative("a pressure", pressure, error)?;
                     if hardness.is_finite() {
                         let error = error + TIE * hardness;

@@ -167,7 +167,7 @@ impl Trial<'_> {
             return Ok(());
         };
         // What the heights are off by, and what rounds.
-        let error = again.norms.carried * instant.gap_error + reloaded.gap_error;
+        let error = again.norms.carried * instant.carried_error + reloaded.gap_error;
         if last.event != ContactEvent::Limit || !self.is_clear(set, instant, error) {
             return Ok(());
         }

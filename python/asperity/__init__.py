@@ -25,6 +25,14 @@ Where to find it
     single loads
 ``patches``, ``label_patches``
     contact patches, percolation, activation
+``Seal``
+    leakage through the gap
+``shear``
+    tangential loads: partial slip, stiffness, dissipation
+``Prony``, ``creep``, ``steady_cycles``
+    viscoelastic bodies over time
+``conductance``, ``interface_table``
+    heat and current through a joint; its laws for finite elements
 ``asperity.errors``, ``asperity.results``
     exceptions and warnings; small results
 
@@ -45,12 +53,18 @@ Own solvers of the linear systems are written in Rust, by its trait ``LinearUpda
 from asperity import errors, results
 from asperity._asperity import (
     EVENTS,
+    Creep,
+    CreepSteps,
     HalfSpace,
     History,
+    InterfaceTable,
     LoadingPath,
     LoadSweep,
+    PartialSlip,
     PatchAnalysis,
     PatchMap,
+    Prony,
+    Seal,
     Solution,
     State,
     Surface,
@@ -59,12 +73,16 @@ from asperity._asperity import (
     channels,
     check_half_space,
     composite_modulus,
+    conductance,
+    conductance_bounds,
     cone,
+    creep,
     cylinder,
     example_surface,
     gap_distribution,
     hardness,
     influence,
+    interface_table,
     label_patches,
     load_path,
     materials,
@@ -73,9 +91,13 @@ from asperity._asperity import (
     patches,
     pressure_distribution,
     read,
+    save_fields,
     self_affine,
     set_threads,
+    shear,
     solve,
+    steady_cycle,
+    steady_cycles,
     sweep,
     threads,
     wave,
@@ -83,15 +105,21 @@ from asperity._asperity import (
 from asperity.errors import AsperityError, AsperityWarning
 
 __all__ = [
-    "EVENTS",
     "AsperityError",
     "AsperityWarning",
+    "Creep",
+    "CreepSteps",
+    "EVENTS",
     "HalfSpace",
     "History",
+    "InterfaceTable",
     "LoadSweep",
     "LoadingPath",
+    "PartialSlip",
     "PatchAnalysis",
     "PatchMap",
+    "Prony",
+    "Seal",
     "Solution",
     "State",
     "Surface",
@@ -100,13 +128,17 @@ __all__ = [
     "channels",
     "check_half_space",
     "composite_modulus",
+    "conductance",
+    "conductance_bounds",
     "cone",
+    "creep",
     "cylinder",
     "errors",
     "example_surface",
     "gap_distribution",
     "hardness",
     "influence",
+    "interface_table",
     "label_patches",
     "load_path",
     "materials",
@@ -116,9 +148,13 @@ __all__ = [
     "pressure_distribution",
     "read",
     "results",
+    "save_fields",
     "self_affine",
     "set_threads",
+    "shear",
     "solve",
+    "steady_cycle",
+    "steady_cycles",
     "sweep",
     "threads",
     "wave",

@@ -1,7 +1,7 @@
 # Types of the compiled module, by hand; `stubtest` compares them with it.
 from collections.abc import Callable, Iterator
 from os import PathLike
-from typing import IO, Any, Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, final
+from typing import IO, Any, Literal, Protocol, SupportsFloat, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,13 +9,19 @@ from numpy.typing import ArrayLike, NDArray
 from asperity import results
 
 __all__ = [
+    "Creep",
+    "CreepSteps",
     "EVENTS",
     "HalfSpace",
     "History",
+    "InterfaceTable",
     "LoadSweep",
     "LoadingPath",
+    "PartialSlip",
     "PatchAnalysis",
     "PatchMap",
+    "Prony",
+    "Seal",
     "Solution",
     "State",
     "Surface",
@@ -24,18 +30,23 @@ __all__ = [
     "_panic_for_tests",
     "_restore_half_space",
     "_restore_history",
+    "_restore_layers",
     "_restore_solution",
     "_restore_states",
     "_restore_surface",
     "channels",
     "check_half_space",
     "composite_modulus",
+    "conductance",
+    "conductance_bounds",
     "cone",
+    "creep",
     "cylinder",
     "example_surface",
     "gap_distribution",
     "hardness",
     "influence",
+    "interface_table",
     "label_patches",
     "load_path",
     "materials",
@@ -44,9 +55,13 @@ __all__ = [
     "patches",
     "pressure_distribution",
     "read",
+    "save_fields",
     "self_affine",
     "set_threads",
+    "shear",
     "solve",
+    "steady_cycle",
+    "steady_cycles",
     "sweep",
     "threads",
     "wave",
@@ -68,6 +83,8 @@ _Trend: TypeAlias = Literal["mean", "plane", "quadratic"]
 _Filter: TypeAlias = Literal["gaussian", "sharp"]
 _Updater: TypeAlias = Literal["auto", "cholesky", "iterative"]
 _Body: TypeAlias = tuple[_Real, _Real] | str
+_Terms: TypeAlias = list[tuple[float, float]]
+_Carrier: TypeAlias = Literal["heat", "current"]
 _Function: TypeAlias = Callable[[Any, Any], ArrayLike]
 
 class _Topography(Protocol):
@@ -158,6 +175,16 @@ class HalfSpace:
         cls, e_star: float, boundary: Literal["free", "love", "spectral"]
     ) -> HalfSpace: ...
     @staticmethod
+    def layered(
+        layers: list[tuple[float, float, float] | tuple[str, float]]
+        | list[tuple[float, float, float]]
+        | list[tuple[str, float]],
+        base: _Body,
+        boundary: Literal["free", "love", "spectral"],
+        *,
+        against: _Body | None = None,
+    ) -> HalfSpace: ...
+    @staticmethod
     def from_symbol(
         symbol: _Function,
         *,
@@ -180,6 +207,13 @@ class HalfSpace:
     def boundary(self) -> Literal["free", "love", "spectral", "symbol", "coefficients"]: ...
     @property
     def is_periodic(self) -> bool: ...
+    @property
+    def thickness(self) -> float | None: ...
+    @property
+    def layers(self) -> list[tuple[float, float, float]] | None: ...
+    @property
+    def base(self) -> tuple[float, float] | None: ...
+    def compliance(self, wave_numbers: ArrayLike) -> _Floats: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
@@ -285,7 +319,10 @@ class History:
         mean_gap: float | None = None,
     ) -> State: ...
     def __len__(self) -> int: ...
+    @overload
     def __getitem__(self, index: int, /) -> State: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> History: ...
     def __iter__(self) -> Iterator[State]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
@@ -482,6 +519,173 @@ class PatchAnalysis:
     def at(self, state: State) -> PatchMap: ...
     def __len__(self) -> int: ...
 
+@final
+class Seal:
+    def __new__(cls, viscosity: float, pressure_drop: float, along: _Axis) -> Seal: ...
+    @property
+    def viscosity(self) -> float: ...
+    @property
+    def pressure_drop(self) -> float: ...
+    @property
+    def along(self) -> _Axis: ...
+    def leak(self, path: LoadingPath, state: State | None = None) -> results.Leak: ...
+    def leak_of(
+        self, gap: ArrayLike, contact_map: ArrayLike, size: _Lengths, *, periodic: bool
+    ) -> results.Leak: ...
+    def curve(self, path: LoadingPath, states: int = 40) -> results.LeakCurve: ...
+
+@final
+class PartialSlip:
+    @property
+    def load(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
+    @property
+    def compliance_ratio(self) -> float: ...
+    @property
+    def dundurs_beta(self) -> float: ...
+    @property
+    def sliding_load(self) -> float: ...
+    @property
+    def sliding_displacement(self) -> float: ...
+    def monotone(self, tangential_load: float) -> results.SlipState: ...
+    def loading(self, tangential_loads: ArrayLike) -> dict[str, NDArray[Any]]: ...
+    def cycle(self, amplitude: float) -> results.SlipCycle: ...
+    def cycle_of_displacement(self, displacement: float) -> results.SlipCycle: ...
+    def cycles(self, amplitudes: ArrayLike) -> dict[str, NDArray[Any]]: ...
+    def jenkins_elements(self) -> dict[str, _Floats]: ...
+    def follow(self, load: ArrayLike, tangential_load: ArrayLike) -> dict[str, NDArray[Any]]: ...
+    def traction(self, tangential_load: float) -> _Floats: ...
+    def slip(self, tangential_load: float) -> _Floats: ...
+    def friction_work(self, amplitude: float) -> _Floats: ...
+    def zones(self, tangential_load: float) -> NDArray[np.int8]: ...
+
+@final
+class Prony:
+    @staticmethod
+    def relaxation(equilibrium: float, terms: _Terms) -> Prony: ...
+    @staticmethod
+    def creep(instantaneous: float, terms: _Terms, fluidity: float = 0.0) -> Prony: ...
+    @staticmethod
+    def shares(terms: _Terms) -> Prony: ...
+    @staticmethod
+    def elastic(modulus: float) -> Prony: ...
+    def plane_strain(self, poisson: float) -> Prony: ...
+    def in_series(self, other: Prony) -> Prony: ...
+    def relative_to(self, modulus: float) -> Prony: ...
+    def creep_at(self, times: ArrayLike) -> _Floats: ...
+    def relaxation_at(self, times: ArrayLike) -> _Floats: ...
+    @property
+    def relaxation_terms(self) -> list[tuple[float, float]]: ...
+    @property
+    def creep_terms(self) -> list[tuple[float, float]]: ...
+    @property
+    def equilibrium_modulus(self) -> float: ...
+    @property
+    def instantaneous_modulus(self) -> float: ...
+    @property
+    def fluidity(self) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Creep:
+    @property
+    def recession(self) -> float | None: ...
+    @property
+    def touch_times(self) -> _Floats: ...
+    def at(self, times: ArrayLike) -> dict[str, NDArray[Any]]: ...
+    def path_state(self, time: float) -> State: ...
+    def pressure(self, time: float, pieces: int = 40) -> _Floats: ...
+    def gap(self, time: float) -> _Floats: ...
+    def unloading(self, times: ArrayLike) -> dict[str, NDArray[Any]]: ...
+    def step_times(self, end: float, *, steps: int = 60, halvings: int = 0) -> _Floats: ...
+    def follow(self, times: ArrayLike) -> CreepSteps: ...
+
+@final
+class CreepSteps:
+    @property
+    def halvings(self) -> int: ...
+    def columns(self) -> dict[str, NDArray[Any]]: ...
+    def pressure(self, pieces: int = 40) -> _Floats: ...
+    def gap(self, pieces: int = 40) -> _Floats: ...
+    def __len__(self) -> int: ...
+
+@final
+class InterfaceTable:
+    def columns(self) -> dict[str, _Floats]: ...
+    def text(self, program: Literal["abaqus", "calculix", "moose", "csv"]) -> str: ...
+    def __len__(self) -> int: ...
+
+def shear(
+    path: LoadingPath | History,
+    *,
+    friction: float,
+    load: float | None = None,
+    bodies: tuple[_Body, _Body] | None = None,
+    compliance_ratio: float | None = None,
+    check: bool = True,
+) -> PartialSlip: ...
+def creep(
+    path: LoadingPath | History,
+    prony: Prony,
+    times: ArrayLike,
+    *,
+    load: ArrayLike | None = None,
+    approach: ArrayLike | None = None,
+) -> Creep: ...
+def steady_cycle(
+    path: LoadingPath | History,
+    prony: Prony,
+    *,
+    mean_load: float,
+    amplitude: float,
+    period: float,
+    steps: int = 96,
+    tolerance: float = 1e-5,
+    most: int = 60,
+) -> results.Cycle: ...
+def steady_cycles(
+    path: LoadingPath | History,
+    prony: Prony,
+    *,
+    mean_load: float,
+    amplitude: float,
+    periods: ArrayLike,
+    steps: int = 96,
+    tolerance: float = 1e-5,
+    most: int = 60,
+) -> list[results.Cycle]: ...
+def conductance(
+    path: LoadingPath | History,
+    resistivity: float,
+    *,
+    carrier: _Carrier = "heat",
+    e_star: float | None = None,
+    gap: tuple[float, float] | None = None,
+    interface: bool = False,
+) -> _Floats: ...
+def conductance_bounds(
+    path: LoadingPath | History,
+    resistivity: float,
+    unresolved: float,
+    *,
+    carrier: _Carrier = "heat",
+    e_star: float | None = None,
+    gap: tuple[float, float] | None = None,
+) -> tuple[_Floats, _Floats]: ...
+def interface_table(
+    path: LoadingPath | History,
+    *,
+    resistivity: float | None = None,
+    carrier: _Carrier = "heat",
+    e_star: float | None = None,
+    gap: tuple[float, float] | None = None,
+    friction: float | None = None,
+    bodies: tuple[_Body, _Body] | None = None,
+    compliance_ratio: float | None = None,
+    tolerance: float = 0.01,
+) -> InterfaceTable: ...
 def read(
     source: _Path | bytes | bytearray | memoryview | IO[bytes],
     channel: str | None = None,
@@ -493,6 +697,9 @@ def read(
     name: _Path | None = None,
 ) -> Surface: ...
 def channels(path: _Path) -> list[str]: ...
+def save_fields(
+    path: _Path, fields: dict[str, _Floats] | dict[str, ArrayLike], size: _Lengths, *, unit: str = ""
+) -> None: ...
 def self_affine(
     shape: tuple[int, int],
     size: _Lengths,
@@ -635,6 +842,7 @@ def _restore_surface(
 def _restore_half_space(
     boundary: str, e_star: float | None, function: _Function | None, words: list[str]
 ) -> HalfSpace: ...
+def _restore_layers(data: str, boundary: str) -> HalfSpace: ...
 def _restore_states(table: dict[str, NDArray[Any]], is_one: bool) -> State: ...
 def _restore_history(
     table: dict[str, NDArray[Any]], setting: tuple[tuple[int, int], tuple[float, float], bool, bool]

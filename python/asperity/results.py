@@ -14,14 +14,20 @@ if TYPE_CHECKING:
 __all__ = [
     "Certificate",
     "Constriction",
+    "CriticalConstriction",
+    "Cycle",
     "Distribution",
     "Effort",
     "Estimate",
     "KernelReport",
+    "Leak",
+    "LeakCurve",
     "Material",
     "Percolation",
     "PowerSpectrum",
     "SelfAffineFit",
+    "SlipCycle",
+    "SlipState",
     "SpectralMoments",
     "Trend",
 ]
@@ -285,3 +291,215 @@ class Material:
     youngs_modulus: float
     poissons_ratio: float
     hardness: float | None
+
+
+@dataclass(frozen=True)
+class CriticalConstriction:
+    """The narrowest place of the widest channel of a leak.
+
+    Attributes
+    ----------
+    row, column : int
+        The node.
+    gap : float
+        The gap there [m].
+    pressure_drop : float
+        The share of the pressure drop from one side of its cell to the other.
+    dissipation : float
+        The share of the power that is lost in the square of 9 x 9 cells about it.
+    """
+
+    row: int
+    column: int
+    gap: float
+    pressure_drop: float
+    dissipation: float
+
+
+@dataclass(frozen=True)
+class Leak:
+    """The leak through a gap map.
+
+    Attributes
+    ----------
+    leak_rate : float
+        Through the whole width of the surface [m³/s]: exactly 0 if no channel leads from edge to edge.
+    permeability : float
+        Along the flow [m³/(Pa s)]: of a gap g everywhere it is g³ / (12 viscosity).
+    transverse_permeability : float
+        Across [m³/(Pa s)]; NaN on a free boundary.
+    mean_field_leak_rate : float
+        Bruggeman's estimate of the leak rate [m³/s].
+    constriction : CriticalConstriction or None
+        The narrowest place of the widest channel.
+    pressure : ndarray of float, [row, column]
+        Fluid pressure [Pa], NaN where there is no fluid and in pools.
+    flux_x, flux_y : ndarray of float, [row, column]
+        Volume per time and width [m²/s].
+    sections : ndarray of float
+        Leak rate through each section across the flow [m³/s].
+    imbalance : float
+        What is lost at all nodes together over the leak rate.
+    flowing_nodes : int
+        Nodes through which the fluid flows.
+    pools : int
+        Places with fluid that no channel joins to an edge.
+    iterations : int
+        Iterations of the solver.
+    """
+
+    leak_rate: float
+    permeability: float
+    transverse_permeability: float
+    mean_field_leak_rate: float
+    constriction: CriticalConstriction | None
+    pressure: NDArray[np.float64] = field(compare=False, repr=False)
+    flux_x: NDArray[np.float64] = field(compare=False, repr=False)
+    flux_y: NDArray[np.float64] = field(compare=False, repr=False)
+    sections: NDArray[np.float64] = field(compare=False, repr=False)
+    imbalance: float
+    flowing_nodes: int
+    pools: int
+    iterations: int
+
+
+@dataclass(frozen=True)
+class LeakCurve:
+    """The leak rate along a path, in the order of loading.
+
+    Attributes
+    ----------
+    states : list of State
+    load, mean_pressure, area_fraction, mean_gap : ndarray of float
+        Of the states [N, Pa, -, m].
+    leak_rate, mean_field_leak_rate : ndarray of float
+        [m³/s]
+    permeability, transverse_permeability : ndarray of float
+        Along the flow and across [m³/(Pa s)]; across NaN on a free boundary.
+    constrictions : list of CriticalConstriction or None
+        The narrowest place of the widest channel; None where nothing leaks.
+    imbalance : ndarray of float
+        What is lost at all nodes together over the leak rate.
+    closing : State or None
+        The state at which the last channel closes; None if the path does not reach it, and if nodes leave the contact.
+    """
+
+    states: list[State]
+    load: NDArray[np.float64] = field(compare=False)
+    mean_pressure: NDArray[np.float64] = field(compare=False)
+    area_fraction: NDArray[np.float64] = field(compare=False)
+    mean_gap: NDArray[np.float64] = field(compare=False)
+    leak_rate: NDArray[np.float64] = field(compare=False)
+    mean_field_leak_rate: NDArray[np.float64] = field(compare=False)
+    permeability: NDArray[np.float64] = field(compare=False)
+    transverse_permeability: NDArray[np.float64] = field(compare=False)
+    constrictions: list[CriticalConstriction | None]
+    imbalance: NDArray[np.float64] = field(compare=False)
+    closing: State | None
+
+
+@dataclass(frozen=True)
+class SlipState:
+    """The tangential state of a contact under a load.
+
+    Attributes
+    ----------
+    load, tangential_load : float
+        [N]
+    displacement : float
+        Of distant points of both bodies against each other [m].
+    interfacial_displacement : float
+        What the joint itself gives way [m].
+    stick_load : float
+        Nodes in contact at this load of the path stick [N].
+    stick_nodes, slipping_nodes : int
+    stick_area, slip_area : float
+        [m²]
+    tangential_stiffness : float
+        dT/dU if T goes on as it went [N/m].
+    """
+
+    load: float
+    tangential_load: float
+    displacement: float
+    interfacial_displacement: float
+    stick_load: float
+    stick_nodes: int
+    slipping_nodes: int
+    stick_area: float
+    slip_area: float
+    tangential_stiffness: float
+
+
+@dataclass(frozen=True)
+class SlipCycle:
+    """A steady cycle of the tangential load between -T and T.
+
+    Attributes
+    ----------
+    amplitude : float
+        Of the tangential load [N].
+    displacement, interfacial_displacement : float
+        Amplitudes [m].
+    dissipation : float
+        Energy lost in a cycle [J].
+    secant_stiffness : float
+        [N/m]
+    loss_factor : float
+        The energy lost over 2 pi times T U / 2.
+    stick_load : float
+        Nodes in contact at this load stick throughout [N].
+    slipping_nodes : int
+        Nodes that slip.
+    has_few_nodes : bool
+        So few that the dissipation is that of the grid: below some 50.
+    """
+
+    amplitude: float
+    displacement: float
+    interfacial_displacement: float
+    dissipation: float
+    secant_stiffness: float
+    loss_factor: float
+    stick_load: float
+    slipping_nodes: int
+    has_few_nodes: bool
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A steady cycle of the load of viscoelastic bodies.
+
+    Attributes
+    ----------
+    period : float
+        [s]
+    mean_load, amplitude : float
+        [N]
+    approach_amplitude : float
+        Half of the range of the approach [m].
+    dissipated : float
+        Energy lost in the last cycle [J].
+    stiffness : float
+        Amplitude of the load over that of the approach [N/m].
+    loss_factor : float
+        Energy lost over pi times both amplitudes.
+    approach, load : ndarray of float
+        The last cycle [m, N].
+    cycles : int
+        How many cycles were run.
+    change : float
+        By how much the last one lost more or less than the one before, over the product of amplitudes.
+    """
+
+    period: float
+    mean_load: float
+    amplitude: float
+    approach_amplitude: float
+    dissipated: float
+    stiffness: float
+    loss_factor: float
+    approach: NDArray[np.float64] = field(compare=False, repr=False)
+    load: NDArray[np.float64] = field(compare=False, repr=False)
+    cycles: int
+    change: float

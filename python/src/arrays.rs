@@ -159,11 +159,6 @@ pub(crate) fn rows<T: Element + Scalar>(
     Ok(array.into_pyarray(py))
 }
 
-/// The grid of an array [row, column] with sides \[m\] along x and y.
-pub(crate) fn grid((rows, columns): (usize, usize), size: (f64, f64)) -> Result<Grid, Error> {
-    Ok(Grid::with_sides(columns, rows, size.0, size.1)?)
-}
-
 /// Rows and columns of arrays on a grid.
 pub(crate) fn shape(grid: &Grid) -> (usize, usize) {
     (grid.ny(), grid.nx())
@@ -184,6 +179,13 @@ pub(crate) enum Lengths {
 }
 
 impl Lengths {
+    /// The grid of an array \[row, column\] with these sides \[m\]; of square cells if there is one.
+    pub(crate) fn grid(&self, (rows, columns): (usize, usize)) -> Result<Grid, Error> {
+        let (x, y) = self.x_and_y();
+        let y = y.unwrap_or(x / columns.max(1) as f64 * rows as f64);
+        Ok(Grid::with_sides(columns, rows, x, y)?)
+    }
+
     /// Along x, and along y if it is given apart.
     pub(crate) fn x_and_y(&self) -> (f64, Option<f64>) {
         match *self {

@@ -2,6 +2,7 @@
 
 use std::mem;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -69,6 +70,16 @@ pub(crate) fn interruptible<T: Send + 'static>(
         Some(done) => done.map_err(|payload| Failure::of_panic(&*payload)),
         None => Err(Failure::Panic("the thread has ended without an answer".to_string())),
     }
+}
+
+/// The same for work in parts, which is told when nobody waits for it any more.
+pub(crate) fn cancellable<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> Fallible<T> {
+    let is_left = Arc::new(AtomicBool::new(false));
+    let told = Arc::clone(&is_left);
+    interruptible(py, move || work(&told)).inspect_err(|_| is_left.store(true, Ordering::Relaxed))
 }
 
 /// Waits for what a thread sends, and looks at signals meanwhile; `None` if it sends nothing more. After a signal the receiver is

@@ -4,7 +4,9 @@ use std::any::Any;
 use std::convert::Infallible;
 use std::path::PathBuf;
 
-use asperity::{Error, FileError, KernelError, SurfaceError, UpdaterError};
+use asperity::{
+    BedError, CreepError, Error, FileError, KernelError, SlipError, SurfaceError, UpdaterError,
+};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -122,7 +124,7 @@ fn raise(
 
 /// Words of the library in those of this package.
 pub(crate) fn in_python(text: &str) -> String {
-    const WORDS: [(&str, &str); 9] = [
+    const WORDS: [(&str, &str); 10] = [
         ("`surface::fill_missing`", "`Surface.fill_missing()`"),
         ("`ReadOptions::height_unit`", "`height_unit=`"),
         ("`ReadOptions::lateral_unit`", "`lateral_unit=`"),
@@ -132,6 +134,7 @@ pub(crate) fn in_python(text: &str) -> String {
         ("`kernel::check`", "`check_half_space`"),
         ("The model is elastic;", "The model is elastic unless a `hardness=` is given;"),
         ("it has to be given", "it has to be given, as `half_space=`"),
+        ("step the bed through it", "`Creep.follow` steps through it"),
     ];
     WORDS.iter().fold(text.to_string(), |text, (rust, python)| text.replace(rust, python))
 }
@@ -148,6 +151,7 @@ pub(crate) enum Number {
     CountPair((usize, usize)),
     RealPair((f64, f64)),
     MaybeCount(Option<usize>),
+    MaybeReal(Option<f64>),
     MaybeText(Option<String>),
 }
 
@@ -162,7 +166,8 @@ macro_rules! from {
 }
 from!(
     Real: f64, Count: usize, Offset: isize, Text: String, Texts: Vec<String>, Counts: Vec<usize>,
-    CountPair: (usize, usize), RealPair: (f64, f64), MaybeCount: Option<usize>, MaybeText: Option<String>,
+    CountPair: (usize, usize), RealPair: (f64, f64), MaybeCount: Option<usize>, MaybeReal: Option<f64>,
+    MaybeText: Option<String>,
 );
 
 impl From<&'static str> for Number {
@@ -243,6 +248,9 @@ fn describe(error: &Error) -> Described {
             (CONVERGENCE, "NoConvergence", numbers![residual, tolerance, iterations])
         }
         Error::Updater(error) => of_updater(error),
+        Error::Bed(error) => of_bed(error),
+        Error::Creep(error) => of_creep(error),
+        Error::Slip(error) => of_slip(error),
         Error::Surface(error) => of_surface(error),
         Error::File(error) => of_file(error),
         // Those that come to be later have their words.
@@ -277,6 +285,12 @@ fn of_kernel(error: &KernelError) -> Described {
 
 fn of_updater(error: &UpdaterError) -> Described {
     match error {
+        UpdaterError::UpdaterMismatch { quantity, expected, found } => {
+            (VALUE, "UpdaterMismatch", numbers![quantity, expected, found])
+        }
+        UpdaterError::UpdaterWrong { quantity, contact_nodes, error, tolerance } => {
+            (VALUE, "UpdaterWrong", numbers![quantity, contact_nodes, error, tolerance])
+        }
         UpdaterError::ContactNotClosed { quantity, ix, iy, value, tolerance } => {
             (CONVERGENCE, "ContactNotClosed", numbers![quantity, ix, iy, value, tolerance])
         }
@@ -286,6 +300,57 @@ fn of_updater(error: &UpdaterError) -> Described {
         }
         UpdaterError::HardnessNotSupported => (VALUE, "HardnessNotSupported", Vec::new()),
         _ => (VALUE, "Updater", Vec::new()),
+    }
+}
+
+fn of_bed(error: &BedError) -> Described {
+    match error {
+        BedError::Empty => (VALUE, "EmptyPath", Vec::new()),
+        BedError::NotFromFirstTouch { load, approach } => {
+            (VALUE, "NotFromFirstTouch", numbers![load, approach])
+        }
+        BedError::NotElasticGrowth { event, ix, iy, happens } => {
+            (VALUE, "NotElasticGrowth", numbers![event, ix, iy, happens])
+        }
+        BedError::NotMonotone { step, quantity, value, before, expected } => {
+            (VALUE, "PathNotMonotone", numbers![step, quantity, value, before, expected])
+        }
+        BedError::NoStiffness { step, stiffness } => {
+            (VALUE, "NoStiffness", numbers![step, stiffness])
+        }
+        BedError::PathEndsBefore { quantity, value, end } => {
+            (VALUE, "PathEndsBefore", numbers![quantity, value, end])
+        }
+        _ => (VALUE, "Bed", Vec::new()),
+    }
+}
+
+fn of_creep(error: &CreepError) -> Described {
+    match error {
+        CreepError::ContactRecedes { time, effective_load } => {
+            (VALUE, "ContactRecedes", numbers![time, effective_load])
+        }
+        CreepError::ContactReturns { time } => (VALUE, "ContactReturns", numbers![time]),
+        CreepError::PathEnds { time, effective_load, path_ends, until } => {
+            (VALUE, "PathEnds", numbers![time, effective_load, path_ends, until])
+        }
+        CreepError::BedEnds { time, path_ends } => (VALUE, "BedEnds", numbers![time, path_ends]),
+        CreepError::StepFails { time, step } => (CONVERGENCE, "StepFails", numbers![time, step]),
+        CreepError::NoSteadyCycle { fluidity } => (VALUE, "NoSteadyCycle", numbers![fluidity]),
+        _ => (VALUE, "Creep", Vec::new()),
+    }
+}
+
+fn of_slip(error: &SlipError) -> Described {
+    match error {
+        SlipError::JointSlides { tangential_load, load, limit } => {
+            (VALUE, "JointSlides", numbers![tangential_load, load, limit])
+        }
+        SlipError::StaysAtLimit { from, to } => (VALUE, "StaysAtLimit", numbers![from, to]),
+        SlipError::WithinPathError { change, approach_error } => {
+            (VALUE, "WithinPathError", numbers![change, approach_error])
+        }
+        _ => (VALUE, "Slip", Vec::new()),
     }
 }
 

@@ -1,16 +1,19 @@
 //! The elastic body.
 
-use asperity::kernel::{self, InfluenceKernel, KernelTable};
+use asperity::kernel::{self, Base, InfluenceKernel, KernelTable, Layer, Layered, LayeredBody};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, MeanDisplacement, PeriodicBoussinesq,
     Spectral, Warning,
 };
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::arrays::{Found, Kind, column};
 use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
+use crate::materials;
 use crate::own_kernels;
 use crate::results::result;
 use crate::surface::Surface;
@@ -33,6 +36,7 @@ use crate::surface::Surface;
 ///
 /// See Also
 /// --------
+/// HalfSpace.layered : coated, thin and graded bodies.
 /// HalfSpace.from_symbol : a body of your own, from a function of the wavevector.
 /// HalfSpace.from_coefficients : a body of your own, from influence coefficients.
 ///
@@ -52,6 +56,7 @@ enum Body {
     Free,
     Love,
     Spectral,
+    Layers { body: LayeredBody, around: Around },
     Symbol { symbol: Py<PyAny>, mean: MeanDisplacement, growth: ContactGrowth },
     Coefficients(Coefficients),
 }
@@ -62,6 +67,26 @@ struct Coefficients {
     boundary: Boundary,
     mean: MeanDisplacement,
     growth: ContactGrowth,
+}
+
+/// What surrounds the grid, and what pressure is between nodes.
+#[derive(Clone, Copy, PartialEq)]
+enum Around {
+    Free,
+    Love,
+    Spectral,
+}
+
+const AROUND: [(&str, Around); 3] =
+    [("free", Around::Free), ("love", Around::Love), ("spectral", Around::Spectral)];
+
+/// A layer: Young's modulus, Poisson's ratio and thickness, or a name and the thickness.
+#[derive(FromPyObject)]
+enum LayerArgument {
+    #[pyo3(transparent)]
+    Numbers((f64, f64, f64)),
+    #[pyo3(transparent)]
+    Named((String, f64)),
 }
 
 /// A kernel on its grid.
@@ -86,7 +111,14 @@ impl HalfSpace {
     /// A half-space of the engine.
     pub(crate) fn of_origin(origin: &kernel::KernelOrigin) -> Option<Self> {
         use kernel::KernelOrigin as Origin;
+        let layered = |body: &LayeredBody, around| {
+            let e_star = Some(body.surface_modulus());
+            Some(Self { body: Body::Layers { body: body.clone(), around }, e_star })
+        };
         let (body, e_star) = match origin {
+            Origin::Layered { body } => return layered(body, Around::Free),
+            Origin::PeriodicLayered { body } => return layered(body, Around::Love),
+            Origin::SpectralLayered { body } => return layered(body, Around::Spectral),
             Origin::Boussinesq { e_star } => (Body::Free, *e_star),
             Origin::PeriodicBoussinesq { e_star } => (Body::Love, *e_star),
             Origin::Spectral { e_star } => (Body::Spectral, *e_star),
@@ -106,6 +138,15 @@ impl HalfSpace {
             Body::Free => Ok(boxed(Boussinesq::new(grid, e_star)?)),
             Body::Love => Ok(boxed(detached(py, || PeriodicBoussinesq::new(grid, e_star))??)),
             Body::Spectral => Ok(boxed(detached(py, || Spectral::new(grid, e_star))??)),
+            Body::Layers { body, around } => {
+                let (body, around) = (body.clone(), *around);
+                let made = detached(py, || match around {
+                    Around::Free => Layered::free(grid, body),
+                    Around::Love => Layered::periodic(grid, body),
+                    Around::Spectral => Layered::spectral(grid, body),
+                })??;
+                Ok(boxed(made))
+            }
             Body::Symbol { symbol, mean, growth } => {
                 Ok(boxed(own_kernels::of_symbol(symbol.bind(py), grid, *mean, *growth)?))
             }
@@ -120,7 +161,7 @@ impl HalfSpace {
     /// What surrounds the grid.
     pub(crate) fn surroundings(&self) -> Boundary {
         match &self.body {
-            Body::Free => Boundary::Free,
+            Body::Free | Body::Layers { around: Around::Free, .. } => Boundary::Free,
             Body::Coefficients(Coefficients { boundary, .. }) => *boundary,
             _ => Boundary::Periodic,
         }
@@ -157,7 +198,67 @@ impl HalfSpace {
         Ok(Self { body, e_star: Some(e_star) })
     }
 
-    /// A periodic body from its symbol: layers, graded and anisotropic bodies.
+    /// A coated, thin or graded body: elastic layers, bonded to each other and to a base.
+    ///
+    /// Parameters
+    /// ----------
+    /// layers : list of (float, float, float) or (str, float)
+    ///     Young's modulus [Pa], Poisson's ratio and thickness [m] of each, or the name of one of `materials` and the thickness;
+    ///     the uppermost first.
+    /// base : (float, float) or str
+    ///     What the lowest layer is bonded to: ``"rigid"``, or Young's modulus [Pa] and Poisson's ratio of an elastic
+    ///     half-space, or its name.
+    /// boundary : {"free", "love", "spectral"}
+    ///     As of `HalfSpace`.
+    /// against : (float, float) or str, optional
+    ///     The other body; rigid unless it is given.
+    ///
+    /// Returns
+    /// -------
+    /// HalfSpace
+    ///     Its `e_star` is that of the uppermost layer and the other body, which short waves see.
+    ///
+    /// Notes
+    /// -----
+    /// A coat that is stiffer than what it lies on may let nodes leave the contact: a path then finds each event by itself,
+    /// which takes longer.
+    #[staticmethod]
+    #[pyo3(signature = (layers, base, boundary, *, against=None))]
+    fn layered(
+        layers: Vec<LayerArgument>,
+        base: materials::Body,
+        boundary: &str,
+        against: Option<materials::Body>,
+    ) -> Fallible<Self> {
+        let around = choose("boundary", boundary, &AROUND)?;
+        let layers = layers.iter().map(|layer| {
+            Ok(match layer {
+                LayerArgument::Numbers((young, poisson, thickness)) => {
+                    Layer { young: *young, poisson: *poisson, thickness: *thickness }
+                }
+                LayerArgument::Named((name, thickness)) => {
+                    let (young, poisson) = materials::named_numbers(name)?;
+                    Layer { young, poisson, thickness: *thickness }
+                }
+            })
+        });
+        let layers = layers.collect::<Fallible<Vec<Layer>>>()?;
+        let base = if base.is("rigid") {
+            Base::Rigid
+        } else {
+            let (young, poisson) = base.numbers()?;
+            Base::HalfSpace { young, poisson }
+        };
+        let mut body = LayeredBody::new(&layers, base)?;
+        if let Some(other) = against.filter(|other| !other.is("rigid")) {
+            let (young, poisson) = other.numbers()?;
+            body = body.against(asperity::plane_strain_modulus(young, poisson)?)?;
+        }
+        let e_star = Some(body.surface_modulus());
+        Ok(Self { body: Body::Layers { body, around }, e_star })
+    }
+
+    /// A periodic body from its symbol: anisotropic bodies, foundations, laws of your own.
     ///
     /// Parameters
     /// ----------
@@ -232,13 +333,14 @@ impl HalfSpace {
         self.e_star
     }
 
-    /// ``"free"``, ``"love"`` or ``"spectral"``; of a body of your own ``"symbol"`` or ``"coefficients"``.
+    /// ``"free"``, ``"love"`` or ``"spectral"``, of layers too; of a body of your own ``"symbol"`` or ``"coefficients"``.
     #[getter]
     fn boundary(&self) -> &'static str {
         match &self.body {
             Body::Free => "free",
             Body::Love => "love",
             Body::Spectral => "spectral",
+            Body::Layers { around, .. } => word(&AROUND, around),
             Body::Symbol { .. } => "symbol",
             Body::Coefficients(_) => "coefficients",
         }
@@ -250,8 +352,68 @@ impl HalfSpace {
         self.surroundings() == Boundary::Periodic
     }
 
+    /// Sum of the thicknesses of all layers [m]; None without layers.
+    #[getter]
+    fn thickness(&self) -> Option<f64> {
+        match &self.body {
+            Body::Layers { body, .. } => Some(body.thickness()),
+            _ => None,
+        }
+    }
+
+    /// Young's modulus [Pa], Poisson's ratio and thickness [m] of each layer, the uppermost first; None without layers.
+    #[getter]
+    fn layers(&self) -> Option<Vec<(f64, f64, f64)>> {
+        let Body::Layers { body, .. } = &self.body else { return None };
+        let numbers = |layer: &Layer| (layer.young, layer.poisson, layer.thickness);
+        Some(body.layers().iter().map(numbers).collect())
+    }
+
+    /// Young's modulus [Pa] and Poisson's ratio of what the layers lie on; None if it is rigid, and without layers.
+    #[getter]
+    fn base(&self) -> Option<(f64, f64)> {
+        match &self.body {
+            Body::Layers { body, .. } => match body.base() {
+                Base::HalfSpace { young, poisson } => Some((young, poisson)),
+                Base::Rigid => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Displacement over pressure of waves [m/Pa] of a body with layers: what it is, as a function of the wave number.
+    ///
+    /// Parameters
+    /// ----------
+    /// wave_numbers : array_like of float
+    ///     2 pi over the wavelengths [rad/m].
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float
+    ///     That of a half-space would be ``2 / (e_star * q)``, which is what short waves see.
+    fn compliance<'py>(
+        &self,
+        py: Python<'py>,
+        wave_numbers: &Bound<'py, PyAny>,
+    ) -> Fallible<Bound<'py, PyArray1<f64>>> {
+        let waves = Found::of(wave_numbers, "wave_numbers", Kind::Real)?.list()?;
+        let Body::Layers { body, .. } = &self.body else {
+            return Err(Failure::arguments(
+                "the body has no layers: its compliance is 2 / (e_star q)",
+            ));
+        };
+        Ok(column(py, waves.iter().map(|q| body.compliance(*q)).collect()))
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Fallible<Bound<'py, PyTuple>> {
         let (py, this) = (slf.py(), slf.get());
+        if let Body::Layers { body, .. } = &this.body {
+            let restore = py.import("asperity._asperity")?.getattr("_restore_layers")?;
+            let data = serde_json::to_string(body);
+            let data = data.map_err(|error| Failure::arguments(error.to_string()))?;
+            return Ok((restore, (data, this.boundary())).into_pyobject(py)?);
+        }
         let restore = py.import("asperity._asperity")?.getattr("_restore_half_space")?;
         let (function, words) = match &this.body {
             Body::Symbol { symbol, mean, growth } => {
@@ -272,6 +434,14 @@ impl HalfSpace {
             Ok(format!("HalfSpace.from_{name}({})", function.bind(py).repr()?))
         };
         match &self.body {
+            Body::Layers { body, .. } => {
+                let count = body.layers().len();
+                let (thickness, boundary) = (body.thickness(), self.boundary());
+                let plural = if count == 1 { "layer" } else { "layers" };
+                Ok(format!(
+                    "<HalfSpace of {count} {plural}, {thickness:e} m; boundary '{boundary}'>"
+                ))
+            }
             Body::Symbol { symbol, .. } => own("symbol", symbol),
             Body::Coefficients(Coefficients { function, .. }) => own("coefficients", function),
             _ => {
@@ -306,6 +476,15 @@ fn _restore_half_space(
         }
         _ => HalfSpace::new(e_star.unwrap_or(f64::NAN), boundary),
     }
+}
+
+/// A body with layers that was pickled.
+#[pyfunction]
+fn _restore_layers(data: &str, boundary: &str) -> Fallible<HalfSpace> {
+    let body: LayeredBody =
+        serde_json::from_str(data).map_err(|error| Failure::arguments(error.to_string()))?;
+    let (around, e_star) = (choose("boundary", boundary, &AROUND)?, Some(body.surface_modulus()));
+    Ok(HalfSpace { body: Body::Layers { body, around }, e_star })
 }
 
 /// Test what a body promises, for those who bring their own.
@@ -376,6 +555,7 @@ fn influence<'py>(
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<HalfSpace>()?;
     module.add_function(wrap_pyfunction!(_restore_half_space, module)?)?;
+    module.add_function(wrap_pyfunction!(_restore_layers, module)?)?;
     module.add_function(wrap_pyfunction!(check_half_space, module)?)?;
     module.add_function(wrap_pyfunction!(influence, module)?)
 }

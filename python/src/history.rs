@@ -8,7 +8,7 @@ use asperity::{Boundary, ContactState, Error, Grid, LoadingState, loading};
 use numpy::{PyArray1, PyArrayMethods, PyFixedUnicode, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PySlice, PySliceMethods, PyTuple};
 
 use crate::arrays::{column, shape};
 use crate::errors::{Failure, Fallible};
@@ -81,7 +81,7 @@ pub(crate) struct Setting {
 
 /// The states of a path in the order of loading, as columns: new arrays of NumPy with one value for each state.
 ///
-/// A sequence of `State`. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
+/// A sequence of `State`; a slice of it is a history of fewer states, enough for slip, creep and conductance. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
 /// linear in the approach.
 ///
 /// Examples
@@ -98,9 +98,23 @@ pub(crate) struct History {
     pub(crate) setting: Setting,
 }
 
+/// A place in a history, or some of them.
+#[derive(FromPyObject)]
+enum Place<'py> {
+    #[pyo3(transparent)]
+    One(isize),
+    #[pyo3(transparent)]
+    Some(Bound<'py, PySlice>),
+}
+
 impl History {
     pub(crate) fn states(&self) -> &[LoadingState] {
         self.history.states()
+    }
+
+    /// Whether no event is left out, so that the states tell which nodes are in contact.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.history.events().iter().zip(1..).all(|(state, step)| state.step == step)
     }
 
     fn reals<'py>(
@@ -261,9 +275,12 @@ impl History {
         self.reals(py, |state| state.contact.contact_area_fraction)
     }
 
-    /// Contact area [m²] without what whole cells count too much along the edges of patches.
+    /// Contact area [m²] without what whole cells count too much along the edges of patches; NaN if states are left out.
     #[getter]
     fn corrected_area<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyArray1<f64>>> {
+        if !self.is_whole() {
+            return Ok(self.reals(py, |_| f64::NAN));
+        }
         let mut edge = ContactEdge::new(self.setting.grid, self.setting.boundary);
         let areas = self.states().iter().map(|state| {
             edge.follow(state.event, state.node)?;
@@ -348,13 +365,29 @@ impl History {
         Ok(builtins.getattr("map")?.call1((slf.getattr("__getitem__")?, places))?)
     }
 
-    fn __getitem__(&self, index: isize) -> Fallible<State> {
-        let count = self.states().len();
-        let place = if index < 0 { index + count as isize } else { index };
-        let state = usize::try_from(place).ok().and_then(|place| self.states().get(place));
-        match state {
-            Some(state) => Ok(State::new(*state)),
-            None => Err(PyIndexError::new_err(format!("state {index} of {count}")).into()),
+    fn __getitem__<'py>(&self, py: Python<'py>, index: Place<'py>) -> Fallible<Bound<'py, PyAny>> {
+        let states = self.states();
+        match index {
+            Place::One(index) => {
+                let count = states.len();
+                let place = if index < 0 { index + count as isize } else { index };
+                let state = usize::try_from(place).ok().and_then(|place| states.get(place));
+                match state {
+                    Some(state) => Ok(Bound::new(py, State::new(*state))?.into_any()),
+                    None => Err(PyIndexError::new_err(format!("state {index} of {count}")).into()),
+                }
+            }
+            Place::Some(slice) => {
+                let count = isize::try_from(states.len()).unwrap_or(isize::MAX);
+                let found = slice.indices(count)?;
+                if found.step < 0 {
+                    return Err(Failure::arguments("the states of a history are in their order"));
+                }
+                let places = (found.start..found.stop).step_by(found.step as usize);
+                let kept = places.filter_map(|place| states.get(place as usize)).copied();
+                let history = Arc::new(kept.collect());
+                Ok(Bound::new(py, Self { history, setting: self.setting })?.into_any())
+            }
         }
     }
 

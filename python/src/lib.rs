@@ -5,15 +5,20 @@
 mod arrays;
 mod choice;
 mod compute;
+mod creep;
 mod errors;
 mod fixed_load;
 mod half_space;
 mod history;
+mod increments;
+mod joint;
+mod leak;
 mod materials;
 mod own_kernels;
 mod patches;
 mod path;
 mod results;
+mod slip;
 mod state;
 mod surface;
 mod targets;
@@ -33,5 +38,9 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     history::register(module)?;
     path::register(module)?;
     fixed_load::register(module)?;
-    patches::register(module)
+    patches::register(module)?;
+    leak::register(module)?;
+    slip::register(module)?;
+    creep::register(module)?;
+    joint::register(module)
 }

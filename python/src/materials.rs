@@ -1,6 +1,7 @@
 //! Moduli and hardnesses of bodies.
 
 use asperity::material::{BRINELL, Material, VICKERS};
+use asperity::slip::Friction;
 use asperity::{Error, composite_modulus as composite, plane_strain_modulus as plane_strain};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -10,7 +11,7 @@ use crate::results::result;
 
 /// A body by its name, or by Young's modulus and Poisson's ratio.
 #[derive(FromPyObject)]
-enum Body {
+pub(crate) enum Body {
     #[pyo3(transparent)]
     Numbers((f64, f64)),
     #[pyo3(transparent)]
@@ -18,15 +19,39 @@ enum Body {
 }
 
 impl Body {
-    fn numbers(&self) -> Fallible<(f64, f64)> {
+    /// Young's modulus \[Pa\] and Poisson's ratio.
+    pub(crate) fn numbers(&self) -> Fallible<(f64, f64)> {
         match self {
             Self::Numbers(numbers) => Ok(*numbers),
-            Self::Named(name) => {
-                let material = named(name)?;
-                Ok((material.youngs_modulus, material.poissons_ratio))
-            }
+            Self::Named(name) => named_numbers(name),
         }
     }
+
+    /// Whether it was given by this word.
+    pub(crate) fn is(&self, word: &str) -> bool {
+        matches!(self, Self::Named(name) if name == word)
+    }
+}
+
+/// Friction between two bodies, of which the second may be rigid.
+pub(crate) fn friction(coefficient: f64, (first, second): &(Body, Body)) -> Fallible<Friction> {
+    let second = if second.is("rigid") { None } else { Some(second.numbers()?) };
+    Ok(Friction::between(coefficient, first.numbers()?, second)?)
+}
+
+/// E* of two bodies, of which the second may be rigid \[Pa\].
+pub(crate) fn modulus((first, second): &(Body, Body)) -> Fallible<f64> {
+    let (e, nu) = first.numbers()?;
+    if second.is("rigid") {
+        return Ok(plane_strain(e, nu)?);
+    }
+    Ok(composite((e, nu), second.numbers()?)?)
+}
+
+/// Those of the material of a name.
+pub(crate) fn named_numbers(name: &str) -> Fallible<(f64, f64)> {
+    let material = named(name)?;
+    Ok((material.youngs_modulus, material.poissons_ratio))
 }
 
 fn named(name: &str) -> Fallible<&'static Material> {

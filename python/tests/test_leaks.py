@@ -93,3 +93,38 @@ def test_tables_of_other_packages(free_surface: asp.Surface, unit_half_space: as
     xarray = pytest.importorskip("xarray")
     data = xarray.Dataset({name: ("step", column) for name, column in history.columns().items() if name != "step"})
     assert data.sizes == {"step": 40}
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="no /proc")
+def test_what_follows_from_a_path_leaves_nothing() -> None:
+    """Slip, creep, leaks, layers and conductance of one path, again and again."""
+    path = asp.load_path(asp.example_surface(nodes=24), asp.HalfSpace(4e6, boundary="love"), area_fraction=0.6)
+    history = path.run(check=False)
+    load = 0.3 * float(history.load[-1])
+    surface = asp.example_surface(nodes=16, short_cutoff=2.5e-3)
+
+    def one() -> None:
+        joint = asp.shear(path, friction=0.3, compliance_ratio=1.2)
+        joint.loading([0.1 * joint.sliding_load])
+        joint.follow([load, load], [0.1 * load, 0.0])
+        joint.friction_work(0.1 * joint.sliding_load)
+        rubber = asp.Prony.shares([(1.0, 0.3)]).plane_strain(0.5).in_series(asp.Prony.elastic(1e3)).relative_to(1.0)
+        held = asp.creep(path, rubber, [0.0, 1.0], load=[0.0, 0.1 * load])
+        held.at([1.0])
+        held.follow([0.0, 0.5, 1.0]).columns()
+        asp.Seal(1e-3, 1e5, along="x").leak(path)
+        asp.conductance(path, 0.05)
+        asp.interface_table(history[::8], friction=0.3, compliance_ratio=1.0).text("csv")
+        asp.solve(surface, asp.HalfSpace.layered([(1e9, 0.3, 1e-3)], "rigid", "love"), mean_pressure=1e5, check=False)
+
+    for _ in range(30):
+        one()
+    gc.collect()
+    objects, before = len(gc.get_objects()), resident()
+    for _ in range(150):
+        one()
+    gc.collect()
+    # One map of a node is 4.6 kB here, and a round makes some twenty of them and five copies of the history of 345 states, 60 kB each:
+    # what stayed of each round would be 50 MB.
+    assert resident() - before < 8_000_000
+    assert len(gc.get_objects()) - objects < 100

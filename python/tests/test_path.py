@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -350,3 +351,68 @@ def test_a_path_ends_where_all_nodes_have_yielded(body: asp.HalfSpace) -> None:
     assert path.end == "fully plastic" and history.yielded_nodes[-1] == 256 == history.contact_nodes[-1]
     # H times the nominal area, the sum of so many cells.
     assert history.load[-1] == pytest.approx(2e8 * surface.area, rel=1e-12)
+
+
+def test_slices_of_a_history(free_surface: asp.Surface, unit_half_space: asp.HalfSpace) -> None:
+    history = asp.load_path(free_surface, unit_half_space, nodes=60, check=False).run(check=False)
+    every = history[::4]
+    assert isinstance(every, asp.History) and len(every) == 15 and every[1] == history[4]
+    np.testing.assert_array_equal(every.load, history.load[::4])
+    assert history[:] == history and len(history[70:]) == 0 and history[-3:][0] == history[57]
+    with pytest.raises(ValueError, match="order"):
+        history[::-1]
+    with pytest.raises(TypeError):
+        history["load"]  # type: ignore[call-overload]
+    with pytest.raises(IndexError):
+        history[60]
+    # What follows nodes from state to state says so; what is made of increments takes fewer of them.
+    with pytest.raises(asp.AsperityError, match="left out"):
+        asp.patches(every)
+    assert np.isnan(every.corrected_area).all() and len(every.columns()["corrected_area"]) == 15
+    np.testing.assert_array_equal(history[:30].corrected_area, history.corrected_area[:30])
+    assert asp.patches(history[:30]).number.tolist() == asp.patches(history).number[:30].tolist()
+    assert asp.shear(every, friction=0.3, compliance_ratio=1.0).sliding_load == pytest.approx(0.3 * every.load[-1])
+
+
+def test_files_of_fields(free_surface: asp.Surface, unit_half_space: asp.HalfSpace, tmp_path: Path) -> None:
+    path = asp.load_path(free_surface, unit_half_space, nodes=60, check=False)
+    path.run(check=False)
+    pressure, gap = path.pressure(), path.gap()
+    asp.save_fields(tmp_path / "pressure.npy", {"pressure": pressure}, path.size)
+    np.testing.assert_array_equal(np.load(tmp_path / "pressure.npy").T, pressure)
+    asp.save_fields(tmp_path / "gap.gsf", {"gap": gap}, path.size, unit="m")
+    # A file of Gwyddion has single precision.
+    found = asp.read(tmp_path / "gap.gsf")
+    np.testing.assert_allclose(found.z, gap, rtol=1e-6, atol=1e-30)
+    assert found.size == pytest.approx(path.size)
+    asp.save_fields(tmp_path / "fields.vti", {"pressure": pressure, "a <gap>": gap}, 1e-2)
+    content = (tmp_path / "fields.vti").read_bytes()
+    head, data = content.split(b'<AppendedData encoding="raw">\n_')
+    assert b'Name="pressure"' in head and b'Name="a &lt;gap' in head
+    for k, field in enumerate((pressure, gap)):
+        start = k * (8 + 8 * field.size) + 8
+        np.testing.assert_array_equal(np.frombuffer(data, "<f8", field.size, start).reshape(field.shape), field)
+    for name, fields in {"a.txt": {"a": gap}, "a.gsf": {"a": gap, "b": gap}, "a.vti": {}, "b.vti": {"a": gap, "b": gap[1:]}}.items():
+        with pytest.raises(asp.AsperityError):
+            asp.save_fields(tmp_path / name, fields, 1e-2)
+        assert not (tmp_path / name).exists()
+    with pytest.raises(OSError):
+        asp.save_fields(tmp_path / "no" / "a.npy", {"a": gap}, 1e-2)
+
+
+def test_the_fields_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+    """The same files, byte for byte."""
+    steel = asp.HalfSpace(asp.composite_modulus("steel"), boundary="free")
+    path = asp.load_path(asp.example_surface(nodes=32), steel, area_fraction=0.3)
+    path.run(check=False)
+    fields = {"pressure": path.pressure(), "gap": path.gap()}
+    for kind in ("npy", "gsf", "vti"):
+        out = tmp_path / kind
+        program("path", "--nodes", 32, "--max-area-fraction", 0.3, "--fields", kind, "--out", out)
+        if kind == "vti":
+            asp.save_fields(tmp_path / "fields.vti", fields, path.size)
+            assert (tmp_path / "fields.vti").read_bytes() == (out / "fields.vti").read_bytes()
+            continue
+        for name, unit in {"pressure": "Pa", "gap": "m"}.items():
+            asp.save_fields(tmp_path / f"{name}.{kind}", {name: fields[name]}, path.size, unit=unit)
+            assert (tmp_path / f"{name}.{kind}").read_bytes() == (out / f"{name}.{kind}").read_bytes(), name

@@ -141,7 +141,7 @@ impl Convolution {
     /// [`KernelError::SymbolNotPositive`](crate::KernelError::SymbolNotPositive).
     pub(crate) fn check_definite(&self, table: &KernelTable) -> Result<(), Error> {
         match table.boundary() {
-            Boundary::Free => Ok(()),
+            Boundary::Free | Boundary::PeriodicX | Boundary::PeriodicY => Ok(()),
             Boundary::Periodic => {
                 let skipped = usize::from(table.gauge().is_some());
                 self.engine.check_symbol(skipped)

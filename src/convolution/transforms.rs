@@ -11,7 +11,7 @@ use super::size::fast_size;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
 
-/// Plans of all transforms of a grid, zero-padded unless it is periodic.
+/// Plans of all transforms of a grid, zero-padded in directions in which it does not repeat.
 #[derive(Clone)]
 pub(super) struct Transforms<T: Real> {
     nx: usize,
@@ -38,12 +38,10 @@ pub(super) struct Workspace<T> {
 impl<T: Real> Transforms<T> {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
         let (nx, ny) = grid.shape();
-        let (px, py) = match boundary {
-            // A real transform of even length is a complex one of half that length.
-            Boundary::Free => (2 * fast_size(nx), fast_size(2 * ny - 1)),
-            // The period is the grid's, however slow a length that is.
-            Boundary::Periodic => (nx, ny),
-        };
+        let [x_repeats, y_repeats] = boundary.repeats();
+        // A period is the grid's, however slow a length that is. A real transform of even length is a complex one of half that length.
+        let px = if x_repeats { nx } else { 2 * fast_size(nx) };
+        let py = if y_repeats { ny } else { fast_size(2 * ny - 1) };
         let mut real = RealFftPlanner::new();
         let mut complex = FftPlanner::new();
         Self {

@@ -48,6 +48,9 @@ impl Default for CycleSettings {
     }
 }
 
+/// Steps of a cycle. A cycle keeps all its points: more of them are a mistake, and not an accuracy.
+const MOST_STEPS: usize = 1_000_000;
+
 impl ViscoelasticBed<'_> {
     /// Holds a load until nothing creeps any more: for some 40 of the longest retardation times.
     ///
@@ -77,7 +80,8 @@ impl ViscoelasticBed<'_> {
     /// # Errors
     ///
     /// [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes and periods that are not;
-    /// [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps and no cycles; those of [`step`](Self::step).
+    /// [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a million, and no cycles; those of
+    /// [`step`](Self::step).
     pub fn cycle(
         &mut self,
         mean_load: f64,
@@ -92,7 +96,8 @@ impl ViscoelasticBed<'_> {
         let is_so = mean_load >= amplitude && mean_load.is_finite();
         Error::require("mean load of a cycle", mean_load, is_so, expected)?;
         let CycleSettings { steps, tolerance, most } = settings;
-        Error::require("steps of a cycle", steps as f64, steps >= 8, "at least 8")?;
+        let is_so = (8..=MOST_STEPS).contains(&steps);
+        Error::require("steps of a cycle", steps as f64, is_so, "from 8 to a million")?;
         Error::require("cycles at most", most as f64, most >= 1, "at least 1")?;
         if self.state().load != mean_load {
             self.step(0.0, Control::Load(mean_load))?;

@@ -1,5 +1,7 @@
 //! Contact at an approach that is given over time, as long as it grows.
 
+use nalgebra::DMatrix;
+
 use super::corners::Corners;
 use super::growth::{Growth, Kernel};
 use super::hereditary::Hereditary;
@@ -7,7 +9,8 @@ use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
 use crate::loading::LoadingState;
-use crate::{BedError, CreepError, Error};
+use crate::updater::LinearUpdater;
+use crate::{BedError, CreepError, Error, LoadingSolver};
 
 /// The contact of viscoelastic bodies at a history of approach: stress relaxation.
 ///
@@ -138,6 +141,21 @@ impl<'a> Relaxation<'a> {
     pub fn pressure(&self, time: f64, pieces: usize) -> Result<Superposition, Error> {
         let until = (time, self.at(time)?.effective_load);
         in_pieces(&self.growth.increments(&self.kernel, time, until), pieces)
+    }
+
+    /// The gap at a time \[m\]: that of the elastic path at the approach, which `path` gives; where the surfaces are apart, by as much
+    /// more than at first touch.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`at`](Self::at) and of [`LoadingSolver::gap_at`].
+    pub fn gap<U: LinearUpdater>(
+        &self,
+        time: f64,
+        path: &mut LoadingSolver<U>,
+    ) -> Result<DMatrix<f64>, Error> {
+        let apart = (-self.at(time)?.approach).max(0.0);
+        Ok(path.gap_at(&self.path_state(time)?)?.map(|gap| gap + apart))
     }
 }
 

@@ -1,10 +1,13 @@
 //! The bed of a path stepped in time: any history of load or approach.
 
+use nalgebra::DMatrix;
+
 use super::prony::Prony;
 use super::state::{CreepState, area_from, in_pieces};
 use super::weights::Weights;
 use crate::bed::{Bed, Superposition};
-use crate::{CreepError, Error};
+use crate::updater::LinearUpdater;
+use crate::{CreepError, Error, LoadingSolver};
 
 /// What a step of a bed leads to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,6 +202,31 @@ impl<'a> ViscoelasticBed<'a> {
     /// [`Error::OutOfRange`] without pieces.
     pub fn compression(&self, pieces: usize) -> Result<Superposition, Error> {
         in_pieces(&self.weights(|k, length| self.present_compression(k) / length), pieces)
+    }
+
+    /// The present gap \[m\], `g = g₀ + ∫ ψ du − δ` with the initial gap g₀ and the present [compression](Self::compression) ψ, in
+    /// pieces. Nodes in contact have none, and where the pieces would overlap there is none either.
+    ///
+    /// `path` is that of the bed: it gives a field for each piece.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] without pieces, and those of [`Superposition::displacement`].
+    pub fn gap<U: LinearUpdater>(
+        &self,
+        pieces: usize,
+        path: &mut LoadingSolver<U>,
+    ) -> Result<DMatrix<f64>, Error> {
+        let mut gap = self.compression(pieces)?.displacement(self.bed, path)?;
+        for (value, initial) in gap.iter_mut().zip(path.problem().initial_gap()) {
+            *value = (initial + *value - self.state.approach).max(0.0);
+        }
+        for event in self.bed.history().events().iter().take(self.state.contact_nodes) {
+            if let Some(value) = gap.get_mut(event.node) {
+                *value = 0.0;
+            }
+        }
+        Ok(gap)
     }
 
     fn weights(&self, of: impl Fn(usize, f64) -> f64) -> Vec<(f64, f64)> {

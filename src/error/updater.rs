@@ -70,8 +70,7 @@ pub enum UpdaterError {
 
     /// The path has a hardness, and the updater does not serve nodes that yield.
     #[error(
-        "this updater does not serve a path with a hardness: it takes one that keeps a factor, and has `watch_both` and \
-         `solve_for`"
+        "this updater does not serve a path with a hardness: it takes one that has `watch_both` and `solve_for`"
     )]
     HardnessNotSupported,
 

@@ -1,14 +1,17 @@
 //! Pressures that end at a hardness: nodes yield, round after round.
 
 use super::level::{Level, Prescribed};
+use super::tuning::MOST_RECOVERIES;
 use crate::Error;
 use crate::hardness::Hardness;
+use crate::krylov::sum;
 
 /// Nodes that have yielded, on the way to a solution.
 ///
-/// On a body whose contact only grows, no node that carries more than H
-/// in an elastic solution can be elastic in the end: pressure that is taken off it goes to others, and never back. So rounds of
-/// elastic solutions, each with the nodes above H yielded, end, and end at the solution.
+/// Rounds of elastic solutions, each with the nodes above H yielded, end at the solution. Where no pressure draws others
+/// with it (`C_EE⁻¹ C_EY ≥ 0`), no node that carries more than H in an elastic solution can be elastic in the end: pressure
+/// that is taken off it goes to others, and never back. On other bodies a node can have yielded too early. It then has a gap under H,
+/// and is elastic again in the next round.
 #[derive(Debug)]
 pub(super) struct Yielded<'a> {
     hardness: &'a Hardness,
@@ -18,6 +21,21 @@ pub(super) struct Yielded<'a> {
     /// A gap that no approach closes: yielded nodes are no part of the elastic problem.
     open: f64,
     own_gap: Vec<f64>,
+    /// The gap under the pressures of nodes that have yielded, g + C H.
+    gap: Vec<f64>,
+    /// How many times nodes were elastic again.
+    recoveries: usize,
+}
+
+/// What a round has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Round {
+    /// Nothing: the solution is found.
+    Settled,
+    /// Nodes have yielded, or are elastic again.
+    Changed,
+    /// Nodes come and go without end.
+    Undecided,
 }
 
 impl<'a> Yielded<'a> {
@@ -30,7 +48,8 @@ impl<'a> Yielded<'a> {
             Prescribed::Approach(approach) => approach,
         };
         let open = 4.0 * (own_gap.iter().copied().fold(0.0, f64::max) + length);
-        Self { hardness, map: vec![false; own_gap.len()], sum: 0.0, open, own_gap }
+        let (map, gap) = (vec![false; own_gap.len()], own_gap.clone());
+        Self { hardness, map, sum: 0.0, open, own_gap, gap, recoveries: 0 }
     }
 
     /// Those of an earlier state of the level, which a greater load or approach has as well. The level's problem becomes that of the
@@ -46,7 +65,7 @@ impl<'a> Yielded<'a> {
         for ((pressure, &hardness), &has_yielded) in pressures.zip(earlier) {
             *pressure = if has_yielded { f64::INFINITY } else { pressure.clamp(0.0, hardness) };
         }
-        yielded.grow(level)?;
+        yielded.revise(level, f64::INFINITY)?;
         Ok(yielded)
     }
 
@@ -60,24 +79,39 @@ impl<'a> Yielded<'a> {
         !self.map.contains(&false)
     }
 
-    /// Lets the nodes of the level's iterate whose pressure exceeds their hardness yield; false if there is none.
-    pub(super) fn grow(&mut self, level: &mut Level) -> Result<bool, Error> {
+    /// Lets the nodes of the level's iterate yield whose pressure exceeds their hardness, and those be elastic again that have a gap
+    /// above `tolerance` \[m\].
+    pub(super) fn revise(&mut self, level: &mut Level, tolerance: f64) -> Result<Round, Error> {
         let mut load = vec![0.0; self.map.len()];
-        let pressures = level.iterate.pressure.iter_mut().zip(self.hardness.values());
-        for (node, (pressure, &hardness)) in pressures.enumerate() {
-            if *pressure > hardness && !self.map[node] {
-                (self.map[node], load[node], *pressure) = (true, hardness, 0.0);
-                self.sum += hardness;
+        let iterate = &mut level.iterate;
+        let nodes = iterate.pressure.iter_mut().zip(self.hardness.values()).zip(&mut self.map);
+        let mut recovers = false;
+        for (node, ((pressure, &hardness), has_yielded)) in nodes.enumerate() {
+            let displaced = iterate.total_gap[node] - self.open;
+            if *has_yielded && self.gap[node] + displaced - iterate.approach > tolerance {
+                (*has_yielded, load[node], *pressure) = (false, -hardness, hardness);
+                recovers = true;
+            } else if !*has_yielded && *pressure > hardness {
+                (*has_yielded, load[node], *pressure) = (true, hardness, 0.0);
             }
         }
         if load.iter().all(|value| *value == 0.0) {
-            return Ok(false);
+            return Ok(Round::Settled);
         }
+        if recovers {
+            self.recoveries += 1;
+            if self.recoveries > MOST_RECOVERIES {
+                return Ok(Round::Undecided);
+            }
+        }
+        self.sum += sum(&load);
         let displacement = level.operator.apply_field(&load)?;
-        for ((gap, u), has_yielded) in level.gap.iter_mut().zip(displacement).zip(&self.map) {
-            *gap = if *has_yielded { self.open } else { *gap + u };
+        let gaps = level.gap.iter_mut().zip(&mut self.gap).zip(&self.map);
+        for (((level_gap, gap), has_yielded), u) in gaps.zip(displacement) {
+            *gap += u;
+            *level_gap = if *has_yielded { self.open } else { *gap };
         }
-        Ok(true)
+        Ok(Round::Changed)
     }
 
     /// Makes the level's problem the one of the surface again, and its iterate that with all pressures. Returns the nodes that have

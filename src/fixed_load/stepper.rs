@@ -2,7 +2,7 @@
 
 use super::active_set::ActiveSet;
 use super::continuation::Continuation;
-use super::hardness::Yielded;
+use super::hardness::{Round, Yielded};
 use super::hierarchy::{Hierarchy, scale};
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
@@ -266,27 +266,38 @@ impl<'a> Stepper<'a> {
         let mut iterations = first.unwrap_or_default();
         let mut is_solved = first.is_some();
         loop {
-            if is_solved && !yielded.grow(&mut self.hierarchy.finest)? {
-                return Ok(iterations);
-            }
-            if yielded.is_everywhere() {
-                return Ok(iterations);
+            if is_solved {
+                let criteria = self.criteria(prescribed);
+                let finest = &mut self.hierarchy.finest;
+                let tolerance = criteria.tolerance * criteria.scale(finest.iterate.approach);
+                match yielded.revise(finest, tolerance)? {
+                    Round::Settled => return Ok(iterations),
+                    Round::Changed => {}
+                    Round::Undecided => {
+                        let Criteria { tolerance, .. } = criteria;
+                        let residual = f64::INFINITY;
+                        return Err(Error::NoConvergence { residual, tolerance, iterations });
+                    }
+                }
             }
             let rest = match prescribed {
+                Prescribed::Sum(_) if yielded.is_everywhere() => return Ok(iterations),
                 Prescribed::Sum(sum) => Prescribed::Sum(sum - yielded.sum()),
                 approach @ Prescribed::Approach(_) => approach,
             };
             let finest = &mut self.hierarchy.finest;
+            is_solved = true;
             if let Prescribed::Approach(approach) = rest
                 && finest.gap.iter().all(|gap| *gap >= approach)
             {
                 // All that is in contact has yielded.
                 finest.iterate.pressure.fill(0.0);
-                return Ok(iterations);
+                finest.iterate.total_gap.copy_from_slice(&finest.gap);
+                finest.iterate.approach = approach;
+                continue;
             }
             scale(&mut finest.iterate.pressure, rest);
             iterations += self.solve(rest, false)?;
-            is_solved = true;
         }
     }
 

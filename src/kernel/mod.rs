@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`Boussinesq`] | free | exact for uniform pressure on each cell |
 //! | [`PeriodicBoussinesq`] | periodic | exact for uniform pressure on each cell |
+//! | [`SemiPeriodicBoussinesq`] | periodic in one direction | exact for uniform pressure on each cell |
 //! | [`Spectral`] | periodic | the waves of the grid only, as in spectral codes |
 //! | [`Layered`] | either | coats, thin and graded bodies: a [`LayeredBody`] |
 //! | [`KernelTable`] | either | given by coefficients, or by a symbol |
@@ -33,6 +34,6 @@ pub use layered::{Base, Layer, Layered, LayeredBody};
 pub use mean::MeanDisplacement;
 pub use origin::KernelOrigin;
 pub(crate) use periodic::check_periodic_cells;
-pub use periodic::{PeriodicBoussinesq, Spectral};
+pub use periodic::{PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral};
 pub(crate) use table::Blocks;
 pub use table::KernelTable;

@@ -1,6 +1,6 @@
 //! The parameters of a kernel.
 
-use super::LayeredBody;
+use super::{Boundary, LayeredBody};
 
 /// The parameters of a kernel besides its grid: enough to make one of this crate again, in another process.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,13 @@ pub enum KernelOrigin {
     PeriodicBoussinesq {
         /// Composite modulus \[Pa\].
         e_star: f64,
+    },
+    /// [`SemiPeriodicBoussinesq`](super::SemiPeriodicBoussinesq).
+    SemiPeriodicBoussinesq {
+        /// Composite modulus \[Pa\].
+        e_star: f64,
+        /// The direction in which it repeats: [`Boundary::PeriodicX`] or [`Boundary::PeriodicY`].
+        boundary: Boundary,
     },
     /// [`Spectral`](super::Spectral).
     Spectral {

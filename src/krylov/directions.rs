@@ -133,13 +133,56 @@ impl Directions {
         }
         let per_most = 1.0 / most;
         let values: Vec<f32> = sum.iter().map(|value| (value * per_most) as f32).collect();
+        Direction::along(operator, contact, values)
+    }
+
+    /// The values of all directions on their contact set.
+    pub(crate) fn values(&self) -> impl ExactSizeIterator<Item = &[f32]> {
+        self.list.iter().map(|direction| &direction.values[..])
+    }
+
+    /// How many of the first are kept, and from which on they are looked back at.
+    pub(crate) fn marks(&self) -> [usize; 2] {
+        [self.kept, self.since]
+    }
+
+    /// The directions of which these are the values on a contact set, and these the marks.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::FactorizationFailed`] if there is no direction along some values.
+    pub(crate) fn recall(
+        operator: &mut Operator,
+        contact: &NodeSet,
+        values: impl Iterator<Item = Vec<f32>>,
+        [kept, since]: [usize; 2],
+    ) -> Result<Self, Error> {
+        let mut list = Vec::new();
+        for values in values {
+            let direction = Direction::along(operator, contact, values)?;
+            list.push(direction.ok_or(Error::FactorizationFailed { nodes: contact.len() })?);
+        }
+        // Positions in the list, whatever was written down.
+        let (kept, since) = (kept.min(KEPT), since.min(list.len()));
+        list.truncate(kept + MEMORY);
+        Ok(Self { list, kept, since })
+    }
+}
+
+impl Direction {
+    /// The one along these values; `None` unless its curvature is positive and finite.
+    fn along(
+        operator: &mut Operator,
+        contact: &NodeSet,
+        values: Vec<f32>,
+    ) -> Result<Option<Self>, Error> {
         let (mut everywhere, mut image) = (Vec::new(), Vec::new());
         operator.step(contact, &values, &mut everywhere)?;
         contact.gather(&everywhere, &mut image);
         let unit = operator.unit();
         let curvature = unit * dot(&values, &image);
         let usable = curvature > 0.0 && curvature.is_finite();
-        Ok(usable.then(|| Direction {
+        Ok(usable.then(|| Self {
             norm: dot(&values, &values).sqrt(),
             values,
             image,
@@ -148,9 +191,7 @@ impl Directions {
             curvature,
         }))
     }
-}
 
-impl Direction {
     /// The step along it that takes most of the energy out of a residual.
     fn step(&self, residual: &[f64]) -> Step<'_> {
         let length = dot(residual, &self.values) / self.curvature;

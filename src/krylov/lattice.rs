@@ -6,7 +6,6 @@
 //! the period.
 
 use super::tuning::REACH;
-use crate::Boundary;
 use crate::kernel::KernelTable;
 
 /// Differences between two neighbours reach twice as far.
@@ -22,8 +21,9 @@ pub(super) struct Lattice {
     /// Offsets in lattice steps at which an earlier node may be, those of the greatest influence
     /// first, by the parity of both lattice indices.
     candidates: [Vec<[i16; 2]>; 4],
-    /// If the lattice is periodic, all offsets to other nodes of it, those of the greatest influence
-    /// first; each node once, however small the lattice.
+    /// Whether the lattice is periodic along x and along y.
+    wraps: [bool; 2],
+    /// If it is, all offsets to other nodes of it, those of the greatest influence first; each node once, however small the lattice.
     around: Vec<[i16; 2]>,
     /// Influence coefficients relative to C(0, 0), WIDTH × WIDTH.
     coefficients: Vec<f32>,
@@ -74,7 +74,8 @@ impl Lattices {
         // Lattice indices within the grid.
         let ends = [((nx - 1) >> level) as isize, ((ny - 1) >> level) as isize];
         let reaches_over = |at: isize, end: isize| at < REACH || at + REACH > end;
-        if !lattice.around.is_empty() && (reaches_over(a, ends[0]) || reaches_over(b, ends[1])) {
+        let [x_wraps, y_wraps] = lattice.wraps;
+        if (x_wraps && reaches_over(a, ends[0])) || (y_wraps && reaches_over(b, ends[1])) {
             let found = self.earlier_around(node, level, is_in, neighbours);
             return (found, level);
         }
@@ -115,13 +116,14 @@ impl Lattices {
         let [nx, ny] = self.shape;
         let (ix, iy) = (node % nx, node / nx);
         let last = self.levels.len() as u32 - 1;
+        let lattice = &self.levels[level as usize];
         let mut count = 0;
-        for &[da, db] in &self.levels[level as usize].around {
+        for &[da, db] in &lattice.around {
             let (da, db) = (da as isize, db as isize);
-            let along = |at: usize, steps: isize, nodes: usize| {
-                (at as isize + (steps << level)).rem_euclid(nodes as isize) as usize
+            let places = (lattice.to(0, ix, da << level, nx), lattice.to(1, iy, db << level, ny));
+            let (Some(x), Some(y)) = places else {
+                continue;
             };
-            let (x, y) = (along(ix, da, nx), along(iy, db, ny));
             let other = x + nx * y;
             let coarser = (x | y).trailing_zeros().min(last) > level;
             if (coarser || other < node) && is_in(other) {
@@ -136,7 +138,7 @@ impl Lattices {
         count
     }
 
-    /// Calls `found` with nodes that may have `node` for a neighbour, and with its influence on them
+    /// Calls `found` with nodes that may have `node` for a neighbour, and with the size of its influence on them
     /// relative to C(0, 0): all that could find it, and some that come before it.
     pub(super) fn later(&self, node: usize, mut found: impl FnMut(usize, f32)) {
         let [nx, ny] = self.shape;
@@ -144,19 +146,13 @@ impl Lattices {
         let last = self.levels.len() as u32 - 1;
         let own = (ix | iy).trailing_zeros().min(last);
         for (level, lattice) in (0..=own).zip(&self.levels) {
-            let wraps = !lattice.around.is_empty();
-            let along = |at: usize, steps: isize, nodes: usize| {
-                let to = at as isize + (steps << level);
-                let to = if wraps { to.rem_euclid(nodes as isize) } else { to };
-                (0..nodes as isize).contains(&to).then_some(to as usize)
-            };
             for db in -REACH..=REACH {
-                let Some(y) = along(iy, db, ny) else { continue };
+                let Some(y) = lattice.to(1, iy, db << level, ny) else { continue };
                 for da in -REACH..=REACH {
-                    let Some(x) = along(ix, da, nx) else { continue };
+                    let Some(x) = lattice.to(0, ix, da << level, nx) else { continue };
                     if (x | y).trailing_zeros().min(last) == level && (da, db) != (0, 0) {
                         let offset = (da + db * WIDTH) as i32;
-                        found(x + nx * y, lattice.between(offset, 0));
+                        found(x + nx * y, lattice.between(offset, 0).abs());
                     }
                 }
             }
@@ -169,15 +165,18 @@ impl Lattice {
         let own = table.self_influence();
         let (nx, ny) = table.grid().shape();
         let step = 1_usize << level;
-        let wraps = table.boundary() == Boundary::Periodic
-            && nx.is_multiple_of(step)
-            && ny.is_multiple_of(step);
+        let [x_repeats, y_repeats] = table.boundary().repeats();
+        // Where both repeat, along both or along none.
+        let fits = |repeats: bool, nodes: usize| !repeats || nodes.is_multiple_of(step);
+        let fit = fits(x_repeats, nx) && fits(y_repeats, ny);
+        let wraps = [x_repeats && fit, y_repeats && fit];
         // In cells, beyond the grid in its next period if there is one.
-        let cells = |steps: isize, nodes: usize| {
+        let cells = |steps: isize, nodes: usize, wraps: bool| {
             let cells = steps << level;
             if wraps { cells % nodes as isize } else { cells }
         };
-        let coefficient = |di, dj| table.coefficient(cells(di, nx), cells(dj, ny));
+        let coefficient =
+            |di, dj| table.coefficient(cells(di, nx, wraps[0]), cells(dj, ny, wraps[1]));
         let mut coefficients = Vec::with_capacity((WIDTH * WIDTH) as usize);
         for dj in -SPAN..=SPAN {
             for di in -SPAN..=SPAN {
@@ -190,7 +189,8 @@ impl Lattice {
         for db in -REACH..=REACH {
             for da in -REACH..=REACH {
                 if let Some(value) = coefficient(da, db) {
-                    offsets.push((value, da, db));
+                    // A layer that cannot be compressed rises beside a pressure: that is influence too.
+                    offsets.push((value.abs(), da, db));
                 }
             }
         }
@@ -208,16 +208,26 @@ impl Lattice {
                 .collect()
         });
         // Half a period each way, of which the far end counts once; the node itself is not another.
-        let half = |steps: isize, nodes: usize| {
+        let half = |steps: isize, nodes: usize, wraps: bool| {
             let period = (nodes / step) as isize;
-            -period < 2 * steps && 2 * steps <= period
+            !wraps || (-period < 2 * steps && 2 * steps <= period)
+        };
+        let is_other = |da: isize, db: isize| {
+            (da, db) != (0, 0) && half(da, nx, wraps[0]) && half(db, ny, wraps[1])
         };
         let around = offsets
             .iter()
-            .filter(|&&(_, da, db)| wraps && (da, db) != (0, 0) && half(da, nx) && half(db, ny))
+            .filter(|&&(_, da, db)| wraps != [false; 2] && is_other(da, db))
             .map(|&(_, da, db)| [da as i16, db as i16])
             .collect();
-        Self { candidates, around, coefficients }
+        Self { candidates, wraps, around, coefficients }
+    }
+
+    /// The index so many cells further along an axis of so many nodes.
+    fn to(&self, axis: usize, at: usize, cells: isize, nodes: usize) -> Option<usize> {
+        let to = at as isize + cells;
+        let to = if self.wraps[axis] { to.rem_euclid(nodes as isize) } else { to };
+        (0..nodes as isize).contains(&to).then_some(to as usize)
     }
 
     /// Influence coefficient between two offsets from the same node, relative to C(0, 0).

@@ -46,6 +46,11 @@ impl Operator {
         std::mem::take(&mut self.convolutions)
     }
 
+    /// The same without asking: the count goes on.
+    pub(crate) fn convolutions(&self) -> usize {
+        self.convolutions
+    }
+
     /// Adds a uniform displacement, `uniform` per unit of the sum of pressures, to that of the kernel:
     /// a change of gauge.
     pub(crate) fn set_uniform(&mut self, uniform: f64) {

@@ -23,7 +23,8 @@ pub(crate) struct Preconditioner {
 
 impl Preconditioner {
     /// Bytes taken for each node in contact at most.
-    pub(crate) const BYTES_A_NODE: usize = <SparseInverse>::BYTES_A_NODE + size_of::<f64>();
+    pub(crate) const BYTES_A_NODE: usize =
+        <SparseInverse>::BYTES_A_NODE + size_of::<f64>() + size_of::<u32>();
 
     /// For an empty contact set.
     pub(crate) fn new(table: &KernelTable) -> Self {
@@ -40,6 +41,21 @@ impl Preconditioner {
             && let Some(coarse) = &mut self.coarse
         {
             coarse.update(contact);
+        }
+    }
+
+    /// The contact set that the coarse matrix was computed for, which depends on the sets that came before the present one; nothing
+    /// else does.
+    pub(crate) fn coarse_nodes(&self) -> &[u32] {
+        self.coarse.as_ref().map_or(&[], CoarseSpace::inverted)
+    }
+
+    /// Makes it that of a contact set, with the coarse matrix of the set `coarse` as long as that serves.
+    pub(crate) fn recall(&mut self, coarse: &NodeSet, contact: &NodeSet) {
+        self.inverse.update(contact);
+        if let Some(space) = &mut self.coarse {
+            space.invert_anew(coarse);
+            space.update(contact);
         }
     }
 

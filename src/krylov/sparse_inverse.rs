@@ -286,7 +286,7 @@ impl<const K: usize> Pattern<K> {
         let found = &found.neighbours;
         self.steps = found.map(|neighbour| neighbour.node as i32);
         if count == K {
-            self.least = lattice.between(found[K - 1].offset, 0) - SAME_INFLUENCE;
+            self.least = lattice.between(found[K - 1].offset, 0).abs() - SAME_INFLUENCE;
         }
         let mut matrix = [[0.0_f32; K]; K];
         let mut rhs = [0.0_f32; K];

@@ -5,7 +5,7 @@
 //! \nabla \cdot \left( \frac{g^3}{12 \eta}\, \nabla p \right) = 0 ,
 //! ```
 //! with the viscosity η and the fluid pressure p; the pressure is given on two opposite edges of the grid and differs by Δp, nothing flows
-//! through nodes in contact, and the other two edges are closed on a free boundary and joined on a periodic one ([`Boundary`](crate::Boundary)).
+//! through nodes in contact, and the other two edges are closed, or joined where the [`Boundary`](crate::Boundary) repeats across the flow.
 //!
 //! ```
 //! use asperity::leak::Seal;

@@ -49,13 +49,15 @@ pub(super) struct Layout {
 impl Layout {
     fn new(grid: &Grid, boundary: Boundary, along: Axis) -> Self {
         let (nx, ny) = grid.shape();
-        let wraps = boundary == Boundary::Periodic;
+        let [x_repeats, y_repeats] = boundary.repeats();
         match along {
             Axis::X => {
-                Self { nodes: [nx, ny], steps: [1, nx], wraps, cell: [grid.dx(), grid.dy()] }
+                let cell = [grid.dx(), grid.dy()];
+                Self { nodes: [nx, ny], steps: [1, nx], wraps: y_repeats, cell }
             }
             Axis::Y => {
-                Self { nodes: [ny, nx], steps: [nx, 1], wraps, cell: [grid.dy(), grid.dx()] }
+                let cell = [grid.dy(), grid.dx()];
+                Self { nodes: [ny, nx], steps: [nx, 1], wraps: x_repeats, cell }
             }
         }
     }

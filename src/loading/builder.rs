@@ -209,7 +209,9 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// H, stays in contact, and loses as much of its height as it would overlap. The path goes on behind full contact until all nodes
     /// have yielded, under the load H A, unless a limit ends it; no load limit may be as great as that. Infinity limits nothing.
     ///
-    /// Contact must be known to grow ([`ContactGrowth`]), and the path needs a factor of the elastic nodes to its end: it is not handed over to iterations.
+    /// Contact must be known to grow ([`ContactGrowth`]). An updater needs two more verbs for it,
+    /// [`watch_both`](LinearUpdater::watch_both) and [`solve_for`](LinearUpdater::solve_for); iterations
+    /// ([`ConjugateGradient`]) serve it as well, and take over from a factor as on elastic paths. That factor holds elastic nodes only.
     ///
     /// [`ContactEvent::Yield`]: super::ContactEvent::Yield
     pub fn hardness(mut self, hardness: f64) -> Self {
@@ -238,8 +240,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     ///
     /// Those of [`Problem::new`]; [`Error::NotPositive`] and [`Error::OutOfRange`] for limits that make no
     /// sense; [`Error::MemoryBudget`] if not even the grid fits. With a hardness [`Error::NotPositive`] and [`Error::GridMismatch`]
-    /// for itself, [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that contact
-    /// grows, and [`UpdaterError::HardnessNotSupported`](crate::UpdaterError::HardnessNotSupported) for iterations.
+    /// for itself, and [`KernelError::GrowthUnknown`](crate::KernelError::GrowthUnknown) for a kernel that does not promise that
+    /// contact grows.
     pub fn build(self) -> Result<LoadingSolver<U>, Error> {
         if self.window_size == Some(0) {
             return Err(Error::OutOfRange {
@@ -315,7 +317,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// The same path, to go on behind states that it yielded before, in another process perhaps: the next state
     /// is the one after the last event among them. A limit is no event.
     ///
-    /// Nothing is searched for again. A factor is made of the nodes in contact in large blocks, n³/3 flops at
+    /// States [of a record](crate::record::LoadingRecord::history) know the end of their last window, where the path then goes on: see
+    /// [`LoadingRecord::resume`](crate::record::LoadingRecord::resume).
+    ///
+    /// Otherwise nothing is searched for again: a factor is made of the nodes in contact in large blocks, n³/3 flops at
     /// the speed of a matrix product; without one a solution is all. The solution is compared with the last state,
     /// so that states of another surface or kernel are refused.
     ///
@@ -331,7 +336,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         if let Some(state) = &solver.state {
             solver.limits.check_ahead(state, false)?;
         }
-        solver.rebuild()?;
+        match history.window_end() {
+            Some(end) if solver.follow_on(end)? => {}
+            _ => solver.rebuild()?,
+        }
         Ok(solver)
     }
 

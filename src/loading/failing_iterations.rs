@@ -8,15 +8,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-use asperity_testing::dense::{complementary, from_first_touch};
 use nalgebra::{DMatrix, DVector};
 
+use super::complementary::{complementary, from_first_touch};
 use crate::contact::ContactSequence;
 use crate::kernel::KernelTable;
 use crate::loading::LoadingEnd;
 use crate::surface::HeightMap;
 use crate::updater::altered::Altered;
-use crate::updater::{ConjugateGradient, Iterations, Schur, Solution, Solved};
+use crate::updater::{
+    Behind, Beside, ConjugateGradient, Iterations, Proposal, Schur, Solution, Solved,
+};
 use crate::{
     Boundary, Boussinesq, ContactGrowth, ContactState, Error, Grid, InfluenceKernel, LoadingSolver,
     LoadingState, PeriodicBoussinesq, Problem,
@@ -90,15 +92,18 @@ impl Strike {
         work: impl FnOnce() -> Result<T, Error>,
     ) -> Result<(T, Option<Fault>), Error> {
         let call = self.calls.fetch_add(1, Relaxed);
-        let solves = ["advance", "probe", "solve_apart"].contains(&method);
+        let solves = ["advance", "probe", "solve_apart", "advance_behind", "probe_behind"];
+        let solves = solves.contains(&method) || method == "solve_alone";
+        let proposes = ["propose", "propose_both"].contains(&method);
         let possible = match self.fault {
             Fault::Forget => method == "cut",
             Fault::Each(part, _) | Fault::Last(part, _) => match part {
-                Part::Schur | Part::RowSums | Part::Proposed => method == "propose",
-                Part::Pressure | Part::Rate => ["advance", "solve_apart"].contains(&method),
-                Part::Field => ["advance", "probe"].contains(&method),
+                Part::Schur | Part::RowSums | Part::Proposed => proposes,
+                Part::Pressure => solves && method != "probe",
+                Part::Rate => solves && !["probe", "probe_behind"].contains(&method),
+                Part::Field => solves && !["solve_apart", "solve_alone"].contains(&method),
             },
-            Fault::Length(_) => solves || method == "propose",
+            Fault::Length(_) => solves || proposes,
             Fault::Tolerance(_) => false,
             _ => true,
         };
@@ -133,6 +138,14 @@ impl Fault {
                 values.resize(length, 1.0);
             }
             _ => {}
+        }
+    }
+
+    fn spoil_solved(self, solved: &mut Solved) {
+        self.spoil(Part::Pressure, &mut solved.solution.pressure);
+        self.spoil(Part::Rate, &mut solved.solution.rate);
+        for field in &mut solved.displacement {
+            self.spoil(Part::Field, field);
         }
     }
 
@@ -228,11 +241,7 @@ impl Iterations for Failing {
         let Self { inner, strike, .. } = self;
         let work = || inner.advance(problem, contact, approach, span, solved);
         if let ((), Some(fault)) = strike.call("advance", work)? {
-            fault.spoil(Part::Pressure, &mut solved.solution.pressure);
-            fault.spoil(Part::Rate, &mut solved.solution.rate);
-            for field in &mut solved.displacement {
-                fault.spoil(Part::Field, field);
-            }
+            fault.spoil_solved(solved);
         }
         Ok(())
     }
@@ -271,6 +280,76 @@ impl Iterations for Failing {
         Ok(())
     }
 
+    fn propose_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: [&[usize]; 2],
+        beside: &Beside<'_>,
+        schur: &mut Schur,
+    ) -> Result<Proposal, Error> {
+        let Self { inner, strike, .. } = self;
+        let work = || inner.propose_both(problem, contact, nodes, beside, schur);
+        let (mut proposal, fault) = strike.call("propose_both", work)?;
+        if self.misleads {
+            for (k, &node) in nodes[0].iter().chain(nodes[1]).enumerate() {
+                schur.matrix_mut()[(k, k)] *= 1.5 + libm::sin(node as f64);
+            }
+        }
+        if let Some(fault) = fault {
+            fault.spoil_proposal(schur, &mut proposal.lines);
+            let sums = proposal.sums.as_flattened_mut();
+            match fault {
+                Fault::Each(Part::RowSums, change) => sums.iter_mut().for_each(|x| *x = change(*x)),
+                Fault::Last(Part::RowSums, change) => {
+                    sums.iter_mut().rev().take(1).for_each(|x| *x = change(*x));
+                }
+                _ => {}
+            }
+        }
+        Ok(proposal)
+    }
+
+    fn advance_behind(
+        &mut self,
+        behind: &Behind<'_>,
+        span: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        let Self { inner, strike, .. } = self;
+        let work = || inner.advance_behind(behind, span, solved);
+        if let ((), Some(fault)) = strike.call("advance_behind", work)? {
+            fault.spoil_solved(solved);
+        }
+        Ok(())
+    }
+
+    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
+        let Self { inner, strike, .. } = self;
+        let (mut solved, fault) =
+            strike.call("probe_behind", || inner.probe_behind(behind, error))?;
+        if let Some(fault) = fault {
+            fault.spoil_solved(&mut solved);
+        }
+        Ok(solved)
+    }
+
+    fn solve_alone(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        let Self { inner, strike, .. } = self;
+        let work = || inner.solve_alone(problem, contact, approach, solution);
+        if let ((), Some(fault)) = strike.call("solve_alone", work)? {
+            fault.spoil(Part::Pressure, &mut solution.pressure);
+            fault.spoil(Part::Rate, &mut solution.rate);
+        }
+        Ok(())
+    }
+
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
         let Self { inner, strike, .. } = self;
         strike.call("cut", || inner.cut(problem, contact)).map(drop)
@@ -293,6 +372,7 @@ struct Small {
     gaps: Vec<f64>,
     matrix: DMatrix<f64>,
     window: usize,
+    hardness: Option<f64>,
     /// See [`Failing::misleads`].
     misleads: bool,
 }
@@ -319,6 +399,7 @@ impl Small {
             }),
             kernel: KernelTable::new(kernel)?,
             window,
+            hardness: None,
             misleads: false,
         })
     }
@@ -348,7 +429,13 @@ impl Small {
             .map(|k| 1.0 + (2.3 * k as f64 + 0.7 * (k * k) as f64).sin())
             .collect();
         let taken_back = Self::new("taken back", &Boussinesq::new(wide, 1.0)?, &wide_gaps, 24)?;
+        let harden = |small: Self| Self { hardness: Some(0.2), ..small };
+        let misled = Self::new("misled", &Boussinesq::new(wide, 1.0)?, &wide_gaps, 24)?;
         Ok(vec![
+            harden(Self::new("yielding", &free, &gaps, 8)?),
+            harden(Self::new("yielding, periodic", &periodic, &gaps, 12)?),
+            harden(Self::new("yielding, near ties", &free, &near, 16)?),
+            harden(Self { misleads: true, ..misled }),
             Self { misleads: true, ..taken_back },
             Self::new("free", &free, &gaps, 3)?,
             Self::new("periodic", &periodic, &gaps, 4)?,
@@ -365,10 +452,13 @@ impl Small {
             let (inner, strike) = (ConjugateGradient::new(), Arc::clone(&strike));
             Box::new(Failing { inner, misleads, strike })
         };
-        LoadingSolver::builder(&self.heights, &self.kernel)
+        let builder = LoadingSolver::builder(&self.heights, &self.kernel)
             .window_size(self.window)
-            .updater(Altered::iterating(iterations))
-            .build()
+            .updater(Altered::iterating(iterations));
+        match self.hardness {
+            Some(hardness) => builder.hardness(hardness).build(),
+            None => builder.build(),
+        }
     }
 
     /// All states of the path without a fault, and how many calls they take.
@@ -385,14 +475,18 @@ impl Small {
     /// The approach for which gap = g + C p − δ with the coefficients as they are.
     fn own_approach(&self, state: &ContactState) -> f64 {
         match self.kernel.boundary() {
-            Boundary::Free => state.approach,
+            Boundary::Free | Boundary::PeriodicX | Boundary::PeriodicY => state.approach,
             Boundary::Periodic => state.approach + self.matrix.mean() * state.load,
         }
     }
 
     /// The pressures of the contact at the approach of a state.
     fn pressure(&self, state: &ContactState) -> DVector<f64> {
-        complementary(&self.matrix, &self.gaps, self.own_approach(state))
+        let approach = self.own_approach(state);
+        match self.hardness {
+            Some(hardness) => bounded(&self.matrix, &self.gaps, hardness, approach),
+            None => complementary(&self.matrix, &self.gaps, approach),
+        }
     }
 
     /// Errors of lengths and of pressures that a state may have: gaps are pinned to 10⁻⁸, and the sum of all moduli of C⁻¹ bounds
@@ -425,8 +519,10 @@ impl Small {
         if !(pressed..=closed).contains(&found.contact_nodes) {
             return Some(format!("{pressed} to {closed} nodes touch: {state:?}"));
         }
+        // Where a node has yielded there is none.
+        let open = if self.hardness.is_some() { gap.map(|gap| gap.max(0.0)) } else { gap };
         is_off("load", found.load, pressure.sum(), force)
-            .or_else(|| is_off("mean gap", found.mean_gap, gap.mean(), length))
+            .or_else(|| is_off("mean gap", found.mean_gap, open.mean(), length))
     }
 
     /// After its end a path yields nothing and does not go on; what it has yielded it still knows. Returns for how many states
@@ -466,6 +562,26 @@ impl Small {
     }
 }
 
+/// The pressures from 0 to a hardness that leave gaps of the right sign, one node after the other (Gauss and Seidel) until none changes
+/// by more than 10⁻¹³ of the hardness.
+fn bounded(matrix: &DMatrix<f64>, gaps: &[f64], hardness: f64, approach: f64) -> DVector<f64> {
+    let mut pressure = DVector::zeros(gaps.len());
+    for _ in 0..2000 {
+        let mut most: f64 = 0.0;
+        for (node, gap) in gaps.iter().enumerate() {
+            // It is symmetric.
+            let left = gap - approach + matrix.column(node).dot(&pressure);
+            let next = (pressure[node] - left / matrix[(node, node)]).clamp(0.0, hardness);
+            most = most.max((next - pressure[node]).abs());
+            pressure[node] = next;
+        }
+        if most < 1e-13 * hardness {
+            break;
+        }
+    }
+    pressure
+}
+
 #[test]
 fn an_error_at_any_call_is_the_last_item() -> Result<(), Error> {
     let (mut refused, mut answered, mut methods) = (0, 0, BTreeSet::new());
@@ -493,7 +609,9 @@ fn an_error_at_any_call_is_the_last_item() -> Result<(), Error> {
         }
     }
     let methods: Vec<_> = methods.into_iter().collect();
-    assert_eq!(methods, ["advance", "cut", "probe", "propose"]);
+    let expected = ["advance", "advance_behind", "cut", "probe", "probe_behind", "propose"];
+    let expected: Vec<_> = expected.into_iter().chain(["propose_both"]).collect();
+    assert_eq!(methods, expected);
     assert!(refused > 100 && answered > refused, "{refused} {answered}");
     Ok(())
 }
@@ -523,7 +641,9 @@ fn nothing_is_yielded_after_a_panic_at_any_call() -> Result<(), Error> {
         }
     }
     let methods: Vec<_> = methods.into_iter().collect();
-    assert_eq!(methods, ["advance", "cut", "probe", "propose"]);
+    let expected = ["advance", "advance_behind", "cut", "probe", "probe_behind", "propose"];
+    let expected: Vec<_> = expected.into_iter().chain(["propose_both"]).collect();
+    assert_eq!(methods, expected);
     assert!(answered > 200, "{answered}");
     Ok(())
 }

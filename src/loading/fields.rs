@@ -148,7 +148,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Any state is a prefix of one factor, and costs one backward substitution. States before the last node
     /// that *left* the contact are no such prefix, and cost a factor of their own, n³/3 flops for n nodes in
-    /// contact.
+    /// contact. Without a factor a state costs a solution; so does one before the last node that *yielded*, in as much memory again as
+    /// iterations take.
     ///
     /// # Errors
     ///

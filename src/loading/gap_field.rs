@@ -65,6 +65,11 @@ impl GapField {
         self.revision == Some(contact.revision()) && self.approach == approach
     }
 
+    /// Says that nothing is known: whoever needs the field solves anew.
+    pub(super) fn forget(&mut self) {
+        self.revision = None;
+    }
+
     /// Solves on the contact at an approach, and computes all displacements.
     pub(super) fn solve<U: LinearUpdater + ?Sized>(
         &mut self,

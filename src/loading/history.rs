@@ -1,6 +1,9 @@
 //! A finished path as a record that can be read at any load, approach, area or mean gap.
 
+use std::sync::Arc;
+
 use super::limits::{Limits, LoadingEnd};
+use super::window_end::WindowEnd;
 use super::{ContactEvent, LoadingState};
 use crate::contact::{ContactState, ContactTarget};
 use crate::{Error, Grid};
@@ -31,20 +34,30 @@ use crate::{Error, Grid};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct History {
     states: Vec<LoadingState>,
+    /// What the path goes on with behind the last state, if it is of a record that knows.
+    window_end: Option<Arc<WindowEnd>>,
+}
+
+/// Of the same states.
+impl PartialEq for History {
+    fn eq(&self, other: &Self) -> bool {
+        self.states == other.states
+    }
 }
 
 impl FromIterator<LoadingState> for History {
     fn from_iter<I: IntoIterator<Item = LoadingState>>(states: I) -> Self {
-        Self { states: states.into_iter().collect() }
+        Self { states: states.into_iter().collect(), window_end: None }
     }
 }
 
 impl Extend<LoadingState> for History {
     fn extend<I: IntoIterator<Item = LoadingState>>(&mut self, states: I) {
         self.states.extend(states);
+        self.window_end = None;
     }
 }
 
@@ -53,6 +66,17 @@ impl History {
     #[must_use]
     pub fn states(&self) -> &[LoadingState] {
         &self.states
+    }
+
+    /// The same states, behind which the path goes on from the end of a window.
+    pub(crate) fn with_window_end(mut self, end: Option<WindowEnd>) -> Self {
+        self.window_end = end.map(Arc::new);
+        self
+    }
+
+    /// Where the path goes on behind its last state.
+    pub(crate) fn window_end(&self) -> Option<&WindowEnd> {
+        self.window_end.as_deref()
     }
 
     /// The states without the one at a limit, if there is one.

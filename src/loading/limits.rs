@@ -1,6 +1,6 @@
 //! Where a path ends, and why.
 
-use super::state::LoadingState;
+use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactTarget;
 use crate::{Error, Grid};
 
@@ -224,7 +224,8 @@ impl Limits {
         if let Some((end, state)) = first {
             return Some((end, last.at_limit(state)));
         }
-        let beyond = next.contact.contact_nodes > last.contact.contact_nodes;
+        // What comes next is one more node, or a yield behind the last one.
+        let beyond = next.event != ContactEvent::Release;
         let end = beyond.then(|| self.enough(last.contact.contact_nodes)).flatten();
         end.map(|end| (end, None))
     }
@@ -232,7 +233,6 @@ impl Limits {
 
 #[cfg(test)]
 mod tests {
-    use super::super::state::ContactEvent;
     use super::*;
     use crate::contact::ContactState;
 
@@ -309,13 +309,14 @@ mod tests {
             assert_eq!([most - 1, most].map(|nodes| limits.enough(nodes)), [None, Some(end)]);
             let fraction = most as f64 / 20.0;
             assert_eq!(limits.targets(&grid()?), [ContactTarget::AreaFraction(fraction)]);
-            // Between two states only where one more node joins.
-            let between = |next| -> Result<_, Error> {
-                let (last, next) = (state(most, 4.0)?, state(next, 8.0)?);
-                Ok(limits.between(Some(last), &next))
+            // Between two states, unless a node leaves.
+            let between = |event, nodes| -> Result<_, Error> {
+                let next = LoadingState { event, ..state(nodes, 8.0)? };
+                Ok(limits.between(Some(state(most, 4.0)?), &next))
             };
-            assert_eq!(between(most + 1)?, Some((end, None)));
-            assert_eq!(between(most)?, None);
+            assert_eq!(between(ContactEvent::Touch, most + 1)?, Some((end, None)));
+            assert_eq!(between(ContactEvent::Yield, most)?, Some((end, None)));
+            assert_eq!(between(ContactEvent::Release, most - 1)?, None);
         }
         let mut whole = Limits::default();
         whole.set_nodes(20)?;

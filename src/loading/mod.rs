@@ -11,7 +11,8 @@
 //! * One at a time, nodes that *leave* among them, if nothing is known of the kernel.
 //!
 //! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Yielding` then takes the place of `Windowed`: it
-//! watches nodes of both kinds, and checks each window at its end before the updater learns of it.
+//! watches nodes of both kinds, and checks each window at its end before the updater learns of it. Without a factor it is
+//! `RefinedYielding`.
 //!
 //! # How a window is made
 //!
@@ -50,6 +51,14 @@
 //!   initial one. On cells 10 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴, and longer ones
 //!   [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space cells may be of any shape.
 //!
+//! With a hardness `RefinedYielding` does the same with events of both kinds: its matrices are those of
+//! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may touch and for nodes
+//! that may yield. All that is said above holds for its states; what nodes that touch and nodes that yield make of the error of a matrix may
+//! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least. Nodes that yield
+//! together get the approach at which their plastic depths begin, by the solution behind them. Even so estimates are no bounds where few nodes
+//! are elastic: with H = 0.05 E\* h′ on 256 × 256 nodes, to the yield of the last, 217 of 131 072 approaches were off by more, 2.3 times at
+//! worst; all events were those of the factor, 18 of them in another order within ties.
+//!
 //! [`ContactRule::ApproximateOrder`] does not settle neighbours that are too close, for speed.
 //!
 //! # Ties
@@ -59,7 +68,11 @@
 //! within 10⁻⁹ of the approach with another one.
 
 mod builder;
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod complementary;
 mod cost;
+mod factor_log;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod failing_iterations;
@@ -85,17 +98,21 @@ mod test_chain;
 mod tolerances;
 mod tuning;
 mod window;
+mod window_end;
 mod windowed;
 mod yielding;
 
 pub use builder::LoadingBuilder;
+pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
 #[doc(hidden)]
 pub use phase::{event_seconds, last_factor};
+pub(crate) use refined::resumed::RefinedEnd;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};
+pub(crate) use window_end::{FactorEnd, NextWindow, WindowEnd};

@@ -1,6 +1,8 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
+use super::factor_log::FactorLog;
 use super::gap_field;
+use super::refined::resumed::RefinedEnd;
 use super::run::LoadingRun;
 use super::tuning::{FACTOR, ITERATIONS, LEAST_WINDOW, WINDOW};
 use super::window::Window;
@@ -53,6 +55,8 @@ impl<U: LinearUpdater> Phase<U> {
         {
             iterations.take_over(problem, contact, approach, &solution)?;
         }
+        // Where the window of a factor was checked there is a solution of it: iterations begin with their own, whether or not.
+        run.field.forget();
         Ok(true)
     }
 
@@ -62,10 +66,6 @@ impl<U: LinearUpdater> Phase<U> {
         let Self::Factor { updater, may_end: true } = self else {
             return None;
         };
-        if run.plastic.is_some() {
-            // The factor holds elastic nodes only, which are few.
-            return None;
-        }
         let nodes = run.problem.grid().nodes();
         let iterations: Box<dyn Iterations> = Box::<ConjugateGradient>::default();
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);
@@ -160,6 +160,47 @@ impl<U: LinearUpdater> Phase<U> {
             Self::Iterations(_) => order.iter().try_for_each(|&node| run.contact.push(node)),
         };
         restored.map(|()| hands_over)
+    }
+
+    /// Makes a factor of a contact by the steps of a log. Returns whether it does: there must be one, and room for it.
+    pub(super) fn restore_factor(
+        &mut self,
+        run: &LoadingRun,
+        contact: &ContactSequence,
+        log: &FactorLog,
+    ) -> Result<bool, Error> {
+        match self {
+            Self::Factor { updater, .. } => {
+                log.replay(updater, &run.problem, contact, run.memory.left())
+            }
+            Self::Iterations(_) => Ok(false),
+        }
+    }
+
+    /// Goes on with iterations where a window ended. Returns whether they are those of this path.
+    pub(super) fn restore_iterations(
+        &mut self,
+        run: &LoadingRun,
+        contact: &ContactSequence,
+        end: &RefinedEnd,
+    ) -> Result<bool, Error> {
+        let solved = end.contact(contact)?;
+        let mut successor: Option<Box<dyn Iterations>> = None;
+        let iterations = match self {
+            Self::Factor { may_end: false, .. } => return Ok(false),
+            Self::Factor { .. } => successor.insert(Box::<ConjugateGradient>::default()),
+            Self::Iterations(iterations) => iterations,
+        };
+        let needed = iterations.bytes(run.problem.grid().nodes(), contact.len());
+        if run.memory.check(needed, contact.len()).is_err()
+            || !iterations.restore(&run.problem, &solved, &end.kept)?
+        {
+            return Ok(false);
+        }
+        if let Some(iterations) = successor {
+            *self = Self::Iterations(iterations);
+        }
+        Ok(true)
     }
 
     /// Solves on the contact after `step` events at an approach, and returns it. The solution that the path goes on with is left as it is.

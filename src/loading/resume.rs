@@ -1,8 +1,9 @@
 //! A path that goes on where an earlier one stopped.
 
+use super::factor_log::FactorLog;
 use super::history::History;
 use super::snapshot::{Snapshot, not_on_path};
-use super::solver::LoadingSolver;
+use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater};
@@ -44,6 +45,9 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let order = run.contact.order().to_vec();
         if phase.restore(run, &order)? {
             self.handed_over_at = Some(order.len());
+        }
+        if let Procedure::Windows(windowed, _) = &mut self.procedure {
+            windowed.follow_on(FactorLog::of_blocks(&order));
         }
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);

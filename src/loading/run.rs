@@ -204,7 +204,8 @@ impl LoadingRun {
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of
-    /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements.
+    /// `Σⱼ |Cᵢⱼ pⱼ|` at most, which C(0, 0) Σ |p| bounds, for no coefficient is greater; and so is that of the displacements. Those
+    /// under nodes that have yielded are part of the initial gap.
     pub(super) fn check_closed(
         &self,
         problem: &Problem,
@@ -214,7 +215,9 @@ impl LoadingRun {
         let own = problem.table().self_influence();
         let sum = |values: &[f64]| own * values.iter().map(|value| value.abs()).sum::<f64>();
         let Solution { pressure, rate } = self.field.solution();
-        let lengths = [problem.greatest_gap() + approach.abs() + sum(pressure), 1.0 + sum(rate)];
+        let gaps = contact.order().iter().map(|&node| problem.initial_gap()[node].abs());
+        let greatest_gap = gaps.fold(problem.greatest_gap(), f64::max);
+        let lengths = [greatest_gap + approach.abs() + sum(pressure), 1.0 + sum(rate)];
         for &node in contact.order() {
             let left = self.field.left_at(problem, node);
             for (k, quantity) in ["gap", "rate of the gap"].into_iter().enumerate() {

@@ -75,6 +75,18 @@ impl PathScalars {
         self.approach
     }
 
+    /// Approach, load, energy, mean gap, stiffness and closing rate as they are: sums over all events so far.
+    pub(super) fn numbers(&self) -> [f64; 6] {
+        let Self { approach, load, energy, mean_gap, unit_stiffness, closing, .. } = *self;
+        [approach, load, energy, mean_gap, unit_stiffness, closing]
+    }
+
+    /// Takes these numbers over.
+    pub(super) fn take_over(&mut self, numbers: [f64; 6]) {
+        let [approach, load, energy, mean_gap, unit_stiffness, closing] = numbers;
+        *self = Self { approach, load, energy, mean_gap, unit_stiffness, closing, ..*self };
+    }
+
     /// Advances to an approach up to the next event.
     pub(super) fn advance(&mut self, approach: f64) {
         let change = approach - self.approach;

@@ -1,6 +1,6 @@
 //! The solution at a state, and whether the state lies on the path.
 
-use super::tuning::{ESTIMATED, RECOGNISED};
+use super::tuning::{ESTIMATED, RECOGNISED, TOLERANCE};
 use nalgebra::DMatrix;
 
 use super::phase::Phase;
@@ -90,8 +90,8 @@ impl Snapshot {
         let cell_area = run.problem.grid().cell_area();
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
-        // At first touch nothing is left but the rounding of lengths as long as the greatest gap.
-        let rounding = f64::EPSILON * self.stiffness * run.problem.greatest_gap();
+        // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is closed to.
+        let rounding = TOLERANCE * self.stiffness * self.lengths(run);
         // NaN is refused as well.
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
         if !same_load || !state.contact.approach.is_finite() {
@@ -134,6 +134,13 @@ impl Snapshot {
             return Err(not_on_path(state, quantity, least, "no overlap"));
         }
         Ok(())
+    }
+
+    /// What cancels in a gap: the greatest initial one, the approach, and displacements under nodes that have yielded.
+    fn lengths(&self, run: &LoadingRun) -> f64 {
+        let yielded: f64 = self.yielded.iter().map(|&node| self.pressure[node]).sum();
+        let displaced = run.problem.table().self_influence() * yielded;
+        run.problem.greatest_gap() + self.approach.abs() + displaced
     }
 
     /// Greatest error of gaps at a state.
@@ -275,10 +282,9 @@ mod tests {
             let case = Case { load: 2.0 + off, stiffness, error, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{off}");
         }
-        // At first touch half of the rounding of 8 m.
-        for (load, refused) in [(4.0, false), (-4.0, false), (4.5, true)] {
-            let case =
-                Case { pressures: &[(0, 0.0)], approach: 0.0, load: load * f64::EPSILON, ..ALONE };
+        // At first touch half of what 8 m are closed to, 10⁻¹⁰ of them.
+        for (load, refused) in [(3.9e-10, false), (-3.9e-10, false), (4.1e-10, true)] {
+            let case = Case { pressures: &[(0, 0.0)], approach: 0.0, load, ..ALONE };
             assert_eq!(case.refused()?, refused.then_some("load"), "{load}");
         }
         Ok(())
@@ -304,13 +310,13 @@ mod tests {
             let case = pulled(&pressures);
             assert_eq!(case.refused()?, refused, "{least:e}");
         }
-        // At first touch the rounding of the load, 4 ε, over the cell area.
-        for (least, refused) in [(1.75, None), (2.25, refused)] {
+        // At first touch what the load may be off by, 4·10⁻¹⁰, over the cell area.
+        for (least, refused) in [(1.9e-10, None), (2.1e-10, refused)] {
             let case = Case {
                 gaps: &[0.0, 8.0, 0.0],
                 contact: &[0, 2],
                 step: 2,
-                pressures: &[(0, least * f64::EPSILON), (2, -least * f64::EPSILON)],
+                pressures: &[(0, least), (2, -least)],
                 approach: 0.0,
                 load: 0.0,
                 ..ALONE

@@ -4,8 +4,9 @@ use std::iter::FusedIterator;
 
 use nalgebra::DMatrix;
 
+use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
-use super::phase::Phase;
+use super::phase::{Phase, last_factor};
 use super::refined::Refined;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
@@ -49,7 +50,7 @@ pub struct LoadingSolver<U = Handover> {
     /// The solver of the path.
     pub(super) phase: Phase<U>,
     pub(super) procedure: Procedure,
-    /// Nodes in contact when the factor was given up.
+    /// Elastic nodes in contact when the factor was given up.
     pub(super) handed_over_at: Option<usize>,
     pub(super) rule: ContactRule,
     pub(super) limits: Limits,
@@ -143,6 +144,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         if !is_enough && phase.hand_over(run)? {
             self.handed_over_at = Some(run.contact.len());
+            if let Procedure::Windows(windowed, _) = &mut self.procedure {
+                // How the factor grew is of no use any more.
+                windowed.follow_on(FactorLog::default());
+            }
         }
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
@@ -160,10 +165,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 windows.1.produce(run, &mut **iterations, limit)
             }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
-                refined.produce(run, &mut **iterations, most_nodes)
+                // A whole window, whatever the limit: a path that goes on behind it has the same windows.
+                let all = run.problem.grid().nodes();
+                refined.produce(run, &mut **iterations, all)
             }
-            (Procedure::Windows(windowed, _), Phase::Factor { updater, .. }) => {
-                let failure = windowed.produce(run, updater, most_nodes)?;
+            (Procedure::Windows(windowed, _), Phase::Factor { updater, may_end }) => {
+                // A factor is given up with one number of nodes in contact, wherever windows begin.
+                let last = last_factor(run.problem.grid().nodes());
+                let ends_here = *may_end && run.contact.len() < last;
+                let most = if ends_here { most_nodes.min(last) } else { most_nodes };
+                let failure = windowed.produce(run, updater, most)?;
                 if run.queue.is_empty() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
                     return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));
@@ -256,7 +267,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
     }
 
-    /// Number of nodes in contact when the factor of [`Handover`] was given up, `None` while it is in use.
+    /// Number of elastic nodes in contact when the factor of [`Handover`] was given up, `None` while it is in use.
     #[must_use]
     pub fn handed_over_at(&self) -> Option<usize> {
         self.handed_over_at
@@ -267,6 +278,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     #[must_use]
     pub fn timings(&self) -> LoadingTimings {
         self.run.timings
+    }
+
+    /// Number of convolutions of iterations so far; `None` as long as there is a factor.
+    #[doc(hidden)] // for the studies of this repository
+    #[must_use]
+    pub fn convolutions(&self) -> Option<usize> {
+        match &self.phase {
+            Phase::Factor { .. } => None,
+            Phase::Iterations(iterations) => Some(iterations.convolutions()),
+        }
     }
 
     /// Why the path has ended; `None` while there is more to come.

@@ -131,6 +131,11 @@ impl Window {
         self.increments.reserve(size);
     }
 
+    /// A window that ended with these nodes watched, none of which has touched: what the next one knows of it.
+    pub(super) fn ended_with(nodes: Vec<usize>) -> Self {
+        Self { open: vec![true; nodes.len()], nodes, ..Self::default() }
+    }
+
     /// The watched nodes.
     pub(super) fn nodes(&self) -> &[usize] {
         &self.nodes

@@ -4,6 +4,7 @@ use super::tuning::{MULTIPLE, OF_RESIDUAL};
 use std::time::Instant;
 
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
+use super::factor_log::FactorLog;
 use super::ranking::{Ranking, rank};
 use super::run::LoadingRun;
 use super::state::ContactEvent;
@@ -23,11 +24,19 @@ pub(super) struct Windowed {
     window: Window,
     /// The nodes out of contact by the time at which they would touch.
     ranking: Ranking,
+    /// All windows so far.
+    log: FactorLog,
 }
 
 impl Windowed {
     pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
-        Self { growth, size, window: Window::default(), ranking: Ranking::new() }
+        Self {
+            growth,
+            size,
+            window: Window::default(),
+            ranking: Ranking::new(),
+            log: FactorLog::default(),
+        }
     }
 
     /// Computes a window of states, with no more than `most_nodes` in contact. Returns what went wrong
@@ -57,9 +66,12 @@ impl Windowed {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
         run.join(updater, &self.window)?;
+        let joined = self.window.events().iter().map(|event| event.position);
+        let joined: Vec<usize> = joined.collect();
         if self.growth == ContactGrowth::Monotone {
             self.verify(run, updater)?;
         }
+        self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
         if self.window.events().len() < played {
             failure = None;
         }
@@ -67,6 +79,17 @@ impl Windowed {
         let queued = self.enqueue(run, count);
         run.timings.events += start.elapsed();
         Ok(queued.err().or(failure))
+    }
+
+    /// All windows so far.
+    pub(super) fn log(&self) -> &FactorLog {
+        &self.log
+    }
+
+    /// Goes on behind these windows. The nodes that the last one left are watched in the same order.
+    pub(super) fn follow_on(&mut self, log: FactorLog) {
+        self.window = Window::ended_with(log.untouched());
+        self.log = log;
     }
 
     /// How many nodes to watch.

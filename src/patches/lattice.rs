@@ -39,7 +39,7 @@ pub(super) fn place(axis: Axis) -> usize {
 impl Lattice {
     pub(super) fn new(grid: Grid, boundary: Boundary, connectivity: Connectivity) -> Self {
         let (nx, ny) = grid.shape();
-        Self { shape: [nx, ny], wraps: [boundary == Boundary::Periodic; 2], connectivity }
+        Self { shape: [nx, ny], wraps: boundary.repeats(), connectivity }
     }
 
     /// The same with two ends along this axis.

@@ -1,6 +1,10 @@
 //! The parameters of a kernel, as a record keeps them.
 
-use crate::kernel::{Boussinesq, KernelOrigin, KernelTable, Layered, PeriodicBoussinesq, Spectral};
+use crate::kernel::{
+    Boussinesq, KernelOrigin, KernelTable, Layered, PeriodicBoussinesq, SemiPeriodicBoussinesq,
+    Spectral,
+};
+use crate::surface::Axis;
 use crate::{Boundary, Error, Grid, InfluenceKernel};
 
 /// How far coefficients of a kernel may differ from those that a record remembers, relative to the greatest: the same
@@ -67,6 +71,11 @@ impl KernelRecord {
             }
             KernelOrigin::PeriodicBoussinesq { e_star } => {
                 KernelTable::new(&PeriodicBoussinesq::new(grid, *e_star)?)
+            }
+            KernelOrigin::SemiPeriodicBoussinesq { e_star, boundary } => {
+                // Of the others neither names a direction.
+                let along = if *boundary == Boundary::PeriodicY { Axis::Y } else { Axis::X };
+                KernelTable::new(&SemiPeriodicBoussinesq::new(grid, *e_star, along)?)
             }
             KernelOrigin::Spectral { e_star } => KernelTable::new(&Spectral::new(grid, *e_star)?),
             KernelOrigin::Layered { body } => KernelTable::new(&Layered::free(grid, body.clone())?),

@@ -117,7 +117,7 @@ impl RecordedHardness {
 }
 
 impl LoadingRecord {
-    /// The record of a path and of the states that it has yielded.
+    /// The record of a path and of the states that it has yielded, with the end of its last window if these are all of them.
     ///
     /// # Errors
     ///
@@ -130,6 +130,9 @@ impl LoadingRecord {
         {
             return Err(Error::StateNotReached { step, present });
         }
+        let events = history.events().last().map(|state| state.step);
+        let reaches = events.is_some() && events == path.state().map(|state| state.step);
+        let history = history.with_window_end(reaches.then(|| path.window_end()).flatten());
         let problem = path.problem();
         let grid = problem.grid();
         let heights = problem.initial_gap().iter().map(|gap| -gap);
@@ -232,8 +235,9 @@ impl LoadingRecord {
     /// [`LoadingSolver::continue_to`]. See [`LoadingBuilder::resume`](crate::loading::LoadingBuilder::resume) for
     /// what it costs, and for other updaters.
     ///
-    /// The same nodes touch next as on a path that was never interrupted. States are the same to rounding, and without a
-    /// factor to their estimated error: windows begin elsewhere.
+    /// The same nodes touch next as on a path that was never interrupted. A record [made](Self::new) at the last state of its path knows where
+    /// the window of that state ended, and how the factor grew: all states are the same bit for bit. Otherwise, and with a hardness, they are
+    /// the same to rounding with a factor, and without one to their estimated error: windows begin elsewhere.
     ///
     /// # Errors
     ///

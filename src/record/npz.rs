@@ -1,5 +1,7 @@
 //! Records on disk: archives of arrays that `numpy.load` opens.
 
+mod window_end;
+
 use std::io::{Seek, Write};
 use std::path::Path;
 
@@ -36,6 +38,9 @@ struct Parameters {
     kernel: KernelRecord,
     settings: Settings,
     end: Option<LoadingEnd>,
+    /// What the next window begins with, if that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    window: Option<window_end::Numbers>,
     units: String,
 }
 
@@ -159,6 +164,9 @@ impl LoadingRecord {
         if let Ok(load) = activation_map(&self.grid, self.states(), |state| state.contact.load) {
             archive.matrix("activation", &load)?;
         }
+        if let Some(end) = self.history.window_end() {
+            window_end::write(end, &self.grid, &mut archive)?;
+        }
         for (name, field) in fields {
             archive.matrix(name, field)?;
         }
@@ -200,6 +208,7 @@ impl LoadingRecord {
             kernel: self.kernel.clone(),
             settings: self.settings.clone(),
             end: self.end,
+            window: self.history.window_end().map(window_end::Numbers::of),
             units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit, 3 yield"
                 .to_string(),
         }
@@ -239,7 +248,6 @@ impl LoadingRecord {
         let heights = HeightMap::new(archive.matrix("heights")?)?;
         let steps = archive.vector("step", None)?;
         let length = Some(steps.len());
-        let whole = |value: f64| value as usize;
         let [ix, iy, nodes, events] =
             ["ix", "iy", "contact_nodes", "event"].map(|name| archive.vector(name, length));
         let (ix, iy, nodes, events) = (ix?, iy?, nodes?, events?);
@@ -278,7 +286,10 @@ impl LoadingRecord {
                 }
             }
         }
-        let history: History = states.into_iter().collect();
+        let window = parameters.window;
+        let window =
+            window.map(|numbers| window_end::read(&archive, &grid, numbers)).transpose()?;
+        let history = states.into_iter().collect::<History>().with_window_end(window);
         Self::from_parts(
             grid,
             heights,
@@ -288,6 +299,11 @@ impl LoadingRecord {
             parameters.end,
         )
     }
+}
+
+/// A whole number of a file.
+fn whole(value: f64) -> usize {
+    value as usize
 }
 
 /// The number of an event in a file.

@@ -78,8 +78,8 @@ fn series(mut term: f64, y: f64, mut k: f64) -> f64 {
 /// A layer that is thin beside the contact, bonded to a rigid base, without friction.
 ///
 /// A compressible layer answers as a mattress, u = h p / M with the confined modulus M = E (1 − ν) / ((1 + ν)(1 − 2ν)). An
-/// incompressible one, ν = ½, flows like a film, u = −h³ ∇²p / E. Errors are of the order h/a, with the radius a of the contact, and more
-/// for ν near ½.
+/// incompressible one, ν = ½, flows like a film, u = −h³ ∇²p / E. Errors of the load are of the order (h/a)² under a sphere with the
+/// contact radius a, and h/a under a punch of that radius. They are greater for ν near ½.
 ///
 /// K. L. Johnson, *Contact Mechanics*, §5.8; M. J. Jaffar, Int. J. Mech. Sci. 31 (1989) 229.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Dense, Iterations, LinearUpdater, Method, Schur, Solution, Solved, WindowFactor};
+use super::{
+    Behind, Beside, Dense, Iterations, LinearUpdater, Method, Proposal as BothProposal, Schur,
+    Solution, Solved, WindowFactor,
+};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem};
 
@@ -25,6 +28,8 @@ pub(crate) struct Altered {
     room: usize,
     /// Displacements of all nodes under the last solution, and under its rate.
     displacement: [Vec<f64>; 2],
+    /// That solution.
+    solution_now: Solution,
 }
 
 impl Altered {
@@ -37,6 +42,7 @@ impl Altered {
             iterations: Some(Arc::new(|own| Box::new(own.clone()))),
             room: 0,
             displacement: [Vec::new(), Vec::new()],
+            solution_now: Solution::default(),
         }
     }
 
@@ -144,7 +150,91 @@ impl Iterations for Altered {
         let Solution { pressure, rate } = &solved.solution;
         self.displacement = [pressure, rate].map(|values| Self::displace(problem, contact, values));
         solved.displacement.clone_from(&self.displacement);
+        self.solution_now = solved.solution.clone();
         Ok(())
+    }
+
+    fn propose_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        [outside, inside]: [&[usize]; 2],
+        beside: &Beside<'_>,
+        schur: &mut Schur,
+    ) -> Result<BothProposal, Error> {
+        let place = |node: &usize| contact.order().iter().position(|other| other == node);
+        let places: Vec<usize> = inside.iter().filter_map(place).collect();
+        // Positions ascend.
+        let mut positions = places.clone();
+        positions.sort_unstable();
+        let mut complement = Schur::default();
+        Dense.watch_both(problem, contact, outside, &positions, &mut complement)?;
+        let size = outside.len() + inside.len();
+        let of = |k: usize| match k.checked_sub(outside.len()) {
+            Some(q) => outside.len() + positions.partition_point(|&other| other < places[q]),
+            None => k,
+        };
+        let mut ordered = Schur::default();
+        ordered.resize(size)?;
+        for j in 0..size {
+            for i in j..size {
+                ordered.matrix_mut()[(i, j)] = complement.entry(of(i), of(j));
+            }
+        }
+        ordered.row_sums_mut().fill(0.0);
+        let Solution { pressure, rate } = &self.solution_now;
+        let [u, u_rate] = &self.displacement;
+        let known = outside.iter().map(|&node| [u[node], u_rate[node]]);
+        let lines = known.chain(places.iter().map(|&place| [pressure[place], rate[place]]));
+        let mut proposal = (ordered, lines.collect());
+        (self.proposal)(&mut proposal);
+        *schur = proposal.0;
+
+        let rhs = |node: usize| [problem.row_sums()[node], -beside.unit[node], -beside.load[node]];
+        let mut sums: Vec<[f64; 3]> = outside.iter().map(|&node| rhs(node)).collect();
+        sums.extend(vec![[0.0; 3]; inside.len()]);
+        for k in 0..3 {
+            let mut solved: Vec<[f64; 2]> =
+                contact.order().iter().map(|&node| [rhs(node)[k], 0.0]).collect();
+            Dense.solve_for(problem, contact, &mut solved)?;
+            let values: Vec<f64> = solved.iter().map(|value| value[0]).collect();
+            let displaced = Self::displace(problem, contact, &values);
+            for (sum, &node) in sums.iter_mut().zip(outside) {
+                sum[k] -= displaced[node];
+            }
+            for (sum, &place) in sums[outside.len()..].iter_mut().zip(&places) {
+                sum[k] = values[place];
+            }
+        }
+        Ok(BothProposal { lines: proposal.1, sums })
+    }
+
+    fn advance_behind(
+        &mut self,
+        behind: &Behind<'_>,
+        span: f64,
+        solved: &mut Solved,
+    ) -> Result<(), Error> {
+        self.advance(behind.problem, behind.contact, behind.approach, span, solved)
+    }
+
+    fn probe_behind(&mut self, behind: &Behind<'_>, _: f64) -> Result<Solved, Error> {
+        let Behind { problem, contact, approach, .. } = *behind;
+        let mut solved = Solved::default();
+        self.solve_apart(problem, contact, contact.len(), approach, &mut solved.solution)?;
+        let values = &solved.solution.pressure;
+        solved.displacement[0] = Self::displace(problem, contact, values);
+        Ok(solved)
+    }
+
+    fn solve_alone(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        approach: f64,
+        solution: &mut Solution,
+    ) -> Result<(), Error> {
+        self.solve_apart(problem, contact, contact.len(), approach, solution)
     }
 
     fn probe(

@@ -280,8 +280,7 @@ mod tests {
         ];
         for (name, mut updater) in updaters {
             let report = check(&mut updater, &problem)?;
-            assert!(report.truncates && report.releases, "{name}: {report:?}");
-            assert_eq!(report.yields, name != "iterations", "{report:?}");
+            assert!(report.truncates && report.releases && report.yields, "{name}: {report:?}");
             assert!(report.contact_nodes > 100, "{name}: {report:?}");
         }
         Ok(())

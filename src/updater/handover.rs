@@ -17,6 +17,9 @@ use crate::{Error, Problem};
 /// same on every run. The budget is that of
 /// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
+/// With a [hardness](crate::loading::LoadingBuilder::hardness) n counts elastic nodes only, which the factor holds: in metals these are so few
+/// that it stays as a rule.
+///
 /// On periodic cells that are [too long](super::ConjugateGradient::MAX_ASPECT) for iterations the factor stays as long as it fits
 /// the budget.
 ///

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{Schur, Solution};
+use super::{Kept, Schur, Solution};
 use crate::contact::ContactSequence;
 use crate::{Error, Problem, UpdaterError};
 
@@ -80,6 +80,23 @@ pub trait Iterations: Debug + Send + Sync {
         approach: f64,
         solution: &Solution,
     ) -> Result<(), Error>;
+
+    /// What later answers depend on, besides problem and contact, as plain numbers: at the end of a window, and if that can be told.
+    fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
+        let _ = (problem, contact);
+        None
+    }
+
+    /// Goes on from such numbers, bit for bit. Returns whether it does: other iterations may have kept them.
+    fn restore(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        kept: &Kept,
+    ) -> Result<bool, Error> {
+        let _ = (problem, contact, kept);
+        Ok(false)
+    }
 
     /// Approximates the Schur complement of nodes out of contact, and improves the displacements of these nodes under the last
     /// solution and under its rate: by what the residual of the solution tells of them.
@@ -170,6 +187,11 @@ pub trait Iterations: Debug + Send + Sync {
 
     /// Goes back to a contact that has been cut: to the solution before, if that was on it.
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;
+
+    /// Number of convolutions so far, as far as it is counted.
+    fn convolutions(&self) -> usize {
+        0
+    }
 
     /// Bytes held when `contact` nodes of a grid of `nodes` are in contact.
     fn bytes(&self, nodes: usize, contact: usize) -> usize;

@@ -36,6 +36,16 @@
 //! * **Arrays** are nx × ny [`nalgebra`] matrices: element `[(ix, iy)]` is the node at `x = (ix + ½) dx`,
 //!   `y = (iy + ½) dy`. x is the first index; an image `[row, column]` must be transposed.
 //! * Results are the same bit for bit with any number of threads, and without the feature `rayon`.
+//!
+//! # Features
+//!
+//! | feature | default | |
+//! |---|---|---|
+//! | `io` | yes | files of instruments; without it only NumPy's |
+//! | `rayon` | yes | threads; they change no result by a single bit |
+//! | `serde` | no | grids as data of any format that serde knows |
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[macro_use]
 mod getters;

@@ -4,3 +4,4 @@
 mod layers;
 mod love;
 mod periodic;
+mod semi_periodic;

@@ -64,8 +64,8 @@ fn channels_in_series() {
         let columns = narrowest.saturating_sub(4)..(narrowest + 5).min(12);
         let share: f64 = columns.map(|ix| 0.5 / some(ix).powi(3)).sum::<f64>() / resistance;
         let rows = match boundary {
-            Boundary::Periodic => 9,
-            Boundary::Free => {
+            Boundary::Periodic | Boundary::PeriodicY => 9,
+            Boundary::Free | Boundary::PeriodicX => {
                 let iy = constriction.node.1;
                 (iy + 5).min(9) - iy.saturating_sub(4)
             }

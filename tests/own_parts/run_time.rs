@@ -1,7 +1,8 @@
 //! Surface, boundary, kernel and updater chosen at run time, as a program with options does.
 
 use crate::parts::{Facets, Grains};
-use asperity::surface::{Amplitude, FlatPunch, Paraboloid};
+use asperity::kernel::SemiPeriodicBoussinesq;
+use asperity::surface::{Amplitude, Axis, FlatPunch, Paraboloid};
 use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, FixedLoadSolver, Grid, InfluenceKernel,
@@ -29,6 +30,8 @@ fn kernel(name: &str, boundary: Boundary, grid: Grid) -> Result<Box<dyn Influenc
         ("own", _) => Box::new(Grains { grid, e_star, growth: ContactGrowth::Convex }),
         (_, Boundary::Free) => Box::new(Boussinesq::new(grid, e_star)?),
         (_, Boundary::Periodic) => Box::new(PeriodicBoussinesq::new(grid, e_star)?),
+        (_, Boundary::PeriodicX) => Box::new(SemiPeriodicBoussinesq::new(grid, e_star, Axis::X)?),
+        (_, Boundary::PeriodicY) => Box::new(SemiPeriodicBoussinesq::new(grid, e_star, Axis::Y)?),
     })
 }
 
@@ -49,6 +52,8 @@ fn every_choice_gives_every_field() -> Result<(), Error> {
         for (kernel_name, boundary) in [
             ("love", Boundary::Free),
             ("love", Boundary::Periodic),
+            ("love", Boundary::PeriodicX),
+            ("love", Boundary::PeriodicY),
             ("spectral", Boundary::Periodic),
             ("own", Boundary::Free),
         ] {

@@ -46,7 +46,6 @@ fn a_sphere_on_a_thin_layer() {
         assert!(error.abs() < 0.2 * (h / 32.0_f64).powi(2) + 2e-4, "{h}: {error}");
     }
     let errors = errors_of_a_sphere(0.5, [6.0, 3.0, 1.5]);
-    println!("sphere {errors:?}");
     for pair in errors.windows(2) {
         // An incompressible layer carries nothing at the edge either: second order, a quarter each time.
         assert!((0.2..0.3).contains(&(pair[1] / pair[0])), "{errors:?}");

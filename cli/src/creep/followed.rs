@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use asperity::bed::{Bed, Superposition};
+use asperity::bed::Bed;
 use asperity::creep::{Course, Creep, CreepState, Relaxation, ViscoelasticBed};
 use asperity::record::LoadingRecord;
-use asperity::{BedError, CreepError, Error, LoadingState};
+use asperity::{BedError, CreepError, Error};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
@@ -175,37 +175,16 @@ impl<'a> Followed<'a> {
         let Some(last) = self.states.last() else {
             return Ok(Vec::new());
         };
-        let of_path = |pressure: Superposition, state: LoadingState| (pressure, Some(state));
-        let (pressure, state) = match &self.solution {
+        let (pressure, gap) = match &self.solution {
             Solution::Creep(creep) => {
-                of_path(creep.pressure(last.time, pieces)?, creep.path_state(last.time)?)
+                (creep.pressure(last.time, pieces)?, path.gap_at(&creep.path_state(last.time)?)?)
             }
             Solution::Relaxation(relaxation) => {
-                let state = relaxation.path_state(last.time)?;
-                of_path(relaxation.pressure(last.time, pieces)?, state)
+                (relaxation.pressure(last.time, pieces)?, relaxation.gap(last.time, &mut path)?)
             }
-            Solution::Bed(contact) => (contact.pressure(pieces)?, None),
+            Solution::Bed(contact) => (contact.pressure(pieces)?, contact.gap(pieces, &mut path)?),
         };
         let pressure = pressure.pressure(bed, &mut path)?;
-        let gap = match (state, &self.solution) {
-            (Some(state), _) => {
-                let apart = (-last.approach).max(0.0);
-                path.gap_at(&state)?.map(|gap| gap + apart)
-            }
-            (None, Solution::Bed(contact)) => {
-                let mut gap = contact.compression(pieces)?.displacement(bed, &mut path)?;
-                for (value, initial) in gap.iter_mut().zip(path.problem().initial_gap()) {
-                    // Pieces leave an error that is no overlap.
-                    *value = (initial + *value - last.approach).max(0.0);
-                }
-                let touching = record.history().events().iter().take(last.contact_nodes);
-                for state in touching {
-                    gap[state.node] = 0.0;
-                }
-                gap
-            }
-            (None, _) => return Ok(vec![("pressure", pressure)]),
-        };
         Ok(vec![("pressure", pressure), ("gap", gap)])
     }
 }

@@ -26,6 +26,11 @@ pub(super) fn print_seal(record: &LoadingRecord, seal: &Seal) {
     let sides = match record.kernel().boundary {
         Boundary::Free => "sides closed",
         Boundary::Periodic => "sides joined, as the half-space is periodic",
+        Boundary::PeriodicX | Boundary::PeriodicY => {
+            let [x_repeats, y_repeats] = record.kernel().boundary.repeats();
+            let across = if seal.along() == Axis::X { y_repeats } else { x_repeats };
+            if across { "sides joined, as the half-space repeats across" } else { "sides closed" }
+        }
     };
     say!("{} states on {nx} x {ny} nodes", record.states().len());
     say!(

@@ -22,6 +22,12 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
     let (boundary, all_the_way) = match record.kernel().boundary {
         Boundary::Free => ("free", "from end to end"),
         Boundary::Periodic => ("periodic", "around the periodic grid"),
+        Boundary::PeriodicX => {
+            ("along x periodic", "around the grid along x, or from end to end along y")
+        }
+        Boundary::PeriodicY => {
+            ("along y periodic", "around the grid along y, or from end to end along x")
+        }
     };
     let (joined, channels) = match connectivity {
         Connectivity::Four => ("a side", "sides and corners"),

@@ -9,6 +9,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::job::Job;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
@@ -48,7 +49,7 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         states.len(),
         match job.periodic() {
             None => String::new(),
-            Some(kernel) => format!(", periodic ({} kernel)", kernel.name()),
+            Some(kernel) => format!(", {}", kernel.in_words()),
         },
         quantity(job.e_star(), "Pa", 4),
         quantity(job.heights().rms_height(), "m", 4)
@@ -83,16 +84,16 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
         }
     };
 
-    // A periodic half-space has no approach but that of the mean planes, and no stiffness but the
+    // A half-space that repeats both ways has no approach but that of the mean planes, and no stiffness but the
     // interfacial one.
     let both: [Curve; 2] = [
         (contact_stiffness, BLUE, "contact, K = dW/dδ"),
         (interfacial_stiffness, ORANGE, "interfacial, −dW/d(mean gap)"),
     ];
     let interfacial: [Curve; 1] = [(both[1].0, BLUE, "")];
-    let (approach, stiffness, stiffnesses) = match job.periodic() {
-        None => ("approach δ", "stiffness", &both[..]),
-        Some(_) => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
+    let (approach, stiffness, stiffnesses) = match is_of_mean_planes(job.periodic()) {
+        false => ("approach δ", "stiffness", &both[..]),
+        true => ("approach of the mean planes", "interfacial stiffness", &interfacial[..]),
     };
     let contact_and_yielded: [Curve; 2] =
         [(|s| s.contact.contact_area, BLUE, "contact"), (yielded_area, ORANGE, "yielded")];

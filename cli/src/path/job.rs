@@ -336,7 +336,7 @@ impl fmt::Display for Job {
         }
         match self.periodic {
             None => writeln!(f, "half-space free")?,
-            Some(kernel) => writeln!(f, "half-space periodic, {} kernel", kernel.name())?,
+            Some(kernel) => writeln!(f, "half-space {}", kernel.in_words())?,
         }
         write!(f, "loading    {}", in_words(self.rule))?;
         for target in &self.targets {

@@ -50,8 +50,8 @@ pub(crate) struct Options {
     pub(super) hardness: Hardness,
 
     /// Repeat surface and half-space periodically, with this kernel [default: a free half-space, which carries no
-    /// pressure outside the surface]; the approach is then that of the mean planes, and of the two stiffnesses there is only
-    /// the interfacial one
+    /// pressure outside the surface]; with love and spectral the approach is then that of the mean planes, and of the two stiffnesses
+    /// there is only the interfacial one
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 

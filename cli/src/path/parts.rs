@@ -61,7 +61,7 @@ impl Parts<'_> {
                 "half_space",
                 match self.periodic {
                     None => json!("free"),
-                    Some(kernel) => json!(format!("periodic, {} kernel", kernel.name())),
+                    Some(kernel) => json!(kernel.in_words()),
                 },
             ),
             ("hardness", hardness(self.hardness)),

@@ -8,6 +8,7 @@ use super::Solver;
 use super::job::Job;
 use crate::columns::{Column, print as print_columns};
 use crate::resolution::Resolution;
+use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::{quantity, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::{say, speech};
@@ -111,9 +112,9 @@ fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) 
     say!(
         "area: cells in contact; corrected: without the excess of whole cells along the edges of patches (somewhat too small)"
     );
-    match job.periodic() {
-        None => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
-        Some(_) => say!("approach: of the mean planes, from first touch"),
+    match is_of_mean_planes(job.periodic()) {
+        false => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
+        true => say!("approach: of the mean planes, from first touch"),
     }
     if job.has_hardness() {
         say!("yielded: cells at the hardness; they count as contact");

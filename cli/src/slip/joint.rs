@@ -163,6 +163,7 @@ fn modulus(record: &LoadingRecord) -> Option<f64> {
     match record.kernel().origin {
         KernelOrigin::Boussinesq { e_star }
         | KernelOrigin::PeriodicBoussinesq { e_star }
+        | KernelOrigin::SemiPeriodicBoussinesq { e_star, .. }
         | KernelOrigin::Spectral { e_star } => Some(e_star),
         _ => None,
     }

@@ -64,6 +64,11 @@ fn patches(
         let history = path.get().history_now(py);
         (history.history, history.setting)
     } else if let Ok(history) = path.cast::<History>() {
+        if !history.get().is_whole() {
+            return Err(Failure::arguments(
+                "patches are followed from node to node, and states of this history are left out",
+            ));
+        }
         (Arc::clone(&history.get().history), history.get().setting)
     } else {
         return Err(Failure::arguments("patches needs a LoadingPath or a History"));

@@ -194,10 +194,7 @@ fn label_patches(
     pressure: Option<&Bound<'_, PyAny>>,
 ) -> Fallible<PatchMap> {
     let found = Found::of(contact_map, "contact_map", Kind::Truth)?;
-    let (count, columns) = found.rows_and_columns()?;
-    let (x, y) = size.x_and_y();
-    let y = y.unwrap_or(x / columns.max(1) as f64 * count as f64);
-    let grid = Grid::with_sides(columns, count, x, y)?;
+    let grid = size.grid(found.rows_and_columns()?)?;
     let contact = found.map_on(&grid)?;
     let pressure = match pressure {
         Some(pressure) => Some(Found::of(pressure, "pressure", Kind::Real)?.on(&grid)?),

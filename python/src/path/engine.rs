@@ -1,15 +1,19 @@
 //! A solver of the engine, whatever updater it has.
 
+use asperity::bed::{Bed, Superposition};
 use asperity::contact::Certificate;
+use asperity::creep::{Relaxation, ViscoelasticBed};
+use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::loading::{History, LoadingEnd};
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
+use asperity::slip::{PartialSlip, SlipZone};
 use asperity::surface::HeightMap;
 use asperity::updater::LinearUpdater;
 use asperity::{ContactTarget, Error, LoadingSolver, LoadingState, Problem};
 
 /// What a path is asked.
-pub(super) trait Engine: Send + Sync {
+pub(crate) trait Engine: Send + Sync {
     fn advance(&mut self) -> Option<Result<LoadingState, Error>>;
     fn waiting(&self) -> usize;
     fn end(&self) -> Option<LoadingEnd>;
@@ -29,6 +33,32 @@ pub(super) trait Engine: Send + Sync {
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
     fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error>;
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
+    fn superposed_pressure(&mut self, of: &Superposition, bed: &Bed)
+    -> Result<DMatrix<f64>, Error>;
+    fn relaxed_gap(&mut self, of: &Relaxation, time: f64) -> Result<DMatrix<f64>, Error>;
+    fn stepped_gap(&mut self, of: &ViscoelasticBed, pieces: usize) -> Result<DMatrix<f64>, Error>;
+    fn sheared(
+        &mut self,
+        what: Sheared,
+        of: &PartialSlip,
+        load: f64,
+    ) -> Result<DMatrix<f64>, Error>;
+    fn slip_zones(&self, of: &PartialSlip, load: f64) -> Result<DMatrix<SlipZone>, Error>;
+    fn leak_at(&mut self, seal: &Seal, state: &LoadingState) -> Result<Leak, Error>;
+    fn leak_curve(
+        &mut self,
+        seal: &Seal,
+        history: &History,
+        states: usize,
+    ) -> Result<LeakCurve, Error>;
+}
+
+/// Fields under a tangential load.
+#[derive(Clone, Copy)]
+pub(crate) enum Sheared {
+    Traction,
+    Slip,
+    FrictionWork,
 }
 
 impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
@@ -106,5 +136,51 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
 
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
         Self::certificate_at(self, state)
+    }
+
+    fn superposed_pressure(
+        &mut self,
+        of: &Superposition,
+        bed: &Bed,
+    ) -> Result<DMatrix<f64>, Error> {
+        of.pressure(bed, self)
+    }
+
+    fn relaxed_gap(&mut self, of: &Relaxation, time: f64) -> Result<DMatrix<f64>, Error> {
+        of.gap(time, self)
+    }
+
+    fn stepped_gap(&mut self, of: &ViscoelasticBed, pieces: usize) -> Result<DMatrix<f64>, Error> {
+        of.gap(pieces, self)
+    }
+
+    fn sheared(
+        &mut self,
+        what: Sheared,
+        of: &PartialSlip,
+        load: f64,
+    ) -> Result<DMatrix<f64>, Error> {
+        match what {
+            Sheared::Traction => of.traction(self, load),
+            Sheared::Slip => of.slip(self, load),
+            Sheared::FrictionWork => of.friction_work(self, load),
+        }
+    }
+
+    fn slip_zones(&self, of: &PartialSlip, load: f64) -> Result<DMatrix<SlipZone>, Error> {
+        of.zones(self, load)
+    }
+
+    fn leak_at(&mut self, seal: &Seal, state: &LoadingState) -> Result<Leak, Error> {
+        seal.leak_at(self, state)
+    }
+
+    fn leak_curve(
+        &mut self,
+        seal: &Seal,
+        history: &History,
+        states: usize,
+    ) -> Result<LeakCurve, Error> {
+        seal.curve(self, history, states)
     }
 }

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-use self::engine::Engine;
+pub(crate) use self::engine::{Engine, Sheared};
 use self::inner::Inner;
 pub(crate) use self::setup::{Hardness, warn_of};
 use crate::arrays::{column, rows, shape};
@@ -97,8 +97,24 @@ impl LoadingPath {
         }
     }
 
+    /// Composite modulus, if it is known.
+    pub(crate) fn modulus(&self) -> Option<f64> {
+        self.e_star
+    }
+
+    /// What the engine computes, without the lock of the interpreter.
+    pub(crate) fn computed<T: Send>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut dyn Engine) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let mut inner = self.lock(py);
+        let engine = inner.engine_mut();
+        Ok(detached(py, || compute(engine))??)
+    }
+
     /// What the engine computes at a state, without the lock of the interpreter.
-    fn at<T: Send>(
+    pub(crate) fn at<T: Send>(
         &self,
         py: Python<'_>,
         state: Option<PyRef<'_, State>>,

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use asperity::io::{
-    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_x3p,
+    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_vti, write_x3p,
 };
 use asperity::nalgebra::DMatrix;
 use asperity::{FileError, Grid};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 
 use super::Surface;
-use crate::arrays::Lengths;
+use crate::arrays::{Found, Kind, Lengths};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::warnings::warn;
@@ -171,7 +171,64 @@ pub(super) fn save(
     }
 }
 
+/// Write fields for other programs.
+///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+///     Its ending says the format: ``.vti`` for ParaView, with any number of fields; ``.gsf`` for Gwyddion, or ``.npy``, which is
+///     ``[ix, iy]`` as those of the program are, with one.
+/// fields : dict of str to array_like of float
+///     Each ``[row, column]``, by its name.
+/// size : (float, float) or float
+///     Sides ``(x, y)`` [m]; one number is the side along x, with square cells.
+/// unit : str
+///     Of the values, in a ``.gsf`` file.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> path = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(115e9, boundary="free"), load=100.0)
+/// >>> history = path.run(check=False)
+/// >>> asp.save_fields("fields.vti", {"pressure": path.pressure(), "gap": path.gap()}, path.size)   # doctest: +SKIP
+#[pyfunction]
+#[pyo3(signature = (path, fields, size, *, unit=""))]
+fn save_fields(
+    py: Python<'_>,
+    path: PathBuf,
+    fields: &Bound<'_, PyDict>,
+    size: Lengths,
+    unit: &str,
+) -> Fallible<()> {
+    let mut grid: Option<Grid> = None;
+    let mut found = Vec::new();
+    for (name, values) in fields {
+        let values = Found::of(&values, "fields", Kind::Real)?;
+        let grid = match grid {
+            Some(grid) => grid,
+            None => *grid.insert(size.grid(values.rows_and_columns()?)?),
+        };
+        found.push((name.extract::<String>()?, values.on(&grid)?));
+    }
+    let Some(grid) = grid else {
+        return Err(Failure::arguments("there is no field to write"));
+    };
+    let extension = path.extension().map(|end| end.to_string_lossy().to_lowercase());
+    match (extension.as_deref(), &found[..]) {
+        (Some("vti"), all) => {
+            let all: Vec<_> = all.iter().map(|(name, field)| (name.as_str(), field)).collect();
+            Ok(detached(py, || write_vti(&path, &grid, &all))??)
+        }
+        (Some("gsf"), [(_, field)]) => Ok(detached(py, || write_gsf(&path, &grid, field, unit))??),
+        (Some("npy"), [(_, field)]) => Ok(detached(py, || write_npy(&path, field))??),
+        _ => Err(Failure::arguments(
+            "the file must end in .vti, or with a single field in .gsf or .npy",
+        )),
+    }
+}
+
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(read, module)?)?;
-    module.add_function(wrap_pyfunction!(channels, module)?)
+    module.add_function(wrap_pyfunction!(channels, module)?)?;
+    module.add_function(wrap_pyfunction!(save_fields, module)?)
 }

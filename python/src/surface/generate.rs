@@ -7,7 +7,6 @@ use asperity::{Grid, LoadingSolver, Surface as Heights};
 use pyo3::prelude::*;
 
 use super::Surface;
-use super::source::grid_of;
 use crate::arrays::Lengths;
 use crate::choice::axis;
 use crate::compute::detached;
@@ -75,7 +74,7 @@ fn self_affine(
     if let Some(long_cutoff) = long_cutoff {
         surface = surface.with_long_cutoff_wavelength(long_cutoff)?;
     }
-    sampled(py, &surface, grid_of(shape, &size)?)
+    sampled(py, &surface, size.grid(shape)?)
 }
 
 /// The surface of the program's first command: self-affine, after Zhang, Zhang & Jin, Friction 8 (2020) 970.
@@ -122,7 +121,7 @@ macro_rules! placed {
             Some((x, y)) => $made.centered_at(x, y)?,
             None => $made,
         };
-        sampled($py, &made, grid_of($shape, &$size)?)
+        sampled($py, &made, $size.grid($shape)?)
     }};
 }
 

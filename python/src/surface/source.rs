@@ -1,11 +1,10 @@
 //! What a surface is made of: an array, a topography of another package, or a surface.
 
-use asperity::Grid;
 use asperity::io::LengthUnit;
 use pyo3::prelude::*;
 
 use super::{Heights, Surface};
-use crate::arrays::{Found, Kind, Lengths, grid, is_empty};
+use crate::arrays::{Found, Kind, Lengths, is_empty};
 use crate::errors::{Failure, Fallible};
 use crate::warnings::warn;
 
@@ -54,17 +53,16 @@ fn copy(surface: &Surface) -> Surface {
 }
 
 fn of_array(found: Found<'_>, size: &Lengths, unit: f64) -> Fallible<Surface> {
-    let shape @ (rows, columns) = found.rows_and_columns()?;
+    let shape = found.rows_and_columns()?;
     if is_empty(&found) {
         // The engine's words for it.
-        return Err(grid(shape, (1.0, 1.0))
+        return Err(Lengths::Same(1.0)
+            .grid(shape)
             .err()
             .map_or_else(|| Failure::arguments("there are no heights"), Failure::from));
     }
-    let (x, y) = size.x_and_y();
-    let y = y.unwrap_or(x / columns as f64 * rows as f64);
     // What is too large is refused before it is copied.
-    let grid = grid(shape, (x, y))?;
+    let grid = size.grid(shape)?;
     let mut heights = found.field()?;
     if unit != 1.0 {
         heights *= unit;
@@ -104,11 +102,4 @@ fn of_topography(topography: &Bound<'_, PyAny>) -> Fallible<Surface> {
     let found = found.transposed()?;
     let size = Lengths::Both((x * metres, y * metres));
     Ok(Surface { periodic, ..of_array(found, &size, metres)? })
-}
-
-/// The grid of rows and columns over a surface of a size, for those who generate one.
-pub(super) fn grid_of(shape: (usize, usize), size: &Lengths) -> Fallible<Grid> {
-    let (x, y) = size.x_and_y();
-    let y = y.unwrap_or(x / shape.1.max(1) as f64 * shape.0 as f64);
-    Ok(grid(shape, (x, y))?)
 }

@@ -69,7 +69,7 @@ pub struct KernelReport {
 pub fn check<K: InfluenceKernel + ?Sized>(kernel: &K) -> Result<KernelReport, Error> {
     let table = KernelTable::new(kernel)?.regular();
     let least_symbol = match table.boundary() {
-        Boundary::Free => None,
+        Boundary::Free | Boundary::PeriodicX | Boundary::PeriodicY => None,
         Boundary::Periodic => Some(least_symbol(&table)?),
     };
     let sets = sets::contact_sets(&table.grid());

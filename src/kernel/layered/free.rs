@@ -28,10 +28,14 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
         body.counterpart().map(|e_star| Boussinesq::new(*grid, e_star)).transpose()?;
     let half_diagonal = 0.5 * libm::hypot(dx, dy);
     let mut values = vec![0.0; nx * ny];
+    // On square cells symmetric to the last bit, so that ties of symmetric surfaces are ties.
+    let is_mirrored = |ix: usize, iy: usize| dx == dy && ix < iy && iy < nx;
     for_each_chunk(&mut values, nx, |iy, row| {
         for (ix, value) in row.iter_mut().enumerate() {
+            if is_mirrored(ix, iy) {
+                continue;
+            }
             let (x, y) = (ix as f64 * dx, iy as f64 * dy);
-            // On square cells symmetric to the last bit, so that ties of symmetric surfaces are ties.
             let (x, y) = if dx == dy { (x.max(y), x.min(y)) } else { (x, y) };
             let (di, dj) = (ix as isize, iy as isize);
             *value = if libm::hypot(x, y) - half_diagonal > difference.reach {
@@ -41,6 +45,11 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
             };
         }
     });
+    for iy in 0..ny {
+        for ix in (0..nx.min(iy)).filter(|&ix| is_mirrored(ix, iy)) {
+            values[ix + nx * iy] = values[iy + nx * ix];
+        }
+    }
     Ok(values)
 }
 
@@ -82,7 +91,7 @@ impl Difference {
 
     fn over_cell(&self, center: (f64, f64), sides: (f64, f64)) -> f64 {
         let smoothness = Smoothness { depth: self.depth, most: f64::INFINITY };
-        integral(&|r| self.radial.at(r), smoothness, center, sides)
+        integral(&|r| self.radial.at_each(r), smoothness, center, sides)
     }
 }
 

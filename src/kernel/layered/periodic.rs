@@ -118,7 +118,7 @@ impl Near {
                 if libm::hypot(center.0, center.1) <= REACH * long {
                     // Waves of the handover turn by four and a half over half a cell, wherever it is.
                     let smoothness = Smoothness { depth, most: 1.5 * long };
-                    *value = integral(&|r| radial.at(r), smoothness, center, (dx, dy));
+                    *value = integral(&|r| radial.at_each(r), smoothness, center, (dx, dy));
                 }
             }
         });

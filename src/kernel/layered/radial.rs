@@ -140,10 +140,31 @@ impl Radial {
 
     /// f(r), for r within reach.
     pub(super) fn at(&self, r: f64) -> f64 {
-        let place = self.ends.partition_point(|end| *end < r).min(self.panels.len() - 1);
-        let panel = &self.panels[place];
-        let x = r / self.scale;
-        panel.at(libm::asinh(x)) / (self.scale * (1.0 + x * x).sqrt())
+        let [value] = self.at_each([r]);
+        value
+    }
+
+    /// f at some distances within reach: Clenshaw's recurrences, each of which waits for itself, side by side.
+    pub(super) fn at_each<const N: usize>(&self, distances: [f64; N]) -> [f64; N] {
+        let panels = distances.map(|r| {
+            let place = self.ends.partition_point(|end| *end < r).min(self.panels.len() - 1);
+            &self.panels[place]
+        });
+        let ratios = distances.map(|r| r / self.scale);
+        let x: [f64; N] = std::array::from_fn(|k| {
+            (libm::asinh(ratios[k]) - panels[k].middle) * panels[k].per_half
+        });
+        let (mut b1, mut b2) = ([0.0; N], [0.0; N]);
+        for place in (1..ORDER).rev() {
+            for k in 0..N {
+                let next = 2.0 * x[k] * b1[k] - b2[k] + panels[k].series[place];
+                (b1[k], b2[k]) = (next, b1[k]);
+            }
+        }
+        std::array::from_fn(|k| {
+            let value = x[k] * b1[k] - b2[k] + panels[k].series[0];
+            value / (self.scale * (1.0 + ratios[k] * ratios[k]).sqrt())
+        })
     }
 
     /// Ends of panels.
@@ -163,16 +184,6 @@ impl Panel {
             let terms = (0..ORDER).map(|k| values[k] * libm::cos(j as f64 * angle(k)));
             terms.sum::<f64>() * if j == 0 { 1.0 } else { 2.0 } / n
         });
-    }
-
-    /// By Clenshaw's recurrence.
-    fn at(&self, t: f64) -> f64 {
-        let x = (t - self.middle) * self.per_half;
-        let (mut b1, mut b2) = (0.0, 0.0);
-        for c in self.series[1..].iter().rev() {
-            (b1, b2) = (2.0 * x * b1 - b2 + c, b1);
-        }
-        x * b1 - b2 + self.series[0]
     }
 }
 

@@ -1,9 +1,10 @@
-//! Periodic half-spaces: the whole surface repeats with the sides of the grid.
+//! Periodic half-spaces: the whole surface repeats with the sides of the grid, or with one of them.
 
 mod cells;
 mod cosines;
 mod even;
 mod love;
+mod semi;
 mod spectral;
 mod symmetric;
 
@@ -11,5 +12,6 @@ pub(crate) use cells::check_periodic_cells;
 pub(super) use cosines::{CosineSeries, sinc};
 pub(super) use even::Even;
 pub use love::PeriodicBoussinesq;
+pub use semi::SemiPeriodicBoussinesq;
 pub use spectral::Spectral;
 pub(super) use symmetric::{least_gauge, wave_number};

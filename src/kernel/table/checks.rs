@@ -16,14 +16,18 @@ impl KernelTable {
         Ok(())
     }
 
-    /// Compares every coefficient with those one period further, where the table has them.
+    /// Compares every coefficient with those one period further, if the boundary has periods and where the table has them.
     pub(super) fn check_periodicity(&self) -> Result<(), Error> {
         let (nx, ny) = self.grid.shape();
+        let [x_repeats, y_repeats] = self.boundary.repeats();
+        if !x_repeats && !y_repeats {
+            return Ok(());
+        }
         let width = 2 * nx - 1;
         for (place, &value) in self.values.iter().enumerate() {
             let (column, row) = (place % width, place / width);
-            let along_x = (column + nx < width).then_some(place + nx);
-            let along_y = (row + ny < 2 * ny - 1).then_some(place + ny * width);
+            let along_x = (x_repeats && column + nx < width).then_some(place + nx);
+            let along_y = (y_repeats && row + ny < 2 * ny - 1).then_some(place + ny * width);
             for image in [along_x, along_y].into_iter().flatten() {
                 let repeated = self.values[image];
                 if !self.agree(value, repeated) {

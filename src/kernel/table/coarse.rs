@@ -23,16 +23,16 @@ impl Blocks {
     pub(crate) fn new(fine: Grid, boundary: Boundary) -> Result<Self, Error> {
         let (nx, ny) = fine.shape();
         let [cx, cy] = [nx, ny].map(|nodes| nodes.div_ceil(2));
-        let coarse = match boundary {
-            Boundary::Free => {
-                let [fx, fy] = [nx, ny].map(Self::cells);
-                Grid::new(cx, cy, fine.dx() * fx as f64, fine.dy() * fy as f64)?
-            }
-            Boundary::Periodic => {
-                let (lx, ly) = fine.sides();
-                Grid::with_sides(cx, cy, lx, ly)?
+        let [x_repeats, y_repeats] = boundary.repeats();
+        let along = |cell: f64, nodes: usize, blocks: usize, repeats: bool| {
+            if repeats {
+                cell * nodes as f64 / blocks as f64
+            } else {
+                cell * Self::cells(nodes) as f64
             }
         };
+        let (dx, dy) = (along(fine.dx(), nx, cx, x_repeats), along(fine.dy(), ny, cy, y_repeats));
+        let coarse = Grid::new(cx, cy, dx, dy)?;
         Ok(Self { fine, coarse, boundary })
     }
 
@@ -49,14 +49,14 @@ impl Blocks {
     /// The block in which a node lies.
     fn of(&self, node: usize) -> usize {
         let (ix, iy) = self.fine.coordinates(node);
-        let along = |i: usize, fine: usize, coarse: usize| match self.boundary {
-            Boundary::Free => i / Self::cells(fine),
+        let [x_repeats, y_repeats] = self.boundary.repeats();
+        let along = |i: usize, fine: usize, coarse: usize, repeats: bool| {
             // Blocks share the period equally.
-            Boundary::Periodic => (2 * i + 1) * coarse / (2 * fine),
+            if repeats { (2 * i + 1) * coarse / (2 * fine) } else { i / Self::cells(fine) }
         };
         self.coarse.index(
-            along(ix, self.fine.nx(), self.coarse.nx()),
-            along(iy, self.fine.ny(), self.coarse.ny()),
+            along(ix, self.fine.nx(), self.coarse.nx(), x_repeats),
+            along(iy, self.fine.ny(), self.coarse.ny(), y_repeats),
         )
     }
 
@@ -91,81 +91,27 @@ impl KernelTable {
     /// Those of [`Grid::new`].
     pub(crate) fn coarsened(&self) -> Result<(Self, Blocks), Error> {
         let blocks = Blocks::new(self.grid, self.boundary)?;
-        let coarse = match self.boundary {
-            Boundary::Free => self.coarsened_free(blocks.grid()),
-            Boundary::Periodic => self.coarsened_periodic(blocks.grid()),
-        };
-        Ok((coarse, blocks))
-    }
-
-    fn coarsened_periodic(&self, grid: Grid) -> Self {
+        let grid = blocks.grid();
         let (nx, ny) = self.grid.shape();
-        let (cx, cy) = grid.shape();
-        // For each offset of blocks the offsets of cells, and their weights: sums over the sources,
-        // averages over the observers.
-        let overlaps = |nodes: usize, blocks: usize| -> Vec<[(usize, f64); 4]> {
-            let width = nodes as f64 / blocks as f64;
-            (0..blocks)
-                .map(|offset| {
-                    let at = offset as f64 * width;
-                    let first = at as isize - 1;
-                    let weight = |cell: isize| (1.0 - (cell as f64 - at).abs() / width).max(0.0);
-                    let sum: f64 = (first..first + 4).map(weight).sum();
-                    std::array::from_fn(|i| {
-                        let cell = first + i as isize;
-                        let place = cell.rem_euclid(nodes as isize) as usize;
-                        (place, weight(cell) * width / sum)
-                    })
-                })
-                .collect()
-        };
-        let (along_x, along_y) = (overlaps(nx, cx), overlaps(ny, cy));
-        let width = 2 * nx - 1;
-        let (cx, cy) = (cx as isize, cy as isize);
-        let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
-        for dj in 1 - cy..cy {
-            for di in 1 - cx..cx {
-                // By symmetry offsets need no sign: C(−di, −dj) = C(di, dj).
-                let (di, dj) = if dj < 0 { (-di, -dj) } else { (di, dj) };
-                let mut sum = 0.0;
-                for &(j, wj) in &along_y[dj as usize] {
-                    let row = self.center() + j * width;
-                    for &(i, wi) in &along_x[di.rem_euclid(cx) as usize] {
-                        sum += wi * wj * self.values[row + i];
-                    }
-                }
-                values.push(sum);
-            }
-        }
-        self.on_blocks(grid, values)
-    }
-
-    fn coarsened_free(&self, grid: Grid) -> Self {
-        let (nx, ny) = self.grid.shape();
-        let [fx, fy] = [nx, ny].map(Blocks::cells);
-        // Differences between the places of two cells within their blocks, and how often each
-        // occurs; sums over the sources, averages over the observers.
-        let differences = |factor: usize| -> &'static [(isize, f64)] {
-            if factor == 2 { &[(-1, 0.5), (0, 1.0), (1, 0.5)] } else { &[(0, 1.0)] }
-        };
-        let (nx, ny) = (nx as isize, ny as isize);
         let (cx, cy) = (grid.nx() as isize, grid.ny() as isize);
-        let width = 2 * nx - 1;
+        let [x_repeats, y_repeats] = self.boundary.repeats();
+        let (along_x, along_y) =
+            (Overlaps::new(nx, grid.nx(), x_repeats), Overlaps::new(ny, grid.ny(), y_repeats));
+        let width = 2 * nx as isize - 1;
         let mut values = Vec::with_capacity(((2 * cx - 1) * (2 * cy - 1)) as usize);
         for dj in 1 - cy..cy {
             for di in 1 - cx..cx {
                 let mut sum = 0.0;
-                for &(oj, wj) in differences(fy) {
-                    let j = (dj * fy as isize + oj).clamp(1 - ny, ny - 1) + ny - 1;
-                    for &(oi, wi) in differences(fx) {
-                        let i = (di * fx as isize + oi).clamp(1 - nx, nx - 1) + nx - 1;
-                        sum += wi * wj * self.values[(i + j * width) as usize];
+                for &(j, wj) in along_y.of(dj) {
+                    let row = self.center() as isize + j * width;
+                    for &(i, wi) in along_x.of(di) {
+                        sum += wi * wj * self.values[(row + i) as usize];
                     }
                 }
                 values.push(sum);
             }
         }
-        self.on_blocks(grid, values)
+        Ok((self.on_blocks(grid, values), blocks))
     }
 
     /// Properties of the body do not change with the grid, except for the promise of growth,
@@ -179,6 +125,54 @@ impl KernelTable {
             origin: KernelOrigin::Other,
             values,
         }
+    }
+}
+
+/// For each offset of blocks along a direction the offsets of cells, and their weights: sums over the sources, averages over the
+/// observers.
+struct Overlaps {
+    /// From minus the number of blocks, without it, to that number.
+    offsets: Vec<Vec<(isize, f64)>>,
+    blocks: isize,
+}
+
+impl Overlaps {
+    fn new(nodes: usize, blocks: usize, repeats: bool) -> Self {
+        let count = blocks as isize;
+        let all = 1 - count..count;
+        let offsets = if repeats {
+            all.map(|offset| Self::on_a_period(nodes, blocks, offset)).collect()
+        } else {
+            all.map(|offset| Self::between_ends(nodes as isize, offset)).collect()
+        };
+        Self { offsets, blocks: count }
+    }
+
+    fn of(&self, offset: isize) -> &[(isize, f64)] {
+        &self.offsets[(offset + self.blocks - 1) as usize]
+    }
+
+    fn on_a_period(nodes: usize, blocks: usize, offset: isize) -> Vec<(isize, f64)> {
+        let width = nodes as f64 / blocks as f64;
+        // Opposite offsets have opposite cells, to the last bit.
+        let at = offset.unsigned_abs() as f64 * width;
+        let first = at as isize - 1;
+        let weight = |cell: isize| (1.0 - (cell as f64 - at).abs() / width).max(0.0);
+        let sum: f64 = (first..first + 4).map(weight).sum();
+        let cells = (first..first + 4).map(|cell| {
+            let place = offset.signum() * cell.rem_euclid(nodes as isize);
+            (if offset == 0 { cell } else { place }, weight(cell) * width / sum)
+        });
+        cells.filter(|(_, weight)| *weight > 0.0).collect()
+    }
+
+    fn between_ends(nodes: isize, offset: isize) -> Vec<(isize, f64)> {
+        // Differences between the places of two cells within their blocks, and how often each occurs.
+        let differences: &[(isize, f64)] =
+            if nodes > 1 { &[(-1, 0.5), (0, 1.0), (1, 0.5)] } else { &[(0, 1.0)] };
+        let factor = nodes.min(2);
+        let place = |difference: isize| (offset * factor + difference).clamp(1 - nodes, nodes - 1);
+        differences.iter().map(|&(difference, weight)| (place(difference), weight)).collect()
     }
 }
 

@@ -131,9 +131,7 @@ impl KernelTable {
             values,
         };
         table.check_reciprocity()?;
-        if boundary == Boundary::Periodic {
-            table.check_periodicity()?;
-        }
+        table.check_periodicity()?;
         let self_influence = table.self_influence();
         if self_influence <= 0.0 {
             return Err(Error::NotPositiveDefinite {

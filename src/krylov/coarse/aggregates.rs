@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::bilinear::BilinearBasis;
-use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::krylov::tuning::{LANES, LARGE_SIDE, PARTS, SIDE, SMALL};
@@ -17,7 +16,7 @@ pub(super) struct Aggregates {
     /// Nodes and aggregates along x and y.
     shape: [usize; 2],
     counts: [usize; 2],
-    wraps: bool,
+    wraps: [bool; 2],
     /// Influence coefficients relative to C(0, 0) as in the table of the kernel, each row followed by
     /// zeros for the length of an aggregate.
     coefficients: Vec<f32>,
@@ -65,7 +64,7 @@ impl Aggregates {
             side,
             shape: [nx, ny],
             counts: [nx.div_ceil(side), ny.div_ceil(side)],
-            wraps: table.boundary() == Boundary::Periodic,
+            wraps: table.boundary().repeats(),
             coefficients,
             stride,
         }
@@ -224,8 +223,9 @@ impl Aggregates {
 
     /// An aggregate and those adjacent to it.
     fn around(&self, aggregate: usize) -> Vec<usize> {
-        let near = |at: usize, count: usize| {
-            let mut near: Vec<usize> = if self.wraps {
+        let near = |at: usize, axis: usize| {
+            let count = self.counts[axis];
+            let mut near: Vec<usize> = if self.wraps[axis] {
                 [at + count - 1, at, at + 1].map(|i| i % count).to_vec()
             } else {
                 (at.saturating_sub(1)..count.min(at + 2)).collect()
@@ -234,8 +234,8 @@ impl Aggregates {
             near.dedup();
             near
         };
-        let columns = near(aggregate % self.counts[0], self.counts[0]);
-        let rows = near(aggregate / self.counts[0], self.counts[1]);
+        let columns = near(aggregate % self.counts[0], 0);
+        let rows = near(aggregate / self.counts[0], 1);
         let of_row = |row| columns.iter().map(move |column| column + self.counts[0] * row);
         rows.into_iter().flat_map(of_row).collect()
     }

@@ -45,10 +45,10 @@ impl Axis {
 }
 
 impl BilinearBasis {
-    /// So many hat functions along x and y of a grid of the given shape, which wrap around if it is periodic.
-    pub(super) fn new(shape: (usize, usize), counts: (usize, usize), wraps: bool) -> Self {
+    /// So many hat functions along x and y of a grid of the given shape, which wrap around where it repeats.
+    pub(super) fn new(shape: (usize, usize), counts: (usize, usize), wraps: [bool; 2]) -> Self {
         Self {
-            along: [Axis::new(shape.0, counts.0, wraps), Axis::new(shape.1, counts.1, wraps)],
+            along: [Axis::new(shape.0, counts.0, wraps[0]), Axis::new(shape.1, counts.1, wraps[1])],
             rows: vec![0.0; counts.0 * shape.1],
         }
     }

@@ -5,7 +5,6 @@ mod bilinear;
 
 use nalgebra::DMatrix;
 
-use crate::Boundary;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::krylov::single::product;
@@ -35,6 +34,8 @@ pub(super) struct CoarseSpace {
     /// E⁻¹ times C(0, 0), empty where there is none, and N when it was computed.
     inverse: Vec<f32>,
     inverse_masses: Vec<f64>,
+    /// The contact that E was computed for.
+    inverted: Vec<u32>,
     /// Means over hat functions, also in single precision, and what E⁻¹ makes of them.
     means: Vec<f64>,
     scaled: Vec<f32>,
@@ -52,7 +53,7 @@ impl CoarseSpace {
         if counts.0 * counts.1 < FEWEST {
             return None;
         }
-        let wraps = table.boundary() == Boundary::Periodic;
+        let wraps = table.boundary().repeats();
         Some(Self {
             basis: BilinearBasis::new(grid.shape(), counts, wraps),
             aggregates: Aggregates::new(table),
@@ -61,6 +62,7 @@ impl CoarseSpace {
             per_mass: Vec::new(),
             inverse: Vec::new(),
             inverse_masses: Vec::new(),
+            inverted: Vec::new(),
             means: Vec::new(),
             scaled: Vec::new(),
             solved: Vec::new(),
@@ -74,7 +76,8 @@ impl CoarseSpace {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        self.basis.bytes() + self.aggregates.bytes() + size_of_val(&self.inverse[..])
+        let inverse = size_of_val(&self.inverse[..]) + size_of_val(&self.inverted[..]);
+        self.basis.bytes() + self.aggregates.bytes() + inverse
     }
 
     /// Makes it that of another contact. N is exact; E is left alone until enough has changed.
@@ -82,6 +85,7 @@ impl CoarseSpace {
         if contact.len() < SPARSE * self.basis.len() {
             self.inverse.clear();
             self.inverse_masses.clear();
+            self.inverted.clear();
             return;
         }
         self.basis.restrict(contact, &vec![1.0; contact.len()], &mut self.masses);
@@ -123,6 +127,21 @@ impl CoarseSpace {
             }
         }
         self.inverse_masses.clone_from(&self.masses);
+        self.inverted.clear();
+        self.inverted.extend_from_slice(contact.nodes());
+    }
+
+    /// The contact that E was computed for; empty where there is none.
+    pub(super) fn inverted(&self) -> &[u32] {
+        &self.inverted
+    }
+
+    /// Makes it that of a contact, and computes E for it whatever there was.
+    pub(super) fn invert_anew(&mut self, contact: &NodeSet) {
+        self.inverse.clear();
+        self.inverse_masses.clear();
+        self.inverted.clear();
+        self.update(contact);
     }
 
     /// `rest = r − P r`.

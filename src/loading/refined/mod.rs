@@ -9,6 +9,7 @@ pub(super) mod candidates;
 pub(super) mod correction;
 mod near_ties;
 mod plateau;
+pub(super) mod resumed;
 mod states;
 #[cfg(test)]
 mod window_tests;
@@ -45,6 +46,8 @@ pub(super) struct Refined {
     rate_span: f64,
     /// The part of a pivot that Schur complements were off by lately, at worst.
     left_out: f64,
+    /// The nodes of the last window in the order in which its end was solved.
+    joined: Vec<usize>,
 }
 
 /// How a window ended.
@@ -79,6 +82,7 @@ impl Refined {
             last_span: 0.0,
             rate_span: 0.0,
             left_out: 0.0,
+            joined: Vec::new(),
         }
     }
 
@@ -388,6 +392,7 @@ impl Refined {
         let events = settled.events.iter();
         let window = correction.window;
         let order: Vec<usize> = events.map(|event| window.node(event.position)).collect();
+        self.joined = run.contact.order()[mark.count..].to_vec();
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         states::enqueue(run, window, settled, (mark, time), tolerances)

@@ -46,6 +46,7 @@ impl Refined {
         self.survey(run)?;
         let [stiffness, closing] = start.missing(&run.scalars);
         let error = start.reported_error(error, start.load_of(stiffness, error));
+        self.joined.clone_from(&group);
         let share = (group.len() as f64).recip();
         for (k, node) in group.into_iter().enumerate() {
             let contact_nodes = mark.count + k + 1;

@@ -551,4 +551,58 @@ mod tests {
         assert!(window.events().is_empty());
         Ok(())
     }
+
+    /// Node 7 is in contact from the beginning on, so that half of the approach is left of what node 8 sinks by: its gap is
+    /// `1 − t/2 + c₂ t² + c₃ t³` with −1/8 and 1/16 of bent courses, and closes at the root of that. From then on its pressure grows as the
+    /// rest of that cubic falls, over the pivot of 3/2.
+    #[test]
+    fn courses_are_cubics() -> Result<(), Error> {
+        let mut window = two([f64::INFINITY; 2])?;
+        window.bend([[0.0; 2], [-0.125, 0.0625]].into_iter());
+        assert_eq!(window.play(f64::INFINITY, 2, 9), None);
+        assert_eq!(found(&window)[0], (ContactEvent::Touch, 0, 0.0));
+        let gap = |t: f64| 1.0 - 0.5 * t - 0.125 * t * t + 0.0625 * t.powi(3);
+        let t = window.events()[1].time;
+        // Newton's steps converge to rounding.
+        assert!(
+            gap(t).abs() < 1e-15
+                && (window.events()[1].closing - 0.5 - 0.25 * t + 0.1875 * t * t).abs() < 1e-14
+        );
+        // Another tenth of a metre on.
+        window.now.pass(t + 0.1);
+        let pressure = window.now.values[1];
+        assert!((pressure + gap(t + 0.1) / 1.5).abs() < 1e-15, "{pressure}");
+        // Node 7 feels half of that node less, and no more than the approach otherwise: C p is what they sink by.
+        let other = window.now.values[0];
+        assert!((2.0 * other + pressure - (t + 0.1)).abs() < 1e-14, "{other}");
+        Ok(())
+    }
+
+    /// What remains of a window is one of its own: both nodes alone at 8/5, when node 7 has yielded and node 8 has been found 1/16 away
+    /// from the surface. It touches that much later, and yields 3/2 after that.
+    #[test]
+    fn what_remains_is_a_window() -> Result<(), Error> {
+        use ContactEvent::{Touch, Yield};
+        let mut window = two([0.75; 2])?;
+        assert_eq!(window.go_through([(0, 0.0), (0, 1.5)].into_iter()), Ok(()));
+        assert_eq!(found(&window), [(Touch, 0, 0.0), (Yield, 0, 1.5)]);
+        let mut remaining = window.remaining(&[1], 1.625, &[0.0625]);
+        assert_eq!(
+            (remaining.len(), remaining.node(0), remaining.own_time(0)),
+            (1, 8, Some(0.0625))
+        );
+        assert_eq!(remaining.play(f64::INFINITY, 9, 9), None);
+        let events = found(&remaining);
+        assert_eq!(events[0], (Touch, 0, 0.0625));
+        // S of node 8 alone is 2, so that 3/4 take 3/2 of approach.
+        assert!(events[1].0 == Yield && (events[1].2 - 1.5625).abs() < 1e-14, "{events:?}");
+        // Moved back, all of it comes later.
+        remaining.shift(-0.25);
+        assert_eq!(remaining.own_time(0), Some(0.3125));
+        // A pivot that is not positive is told, with the node and the time.
+        window.start.matrix[0] = -1.0;
+        let bad = window.go_through([(0, 0.5)].into_iter());
+        assert_eq!(bad, Err(BadPivot { node: 7, time: 0.5, pivot: -1.0 }));
+        Ok(())
+    }
 }

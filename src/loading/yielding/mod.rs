@@ -16,6 +16,8 @@ mod pinned;
 mod plastic;
 mod refined;
 mod settled;
+#[cfg(test)]
+mod wrong_matrices;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -25,10 +27,10 @@ use super::run::LoadingRun;
 use super::scalars::{PlasticScalars, Rates};
 use super::state::ContactEvent;
 use super::sum::Sum;
-use super::tuning::{OF_RESIDUAL, TOLERANCE};
+use super::tuning::{OF_RESIDUAL, SQUARE, TOLERANCE};
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
-use crate::{Error, Problem};
+use crate::{Error, Grid, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
 use plastic::Displaced;
 pub(super) use plastic::Plastic;
@@ -106,11 +108,19 @@ fn contact_behind(
     Ok((contact, yielded, departures))
 }
 
+/// How many times as long as wide a cell is.
+fn cell_ratio(grid: &Grid) -> f64 {
+    let ratio = grid.dx() / grid.dy();
+    ratio.max(1.0 / ratio)
+}
+
 /// By how much a solution may contradict what contact that grows does.
 #[derive(Debug, Clone, Copy)]
 struct Slack {
     /// Overlap \[m\].
     gap: f64,
+    /// What a tension, or a pressure beyond the hardness, would displace alone \[m\].
+    pressure: f64,
     /// Rates of pressures, relative to the greatest, and of plastic depths.
     rate: f64,
 }
@@ -155,8 +165,9 @@ impl Yielding {
         };
         let approach = run.scalars.approach();
         run.renew_field(updater, approach)?;
-        let gap = TOLERANCE * (run.problem.greatest_gap() + approach);
-        let slack = Slack { gap, rate: TOLERANCE };
+        let tolerance = TOLERANCE * (cell_ratio(&run.problem.grid()) / SQUARE).max(1.0);
+        let gap = tolerance * (run.problem.greatest_gap() + approach);
+        let slack = Slack { gap, pressure: gap, rate: TOLERANCE };
         let rates = survey(run, &plastic, &mut self.ranking, slack)?;
         if self.ranking.is_empty() {
             return Ok(None);
@@ -361,7 +372,8 @@ impl Yielding {
         let left = trial.contact.order().iter();
         let left = left.map(|&node| run.field.left_at(&trial.problem, node)[0].abs());
         let least = f64::EPSILON * (trial.problem.greatest_gap() + approach);
-        let slack = Slack { gap: OF_RESIDUAL * left.fold(least, f64::max), rate: TOLERANCE };
+        let gap = OF_RESIDUAL * left.fold(least, f64::max);
+        let slack = Slack { gap, pressure: gap, rate: TOLERANCE };
         let until = contradiction(run, plastic, &trial, (approach, slack));
         Ok((trial, until.map(|until| end + until)))
     }
@@ -545,7 +557,7 @@ fn contradiction(
 ) -> Option<f64> {
     let Trial { contact, problem, .. } = trial;
     let length = slack.gap;
-    let pressure = length / problem.table().self_influence();
+    let pressure = slack.pressure / problem.table().self_influence();
     let has_yielded = |node: usize| plastic.has_yielded(node) || trial.yielded.contains(&node);
     let before = |left: f64, rate: f64| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY };
     let lines = run.field.lines(problem, contact, approach);

@@ -10,6 +10,7 @@ use super::pinned::{self, Passed};
 use super::settled::{self, Beginning};
 use super::{Carried, Plastic, Slack, Trial, contradiction, survey};
 use crate::Error;
+use crate::contact::ContactSequence;
 use crate::loading::gap_field::GapLine;
 use crate::loading::refined::candidates::{cut, with_ties};
 use crate::loading::refined::correction::{self, AtEnd, Correction};
@@ -18,12 +19,12 @@ use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, PART, REMEMBERED, SLACK_OF_RATE, TRUSTED,
-    WATCHED, WATCHED_UNSETTLED,
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART,
+    REMEMBERED, SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::loading::window::{Course, Window, WindowEvent};
 use crate::updater::{Behind, Beside, Iterations, Proposal, Schur, WindowFactor};
-use crate::{Boundary, UpdaterError};
+use crate::{Boundary, Problem, UpdaterError};
 
 /// Finds events of both kinds in windows that are corrected at their end.
 #[derive(Debug)]
@@ -41,6 +42,8 @@ pub(in crate::loading) struct RefinedYielding {
     rate_span: f64,
     /// The part of a pivot that matrices were off by lately, at worst.
     left_out: f64,
+    /// By how much pressures at hand may be off, in terms of what they displace.
+    left: f64,
 }
 
 /// The nodes to watch.
@@ -92,6 +95,7 @@ impl RefinedYielding {
             last_span: 0.0,
             rate_span: 0.0,
             left_out: 0.0,
+            left: 0.0,
         }
     }
 
@@ -155,8 +159,9 @@ impl RefinedYielding {
         tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         let approach = run.scalars.approach();
-        let slack = slack(tolerances, approach);
+        let slack = slack(run, (&run.problem, &run.contact), tolerances, approach);
         self.ranked = None;
+        self.left = slack.pressure;
         self.rates = survey(run, plastic, &mut self.ranking, slack)?;
         self.ranked = Some((run.contact.revision(), approach));
         Ok(())
@@ -323,7 +328,8 @@ impl RefinedYielding {
             self.rate_span = time.max(self.last_span);
             let at = (start + time, self.rate_span);
             self.go_to(run, plastic, iterations, &trial, at)?;
-            let slack = slack(tolerances, start + time);
+            let there = (&trial.problem, &trial.contact);
+            let slack = slack(run, there, tolerances, start + time);
             let Some(until) = contradiction(run, plastic, &trial, (start + time, slack)) else {
                 break trial;
             };
@@ -475,8 +481,10 @@ impl RefinedYielding {
             |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
-        // What their times cannot be told apart by.
+        // What their times cannot be told apart by, and what the solution at hand leaves open of them.
         let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        let open = group.iter().map(|&node| self.left / closing(run, node, places[node]));
+        let most_late = open.fold(error, f64::max);
         group.sort_unstable();
         let kind = |node: usize| match run.contact.contains(node) {
             true => ContactEvent::Yield,
@@ -484,17 +492,28 @@ impl RefinedYielding {
         };
         let mut touched = 0;
         let within = |&(_, kind): &(usize, ContactEvent)| {
+            let goes_on = touched < touches;
             touched += usize::from(kind == ContactEvent::Touch);
-            touched <= touches
+            goes_on
         };
         let events: Vec<(usize, ContactEvent)> =
             group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
         let approach = run.scalars.approach() + time;
         let trial = Trial::of(run, plastic, events.iter().copied())?;
-        self.last_span = self.last_span.max(time);
         // However little is left open by so many nodes: rates must be exact.
         self.rate_span = f64::INFINITY;
         self.go_to(run, plastic, iterations, &trial, (approach, self.rate_span))?;
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
+        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        let slack_there = slack(run, (&trial.problem, &trial.contact), tolerances, approach);
+        let late = lateness(run, plastic, &trial, (approach, slack_there));
+        let late = if late <= most_late { late } else { 0.0 };
+        let (time, approach, error) = (time + late, approach + late, error.max(late));
+        if late > 0.0 {
+            let at = [approach, self.rate_span];
+            run.field.advance(&trial.problem, &trial.contact, iterations, at)?;
+        }
+        self.last_span = self.last_span.max(time);
         let before = Carried::of(run, plastic);
         let passed = Passed { start: run.scalars, before, span: time };
         let rates = self.rates;
@@ -505,19 +524,52 @@ impl RefinedYielding {
     }
 }
 
-/// By how much solutions may contradict what contact that grows does.
-fn slack(tolerances: &WindowTolerances, approach: f64) -> Slack {
-    Slack { gap: tolerances.overlap(approach), rate: SLACK_OF_RATE }
+/// By how much the solution on a contact at an approach may contradict what contact that grows does. What is left of gaps in contact says
+/// how far pressures are off, and gaps elsewhere: by less, for they see all of it from afar.
+fn slack(
+    run: &LoadingRun,
+    (problem, contact): (&Problem, &ContactSequence),
+    tolerances: &WindowTolerances,
+    approach: f64,
+) -> Slack {
+    let gap = tolerances.overlap(approach);
+    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
+    let left = left.fold(0.0, f64::max);
+    Slack {
+        gap: gap.max(OF_RESIDUAL_BEYOND * left),
+        pressure: OF_RESIDUAL * left.max(gap),
+        rate: SLACK_OF_RATE,
+    }
 }
 
-/// How many of some events come before one more than `touches` nodes touch.
+/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
+/// a solution may be off by.
+fn lateness(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    trial: &Trial,
+    (approach, slack): (f64, Slack),
+) -> f64 {
+    let Trial { contact, problem, .. } = trial;
+    let mut has_yielded = vec![false; problem.grid().nodes()];
+    trial.yielded.iter().for_each(|&node| has_yielded[node] = true);
+    let depths = run.field.lines(problem, contact, approach).filter_map(|(node, line)| {
+        let is_short = line.gap > slack.gap && (has_yielded[node] || plastic.has_yielded(node));
+        (is_short && line.closing > 0.0).then(|| line.gap / line.closing)
+    });
+    let tension = slack.pressure / problem.table().self_influence();
+    let pressures = run.field.pressures(contact, approach).zip(&run.field.solution().rate);
+    let pressures = pressures
+        .filter(|&((_, pressure), &rate)| pressure < -tension && rate > 0.0)
+        .map(|((_, pressure), &rate)| -pressure / rate);
+    depths.chain(pressures).fold(0.0, f64::max)
+}
+
+/// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
 fn within(events: &[Event], touches: usize) -> usize {
-    let mut touched = 0;
-    let is_within = |event: &&Event| {
-        touched += usize::from(event.kind == ContactEvent::Touch);
-        touched <= touches
-    };
-    events.iter().take_while(is_within).count().max(1)
+    let touching = |(_, event): &(usize, &Event)| event.kind == ContactEvent::Touch;
+    let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
+    last.map_or(events.len(), |(place, _)| place + 1)
 }
 
 /// The place of each node in the contact.
@@ -625,5 +677,22 @@ impl Trial {
         run.field.reorder(&self.contact, &contact);
         (self.contact, self.yielded, self.departures) = (contact, yielded, departures);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Touches and yields that alternate: what comes up to a number of touches.
+    #[test]
+    fn a_path_ends_with_its_last_touch() {
+        use ContactEvent::{Touch, Yield};
+        let rates = Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] };
+        let event = |kind| Event { position: 0, time: 1.0, kind, closing: 1.0, rates };
+        let events = [Touch, Yield, Yield, Touch, Yield].map(event);
+        let found = [1, 2, 3, 9].map(|touches| within(&events, touches));
+        assert_eq!(found, [1, 4, 5, 5]);
+        assert_eq!(within(&events[1..3], 1), 2);
     }
 }

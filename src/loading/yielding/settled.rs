@@ -83,7 +83,9 @@ pub(super) fn second_pass(
         let of_rate = RATE_ERROR * event.time / event.closing;
         let changed = part * (distance(&first, event, time) + change);
         let between = BETWEEN_CORRECTIONS * distance(&other, event, time);
-        between.max(changed).max(of_spacing * time / count) + of_rate
+        // Of a node that the window before did not watch, and that should have had its event there.
+        let late = corrected.own_time(event.position).map_or(0.0, |own| (-own).max(0.0));
+        between.max(changed).max(of_spacing * time / count) + of_rate + late
     };
     Settled { errors: events.iter().map(error).collect(), events }
 }

@@ -1,16 +1,12 @@
-//! Every state of a path against flood fills of it, and against tamaas.
+//! Every state of a path against flood fills of it.
 
-use asperity_testing::table;
 use proptest::prelude::*;
 
 use super::super::*;
 use super::flood::{Picture, Pool};
 use super::{Case, cases};
-use crate::contact::ContactSequence;
+use crate::Boundary;
 use crate::surface::Axis;
-use crate::{Boundary, Grid};
-
-type TestResult = Result<(), Box<dyn std::error::Error>>;
 
 fn sides(perimeter: &Perimeter) -> [usize; 4] {
     [perimeter.along_x, perimeter.along_y, perimeter.border_along_x, perimeter.border_along_y]
@@ -123,27 +119,4 @@ proptest! {
             prop_assert_eq!(living, oldest);
         }
     }
-}
-
-/// Number of patches, perimeter and largest patch as tamaas counts them, at each of 768 states to full contact.
-#[test]
-fn every_state_has_the_patches_that_tamaas_counts() -> TestResult {
-    let data = |name: &str| format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let grid = Grid::new(32, 24, 2e-5, 3e-5)?;
-    let mut contact = ContactSequence::new(grid);
-    for event in table::read(data("periodic_32x24_love_events")) {
-        contact.push(event[1] as usize + grid.nx() * event[2] as usize)?;
-    }
-    let mut history = PatchHistory::new(&contact, Boundary::Periodic, Connectivity::Four);
-    let mut states = 0;
-    for row in table::read(data("periodic_32x24_love_patches")) {
-        let [step, patches, perimeter, largest] = [0, 1, 2, 3].map(|column| row[column] as usize);
-        let state = history.next().ok_or("too few states")?;
-        let found = (state.patches, state.perimeter.sides(), state.largest);
-        assert_eq!((state.step, found), (step, (patches, perimeter, largest)));
-        states += 1;
-    }
-    assert!(history.next().is_none());
-    assert_eq!(states, 768);
-    Ok(())
 }

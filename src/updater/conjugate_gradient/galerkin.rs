@@ -59,11 +59,11 @@ impl Source {
         let (grid, table) = (problem.grid(), problem.table());
         let own = grid.coordinates(local.node);
         let own = [own.0 as i32, own.1 as i32];
-        // Offsets from the watched node, the shorter way round where the half-space is periodic.
-        let periodic = problem.boundary() == Boundary::Periodic;
-        let shortest = |d: i32, n: usize| {
+        // Offsets from the watched node, the shorter way round where the half-space repeats.
+        let [x_repeats, y_repeats] = problem.boundary().repeats();
+        let shortest = |d: i32, n: usize, repeats: bool| {
             let n = n as i32;
-            match periodic {
+            match repeats {
                 true if 2 * d > n => d - n,
                 true if 2 * d < -n => d + n,
                 _ => d,
@@ -71,7 +71,10 @@ impl Source {
         };
         let offset = |node: u32| {
             let (ix, iy) = grid.coordinates(node as usize);
-            [shortest(ix as i32 - own[0], grid.nx()), shortest(iy as i32 - own[1], grid.ny())]
+            [
+                shortest(ix as i32 - own[0], grid.nx(), x_repeats),
+                shortest(iy as i32 - own[1], grid.ny(), y_repeats),
+            ]
         };
         let answers = local.contact.iter().zip(&local.weights);
         let is_in_contact = local.is_in_contact();
@@ -169,15 +172,13 @@ pub(super) fn displacement(table: &KernelTable, place: usize, pressures: &[(usiz
     terms.sum()
 }
 
-/// How far two points are from each other, the shorter way round where the half-space is periodic.
+/// How far two points are from each other, the shorter way round where the half-space repeats.
 pub(super) fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2]) -> f64 {
     let (lx, ly) = grid.sides();
+    let repeats = boundary.repeats();
     let [dx, dy] = [(0, lx), (1, ly)].map(|(axis, side)| {
         let d = (a[axis] - b[axis]).abs();
-        match boundary {
-            Boundary::Free => d,
-            Boundary::Periodic => d.min((side - d).abs()),
-        }
+        if repeats[axis] { d.min((side - d).abs()) } else { d }
     });
     dx.hypot(dy)
 }

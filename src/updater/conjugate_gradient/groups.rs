@@ -156,18 +156,15 @@ impl Wide {
     }
 }
 
-/// From a node to another one, the shorter way round where the half-space is periodic \[cells\].
+/// From a node to another one, the shorter way round where the half-space repeats \[cells\].
 pub(super) fn offset(grid: Grid, boundary: Boundary, from: usize, to: usize) -> [f64; 2] {
     let (from, to) = (grid.coordinates(from), grid.coordinates(to));
-    let along = |from: usize, to: usize, n: usize| {
+    let along = |from: usize, to: usize, n: usize, repeats: bool| {
         let (d, n) = (to as f64 - from as f64, n as f64);
-        match boundary {
-            Boundary::Periodic if 2.0 * d > n => d - n,
-            Boundary::Periodic if 2.0 * d < -n => d + n,
-            _ => d,
-        }
+        if !repeats || 2.0 * d.abs() <= n { d } else { d - n.copysign(d) }
     };
-    [along(from.0, to.0, grid.nx()), along(from.1, to.1, grid.ny())]
+    let [x, y] = boundary.repeats();
+    [along(from.0, to.0, grid.nx(), x), along(from.1, to.1, grid.ny(), y)]
 }
 
 impl Neighbourhood {

@@ -62,11 +62,10 @@ impl Neighbourhood {
         // Sides of a cell relative to those of a square one of the same area.
         let side_x = grid.dx().sqrt() / grid.dy().sqrt();
         let side_y = grid.dy().sqrt() / grid.dx().sqrt();
-        let [most_x, most_y] = [grid.nx(), grid.ny()].map(|n| match boundary {
-            Boundary::Free => n - 1,
-            // So that no node is met twice.
-            Boundary::Periodic => (n - 1) / 2,
-        });
+        let [x_repeats, y_repeats] = boundary.repeats();
+        // So that no node is met twice where the grid repeats.
+        let most = |n: usize, repeats: bool| if repeats { (n - 1) / 2 } else { n - 1 };
+        let (most_x, most_y) = (most(grid.nx(), x_repeats), most(grid.ny(), y_repeats));
         let all = (2 * most_x + 1) * (2 * most_y + 1) - 1;
         let (mut reach, mut offsets) = (REACH, Vec::new());
         while offsets.len() < all.min(CANDIDATES) {
@@ -148,16 +147,21 @@ impl Neighbourhood {
         let (nx, ny) = (self.grid.nx() as i32, self.grid.ny() as i32);
         let (ix, iy) = self.grid.coordinates(node);
         let (ix, iy) = (ix as i32, iy as i32);
+        let [x_repeats, y_repeats] = self.boundary.repeats();
         let places = set.places();
         let mut found = Vec::with_capacity(count);
         let mut last = 0.0;
         for (k, &(squared, dy, dx)) in self.offsets.iter().enumerate() {
             let is_farther = found.len() >= count && squared > last * (1.0 + SAME);
             let (mut x, mut y) = (ix + dx, iy + dy);
-            match self.boundary {
-                Boundary::Periodic => (x, y) = (x.rem_euclid(nx), y.rem_euclid(ny)),
-                Boundary::Free if x < 0 || y < 0 || x >= nx || y >= ny => continue,
-                Boundary::Free => {}
+            if x_repeats {
+                x = x.rem_euclid(nx);
+            }
+            if y_repeats {
+                y = y.rem_euclid(ny);
+            }
+            if x < 0 || y < 0 || x >= nx || y >= ny {
+                continue;
             }
             let other = x as usize + self.grid.nx() * y as usize;
             if is_farther {

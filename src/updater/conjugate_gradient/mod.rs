@@ -18,11 +18,11 @@ mod tuning;
 mod wide;
 
 use super::{
-    Behind, Beside, Iterations, Left, LinearUpdater, Method, Proposal, Schur, Solution, Solved,
-    WindowFactor, check_count,
+    Behind, Beside, Iterations, Kept, Left, LinearUpdater, Method, Proposal, Schur, Solution,
+    Solved, WindowFactor, check_count,
 };
 use crate::contact::ContactSequence;
-use crate::krylov::check_cells;
+use crate::krylov::{Field, check_cells};
 use crate::parallel::inside;
 use crate::{Error, Problem};
 use solutions::Solutions;
@@ -49,7 +49,11 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 /// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
 /// ```
 ///
-/// exceeds S by the square of the error of x: by some 10⁻⁴ of it.
+/// exceeds S by the square of the error of x: by some 10⁻⁴ of it. With a hardness nodes q in contact are watched too, with
+/// `x_q = C_KK⁻¹ e_q`: what a gap of q adds to the pressures near it.
+///
+/// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too; a path does with
+/// local ones there as well.
 ///
 /// Cells of a periodic half-space may be [`MAX_ASPECT`](Self::MAX_ASPECT) times as long as wide: on longer ones
 /// a path is an [`Error::OutOfRange`], but a solution on a known contact is not.
@@ -138,6 +142,26 @@ impl Iterations for ConjugateGradient {
         solutions.take_over(contact, approach, solution);
         self.solutions = Some(solutions);
         Ok(())
+    }
+
+    fn keep(&self, problem: &Problem, contact: &ContactSequence) -> Option<Kept> {
+        self.solutions.as_ref()?.keep_all(self.criteria, problem, contact)
+    }
+
+    fn restore(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        kept: &Kept,
+    ) -> Result<bool, Error> {
+        let criteria = self.criteria;
+        if kept.tolerance != criteria.tolerance {
+            return Ok(false);
+        }
+        problem.check_nodes(contact.order())?;
+        let restored = inside(|| Solutions::restore(criteria, problem, contact, kept))?;
+        self.solutions = Some(restored);
+        Ok(true)
     }
 
     /// # Errors
@@ -269,6 +293,10 @@ impl Iterations for ConjugateGradient {
         Ok(())
     }
 
+    fn convolutions(&self) -> usize {
+        self.solutions.as_ref().map_or(0, Solutions::convolutions)
+    }
+
     fn bytes(&self, nodes: usize, contact: usize) -> usize {
         Self::bytes_of(nodes, contact)
     }
@@ -298,7 +326,7 @@ impl LinearUpdater for ConjugateGradient {
         for (j, &node) in nodes.iter().enumerate() {
             let place = table.place(node);
             let coupling = |other: usize| table.between(table.place(other), place);
-            let answer = inside(|| solutions.respond(criteria, problem, contact, coupling))?;
+            let answer = inside_of(solutions, criteria, (problem, contact), coupling)?;
             let mut matrix = schur.matrix_mut();
             for (i, &other) in nodes.iter().enumerate().skip(j) {
                 matrix[(i, j)] = coupling(other) - answer.displacement[other];
@@ -350,6 +378,66 @@ impl LinearUpdater for ConjugateGradient {
         Ok(())
     }
 
+    fn watch_both(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        nodes: &[usize],
+        positions: &[usize],
+        schur: &mut Schur,
+    ) -> Result<(), Error> {
+        problem.check_nodes(nodes)?;
+        if let Some(&position) = positions.iter().find(|&&position| position >= contact.len()) {
+            return check_count(contact.len(), position + 1);
+        }
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        schur.resize(nodes.len() + positions.len())?;
+        let table = problem.table();
+        let inside: Vec<usize> = positions.iter().map(|&q| contact.order()[q]).collect();
+        for (j, &node) in nodes.iter().chain(&inside).enumerate() {
+            let place = table.place(node);
+            let coupling = |other: usize| table.between(table.place(other), place);
+            let is_outside = j < nodes.len();
+            let rhs = |other: usize| match is_outside {
+                true => coupling(other),
+                false => f64::from(u8::from(other == node)),
+            };
+            let answer = inside_of(solutions, criteria, (problem, contact), rhs)?;
+            let mut matrix = schur.matrix_mut();
+            for (i, &other) in nodes.iter().enumerate().skip(j) {
+                matrix[(i, j)] = coupling(other) - answer.displacement[other];
+            }
+            for (i, &other) in (nodes.len()..).zip(&inside).filter(|(i, _)| *i >= j) {
+                matrix[(i, j)] = -answer.pressure[other];
+            }
+        }
+        Ok(())
+    }
+
+    fn solve_for(
+        &mut self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        rhs: &mut [[f64; 2]],
+    ) -> Result<(), Error> {
+        check_count(contact.len(), rhs.len())?;
+        let criteria = self.criteria;
+        let solutions = self.solutions(problem, contact)?;
+        let mut field = vec![0.0; problem.grid().nodes()];
+        for k in 0..2 {
+            for (&node, values) in contact.order().iter().zip(&*rhs) {
+                field[node] = values[k];
+            }
+            let of = |node: usize| field[node];
+            let answer = inside_of(solutions, criteria, (problem, contact), of)?;
+            for (&node, values) in contact.order().iter().zip(&mut *rhs) {
+                values[k] = answer.pressure[node];
+            }
+        }
+        Ok(())
+    }
+
     /// On a grid that is not known before the first call.
     fn bytes(&self, contact: usize, _watched: usize) -> usize {
         let nodes = self.solutions.as_ref();
@@ -359,6 +447,16 @@ impl LinearUpdater for ConjugateGradient {
     fn method(&self) -> Method {
         Method::Iterations(Box::new(self.clone()))
     }
+}
+
+/// [`Solutions::respond`], with all threads.
+fn inside_of(
+    solutions: &mut Solutions,
+    criteria: Criteria,
+    (problem, contact): (&Problem, &ContactSequence),
+    rhs: impl Fn(usize) -> f64 + Sync + Send,
+) -> Result<Field, Error> {
+    inside(|| solutions.respond(criteria, problem, contact, rhs))
 }
 
 /// `Ok` if a contact has `count` nodes.

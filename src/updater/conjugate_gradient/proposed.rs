@@ -28,7 +28,7 @@ impl Proposed {
         problem: &Problem,
         (neighbourhood, solver): (&Neighbourhood, &Solver),
         (nodes, count): (&[usize], usize),
-        left: impl Fn(&Local) -> f64,
+        mut left: impl FnMut(&Local) -> f64,
     ) -> Result<Self, Error> {
         let mut answers: Vec<Wide> = nodes.iter().map(|&node| Wide::of(node)).collect();
         let products = answers.len() * PRODUCTS;
@@ -43,6 +43,16 @@ impl Proposed {
             *sum = left(local);
         }
         Ok(Self { locals, count, complement })
+    }
+
+    /// The nodes.
+    pub(super) fn nodes(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.locals.iter().map(|local| local.node)
+    }
+
+    /// Nodes in contact when they were proposed.
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
     /// Their Schur complement.

@@ -26,6 +26,16 @@ impl RowSums {
         Self { count, start: pressure, field: Field::default() }
     }
 
+    /// The solution on the first `count` nodes of a contact, and a start on the whole one.
+    pub(super) fn of(count: usize, field: Field, start: Vec<f64>) -> Self {
+        Self { count, field, start }
+    }
+
+    /// What [`Self::of`] makes it again of, besides [`Self::count`].
+    pub(super) fn parts(&self) -> (&Field, &[f64]) {
+        (&self.field, &self.start)
+    }
+
     /// Follows nodes that were proposed and have joined since, and solves on the whole contact if what is known is
     /// no longer good enough. `open` says what part of the grid still closes.
     pub(super) fn follow(

@@ -1,6 +1,7 @@
 //! The solution of the path, the one before it, and solutions apart from them.
 
 mod behind;
+mod kept;
 
 use std::mem;
 
@@ -90,6 +91,11 @@ impl Solutions {
     /// The grid of the problem.
     pub(super) fn grid(&self) -> Grid {
         self.neighbourhood.grid()
+    }
+
+    /// Number of convolutions so far.
+    pub(super) fn convolutions(&self) -> usize {
+        self.solver.convolutions()
     }
 
     /// Number of nodes in contact that there is a solution or a start for.

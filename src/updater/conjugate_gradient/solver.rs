@@ -25,6 +25,11 @@ impl Solver {
         }
     }
 
+    /// Number of convolutions so far.
+    pub(super) fn convolutions(&self) -> usize {
+        self.operator.convolutions()
+    }
+
     /// The contact set.
     pub(super) fn set(&self) -> &NodeSet {
         &self.set
@@ -39,6 +44,43 @@ impl Solver {
         if self.set.assign(|node| is_in[node]) {
             self.preconditioner.update(&self.set);
         }
+    }
+
+    /// The contact that the coarse matrix of the preconditioner was computed for.
+    pub(super) fn coarse_nodes(&self) -> &[u32] {
+        self.preconditioner.coarse_nodes()
+    }
+
+    /// Makes the set a whole contact, with the coarse matrix of another set as long as that serves.
+    pub(super) fn recall(&mut self, contact: &ContactSequence, coarse: &NodeSet) {
+        self.set.assign(|node| contact.contains(node));
+        self.preconditioner.recall(coarse, &self.set);
+    }
+
+    /// The search directions on the set with these values.
+    pub(super) fn recall_directions(
+        &mut self,
+        values: impl Iterator<Item = Vec<f32>>,
+        marks: [usize; 2],
+    ) -> Result<Directions, Error> {
+        Directions::recall(&mut self.operator, &self.set, values, marks)
+    }
+
+    /// `Ok` if displacements, where they are known, are those of the pressures of their field, to an error.
+    pub(super) fn check(&mut self, field: &Field, most: f64) -> Result<(), Error> {
+        if !field.is_known() {
+            return Ok(());
+        }
+        let expected = self.operator.apply_field(&field.pressure)?;
+        let pairs = expected.iter().zip(&field.displacement);
+        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, |worst: f64, error| {
+            // NaN is none either.
+            if worst.is_nan() || error <= worst { worst } else { error }
+        });
+        let is_theirs = worst <= most;
+        let quantity = "error of the displacements where a window ends";
+        Error::require(quantity, worst, is_theirs, "that of a solution")?;
+        Ok(())
     }
 
     /// Computes the displacements of a field, unless they are known.

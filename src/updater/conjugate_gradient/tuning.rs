@@ -67,12 +67,20 @@ pub(super) const OF_OPEN: f64 = 1e-3;
 /// left of a residual r changes the gap of node j by `x_jᵀ r`, of which the local solution knows all but a
 /// few per cent. Half: 1.07 times the convolutions. Twice: 0.93 of them, but near ties on tiles go from 2 to 35.
 pub(super) const ADJOINT: f64 = 30.0;
+/// The same at the ends of windows in which nodes yield, relative to that: what is left of a gap in contact is a pressure there, and of
+/// nodes that are not watched nothing more is known when these are compared with the hardness. 1: 0.94 of the convolutions, but pressures
+/// are off by a part of what they grow by from event to event. 0.3: 0.97.
+pub(super) const OF_PRESSURE: f64 = 0.1;
 /// Greatest error of displacements by single precision, as a part of the least residual. Half: 1.03 times the convolutions on the
 /// strip, 1.01 elsewhere. Twice: 0.985 of them.
 pub(super) const DRIFT: f64 = 0.25;
 /// Part of it that comes from the rate in a window: it comes again in each. No effect, but for a fortieth of the convolutions on the
 /// strip.
 pub(super) const RATE_DRIFT: f64 = 0.1;
+
+/// Displacements that were kept may differ from those of their pressures by so many times what solutions leave at worst. They differ by
+/// a part of it; what was damaged differs by more. No effect on a path.
+pub(super) const UNSPOILT: f64 = 10.0;
 
 // Row sums, for the rate of the mean gap
 

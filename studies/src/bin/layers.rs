@@ -13,10 +13,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+use asperity::loading::History;
 use asperity::surface::Paraboloid;
+use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boussinesq, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver,
-    LoadingState, SelfAffine, plane_strain_modulus,
+    Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid,
+    InfluenceKernel, LoadingSolver, LoadingState, SelfAffine, plane_strain_modulus,
 };
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
@@ -37,8 +39,16 @@ struct Options {
     report: Option<PathBuf>,
 
     /// Nodes along each side of the surface whose iterations are counted
-    #[arg(long, value_name = "N", default_value_t = 256)]
+    #[arg(long, value_name = "N", default_value_t = 512)]
     nodes: usize,
+
+    /// Only count iterations, of bodies whose names contain this
+    #[arg(long, value_name = "WORD", num_args = 0..=1, default_missing_value = "")]
+    only_iterations: Option<String>,
+
+    /// Only draw the picture
+    #[arg(long, conflicts_with = "only_iterations")]
+    only_picture: bool,
 
     /// Folder for the pictures
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -61,11 +71,21 @@ fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new("cannot make the folder of the pictures", error))?;
     let mut text = String::from(
-        "# Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
+        "## Coated and thin bodies\n\nWritten by `cargo run --release -p asperity-studies --bin layers -- --report docs/validation.md`.\n",
     );
+    if options.only_picture {
+        let picture = coats(&options.out, &mut text)?;
+        println!("{text}\n{}", picture.display());
+        return Ok(());
+    }
+    if let Some(word) = &options.only_iterations {
+        iterations(options.nodes, word, &mut text).map_err(failed)?;
+        println!("{text}");
+        return Ok(());
+    }
     quadrature(&mut text).map_err(failed)?;
     padded(&mut text).map_err(failed)?;
-    iterations(options.nodes, &mut text).map_err(failed)?;
+    iterations(options.nodes, "", &mut text).map_err(failed)?;
     let picture = coats(&options.out, &mut text)?;
     println!("{text}");
     let mut outcome = Outcome::default();
@@ -160,55 +180,133 @@ fn padded(text: &mut String) -> Result<(), Error> {
     Ok(())
 }
 
-/// The bodies whose iterations are counted, in cells of 1.
-fn counted(h: f64) -> Result<[(&'static str, LayeredBody); 5], Error> {
+/// The bodies whose iterations are counted, on cells of 1: a half-space, five layers, and thin and thick ones.
+fn counted() -> Result<Vec<(&'static str, Option<LayeredBody>)>, Error> {
     let steel = Base::HalfSpace { young: 1.0, poisson: 0.3 };
-    Ok([
-        ("soft coat, E₁/E₂ = 0.1", one_layer(0.1, 0.3, h, steel)?),
-        ("stiff coat, E₁/E₂ = 3", one_layer(3.0, 0.3, h, steel)?),
-        ("stiff coat, E₁/E₂ = 10", one_layer(10.0, 0.3, h, steel)?),
-        ("rigid base, ν = 0.3", one_layer(1.0, 0.3, h, Base::Rigid)?),
-        ("rigid base, ν = 0.5", one_layer(1.0, 0.5, h, Base::Rigid)?),
+    // Six layers of two cells, from a tenth of the modulus at the surface to that of the base.
+    let graded: Vec<Layer> = (0..6)
+        .map(|k| Layer {
+            young: 10_f64.powf(f64::from(k) / 6.0 - 1.0),
+            poisson: 0.3,
+            thickness: 2.0,
+        })
+        .collect();
+    Ok(vec![
+        ("half-space", None),
+        ("soft coat, E₁/E₂ = 0.1, h = 4", Some(one_layer(0.1, 0.3, 4.0, steel)?)),
+        ("stiff coat, E₁/E₂ = 10, h = 4", Some(one_layer(10.0, 0.3, 4.0, steel)?)),
+        ("rigid base, ν = 0.3, h = 4", Some(one_layer(1.0, 0.3, 4.0, Base::Rigid)?)),
+        ("rigid base, ν = 0.5, h = 4", Some(one_layer(1.0, 0.5, 4.0, Base::Rigid)?)),
+        ("six layers, E/E₂ from 0.1 to 0.7", Some(LayeredBody::new(&graded, steel)?)),
+        ("stiff coat, E₁/E₂ = 3, h = 4", Some(one_layer(3.0, 0.3, 4.0, steel)?)),
+        ("stiff coat, E₁/E₂ = 10, h = 32", Some(one_layer(10.0, 0.3, 32.0, steel)?)),
+        ("rigid base, ν = 0.3, h = 0.5", Some(one_layer(1.0, 0.3, 0.5, Base::Rigid)?)),
+        ("rigid base, ν = 0.5, h = 1", Some(one_layer(1.0, 0.5, 1.0, Base::Rigid)?)),
     ])
 }
 
-/// Iterations for pressures and stiffnesses on layers.
-fn iterations(n: usize, text: &mut String) -> Result<(), Error> {
+/// Events of a path without a factor that are counted at each load.
+const STRETCH: usize = 200;
+
+/// Iterations without a factor: of single loads, and of the stretch of a path that begins at each.
+fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
     let grid = Grid::square(n, n as f64)?;
-    let surface = SelfAffine::new(
-        0.8,
-        0.25 * n as f64,
-        8.0,
-        asperity::surface::Amplitude::RmsHeight(1.0),
-        1,
-    )?;
-    let fractions = [0.01, 0.05, 0.2, 0.6];
+    let amplitude = asperity::surface::Amplitude::RmsHeight(1.0);
+    let surface = SelfAffine::new(0.8, 0.25 * n as f64, 8.0, amplitude, 1)?;
+    let fractions = [0.01, 0.1, 0.3, 0.6];
+    let (mut loads, mut paths) = (String::new(), String::new());
+    for (name, body) in counted()?.into_iter().filter(|(name, _)| name.contains(word)) {
+        let kernel: Box<dyn InfluenceKernel> = match body {
+            None => Box::new(Boussinesq::new(grid, 1.0)?),
+            Some(body) => Box::new(Layered::free(grid, body)?),
+        };
+        let start = Instant::now();
+        let _ = write!(loads, "| {name} |");
+        let _ = write!(paths, "| {name} | {:?} |", kernel.contact_growth());
+        let mut solver = FixedLoadSolver::builder(&surface, &kernel).tolerance(1e-10).build()?;
+        for fraction in fractions {
+            match load_and_stretch(&surface, &kernel, &mut solver, fraction) {
+                Ok([load, path]) => {
+                    let _ = write!(loads, " {load} |");
+                    let _ = write!(paths, " {path} |");
+                }
+                Err(error) => {
+                    eprintln!("{name}, {fraction}: {error}");
+                    loads.push_str(" – |");
+                    paths.push_str(" – |");
+                }
+            }
+            eprintln!("{name}, {fraction}: {:.1} s", start.elapsed().as_secs_f64());
+        }
+        loads.push('\n');
+        paths.push('\n');
+        eprintln!("{loads}{paths}");
+    }
     let _ = write!(
         text,
-        "\n**Iterations without a factor.** Single loads on {n}² nodes with a free boundary, at the load of each area fraction: steps of \
-         conjugate gradients on the finest grid for the pressure + for the stiffness, to 10⁻⁸.\n\n\
-         | body | thickness in cells | 1 % | 5 % | 20 % | 60 % |\n|---|---:|---:|---:|---:|---:|\n"
+        "\n**Iterations without a factor.** A self-affine surface (H = 0.8, shortest wavelength 8 cells) on {n}² nodes with a free \
+         boundary; thicknesses in cells. Single loads from scratch to 10⁻¹⁰, at the load of each area fraction: steps of conjugate \
+         gradients on the finest grid for the pressure + for the stiffness, and all convolutions there.\n\n\
+         | body | 1 % | 10 % | 30 % | 60 % |\n|---|---:|---:|---:|---:|\n{loads}\n\
+         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`), a tenth of them where nothing is promised of contact growth: convolutions an event, windows, events \
+         taken back, near ties settled.\n\n\
+         | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{paths}"
     );
-    let mut line = |name: &str, h: &str, kernel: &dyn InfluenceKernel| -> Result<(), Error> {
-        let _ = write!(text, "| {name} | {h} |");
-        let start = Instant::now();
-        let mut solver = FixedLoadSolver::new(&surface, kernel)?;
-        for fraction in fractions {
-            let load = solver.solve_target(ContactTarget::AreaFraction(fraction))?.state.load;
-            let effort = solver.solve(load)?.effort;
-            let _ = write!(text, " {} + {} |", effort.iterations, effort.stiffness_iterations);
-        }
-        eprintln!("{name} {h}: {:.1} s", start.elapsed().as_secs_f64());
-        text.push('\n');
-        Ok(())
-    };
-    line("half-space", "–", &Boussinesq::new(grid, 1.0)?)?;
-    for h in [0.5, 4.0, 32.0] {
-        for (name, body) in counted(h)? {
-            line(name, &h.to_string(), &Layered::free(grid, body)?)?;
-        }
-    }
     Ok(())
+}
+
+/// A load under which about this part of the nodes is in contact. Where nodes may leave, not every number of them has a load.
+fn load_at(solver: &mut FixedLoadSolver, fraction: f64) -> Result<f64, Error> {
+    let mut solution = solver.solve_target(ContactTarget::MeanGap(1.0))?;
+    for _ in 0..20 {
+        let ratio = fraction / solution.state.contact_area_fraction;
+        if (ratio - 1.0).abs() < 0.01 {
+            break;
+        }
+        // Full contact is far from a proportion.
+        let load = solution.state.load * ratio.powf(if fraction > 0.5 { 1.3 } else { 1.1 });
+        solution = solver.solve(load)?;
+    }
+    Ok(solution.state.load)
+}
+
+/// Steps and convolutions of a single load, and of a stretch of the path from there.
+fn load_and_stretch(
+    surface: &SelfAffine,
+    kernel: &dyn InfluenceKernel,
+    solver: &mut FixedLoadSolver,
+    fraction: f64,
+) -> Result<[String; 2], Error> {
+    let grid = kernel.grid();
+    let load = load_at(solver, fraction)?;
+    let solution = solver.solve(load)?;
+    let effort = &solution.effort;
+    let load =
+        format!("{} + {}, {}", effort.iterations, effort.stiffness_iterations, effort.convolutions);
+    let nodes = (0..grid.nodes()).filter(|&node| solution.contact_map.as_slice()[node]);
+    let history: History = (1..)
+        .zip(nodes)
+        .map(|(count, node)| {
+            let mut contact = solution.state;
+            contact.contact_nodes = count;
+            LoadingState::new(count, ContactEvent::Touch, grid.coordinates(node), contact)
+        })
+        .collect();
+    let mut path = LoadingSolver::builder(surface, kernel)
+        .updater(ConjugateGradient::new())
+        .resume(&history)?;
+    let before = path.convolutions().unwrap_or_default();
+    // One event takes a solution where nothing is promised.
+    let is_known = kernel.contact_growth() > ContactGrowth::Unknown;
+    let stretch = if is_known { STRETCH } else { STRETCH / 10 };
+    path.by_ref().take(stretch).try_for_each(|state| state.map(drop))?;
+    // The events of the last window are all computed.
+    let events = (stretch + path.waiting()) as f64;
+    let convolutions = (path.convolutions().unwrap_or_default() - before) as f64 / events;
+    let timings = path.timings();
+    let path =
+        format!("{convolutions:.2}, {}, {}, {}", timings.windows, timings.taken_back, timings.ties);
+    Ok([load, path])
 }
 
 /// Area and stiffness of a rough surface on steel with a soft coat, none, and a stiff one.
@@ -243,9 +341,8 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
         let path = builder.build().map_err(failed)?;
         let states: Vec<LoadingState> = path.collect::<Result<_, _>>().map_err(failed)?;
         eprintln!("{name}: {:.1} s", start.elapsed().as_secs_f64());
-        let left =
-            states.iter().filter(|state| state.event == asperity::ContactEvent::Release).count();
-        let history: asperity::loading::History = states.iter().copied().collect();
+        let left = states.iter().filter(|state| state.event == ContactEvent::Release).count();
+        let history: History = states.iter().copied().collect();
         if let Some(state) = history.at_area_fraction(0.1) {
             let _ = writeln!(
                 text,
@@ -272,7 +369,7 @@ fn coats(directory: &Path, text: &mut String) -> Result<PathBuf, Failure> {
             x: load(),
             y: Axis::plain_logarithmic("contact area over nominal area", 1e-4, 0.5),
             series: areas,
-            legend: Corner::TopLeft,
+            legend: Corner::BottomRight,
         },
         Chart {
             title: "contact stiffness".to_string(),

@@ -127,7 +127,7 @@ impl Small {
     /// The approach for which gap = g + C p − δ with the coefficients as they are.
     fn own_approach(&self, state: &LoadingState) -> f64 {
         match self.kernel.boundary() {
-            Boundary::Free => state.contact.approach,
+            Boundary::Free | Boundary::PeriodicX | Boundary::PeriodicY => state.contact.approach,
             Boundary::Periodic => state.contact.approach + self.matrix.mean() * state.contact.load,
         }
     }

@@ -143,7 +143,7 @@ half_space! {
 }
 
 /// The symbol for E* = 1 on cells whose long side is 1.
-fn symbol(cells: &Grid) -> Result<Even, Error> {
+pub(super) fn symbol(cells: &Grid) -> Result<Even, Error> {
     let (nx, ny) = cells.shape();
     let short_range = ShortRange::new(cells.dx(), cells.dy())?;
     // The sum over the rows b of S, for each wave along x and each row.

@@ -12,6 +12,7 @@ use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::conjugate_gradient::both::{Both, Change};
 use crate::updater::conjugate_gradient::equilibrium::Equilibrium;
 use crate::updater::conjugate_gradient::tolerances::{Aim, Criteria, Tolerances};
+use crate::updater::conjugate_gradient::tuning::OF_PRESSURE;
 use crate::updater::{Behind, Beside, Proposal, Schur, Solved};
 use crate::{Error, Problem};
 
@@ -93,7 +94,10 @@ impl Solutions {
             self.improve_behind(behind, &self.now, &passage, solved);
             self.now.scale(behind.problem, behind.contact, &mut solved.solution);
         }
-        self.passage = Some(passage);
+        if self.passage.replace(passage).is_some() {
+            // Nothing was proposed in between.
+            self.plastic_sums.keep(behind.contact);
+        }
         Ok(())
     }
 
@@ -187,7 +191,7 @@ impl Solutions {
         }
         let equation = Equation {
             rhs: overlap,
-            tolerance: tolerances.load,
+            tolerance: if wants_rate { OF_PRESSURE * tolerances.load } else { tolerances.load },
             most_drift: tolerances.drift[0],
             max_iterations,
         };

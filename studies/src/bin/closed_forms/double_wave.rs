@@ -78,7 +78,7 @@ impl Full {
         self.bracketed
             && match self.kernel {
                 Periodic::Spectral => exact,
-                Periodic::Love => (self.order() - 2.0).abs() <= 0.2,
+                Periodic::Love | Periodic::X | Periodic::Y => (self.order() - 2.0).abs() <= 0.2,
             }
     }
 }

@@ -5,7 +5,7 @@
 
 Needs numpy only. To Love's rectangle on a half-space of the layer comes the difference of the symbol, in the formula of Nogi and
 Kato, from that of this half-space, times the transform of a cell: an integral over all wavevectors in polar coordinates, by
-Gauss-Legendre quadrature with 600 wave numbers and 200 angles.
+Gauss-Legendre quadrature with 40 panels of 20 wave numbers, narrow ones first, and 200 angles.
 """
 import csv
 import sys
@@ -39,7 +39,10 @@ def love(x, y, e_star):
 
 
 def main():
-    nodes, weights = np.polynomial.legendre.leggauss(600)
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    # Panels of [-1, 1].
+    nodes = np.concatenate([(nodes + 1 + 2 * panel) / 40 - 1 for panel in range(40)])
+    weights = np.tile(weights / 40, 40)
     angles, parts = np.polynomial.legendre.leggauss(200)
     angles, parts = np.pi / 4 * (angles + 1), np.pi / 4 * parts
     with open(sys.argv[1], "w", newline="") as file:
@@ -48,7 +51,8 @@ def main():
         for e1, nu1, h, e2, nu2 in CASES:
             top = e1 / (1 - nu1 ** 2)
             # Behind 24 / h nothing is left.
-            q, w = 12 / h * (nodes + 1), 12 / h * weights
+            part = (nodes + 1) / 2
+            q, w = 24 / h * part ** 3, 36 / h * part ** 2 * weights
             g = reduced(q, e1, nu1, h, e2, nu2) - 2 / top
             x, y = q[:, None] * np.cos(angles), q[:, None] * np.sin(angles)
             cell = np.sinc(x / (2 * np.pi)) * np.sinc(y / (2 * np.pi))

@@ -47,7 +47,7 @@ fn every_type_and_order_gives_the_same_matrix() -> TestResult {
 
 #[test]
 fn a_file_written_by_numpy_is_read() -> TestResult {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/data/selfaffine_48.npy");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/selfaffine_48.npy");
     let map = HeightMap::new(read_npy(&path)?)?;
     assert_eq!(map.shape(), (48, 48));
     let bytes = fs::read(path)?;

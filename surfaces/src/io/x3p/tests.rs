@@ -225,7 +225,7 @@ fn no_depth_of_elements_exhausts_the_stack() -> TestResult {
 #[test]
 fn no_beginning_of_a_file_is_taken_for_the_file() -> TestResult {
     for name in ["missing_i16_mask.x3p", "missing_f64_scaled_folder_stored.x3p"] {
-        let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/surface_files");
+        let data = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/surface_files");
         assert_whole(parse, &std::fs::read(std::path::Path::new(data).join(name))?, 0);
     }
     Ok(())

@@ -10,7 +10,7 @@ use crate::surface::{Axis, Topography, Trend};
 use crate::{Error, Grid};
 
 fn map(name: &str, sides: (f64, f64)) -> Result<Topography, Error> {
-    let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
+    let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     let heights = read_npy(data.join(name))?;
     let (nx, ny) = heights.shape();
     Topography::new(Grid::with_sides(nx, ny, sides.0, sides.1)?, heights)

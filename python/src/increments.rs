@@ -1,0 +1,63 @@
+//! The increments of a path, which slip, creep and joints are made of.
+
+use std::sync::Arc;
+
+use asperity::Error;
+use asperity::bed::Bed;
+use asperity::loading;
+use pyo3::prelude::*;
+
+use crate::errors::{Failure, Fallible};
+use crate::history::History;
+use crate::path::{Engine, LoadingPath};
+
+/// The states of a path, and the path itself where fields are to be had.
+pub(crate) struct Increments {
+    pub(crate) history: Arc<loading::History>,
+    path: Option<Py<LoadingPath>>,
+}
+
+impl Increments {
+    /// Of a path with its states so far, or of a history.
+    pub(crate) fn of(object: &Bound<'_, PyAny>) -> Fallible<Self> {
+        if let Ok(path) = object.cast::<LoadingPath>() {
+            let history = path.get().history_now(object.py()).history;
+            return Ok(Self { history, path: Some(path.clone().unbind()) });
+        }
+        let Ok(history) = object.cast::<History>() else {
+            return Err(Failure::arguments("a LoadingPath or a History is needed"));
+        };
+        Ok(Self { history: Arc::clone(&history.get().history), path: None })
+    }
+
+    /// The same once more.
+    pub(crate) fn again(&self, py: Python<'_>) -> Self {
+        let path = self.path.as_ref().map(|path| path.clone_ref(py));
+        Self { history: Arc::clone(&self.history), path }
+    }
+
+    /// The bed of the path.
+    pub(crate) fn bed(&self) -> Result<Bed<'_>, Error> {
+        Bed::new(&self.history)
+    }
+
+    /// E* of the path, if it is known.
+    pub(crate) fn e_star(&self, py: Python<'_>) -> Option<f64> {
+        self.path.as_ref().and_then(|path| path.bind(py).get().modulus())
+    }
+
+    /// What the engine of the path computes.
+    pub(crate) fn field<T: Send>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut dyn Engine, &Bed) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let Some(path) = &self.path else {
+            return Err(Failure::arguments(
+                "fields need the path: a History has the states of it alone",
+            ));
+        };
+        let bed = self.bed()?;
+        path.bind(py).get().computed(py, |engine| compute(engine, &bed))
+    }
+}

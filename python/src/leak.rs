@@ -1,0 +1,216 @@
+//! Leakage through the gap.
+
+use asperity::Boundary;
+use asperity::leak::{self, CriticalConstriction, Leak, LeakPoint};
+use asperity::surface::Axis;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Found, Kind, Lengths, column, rows};
+use crate::choice;
+use crate::compute::detached;
+use crate::errors::Fallible;
+use crate::path::LoadingPath;
+use crate::results::result;
+use crate::state::State;
+
+/// A viscous fluid before one edge of the surface, pressed through the gap to the opposite one.
+///
+/// Reynolds' equation on the gap, ``div(g³ / (12 viscosity) grad p) = 0``: nothing flows through nodes in contact. The other
+/// two edges are closed on a free half-space and joined on a periodic one. The pressure of the fluid does not open the gap.
+///
+/// Parameters
+/// ----------
+/// viscosity : float
+///     [Pa s]: water 1e-3, air 1.8e-5, oils 1e-2 to 1.
+/// pressure_drop : float
+///     [Pa], from the lower end of the axis to the upper one.
+/// along : {"x", "y"}
+///     Direction in which the fluid is pressed.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> path = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(1e9, boundary="love"), area_fraction=0.3)
+/// >>> history = path.run(check=False)
+/// >>> water = asp.Seal(1e-3, 1e5, along="x")
+/// >>> water.leak(path).leak_rate > 0.0
+/// True
+#[pyclass(frozen, module = "asperity")]
+pub(crate) struct Seal {
+    seal: leak::Seal,
+}
+
+#[pymethods]
+impl Seal {
+    #[new]
+    #[pyo3(signature = (viscosity, pressure_drop, along))]
+    fn new(viscosity: f64, pressure_drop: f64, along: &str) -> Fallible<Self> {
+        Ok(Self { seal: leak::Seal::new(viscosity, pressure_drop, choice::axis(along)?)? })
+    }
+
+    /// Viscosity [Pa s].
+    #[getter]
+    fn viscosity(&self) -> f64 {
+        self.seal.viscosity()
+    }
+
+    /// Pressure drop [Pa] from edge to edge.
+    #[getter]
+    fn pressure_drop(&self) -> f64 {
+        self.seal.pressure_drop()
+    }
+
+    /// Direction in which the fluid is pressed: ``"x"`` or ``"y"``.
+    #[getter]
+    fn along(&self) -> &'static str {
+        match self.seal.along() {
+            Axis::X => "x",
+            Axis::Y => "y",
+        }
+    }
+
+    /// The leak at a state of a path.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : LoadingPath
+    /// state : State, optional
+    ///     One of the path so far, or one that `History.at` has read from it; the last one if not given.
+    ///
+    /// Returns
+    /// -------
+    /// results.Leak
+    #[pyo3(signature = (path, state=None))]
+    fn leak<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyRef<'py, LoadingPath>,
+        state: Option<PyRef<'py, State>>,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        let seal = self.seal;
+        of_leak(py, path.at(py, state, |engine, state| engine.leak_at(&seal, state))?)
+    }
+
+    /// The leak through any gap map.
+    ///
+    /// Parameters
+    /// ----------
+    /// gap : array_like of float
+    ///     [m], ``[row, column]``.
+    /// contact_map : array_like of bool
+    ///     Nodes through which nothing flows.
+    /// size : (float, float) or float
+    ///     Sides ``(x, y)`` [m]; one number is the side along x, with square cells.
+    /// periodic : bool
+    ///     Whether the sides along the flow are joined, or closed.
+    ///
+    /// Returns
+    /// -------
+    /// results.Leak
+    #[pyo3(signature = (gap, contact_map, size, *, periodic))]
+    fn leak_of<'py>(
+        &self,
+        py: Python<'py>,
+        gap: &Bound<'py, PyAny>,
+        contact_map: &Bound<'py, PyAny>,
+        size: Lengths,
+        periodic: bool,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        let found = Found::of(gap, "gap", Kind::Real)?;
+        let grid = size.grid(found.rows_and_columns()?)?;
+        let gap = found.on(&grid)?;
+        let contact = Found::of(contact_map, "contact_map", Kind::Truth)?.map_on(&grid)?;
+        let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
+        of_leak(py, detached(py, || self.seal.leak(&gap, &contact, (&grid, boundary)))??)
+    }
+
+    /// The leak rate along a path, at states chosen where it changes, up to the one at which the last channel closes.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : LoadingPath
+    ///     With its states so far.
+    /// states : int
+    ///     Number of states, at least 2.
+    ///
+    /// Returns
+    /// -------
+    /// results.LeakCurve
+    #[pyo3(signature = (path, states=40))]
+    fn curve<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyRef<'py, LoadingPath>,
+        states: usize,
+    ) -> Fallible<Bound<'py, PyAny>> {
+        let (seal, history) = (self.seal, path.history_now(py).history);
+        let curve = path.computed(py, |engine| engine.leak_curve(&seal, &history, states))?;
+        let values = |get: &dyn Fn(&LeakPoint) -> f64| {
+            column(py, curve.points.iter().map(get).collect::<Vec<f64>>())
+        };
+        let constrictions = curve.points.iter().map(|point| narrowest(py, point.constriction));
+        let constrictions: Vec<_> = constrictions.collect::<Fallible<_>>()?;
+        let known: Vec<State> = curve.points.iter().map(|point| State::new(point.state)).collect();
+        result!(py, "LeakCurve", {
+            states: known,
+            load: values(&|point| point.state.contact.load),
+            mean_pressure: values(&|point| point.state.contact.mean_pressure()),
+            area_fraction: values(&|point| point.state.contact.contact_area_fraction),
+            mean_gap: values(&|point| point.state.contact.mean_gap),
+            leak_rate: values(&|point| point.leak_rate),
+            mean_field_leak_rate: values(&|point| point.mean_field_leak_rate),
+            permeability: values(&|point| point.permeability),
+            transverse_permeability: values(&|p| p.transverse_permeability.unwrap_or(f64::NAN)),
+            constrictions: constrictions,
+            imbalance: values(&|point| point.imbalance),
+            closing: curve.closing.map(State::new),
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let (viscosity, drop) = (self.viscosity(), self.pressure_drop());
+        format!("Seal(viscosity={viscosity:?}, pressure_drop={drop:?}, along='{}')", self.along())
+    }
+}
+
+fn narrowest<'py>(
+    py: Python<'py>,
+    constriction: Option<CriticalConstriction>,
+) -> Fallible<Option<Bound<'py, PyAny>>> {
+    let of = |found: CriticalConstriction| {
+        result!(py, "CriticalConstriction", {
+            row: found.node.1,
+            column: found.node.0,
+            gap: found.gap,
+            pressure_drop: found.pressure_drop,
+            dissipation: found.dissipation,
+        })
+    };
+    constriction.map(of).transpose()
+}
+
+fn of_leak<'py>(py: Python<'py>, leak: Leak) -> Fallible<Bound<'py, PyAny>> {
+    let sections: Bound<'py, PyArray1<f64>> = column(py, leak.sections);
+    let fields = PyDict::new(py);
+    fields.set_item("leak_rate", leak.leak_rate)?;
+    fields.set_item("permeability", leak.permeability)?;
+    let across = leak.transverse_permeability.unwrap_or(f64::NAN);
+    fields.set_item("transverse_permeability", across)?;
+    fields.set_item("mean_field_leak_rate", leak.mean_field_leak_rate)?;
+    fields.set_item("constriction", narrowest(py, leak.constriction)?)?;
+    fields.set_item("pressure", rows(py, leak.pressure)?)?;
+    fields.set_item("flux_x", rows(py, leak.flux_x)?)?;
+    fields.set_item("flux_y", rows(py, leak.flux_y)?)?;
+    fields.set_item("sections", sections)?;
+    fields.set_item("imbalance", leak.imbalance)?;
+    fields.set_item("flowing_nodes", leak.flowing_nodes)?;
+    fields.set_item("pools", leak.pools)?;
+    fields.set_item("iterations", leak.iterations)?;
+    crate::results::make(py, "Leak", &fields)
+}
+
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Seal>()
+}

@@ -1,0 +1,134 @@
+"""Conductance, and laws of the interface for finite elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import asperity as asp
+from asperity import errors
+
+
+@pytest.fixture(scope="module")
+def path() -> asp.LoadingPath:
+    path = asp.load_path(asp.example_surface(nodes=48), asp.HalfSpace(115e9, boundary="love"), area_fraction=0.5)
+    path.run(check=False)
+    return path
+
+
+def test_conductance(path: asp.LoadingPath) -> None:
+    history = path.history
+    found = asp.conductance(path, 0.05)
+    # A periodic half-space has no contact stiffness: 1/R = 2 K_i / (rho E*), to rounding.
+    np.testing.assert_allclose(found, 2.0 * history.interfacial_stiffness / (0.05 * 115e9), rtol=1e-14)
+    free = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(115e9, boundary="free"), area_fraction=0.2)
+    stiffness = free.run(check=False).contact_stiffness
+    np.testing.assert_allclose(asp.conductance(free, 0.05), 2.0 * stiffness / (0.05 * 115e9), rtol=1e-14)
+    alone = asp.conductance(free, 0.05, interface=True)
+    np.testing.assert_allclose(alone, 2.0 * free.history.interfacial_stiffness / (0.05 * 115e9), rtol=1e-14)
+    np.testing.assert_array_equal(asp.conductance(history, 0.05, e_star=115e9), found)
+    np.testing.assert_array_equal(asp.conductance(path, 0.05, carrier="current"), found)
+    # The gap in parallel: k times the open area over its mean gap and the jump distance.
+    filled = asp.conductance(path, 0.05, gap=(0.025, 1e-6))
+    open_share = 1.0 - history.area_fraction
+    through = 0.025 * open_share * np.prod(path.size) / (history.mean_gap / open_share + 1e-6)
+    np.testing.assert_allclose(filled - found, through, atol=1e-13 * filled.max())
+    with pytest.raises(ValueError, match="e_star"):
+        asp.conductance(history, 0.05)
+    with pytest.raises(errors.AsperityError):
+        asp.conductance(path, -1.0)
+
+
+def test_bounds(path: asp.LoadingPath) -> None:
+    lower, upper = asp.conductance_bounds(path, 0.05, 1e-7)
+    found = asp.conductance(path, 0.05)
+    assert lower.shape == upper.shape == found.shape
+    known = np.isfinite(found)
+    assert (lower[known] <= found[known] * (1 + 1e-12)).all() and (upper[known] >= found[known] * (1 - 1e-12)).all()
+
+
+def test_tables(path: asp.LoadingPath) -> None:
+    history = path.history
+    table = asp.interface_table(path, resistivity=0.05, friction=0.3, compliance_ratio=1.2, tolerance=0.01)
+    columns = table.columns()
+    assert list(columns) == ["pressure", "overclosure", "conductance", "tangential_stiffness", "slip_limit"]
+    assert len(table) == len(columns["pressure"]) < len(history) // 4
+    np.testing.assert_allclose(columns["slip_limit"], 0.3 * columns["pressure"], rtol=1e-12)
+    # Linear interpolation is as near as was asked for.
+    area = np.prod(path.surface.size)
+    whole = asp.conductance(path, 0.05, interface=True) / area
+    pressure = history.load / area
+    inside = (pressure > columns["pressure"][1]) & np.isfinite(whole)
+    between = np.interp(pressure[inside], columns["pressure"], columns["conductance"])
+    np.testing.assert_allclose(between, whole[inside], rtol=0.0101)
+    assert list(asp.interface_table(history).columns()) == ["pressure", "overclosure"]
+    # Every row is in every text: the last overclosure, with the twelve digits or so that they have.
+    for program in ("abaqus", "calculix", "moose", "csv"):
+        text = table.text(program)  # type: ignore[arg-type]
+        assert f"{columns['overclosure'][-1]:.8e}"[:8] in text.replace("E", "e") and str(len(table)) not in ("0", "1"), program
+    with pytest.raises(ValueError, match="program"):
+        table.text("ansys")  # type: ignore[arg-type]
+    ratio = asp.shear(path, friction=0.3, bodies=("steel", "glass"), check=False).compliance_ratio
+    of_bodies = asp.interface_table(path, friction=0.3, bodies=("steel", "glass"))
+    assert of_bodies.text("csv") == asp.interface_table(path, friction=0.3, compliance_ratio=ratio).text("csv")
+    for arguments in ({"friction": 0.3}, {"compliance_ratio": 1.0}, {"friction": 0.3, "compliance_ratio": 1.0, "bodies": ("steel", "rigid")}):
+        with pytest.raises(ValueError, match="together"):
+            asp.interface_table(path, **arguments)  # type: ignore[arg-type]
+    for hostile in (0.0, -1.0, np.nan, np.inf):
+        for name in ("resistivity", "tolerance", "friction"):
+            arguments = {"compliance_ratio": 1.0} if name == "friction" else {}
+            with pytest.raises(errors.AsperityError):
+                asp.interface_table(path, **{name: hostile}, **arguments)  # type: ignore[arg-type]
+        with pytest.raises(errors.AsperityError):
+            asp.conductance(path, hostile)
+        with pytest.raises(errors.AsperityError):
+            asp.conductance(history, 0.05, e_star=hostile)
+    with pytest.raises(errors.AsperityError):
+        asp.conductance_bounds(path, 0.05, -1e-7)
+    with pytest.raises(ValueError, match="LoadingPath"):
+        asp.conductance(np.ones(3), 0.05)  # type: ignore[arg-type]
+
+
+def csv(file: Path) -> dict[str, np.ndarray]:
+    """A table of the program: its numbers have all their digits."""
+    table = np.genfromtxt(file, delimiter=",", names=True, dtype=None, encoding="utf-8")
+    return {name: table[name] for name in table.dtype.names}
+
+
+FILES = {"abaqus": "interface.inp", "calculix": "interface.inp", "moose": "interface.i", "csv": "interface.csv"}
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_the_joints_of_the_program(periodic: bool, program: Callable[..., str], tmp_path: Path) -> None:
+    """path.csv, conductance.csv and the tables for finite elements, bit for bit."""
+    options = ["--nodes", 48, "--max-area-fraction", 0.3, *(["--periodic", "love"] if periodic else [])]
+    boundary = "love" if periodic else "free"
+    steel = asp.HalfSpace(asp.composite_modulus("steel"), boundary=boundary)
+    path = asp.load_path(asp.example_surface(nodes=48), steel, area_fraction=0.3)
+    history = path.run(check=False)
+    both = [*options, "--resistivity", "1.5e-7,2.7e-8", "--conductivity", "50,237", "--gap-conductivity", "0.026"]
+    program("path", *both, "--jump-distance", "3.7e-7", "--unresolved-roughness", "1e-7", "--out", tmp_path)
+    gap = (0.026, 3.7e-7)
+    current = asp.conductance(path, 1.5e-7 + 2.7e-8, carrier="current")
+    heat = asp.conductance(path, 1 / 50 + 1 / 237, gap=gap)
+    table = csv(tmp_path / "path.csv")
+    np.testing.assert_array_equal(current, table["electrical_conductance"])
+    np.testing.assert_array_equal(heat, table["thermal_conductance"])
+    for name in ("step", "load", "approach", "mean_gap", "interfacial_stiffness"):
+        np.testing.assert_array_equal(getattr(history, name), table[name], err_msg=name)
+    table = csv(tmp_path / "conductance.csv")
+    bounds = {
+        "electrical_conductance": asp.conductance_bounds(path, 1.5e-7 + 2.7e-8, 1e-7, carrier="current"),
+        "thermal_conductance": asp.conductance_bounds(path, 1 / 50 + 1 / 237, 1e-7, gap=gap),
+    }
+    for name, (lower, upper) in bounds.items():
+        np.testing.assert_array_equal(lower, table[f"{name}_lower"], err_msg=name)
+        np.testing.assert_array_equal(upper, table[f"{name}_upper"], err_msg=name)
+    laws = ["--conductivity", "50", "--friction", "0.2", "--compliance-ratio", "1.21", "--fe-error", "0.02"]
+    made = asp.interface_table(path, resistivity=1 / 50, friction=0.2, compliance_ratio=1.21, tolerance=0.02)
+    for kind, file in FILES.items():
+        program("path", *options, *laws, "--fe-table", kind, "--out", tmp_path / kind)
+        assert made.text(kind) == (tmp_path / kind / file).read_text(encoding="utf-8"), kind  # type: ignore[arg-type]

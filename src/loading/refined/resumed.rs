@@ -1,0 +1,102 @@
+//! A path without a factor that goes on at the end of a window.
+
+use super::Refined;
+use crate::contact::ContactSequence;
+use crate::loading::run::LoadingRun;
+use crate::updater::{Iterations, Kept};
+use crate::{Error, UpdaterError};
+
+/// Everything on which the next window without a factor depends, besides problem and contact. The gaps, their ranking and the
+/// scalars follow from it, by the same arithmetic as at the end of the window.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RefinedEnd {
+    /// Whether events that were too close were settled.
+    pub(crate) settles: bool,
+    /// The nodes of the last window in the order in which its end was solved: sums round by it.
+    pub(crate) joined: Vec<usize>,
+    /// How far the last window went, and the span that the rates at hand serve.
+    pub(crate) last_span: f64,
+    pub(crate) rate_span: f64,
+    /// What windows are shortened by.
+    pub(crate) left_out: f64,
+    /// The solution, and what iterations go on from besides.
+    pub(crate) kept: Kept,
+}
+
+impl RefinedEnd {
+    /// The contact in the order in which the end of the window was solved.
+    ///
+    /// # Errors
+    ///
+    /// [`UpdaterError::UpdaterMismatch`] and those of the contact if other nodes than the last ones joined in the window.
+    pub(in crate::loading) fn contact(
+        &self,
+        contact: &ContactSequence,
+    ) -> Result<ContactSequence, Error> {
+        let mut solved = contact.clone();
+        solved.truncate(contact.len().saturating_sub(self.joined.len()));
+        self.joined.iter().try_for_each(|&node| solved.push(node))?;
+        let same = contact.order().iter().filter(|&&node| solved.contains(node)).count();
+        UpdaterError::check_length("nodes of the last window", same, contact.len())?;
+        UpdaterError::check_length("nodes in contact", solved.len(), contact.len())?;
+        Ok(solved)
+    }
+}
+
+impl Refined {
+    /// What the next window depends on; `None` if the iterations cannot tell.
+    pub(in crate::loading) fn end(
+        &self,
+        run: &LoadingRun,
+        iterations: &dyn Iterations,
+    ) -> Option<RefinedEnd> {
+        // Nothing has moved since the last window ended.
+        let approach = run.scalars.approach();
+        if self.ranked != Some((run.contact.revision(), approach)) {
+            return None;
+        }
+        let kept = iterations.keep(&run.problem, &run.contact)?;
+        (kept.approach == approach).then(|| RefinedEnd {
+            settles: self.settles,
+            joined: self.joined.clone(),
+            last_span: self.last_span,
+            rate_span: self.rate_span,
+            left_out: self.left_out,
+            kept,
+        })
+    }
+
+    /// Whether such windows were of the same rule.
+    pub(in crate::loading) fn can_follow(&self, end: &RefinedEnd) -> bool {
+        self.settles == end.settles
+    }
+
+    /// Goes on at the end of a window whose contact is that of the path, with iterations that were restored there.
+    pub(in crate::loading) fn follow_on(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        end: &RefinedEnd,
+    ) -> Result<(), Error> {
+        let spans = [end.last_span, end.rate_span, end.left_out];
+        for (quantity, span) in
+            ["span of the last window", "span of its rates", "error of its pivots"]
+                .into_iter()
+                .zip(spans)
+        {
+            Error::require(quantity, span, span >= 0.0, "not negative")?;
+        }
+        [self.last_span, self.rate_span, self.left_out] = spans;
+        self.joined.clone_from(&end.joined);
+        let order = run.contact.order().to_vec();
+        run.contact = end.contact(&run.contact)?;
+        let count = order.len() - end.joined.len();
+        let approach = end.kept.approach;
+        run.advance_field(iterations, approach, self.rate_span)?;
+        run.scalars.place_at(approach);
+        self.survey(run)?;
+        run.rearrange(count, &order[count..])?;
+        self.ranked = Some((run.contact.revision(), approach));
+        Ok(())
+    }
+}

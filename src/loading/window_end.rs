@@ -1,0 +1,238 @@
+//! Where a path is in its windows: what a record keeps besides states, so that a path that goes on is the one that was not
+//! interrupted.
+
+use super::factor_log::FactorLog;
+use super::limits::LoadingEnd;
+use super::phase::Phase;
+use super::refined::resumed::RefinedEnd;
+use super::snapshot::{Snapshot, not_on_path};
+use super::solver::{LoadingSolver, Procedure};
+use super::state::{ContactEvent, LoadingState};
+use super::tuning::RECOGNISED;
+use crate::Error;
+use crate::updater::LinearUpdater;
+
+/// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
+///
+/// What later windows depend on, besides surface, kernel, settings and the states up to here:
+///
+/// | | with a factor | without |
+/// |---|---|---|
+/// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
+/// | `handed_over_at` | | when the factor was given up, which memory may have decided |
+/// | `next` | [`FactorLog`], the windows so far: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
+///
+/// Nothing else is remembered from window to window. Timings are not kept.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct WindowEnd {
+    pub(crate) ahead: Vec<LoadingState>,
+    pub(crate) handed_over_at: Option<usize>,
+    pub(crate) next: NextWindow,
+}
+
+/// What the next window begins with.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum NextWindow {
+    Factor(Box<FactorEnd>),
+    Iterations(Box<RefinedEnd>),
+}
+
+/// What the next window with a factor depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FactorEnd {
+    pub(crate) log: FactorLog,
+    /// Approach, load, energy, mean gap, stiffness and closing rate in the gauge of the kernel.
+    pub(crate) scalars: [f64; 6],
+}
+
+impl<U: LinearUpdater> LoadingSolver<U> {
+    /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, behind an error,
+    /// and for paths of which it is not known: nodes that leave or yield.
+    pub(crate) fn window_end(&self) -> Option<WindowEnd> {
+        use LoadingEnd::{Failed, FullContact, Memory};
+        let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
+        if self.state.is_none() || self.failure.is_some() || is_over {
+            return None;
+        }
+        let Procedure::Windows(windowed, refined) = &self.procedure else {
+            return None;
+        };
+        let next = match &self.phase {
+            Phase::Factor { .. } => {
+                let (log, scalars) = (windowed.log().clone(), self.run.scalars.numbers());
+                NextWindow::Factor(Box::new(FactorEnd { log, scalars }))
+            }
+            Phase::Iterations(iterations) => {
+                NextWindow::Iterations(Box::new(refined.end(&self.run, &**iterations)?))
+            }
+        };
+        let ahead = self.run.queue.iter().copied().collect();
+        Some(WindowEnd { ahead, handed_over_at: self.handed_over_at, next })
+    }
+
+    /// Goes on at the end of a window behind the last of the states that were restored. Returns false, and nothing has changed, if
+    /// this path does not go on so: with another updater or rule, or with too little memory for it.
+    pub(super) fn follow_on(&mut self, end: &WindowEnd) -> Result<bool, Error> {
+        let (Some(last), Procedure::Windows(windowed, refined)) = (self.state, &mut self.procedure)
+        else {
+            return Ok(false);
+        };
+        let (run, phase) = (&mut self.run, &mut self.phase);
+        let mut contact = run.contact.clone();
+        for (state, step) in end.ahead.iter().zip(last.step + 1..) {
+            let nodes = contact.len() + 1;
+            let is_next = state.step == step
+                && state.event == ContactEvent::Touch
+                && state.contact.contact_nodes == nodes;
+            if !is_next || !state.contact.is_finite() || state.approach_error.is_nan() {
+                let number = state.step as f64;
+                return Err(not_on_path(
+                    state,
+                    "number of the event",
+                    number,
+                    "one more than before",
+                ));
+            }
+            let (ix, iy) = state.node;
+            contact.push(run.problem.grid().node(ix, iy).unwrap_or(usize::MAX))?;
+        }
+        let restored = match &end.next {
+            NextWindow::Factor(end) => phase.restore_factor(run, &contact, &end.log)?,
+            NextWindow::Iterations(end) if refined.can_follow(end) => {
+                phase.restore_iterations(run, &contact, end)?
+            }
+            NextWindow::Iterations(_) => false,
+        };
+        if !restored {
+            return Ok(false);
+        }
+        run.contact = contact;
+        let snapshot = Snapshot::of(run, phase, &last)?;
+        snapshot.recognise(run, phase, &last)?;
+        let front = end.ahead.last().unwrap_or(&last);
+        match (&end.next, phase) {
+            (NextWindow::Factor(end), _) => {
+                windowed.follow_on(end.log.clone());
+                run.scalars.take_over(end.scalars);
+                let own = run.scalars.state(run.contact.len());
+                let pairs = [
+                    (own.approach, front.contact.approach),
+                    (own.load, front.contact.load),
+                    (own.energy, front.contact.energy),
+                ];
+                // They are those of the last state, but for a load that must not fall by rounding.
+                let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
+                if !is_front || !run.scalars.is_sound(&own) {
+                    return Err(not_on_path(front, "load", own.load, "the load of the state"));
+                }
+            }
+            (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
+                refined.follow_on(run, &mut **iterations, end)?;
+            }
+            _ => {}
+        }
+        run.last = run.last.map(|_| front.contact);
+        run.queue = end.ahead.iter().copied().collect();
+        self.handed_over_at = end.handed_over_at;
+        Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::{History, LoadingBuilder};
+    use crate::surface::{Amplitude, SelfAffine};
+    use crate::updater::{ConjugateGradient, RecursiveCholesky};
+    use crate::{Boussinesq, Grid};
+
+    /// Takes a path behind 60 of 168 states, changes what it goes on with, and tells whether it is refused.
+    fn is_refused<U: LinearUpdater + Clone>(
+        updater: &U,
+        change: &dyn Fn(&mut WindowEnd),
+    ) -> Result<bool, Error> {
+        let kernel = Boussinesq::new(Grid::new(14, 12, 1.0, 1.5)?, 1.0)?;
+        let surface = SelfAffine::new(0.8, 8.0, 3.0, Amplitude::RmsHeight(0.1), 3)?;
+        let builder: LoadingBuilder<'_, U> =
+            LoadingSolver::builder(&surface, &kernel).updater(updater.clone());
+        let mut path = builder.clone().build()?;
+        let states: History = path.by_ref().take(60).collect::<Result<_, _>>()?;
+        let mut end = path.window_end();
+        assert!(end.as_ref().is_some_and(|end| !end.ahead.is_empty()));
+        if let Some(end) = &mut end {
+            change(end);
+        }
+        Ok(builder.resume(&states.with_window_end(end)).is_err())
+    }
+
+    fn iterations(end: &mut WindowEnd) -> &mut RefinedEnd {
+        match &mut end.next {
+            NextWindow::Iterations(end) => end,
+            NextWindow::Factor(_) => unreachable!("there is no factor"),
+        }
+    }
+
+    fn factor(end: &mut WindowEnd) -> &mut FactorEnd {
+        match &mut end.next {
+            NextWindow::Factor(end) => end,
+            NextWindow::Iterations(_) => unreachable!("there is a factor"),
+        }
+    }
+
+    /// What is not the end of a window of this path is an error, and no wrong path.
+    #[test]
+    fn what_was_damaged_is_refused() -> Result<(), Error> {
+        let updater = ConjugateGradient::new();
+        assert!(!is_refused(&updater, &|_| {})?);
+        let changes: [&dyn Fn(&mut WindowEnd); 22] = [
+            &|end| end.ahead[0].step += 1,
+            &|end| end.ahead[0].event = ContactEvent::Release,
+            &|end| end.ahead[0].node = (99, 0),
+            &|end| end.ahead[0].contact.load = f64::NAN,
+            &|end| end.ahead.truncate(end.ahead.len() - 1),
+            &|end| end.ahead.clear(),
+            &|end| iterations(end).last_span = f64::NAN,
+            &|end| iterations(end).rate_span = -1.0,
+            &|end| iterations(end).joined[0] = 999,
+            &|end| iterations(end).joined.truncate(1),
+            &|end| iterations(end).kept.approach = f64::INFINITY,
+            &|end| iterations(end).kept.serves = f64::NAN,
+            &|end| iterations(end).kept.load.pressure[7] *= 1.001,
+            &|end| iterations(end).kept.load.displacement[7] *= 1.001,
+            &|end| iterations(end).kept.rate.displacement[7] = f64::NAN,
+            &|end| iterations(end).kept.rate.pressure.truncate(9),
+            &|end| iterations(end).kept.proposed[0] = 168,
+            &|end| iterations(end).kept.row_sums.truncate(1),
+            &|end| iterations(end).kept.proposed_beside = 169,
+            &|end| iterations(end).kept.sums.displacement[3] = f64::INFINITY,
+            &|end| iterations(end).kept.coarse.push(168),
+            &|end| iterations(end).kept.directions.push(vec![1.0; 3]),
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            assert!(is_refused(&updater, change)?, "{k}");
+        }
+        let updater = RecursiveCholesky::new();
+        assert!(!is_refused(&updater, &|_| {})?);
+        let changes: [&dyn Fn(&mut WindowEnd); 6] = [
+            &|end| end.ahead[0].node = end.ahead[1].node,
+            &|end| end.ahead.truncate(end.ahead.len() - 1),
+            &|end| factor(end).scalars[0] *= 1.001,
+            &|end| factor(end).scalars[1] = f64::NAN,
+            &|end| factor(end).log.watched[3] = 168,
+            &|end| factor(end).log.windows[0][2] -= 1,
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            assert!(is_refused(&updater, change)?, "{k}");
+        }
+        Ok(())
+    }
+
+    /// Another updater goes on from the states.
+    #[test]
+    fn what_does_not_suit_is_left_alone() -> Result<(), Error> {
+        let other = |end: &mut WindowEnd| iterations(end).kept.tolerance = 1e-9;
+        assert!(!is_refused(&ConjugateGradient::new(), &other)?);
+        assert!(!is_refused(&ConjugateGradient::new(), &|end| iterations(end).settles = false)?);
+        Ok(())
+    }
+}

@@ -1,0 +1,188 @@
+//! The end of a window in an archive: members that begin with `window_`, beside whole numbers in the parameters.
+
+use std::io::{Seek, Write};
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use super::{COLUMNS, Column, code, event, whole};
+use crate::contact::ContactState;
+use crate::io::archive::{Archive, ArchiveWriter};
+use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, RefinedEnd, WindowEnd};
+use crate::updater::{Kept, KeptField};
+use crate::{Error, Grid};
+
+/// Whole numbers of a state before the columns.
+const WHOLE: usize = 5;
+
+/// What is not an array.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Numbers {
+    handed_over_at: Option<usize>,
+    /// Without a factor.
+    iterations: Option<IterationNumbers>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct IterationNumbers {
+    settles: bool,
+    proposed_beside: usize,
+    sums_of: usize,
+    directions: usize,
+    marks: [usize; 2],
+}
+
+impl Numbers {
+    pub(super) fn of(end: &WindowEnd) -> Self {
+        let iterations = match &end.next {
+            NextWindow::Factor(_) => None,
+            NextWindow::Iterations(end) => Some(IterationNumbers {
+                settles: end.settles,
+                proposed_beside: end.kept.proposed_beside,
+                sums_of: end.kept.sums_of,
+                directions: end.kept.directions.len(),
+                marks: end.kept.marks,
+            }),
+        };
+        Self { handed_over_at: end.handed_over_at, iterations }
+    }
+}
+
+/// Writes the arrays.
+pub(super) fn write(
+    end: &WindowEnd,
+    grid: &Grid,
+    archive: &mut ArchiveWriter<impl Write + Seek>,
+) -> std::io::Result<()> {
+    let ahead = end.ahead.iter().flat_map(|state| {
+        let (ix, iy) = state.node;
+        let event = code(state.event) as usize;
+        let whole = [state.step, ix, iy, state.contact.contact_nodes, event];
+        let columns = COLUMNS.iter().map(|column| (column.get)(state));
+        whole.into_iter().map(|number| number as f64).chain(columns).collect::<Vec<_>>()
+    });
+    archive.numbers("window_ahead", end.ahead.len() * (WHOLE + COLUMNS.len()), ahead)?;
+    let mut nodes = |name: &str, nodes: &[usize]| {
+        archive.integers(name, nodes.len(), nodes.iter().map(|&node| node as i64))
+    };
+    let end = match &end.next {
+        NextWindow::Factor(end) => {
+            let FactorEnd { log, scalars } = &**end;
+            nodes("window_watched", &log.watched)?;
+            nodes("window_places", &log.joined)?;
+            nodes("window_sizes", log.windows.as_flattened())?;
+            return archive.numbers("window_scalars", scalars.len(), scalars.iter().copied());
+        }
+        NextWindow::Iterations(end) => end,
+    };
+    let kept = &end.kept;
+    nodes("window_joined", &end.joined)?;
+    nodes("window_proposed", &kept.proposed)?;
+    nodes("window_coarse", &kept.coarse)?;
+    let numbers = [
+        end.last_span,
+        end.rate_span,
+        end.left_out,
+        kept.tolerance,
+        kept.approach,
+        kept.serves,
+        kept.load.drift,
+        kept.rate.drift,
+        kept.sums.drift,
+    ];
+    archive.numbers("window_numbers", numbers.len(), numbers.into_iter())?;
+    let directions = kept.directions.iter().flatten().map(|&value| f64::from(value));
+    let length = kept.directions.iter().map(Vec::len).sum();
+    archive.numbers("window_directions", length, directions)?;
+    for (name, values) in [
+        ("window_row_sums", &kept.row_sums),
+        ("window_pressure", &kept.load.pressure),
+        ("window_rate", &kept.rate.pressure),
+        ("window_sums", &kept.sums.pressure),
+        ("window_sums_start", &kept.sums_start),
+    ] {
+        archive.numbers(name, values.len(), values.iter().copied())?;
+    }
+    let (nx, ny) = grid.shape();
+    for (name, field) in [
+        ("window_displacement", &kept.load),
+        ("window_rate_displacement", &kept.rate),
+        ("window_sums_displacement", &kept.sums),
+    ] {
+        if !field.displacement.is_empty() {
+            archive.matrix(name, &DMatrix::from_column_slice(nx, ny, &field.displacement))?;
+        }
+    }
+    Ok(())
+}
+
+/// Reads what [`write`] has written; whether it is the end of a window of a path turns out when the path goes on.
+pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<WindowEnd, Error> {
+    let width = WHOLE + COLUMNS.len();
+    let ahead = archive.vector("window_ahead", None)?;
+    let states = ahead.chunks_exact(width).map(|row| {
+        let nodes = whole(row[3]);
+        let contact = ContactState::new(grid, nodes, 0.0, 0.0, 0.0);
+        // What is no event is none that a window has.
+        let event = event(row[4]).unwrap_or(crate::ContactEvent::Limit);
+        let node = (whole(row[1]), whole(row[2]));
+        let mut state = LoadingState::new(whole(row[0]), event, node, contact);
+        for (Column { set, .. }, value) in COLUMNS.iter().zip(&row[WHOLE..]) {
+            set(&mut state, *value);
+        }
+        state
+    });
+    let ahead = states.collect();
+    let vector = |name: &str| archive.vector(name, None);
+    let nodes = |name: &str| -> Result<Vec<usize>, Error> {
+        Ok(vector(name)?.into_iter().map(whole).collect())
+    };
+    let handed_over_at = numbers.handed_over_at;
+    let Some(iterations) = numbers.iterations else {
+        let log = FactorLog {
+            watched: nodes("window_watched")?,
+            joined: nodes("window_places")?,
+            windows: nodes("window_sizes")?.as_chunks().0.to_vec(),
+        };
+        let mut scalars = [0.0; 6];
+        scalars.copy_from_slice(&archive.vector("window_scalars", Some(6))?);
+        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars }));
+        return Ok(WindowEnd { ahead, handed_over_at, next });
+    };
+    let values = archive.vector("window_numbers", Some(9))?;
+    let displacement = |name: &str| archive.matrix(name).map(|field| field.data.into());
+    let field = |pressure, displacement, drift| KeptField { pressure, displacement, drift };
+    let sums = vector("window_sums")?;
+    let sums_displacement =
+        if sums.is_empty() { Vec::new() } else { displacement("window_sums_displacement")? };
+    let directions = vector("window_directions")?;
+    let length = directions.len() / iterations.directions.max(1);
+    let directions = directions.chunks_exact(length.max(1));
+    let kept = Kept {
+        tolerance: values[3],
+        approach: values[4],
+        serves: values[5],
+        load: field(vector("window_pressure")?, displacement("window_displacement")?, values[6]),
+        rate: field(vector("window_rate")?, displacement("window_rate_displacement")?, values[7]),
+        proposed: nodes("window_proposed")?,
+        proposed_beside: iterations.proposed_beside,
+        row_sums: vector("window_row_sums")?,
+        sums_of: iterations.sums_of,
+        sums: field(sums, sums_displacement, values[8]),
+        sums_start: vector("window_sums_start")?,
+        directions: directions
+            .map(|values| values.iter().map(|&value| value as f32).collect())
+            .collect(),
+        marks: iterations.marks,
+        coarse: nodes("window_coarse")?,
+    };
+    let next = NextWindow::Iterations(Box::new(RefinedEnd {
+        settles: iterations.settles,
+        joined: nodes("window_joined")?,
+        last_span: values[0],
+        rate_span: values[1],
+        left_out: values[2],
+        kept,
+    }));
+    Ok(WindowEnd { ahead, handed_over_at, next })
+}

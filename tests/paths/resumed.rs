@@ -1,0 +1,239 @@
+//! A path that was interrupted is the one that was not, in every bit of every column.
+
+use crate::common::surface;
+use crate::problems::{grid, rough};
+use asperity::loading::{History, LoadingBuilder};
+use asperity::record::LoadingRecord;
+use asperity::surface::HeightMap;
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::{
+    Boussinesq, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+    PeriodicBoussinesq, Spectral,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// The half-spaces of a grid: free, and both periodic ones.
+fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
+    [
+        ("free", Box::new(Boussinesq::new(grid, 1e9).unwrap())),
+        ("Love", Box::new(PeriodicBoussinesq::new(grid, 1e9).unwrap())),
+        ("spectral", Box::new(Spectral::new(grid, 1e9).unwrap())),
+    ]
+}
+
+fn whole<U: LinearUpdater>(builder: LoadingBuilder<'_, U>) -> Vec<LoadingState> {
+    builder.build().unwrap().map(Result::unwrap).collect()
+}
+
+/// What a record of a path holds that is written and read again.
+#[cfg(feature = "io")]
+fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    let file = format!("asperity-resumed-{}-{number}.npz", std::process::id());
+    let file = std::env::temp_dir().join(file);
+    record.write_npz(&file, &[]).unwrap();
+    let read = LoadingRecord::read_npz(&file);
+    std::fs::remove_file(&file).unwrap();
+    read.unwrap()
+}
+
+#[cfg(not(feature = "io"))]
+fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
+    record.clone()
+}
+
+/// What compares the states of two paths behind an interruption, from the first on.
+type Same<'a> = &'a dyn Fn(usize, &[LoadingState], &[LoadingState]);
+
+/// Every bit, and none is NaN.
+fn identical(at: usize, found: &[LoadingState], expected: &[LoadingState]) {
+    assert_eq!(found.len(), expected.len(), "{at}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(found == expected, "{at}: {found:?} {expected:?}");
+    }
+}
+
+/// Interrupts a path behind so many states, and the one that goes on from its record behind the next number of them, and so on. What
+/// follows is compared with the path that was not interrupted.
+fn interrupt<U: LinearUpdater + Clone>(
+    builder: &LoadingBuilder<'_, U>,
+    all: &[LoadingState],
+    at: &[usize],
+    same: Same<'_>,
+) {
+    let mut path = builder.clone().build().unwrap();
+    let mut states: Vec<LoadingState> = Vec::new();
+    for &at in at {
+        let more = at - states.len();
+        states.extend(path.by_ref().take(more).map(Result::unwrap));
+        let record = LoadingRecord::new(&path, states.iter().copied().collect()).unwrap();
+        // The path itself goes on as if nothing had been asked.
+        let rest: Vec<_> = path.map(Result::unwrap).collect();
+        same(at, &rest, &all[at..]);
+        let read = through_a_file(&record);
+        let resumed = builder.clone().resume(read.history()).unwrap();
+        let rest: Vec<_> = resumed.map(Result::unwrap).collect();
+        same(at, &rest, &all[at..]);
+        path = builder.clone().resume(record.history()).unwrap();
+        assert_eq!(path.state(), Some(states[at - 1]));
+    }
+}
+
+/// Some numbers of states, in order.
+fn steps(seed: u64, count: usize, range: std::ops::Range<usize>) -> Vec<usize> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut steps: Vec<usize> = (0..count).map(|_| random.random_range(range.clone())).collect();
+    steps.sort_unstable();
+    steps.dedup();
+    steps
+}
+
+fn on_threads(threads: usize, work: impl FnOnce() + Send) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(work);
+}
+
+/// Without a factor from the start, to full contact, with both rules and with windows of any size.
+#[test]
+fn without_a_factor() {
+    let heights = rough(&grid(), 5);
+    for (k, (name, kernel)) in half_spaces(grid()).into_iter().enumerate() {
+        for (rule, window) in [
+            (ContactRule::FirstContact, None),
+            (ContactRule::FirstContact, Some(9)),
+            (ContactRule::ApproximateOrder, None),
+        ] {
+            let mut builder = LoadingSolver::builder(&heights, &*kernel)
+                .updater(ConjugateGradient::new())
+                .rule(rule);
+            if let Some(window) = window {
+                builder = builder.window_size(window);
+            }
+            let all = whole(builder.clone());
+            println!("{name}, {rule:?}: {} states", all.len());
+            let mut at = steps(k as u64, 12, 1..all.len());
+            at.insert(0, 1);
+            at.dedup();
+            interrupt(&builder, &all, &at, &identical);
+        }
+    }
+}
+
+/// The same on a grid with a coarse space, whose matrix is of an earlier contact, on one thread and on two.
+#[test]
+fn on_a_grid_with_a_coarse_space() {
+    let heights = surface("selfaffine_128");
+    for which in [0, 1] {
+        let mut all = Vec::new();
+        for threads in [1, 2] {
+            let (heights, all) = (&heights, &mut all);
+            on_threads(threads, move || {
+                let (name, kernel) = &half_spaces(Grid::square(128, 1e-2).unwrap())[which];
+                let builder = LoadingSolver::builder(heights, &**kernel)
+                    .updater(ConjugateGradient::new())
+                    .max_area_fraction(0.06);
+                if all.is_empty() {
+                    *all = whole(builder.clone());
+                    println!("{name}: {} states", all.len());
+                    assert!(all.len() > 900);
+                }
+                let at = steps(10 + threads as u64, 3, 350..all.len());
+                interrupt(&builder, all, &at, &identical);
+            });
+        }
+    }
+}
+
+/// With a factor, on both sides of the place where it is given up, and with one that stays.
+#[test]
+fn across_the_seam() {
+    let heights = surface("selfaffine_48");
+    for (k, (name, kernel)) in half_spaces(Grid::square(48, 1e-2).unwrap()).into_iter().enumerate()
+    {
+        let fixed = LoadingSolver::new(&heights, &*kernel).unwrap().bytes();
+        let builder = LoadingSolver::builder(&heights, &*kernel).max_nodes(800);
+        let handing_over = builder.clone().updater(Handover::new());
+        let handing_over = handing_over.memory_budget(fixed + 2_000_000);
+        let mut path = handing_over.clone().build().unwrap();
+        let all: Vec<_> = path.by_ref().map(Result::unwrap).collect();
+        let seam = path.handed_over_at().unwrap();
+        println!("{name}: {} states, seam at {seam}", all.len());
+        assert!(seam > 100 && seam + 200 < all.len());
+        let mut at = steps(20 + k as u64, 4, seam + 1..all.len());
+        at.splice(0..0, [1, seam - 1, seam]);
+        at.splice(1..1, steps(30 + k as u64, 4, 2..seam - 1));
+        interrupt(&handing_over, &all, &at, &identical);
+
+        let with_a_factor = builder.updater(RecursiveCholesky::new());
+        let all = whole(with_a_factor.clone());
+        let at = steps(40 + k as u64, 6, 1..all.len());
+        on_threads(1, || {
+            let kernel = &half_spaces(Grid::square(48, 1e-2).unwrap())[k].1;
+            let builder = LoadingSolver::builder(&heights, &**kernel)
+                .max_nodes(800)
+                .updater(RecursiveCholesky::new());
+            interrupt(&builder, &all, &at, &identical);
+        });
+        interrupt(&with_a_factor, &all, &at, &identical);
+    }
+}
+
+/// A path that ended at a target and goes on to a further one is the path to that one.
+#[test]
+fn beyond_a_target() {
+    let heights = rough(&grid(), 7);
+    for (name, kernel) in half_spaces(grid()) {
+        let builder =
+            || LoadingSolver::builder(&heights, &*kernel).updater(ConjugateGradient::new());
+        let all = whole(builder());
+        let load = 0.5 * (all[120].contact.load + all[121].contact.load);
+        let fraction = all[140].contact.contact_area_fraction;
+        for (target, events) in
+            [(ContactTarget::Load(load), 121), (ContactTarget::AreaFraction(fraction), 141)]
+        {
+            let mut path = builder().until(target).build().unwrap();
+            let history: History = path.by_ref().collect::<Result<_, _>>().unwrap();
+            assert_eq!(history.events(), &all[..events], "{name} {target:?}");
+            let record = through_a_file(&LoadingRecord::new(&path, history).unwrap());
+            let (history, end) =
+                record.history().ending_at(&grid(), &[ContactTarget::AreaFraction(1.0)]).unwrap();
+            assert_eq!(end, None);
+            let resumed = builder().resume(&history).unwrap();
+            identical(events, &resumed.map(Result::unwrap).collect::<Vec<_>>(), &all[events..]);
+            path.continue_to(ContactTarget::AreaFraction(1.0)).unwrap();
+            identical(events, &path.map(Result::unwrap).collect::<Vec<_>>(), &all[events..]);
+        }
+    }
+}
+
+/// What cannot go on so goes on from the states: with a factor, with another tolerance or rule.
+#[test]
+fn otherwise_than_it_was() {
+    let heights: HeightMap = rough(&grid(), 8);
+    let [(_, kernel), ..] = half_spaces(grid());
+    let builder = || LoadingSolver::builder(&heights, &*kernel);
+    let all = whole(builder().updater(RecursiveCholesky::new()));
+    let record = |mut path: LoadingSolver<ConjugateGradient>| {
+        let history: History = path.by_ref().take(100).collect::<Result<_, _>>().unwrap();
+        LoadingRecord::new(&path, history).unwrap()
+    };
+    let exact = record(builder().updater(ConjugateGradient::new()).build().unwrap());
+    let nodes = |states: Vec<LoadingState>| states.iter().map(|s| s.node).collect::<Vec<_>>();
+    let expected = nodes(all[100..].to_vec());
+    let history = exact.history();
+    let resumed = builder().updater(RecursiveCholesky::new()).resume(history).unwrap();
+    assert_eq!(nodes(resumed.map(Result::unwrap).collect()), expected);
+    let other = ConjugateGradient::with_tolerance(1e-11).unwrap();
+    let resumed = builder().updater(other).resume(history).unwrap();
+    assert_eq!(nodes(resumed.map(Result::unwrap).collect()), expected);
+    let approximate = builder().updater(ConjugateGradient::new());
+    let approximate = approximate.rule(ContactRule::ApproximateOrder);
+    assert_eq!(approximate.resume(history).unwrap().count(), expected.len());
+    // The default takes over the iterations that the path went on with.
+    let resumed = builder().resume(history).unwrap();
+    assert_eq!((resumed.handed_over_at(), resumed.updater().is_none()), (None, true));
+    assert_eq!(nodes(resumed.map(Result::unwrap).collect()), expected);
+}
