@@ -1,15 +1,10 @@
 //! What cannot be answered is refused, with the numbers.
 
 use asperity::bed::Bed;
-use asperity::contact::ContactState;
 use asperity::loading::History;
 use asperity::slip::{Friction, PartialSlip, SlipHistory};
-use asperity::{
-    BedError, Boussinesq, ContactEvent, Error, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    SlipError,
-};
+use asperity::{BedError, Boussinesq, Error, Grid, InfluenceKernel, LoadingSolver, SlipError};
 use asperity_testing::surfaces::rough;
-use proptest::prelude::*;
 
 use crate::joints::rough_path;
 
@@ -151,65 +146,4 @@ fn paths_that_yield() {
         refused,
         Err(Error::Bed(BedError::NotElasticGrowth { happens: "yields", .. }))
     ));
-}
-
-/// A number of any size, or one that is none.
-fn hostile() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        8 => (-12.0..3.0_f64).prop_map(|exponent| 10_f64.powf(exponent)),
-        1 => (-320.0..308.0_f64).prop_map(|exponent| 10_f64.powf(exponent)),
-        2 => Just(0.0),
-        1 => any::<f64>(),
-    ]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
-
-    /// States that no solver has made: steps of any size or none, stiffnesses that have nothing to do with them. Whatever is answered
-    /// is a number, and energy is never won.
-    #[test]
-    fn invented_states_are_answered_or_refused(
-        steps in prop::collection::vec((hostile(), hostile(), hostile()), 1..20),
-        full in any::<bool>(),
-        loads in prop::collection::vec((0.0..1.3_f64, -1.1..1.1_f64), 1..20),
-        friction in hostile(),
-    ) {
-        let grid = Grid::new(steps.len() + usize::from(!full), 1, 1.0, 1.0).unwrap();
-        let (mut approach, mut load) = (0.0, 0.0);
-        let states = steps.iter().enumerate().map(|(k, &(rise, more, stiffness))| {
-            if k > 0 {
-                approach += rise;
-                load += more;
-            }
-            let mut contact = ContactState::new(&grid, k + 1, approach, load, -approach);
-            contact.contact_stiffness = Some(stiffness);
-            LoadingState::new(k + 1, ContactEvent::Touch, (k, 0), contact)
-        });
-        let history: History = states.collect();
-        let (Ok(bed), Ok(friction)) = (Bed::new(&history), Friction::new(friction, 1.2)) else {
-            return Ok(());
-        };
-        let last = bed.last_load();
-        let mut sheared = SlipHistory::new(&bed, friction);
-        let mut lost = 0.0;
-        for (load, share) in loads {
-            let load = load * last;
-            let force = share * friction.coefficient() * load;
-            if let Ok(joint) = PartialSlip::new(&bed, load, friction) {
-                if let Ok(cycle) = joint.cycle(force.abs()) {
-                    prop_assert!(cycle.dissipation >= 0.0, "{cycle:?}");
-                }
-                let state = joint.monotone(force);
-                prop_assert!(state.is_err() || state.is_ok_and(|state| !state.displacement.is_nan()));
-                let _ = joint.cycle_of_displacement(share.abs() * joint.sliding_displacement());
-                let _ = joint.jenkins_elements().count();
-            }
-            if let Ok(state) = sheared.to(load, force) {
-                prop_assert!(!state.displacement.is_nan() && !state.tangential_load.is_nan());
-            }
-            prop_assert!(sheared.dissipation() >= lost, "{} {lost}", sheared.dissipation());
-            lost = sheared.dissipation();
-        }
-    }
 }
