@@ -103,11 +103,13 @@ mod windowed;
 mod yielding;
 
 pub use builder::LoadingBuilder;
+#[cfg(feature = "io")]
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
 #[doc(hidden)]
 pub use phase::{event_seconds, last_factor};
+#[cfg(feature = "io")]
 pub(crate) use refined::resumed::RefinedEnd;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
@@ -115,4 +117,5 @@ pub use rule::ContactRule;
 pub use run::LoadingTimings;
 pub use solver::LoadingSolver;
 pub use state::{ContactEvent, LoadingState};
+#[cfg(feature = "io")]
 pub(crate) use window_end::{FactorEnd, NextWindow, WindowEnd};

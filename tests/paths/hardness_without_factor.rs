@@ -7,9 +7,7 @@ use asperity::loading::{ContactRule, History, LoadingBuilder, LoadingEnd};
 use asperity::record::LoadingRecord;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
-use asperity::{
-    Boussinesq, ContactEvent, ContactTarget, Error, Grid, LoadingSolver, LoadingState, Spectral,
-};
+use asperity::{ContactEvent, ContactTarget, Error, Grid, LoadingSolver, LoadingState, Spectral};
 use asperity_testing::surfaces::self_affine;
 use nalgebra::DMatrix;
 
@@ -526,7 +524,7 @@ fn records_of_paths_without_a_factor() {
 fn threads_do_not_matter() {
     let grid = Grid::square(64, 1.0).unwrap();
     let surface = self_affine(&grid, 0.8, 5e-3, 9);
-    let kernel = Boussinesq::new(grid, 1.0).unwrap();
+    let kernel = asperity::Boussinesq::new(grid, 1.0).unwrap();
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
