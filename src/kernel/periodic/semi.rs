@@ -93,7 +93,7 @@ impl SemiPeriodicBoussinesq {
     ///
     /// # Errors
     ///
-    /// Those of [`PeriodicBoussinesq::new`], and [`GridError::TooManyNodes`](crate::GridError::TooManyNodes).
+    /// Those of [`PeriodicBoussinesq::new`], and of a grid with too many nodes.
     pub fn new(grid: Grid, e_star: f64, along: Axis) -> Result<Self, Error> {
         check_periodic_cells(&grid, PeriodicBoussinesq::MAX_ASPECT, "at most 1000")?;
         let e_star = Error::require_positive("composite modulus", e_star)?;
