@@ -62,10 +62,10 @@ fn paths_on_large_grids_are_refused_in_words() -> Done {
 fn loads_on_large_grids_are_refused_in_words() -> Done {
     let folder = Scratch::new("space-load")?;
     // 32 MB of heights are read before anything else is known of them, and are held twice while they are; the system's allocator
-    // reserves another 64 MB of addresses for a thread that allocates at the same time.
+    // reserves another 64 MB of addresses for each thread that allocates.
     flat(&folder.join("2048.npy"), 2048)?;
     let line = "load --surface 2048.npy --side 1e-3 --e-star 1e9 --load 1 --memory-budget 100e6";
-    let done = run(&folder.0, REFUSAL + 128, line)?;
+    let done = run(&folder.0, REFUSAL + 192, line)?;
     is_refused(&done, &["the budget is 100 MB", "the largest square grid"]);
     // 2 GB of heights do not even fit.
     flat(&folder.join("16384.npy"), 16384)?;
