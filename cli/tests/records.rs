@@ -380,20 +380,22 @@ fn a_path_on_layers_goes_on() -> Done {
 #[test]
 fn a_path_that_repeats_along_one_side_goes_on() -> Done {
     let folder = Scratch::new("records-one-side")?;
+    let told = |output: &std::process::Output| {
+        String::from_utf8_lossy(&output.stdout).into_owned() + &said(output)
+    };
     for (along, across) in [("x", "y"), ("y", "x")] {
         let said_of = format!("periodic along {along} and free along {across}, Love kernel");
         let line = format!("{PATH} --periodic {along}");
         let first =
             format!("{line} --max-area-fraction 0.1 --record {along}.npz --out {along}_first");
         let first = run(&folder.0, &first)?;
-        assert!(said(&first).contains(&format!("half-space {said_of}")), "{}", said(&first));
-        assert!(said(&first).contains("K: contact stiffness"), "{}", said(&first));
+        assert!(told(&first).contains(&format!("half-space {said_of}")), "{}", told(&first));
         let settings = fs::read_to_string(folder.join(&format!("{along}_first/settings.json")))?;
         assert!(settings.contains(&said_of), "{settings}");
         let more = format!(
             "path --updater cholesky --resume {along}.npz --max-area-fraction 0.2 --out {along}_more"
         );
-        assert!(said(&run(&folder.0, &more)?).contains(&said_of));
+        assert!(told(&run(&folder.0, &more)?).contains(&said_of));
         printed(&folder.0, &format!("{line} --max-area-fraction 0.2 --out {along}_whole"))?;
         are_alike(
             &folder.join(&format!("{along}_more/path.csv")),
@@ -402,16 +404,16 @@ fn a_path_that_repeats_along_one_side_goes_on() -> Done {
         let patches = run(&folder.0, &format!("patches {along}.npz --out {along}_patches"))?;
         let boundary = format!("along {along} periodic boundary");
         assert!(
-            patches.status.success() && said(&patches).contains(&boundary),
+            patches.status.success() && told(&patches).contains(&boundary),
             "{}",
-            said(&patches)
+            told(&patches)
         );
         for (flow, sides) in [(along, "sides closed"), (across, "sides joined")] {
             let leak = format!(
                 "leak {along}.npz --viscosity 1e-3 --pressure-drop 1e5 --along {flow} --states 3 --out {along}_{flow}"
             );
             let leak = run(&folder.0, &leak)?;
-            assert!(leak.status.success() && said(&leak).contains(sides), "{}", said(&leak));
+            assert!(leak.status.success() && told(&leak).contains(sides), "{}", told(&leak));
         }
     }
     let both = run(&folder.0, &format!("{PATH} --layer steel,1e-6 --base rigid --periodic x"))?;
