@@ -64,7 +64,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
         // Nobody listens after an interruption.
         let _ = send.send(catch_unwind(AssertUnwindSafe(work)));
     });
-    let mut waiting = Some(receive);
+    let mut waiting = Some(Answers::new(receive));
     let done = wait(py, &mut waiting)?;
     match done {
         Some(done) => done.map_err(|payload| Failure::of_panic(&*payload)),
@@ -82,24 +82,44 @@ pub(crate) fn cancellable<T: Send + 'static>(
     interruptible(py, move || work(&told)).inspect_err(|_| is_left.store(true, Ordering::Relaxed))
 }
 
-/// Waits for what a thread sends, and looks at signals meanwhile; `None` if it sends nothing more. After a signal the receiver is
-/// still there.
+/// What a thread sends.
+pub(crate) struct Answers<T> {
+    receive: Receiver<T>,
+    /// Came together with a signal.
+    kept: Option<T>,
+}
+
+impl<T> Answers<T> {
+    pub(crate) fn new(receive: Receiver<T>) -> Self {
+        Self { receive, kept: None }
+    }
+
+    fn next(&mut self) -> Result<T, RecvTimeoutError> {
+        self.kept.take().map_or_else(|| self.receive.recv_timeout(PAUSE), Ok)
+    }
+}
+
+/// Waits for what a thread sends, and looks at signals meanwhile; `None` if it sends nothing more. After a signal the answers are
+/// still there, also one that came with the signal.
 pub(crate) fn wait<T: Send>(
     py: Python<'_>,
-    waiting: &mut Option<Receiver<T>>,
+    waiting: &mut Option<Answers<T>>,
 ) -> Fallible<Option<T>> {
     loop {
         // A receiver may be sent to another thread and not shared.
-        let Some(receive) = waiting.take() else {
+        let Some(mut answers) = waiting.take() else {
             return Ok(None);
         };
-        let (received, receive) = py.detach(move || (receive.recv_timeout(PAUSE), receive));
-        *waiting = Some(receive);
+        let (received, answers) = py.detach(move || (answers.next(), answers));
+        let answers = waiting.insert(answers);
+        let signals = py.check_signals();
         match received {
+            Ok(value) if signals.is_err() => answers.kept = Some(value),
             Ok(value) => return Ok(Some(value)),
-            Err(RecvTimeoutError::Disconnected) => return Ok(None),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) if signals.is_ok() => return Ok(None),
+            Err(_) => {}
         }
+        signals?;
     }
 }
 

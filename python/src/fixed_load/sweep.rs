@@ -1,7 +1,7 @@
 //! Many loads, each from the ones before.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 
@@ -13,7 +13,7 @@ use pyo3::sync::MutexExt;
 
 use super::{Settings, Solution, solver};
 use crate::arrays::{Found, Kind};
-use crate::compute::{pool, wait};
+use crate::compute::{Answers, pool, wait};
 use crate::errors::{Failure, Fallible};
 use crate::half_space::HalfSpace;
 use crate::history::Setting;
@@ -42,7 +42,7 @@ struct Thread {
     process: u32,
     /// Asks for one more solution.
     ask: Sender<()>,
-    answers: Option<Receiver<Solved>>,
+    answers: Option<Answers<Solved>>,
     /// Whether a solution was asked for and has not come yet.
     is_asked: bool,
     left: usize,
@@ -214,7 +214,7 @@ fn sweep(
         thread: Mutex::new(Thread {
             process: std::process::id(),
             ask,
-            answers: Some(answers),
+            answers: Some(Answers::new(answers)),
             is_asked: false,
             left: count,
         }),
