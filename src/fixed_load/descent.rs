@@ -206,7 +206,7 @@ impl<'a> Descent<'a> {
 
     /// Greatest length by which gaps may be wrong.
     fn tolerance(&self) -> f64 {
-        self.criteria.tolerance * self.criteria.scale(self.level.iterate.approach)
+        self.criteria.gap_error(self.level.iterate.approach)
     }
 
     /// The worst errors at present.

@@ -26,6 +26,11 @@ pub(super) struct Criteria {
 }
 
 impl Criteria {
+    /// Greatest length by which gaps may be wrong at an approach.
+    pub(super) fn gap_error(&self, approach: f64) -> f64 {
+        self.tolerance * self.scale(approach)
+    }
+
     /// The unit of length of the tolerance.
     pub(super) fn scale(&self, approach: f64) -> f64 {
         // NaN stays NaN.

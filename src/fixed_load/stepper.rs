@@ -136,8 +136,7 @@ impl<'a> Stepper<'a> {
     /// Greatest error of the gaps of a state that was found under its load.
     pub(super) fn gap_error(&self, state: &ContactState) -> f64 {
         let sum = state.load / self.finest().grid.cell_area();
-        let criteria = self.criteria(Prescribed::Sum(sum));
-        criteria.tolerance * criteria.scale(state.approach)
+        self.criteria(Prescribed::Sum(sum)).gap_error(state.approach)
     }
 
     /// When a solution on the finest grid is good enough.
@@ -269,14 +268,16 @@ impl<'a> Stepper<'a> {
             if is_solved {
                 let criteria = self.criteria(prescribed);
                 let finest = &mut self.hierarchy.finest;
-                let tolerance = criteria.tolerance * criteria.scale(finest.iterate.approach);
-                match yielded.revise(finest, tolerance)? {
+                let allowed = criteria.gap_error(finest.iterate.approach);
+                match yielded.revise(finest, allowed)? {
                     Round::Settled => return Ok(iterations),
                     Round::Changed => {}
                     Round::Undecided => {
-                        let Criteria { tolerance, .. } = criteria;
-                        let residual = f64::INFINITY;
-                        return Err(Error::NoConvergence { residual, tolerance, iterations });
+                        return Err(Error::NoConvergence {
+                            residual: f64::INFINITY,
+                            tolerance: criteria.tolerance,
+                            iterations,
+                        });
                     }
                 }
             }

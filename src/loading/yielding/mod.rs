@@ -30,7 +30,7 @@ use super::sum::Sum;
 use super::tuning::{OF_RESIDUAL, SQUARE, TOLERANCE};
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
-use crate::{Error, Grid, Problem};
+use crate::{Error, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
 use plastic::Displaced;
 pub(super) use plastic::Plastic;
@@ -108,12 +108,6 @@ fn contact_behind(
     Ok((contact, yielded, departures))
 }
 
-/// How many times as long as wide a cell is.
-fn cell_ratio(grid: &Grid) -> f64 {
-    let ratio = grid.dx() / grid.dy();
-    ratio.max(1.0 / ratio)
-}
-
 /// By how much a solution may contradict what contact that grows does.
 #[derive(Debug, Clone, Copy)]
 struct Slack {
@@ -165,7 +159,7 @@ impl Yielding {
         };
         let approach = run.scalars.approach();
         run.renew_field(updater, approach)?;
-        let tolerance = TOLERANCE * (cell_ratio(&run.problem.grid()) / SQUARE).max(1.0);
+        let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
         let gap = tolerance * (run.problem.greatest_gap() + approach);
         let slack = Slack { gap, pressure: gap, rate: TOLERANCE };
         let rates = survey(run, &plastic, &mut self.ranking, slack)?;
