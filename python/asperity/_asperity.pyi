@@ -76,6 +76,7 @@ _Real: TypeAlias = SupportsFloat | SupportsIndex
 _Lengths: TypeAlias = tuple[_Real, _Real] | _Real
 _Path: TypeAlias = str | PathLike[str]
 _Axis: TypeAlias = Literal["x", "y"]
+_Periodic: TypeAlias = bool | Literal["x", "y"]
 _Connectivity: TypeAlias = Literal[4, 8]
 _Growth: TypeAlias = Literal["unknown", "monotone", "convex"]
 _Mean: TypeAlias = Literal["arbitrary", "physical"]
@@ -172,7 +173,7 @@ class Surface:
 @final
 class HalfSpace:
     def __new__(
-        cls, e_star: float, boundary: Literal["free", "love", "spectral"]
+        cls, e_star: float, boundary: Literal["free", "love", "spectral", "x", "y"]
     ) -> HalfSpace: ...
     @staticmethod
     def layered(
@@ -196,7 +197,7 @@ class HalfSpace:
     def from_coefficients(
         coefficients: _Function,
         *,
-        boundary: Literal["free", "periodic"],
+        boundary: Literal["free", "periodic", "x", "y"],
         mean_displacement: _Mean = "arbitrary",
         growth: _Growth = "unknown",
         e_star: float | None = None,
@@ -204,7 +205,7 @@ class HalfSpace:
     @property
     def e_star(self) -> float | None: ...
     @property
-    def boundary(self) -> Literal["free", "love", "spectral", "symbol", "coefficients"]: ...
+    def boundary(self) -> Literal["free", "love", "spectral", "x", "y", "symbol", "coefficients"]: ...
     @property
     def is_periodic(self) -> bool: ...
     @property
@@ -530,7 +531,7 @@ class Seal:
     def along(self) -> _Axis: ...
     def leak(self, path: LoadingPath, state: State | None = None) -> results.Leak: ...
     def leak_of(
-        self, gap: ArrayLike, contact_map: ArrayLike, size: _Lengths, *, periodic: bool
+        self, gap: ArrayLike, contact_map: ArrayLike, size: _Lengths, *, periodic: _Periodic
     ) -> results.Leak: ...
     def curve(self, path: LoadingPath, states: int = 40) -> results.LeakCurve: ...
 
@@ -815,7 +816,7 @@ def label_patches(
     contact_map: ArrayLike,
     size: _Lengths,
     *,
-    periodic: bool,
+    periodic: _Periodic,
     connectivity: _Connectivity = 8,
     pressure: ArrayLike | None = None,
 ) -> PatchMap: ...

@@ -1,7 +1,9 @@
 //! Arguments that are one word of a few.
 
+use asperity::Boundary;
 use asperity::patches::Connectivity;
 use asperity::surface::{Axis, Filter, Interpolation, Trend};
+use pyo3::FromPyObject;
 
 use crate::errors::{Failure, Fallible};
 
@@ -12,6 +14,37 @@ pub(crate) fn choose<T: Copy>(name: &str, word: &str, choices: &[(&str, T)]) -> 
         let words: Vec<String> = choices.iter().map(|(word, _)| format!("'{word}'")).collect();
         Failure::arguments(format!("{name} must be one of {}, but is '{word}'", words.join(", ")))
     })
+}
+
+/// The word of a choice.
+pub(crate) fn word<T: PartialEq>(choices: &[(&'static str, T)], choice: &T) -> &'static str {
+    choices.iter().find(|(_, known)| known == choice).map_or("", |(word, _)| *word)
+}
+
+pub(crate) const BOUNDARIES: [(&str, Boundary); 4] = [
+    ("free", Boundary::Free),
+    ("periodic", Boundary::Periodic),
+    ("x", Boundary::PeriodicX),
+    ("y", Boundary::PeriodicY),
+];
+
+/// Whether a map repeats with its sides, or the side along which it does.
+#[derive(FromPyObject)]
+pub(crate) enum Repeats {
+    #[pyo3(transparent)]
+    Sides(bool),
+    #[pyo3(transparent)]
+    Along(String),
+}
+
+impl Repeats {
+    pub(crate) fn boundary(&self) -> Fallible<Boundary> {
+        match self {
+            Self::Sides(false) => Ok(Boundary::Free),
+            Self::Sides(true) => Ok(Boundary::Periodic),
+            Self::Along(side) => choose("periodic", side, &BOUNDARIES[2..]),
+        }
+    }
 }
 
 pub(crate) fn axis(word: &str) -> Fallible<Axis> {

@@ -1,16 +1,17 @@
 //! The elastic body.
 
 use asperity::kernel::{self, Base, InfluenceKernel, KernelTable, Layer, Layered, LayeredBody};
+use asperity::surface::Axis;
 use asperity::{
     Boundary, Boussinesq, ContactGrowth, Error, Grid, MeanDisplacement, PeriodicBoussinesq,
-    Spectral, Warning,
+    SemiPeriodicBoussinesq, Spectral, Warning,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{Found, Kind, column};
-use crate::choice::choose;
+use crate::choice::{BOUNDARIES, choose, word};
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
 use crate::materials;
@@ -26,13 +27,15 @@ use crate::surface::Surface;
 /// ----------
 /// e_star : float
 ///     Composite modulus [Pa], ``1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2``: see `composite_modulus`.
-/// boundary : {"free", "love", "spectral"}
+/// boundary : {"free", "love", "spectral", "x", "y"}
 ///     What surrounds the surface. There is no default, because either choice does harm where the other is meant.
 ///
 ///     * ``"free"``: nothing; right for a sample of finite size.
 ///     * ``"love"``: the surface repeats with its sides; exact for a uniform pressure on each cell.
 ///     * ``"spectral"``: the same, seen by the waves of the grid alone, 2/(E* \|q\|): the kernel of tamaas and of
 ///       ContactMechanics.
+///     * ``"x"``, ``"y"``: the surface repeats along this side, and nothing is beyond the other; exact for a uniform pressure
+///       on each cell. Right for a strip of a profile that goes on, such as a roller's.
 ///
 /// See Also
 /// --------
@@ -53,9 +56,7 @@ pub(crate) struct HalfSpace {
 
 /// What answers.
 enum Body {
-    Free,
-    Love,
-    Spectral,
+    HalfSpace(Surroundings),
     Layers { body: LayeredBody, around: Around },
     Symbol { symbol: Py<PyAny>, mean: MeanDisplacement, growth: ContactGrowth },
     Coefficients(Coefficients),
@@ -69,7 +70,7 @@ struct Coefficients {
     growth: ContactGrowth,
 }
 
-/// What surrounds the grid, and what pressure is between nodes.
+/// What surrounds the grid, and what pressure is between nodes: the same along both sides.
 #[derive(Clone, Copy, PartialEq)]
 enum Around {
     Free,
@@ -77,8 +78,22 @@ enum Around {
     Spectral,
 }
 
+/// The same along both sides, or periodic along one of them.
+#[derive(Clone, Copy, PartialEq)]
+enum Surroundings {
+    Both(Around),
+    Along(Axis),
+}
+
 const AROUND: [(&str, Around); 3] =
     [("free", Around::Free), ("love", Around::Love), ("spectral", Around::Spectral)];
+const SURROUNDINGS: [(&str, Surroundings); 5] = [
+    ("free", Surroundings::Both(Around::Free)),
+    ("love", Surroundings::Both(Around::Love)),
+    ("spectral", Surroundings::Both(Around::Spectral)),
+    ("x", Surroundings::Along(Axis::X)),
+    ("y", Surroundings::Along(Axis::Y)),
+];
 
 /// A layer: Young's modulus, Poisson's ratio and thickness, or a name and the thickness.
 #[derive(FromPyObject)]
@@ -92,8 +107,6 @@ enum LayerArgument {
 /// A kernel on its grid.
 pub(crate) type Kernel = Box<dyn InfluenceKernel + Send + Sync>;
 
-const BOUNDARIES: [(&str, Boundary); 2] =
-    [("free", Boundary::Free), ("periodic", Boundary::Periodic)];
 const MEANS: [(&str, MeanDisplacement); 2] =
     [("arbitrary", MeanDisplacement::Arbitrary), ("physical", MeanDisplacement::Physical)];
 const GROWTHS: [(&str, ContactGrowth); 3] = [
@@ -101,11 +114,6 @@ const GROWTHS: [(&str, ContactGrowth); 3] = [
     ("monotone", ContactGrowth::Monotone),
     ("convex", ContactGrowth::Convex),
 ];
-
-/// The word of a choice.
-fn word<T: PartialEq>(choices: &[(&'static str, T)], choice: &T) -> &'static str {
-    choices.iter().find(|(_, known)| known == choice).map_or("", |(word, _)| *word)
-}
 
 impl HalfSpace {
     /// A half-space of the engine.
@@ -115,16 +123,20 @@ impl HalfSpace {
             let e_star = Some(body.surface_modulus());
             Some(Self { body: Body::Layers { body: body.clone(), around }, e_star })
         };
-        let (body, e_star) = match origin {
+        let (surroundings, e_star) = match origin {
             Origin::Layered { body } => return layered(body, Around::Free),
             Origin::PeriodicLayered { body } => return layered(body, Around::Love),
             Origin::SpectralLayered { body } => return layered(body, Around::Spectral),
-            Origin::Boussinesq { e_star } => (Body::Free, *e_star),
-            Origin::PeriodicBoussinesq { e_star } => (Body::Love, *e_star),
-            Origin::Spectral { e_star } => (Body::Spectral, *e_star),
+            Origin::Boussinesq { e_star } => (Surroundings::Both(Around::Free), *e_star),
+            Origin::PeriodicBoussinesq { e_star } => (Surroundings::Both(Around::Love), *e_star),
+            Origin::Spectral { e_star } => (Surroundings::Both(Around::Spectral), *e_star),
+            Origin::SemiPeriodicBoussinesq { e_star, boundary } => {
+                let axis = if *boundary == Boundary::PeriodicX { Axis::X } else { Axis::Y };
+                (Surroundings::Along(axis), *e_star)
+            }
             _ => return None,
         };
-        Some(Self { body, e_star: Some(e_star) })
+        Some(Self { body: Body::HalfSpace(surroundings), e_star: Some(e_star) })
     }
 
     /// The influence coefficients on a grid.
@@ -135,9 +147,24 @@ impl HalfSpace {
             Box::new(kernel)
         }
         match &self.body {
-            Body::Free => Ok(boxed(Boussinesq::new(grid, e_star)?)),
-            Body::Love => Ok(boxed(detached(py, || PeriodicBoussinesq::new(grid, e_star))??)),
-            Body::Spectral => Ok(boxed(detached(py, || Spectral::new(grid, e_star))??)),
+            Body::HalfSpace(surroundings) => {
+                let surroundings = *surroundings;
+                let made = detached(py, || -> Result<Kernel, Error> {
+                    Ok(match surroundings {
+                        Surroundings::Both(Around::Free) => boxed(Boussinesq::new(grid, e_star)?),
+                        Surroundings::Both(Around::Love) => {
+                            boxed(PeriodicBoussinesq::new(grid, e_star)?)
+                        }
+                        Surroundings::Both(Around::Spectral) => {
+                            boxed(Spectral::new(grid, e_star)?)
+                        }
+                        Surroundings::Along(axis) => {
+                            boxed(SemiPeriodicBoussinesq::new(grid, e_star, axis)?)
+                        }
+                    })
+                })??;
+                Ok(made)
+            }
             Body::Layers { body, around } => {
                 let (body, around) = (body.clone(), *around);
                 let made = detached(py, || match around {
@@ -161,9 +188,12 @@ impl HalfSpace {
     /// What surrounds the grid.
     pub(crate) fn surroundings(&self) -> Boundary {
         match &self.body {
-            Body::Free | Body::Layers { around: Around::Free, .. } => Boundary::Free,
+            Body::HalfSpace(Surroundings::Along(Axis::X)) => Boundary::PeriodicX,
+            Body::HalfSpace(Surroundings::Along(Axis::Y)) => Boundary::PeriodicY,
+            Body::HalfSpace(Surroundings::Both(Around::Free))
+            | Body::Layers { around: Around::Free, .. } => Boundary::Free,
+            Body::HalfSpace(_) | Body::Layers { .. } | Body::Symbol { .. } => Boundary::Periodic,
             Body::Coefficients(Coefficients { boundary, .. }) => *boundary,
-            _ => Boundary::Periodic,
         }
     }
 
@@ -185,17 +215,8 @@ impl HalfSpace {
         if !(e_star > 0.0 && e_star.is_finite()) {
             return Err(Error::NotPositive { quantity: "composite modulus", value: e_star }.into());
         }
-        let body = match boundary {
-            "free" => Body::Free,
-            "love" => Body::Love,
-            "spectral" => Body::Spectral,
-            _ => {
-                let known = [("free", ()), ("love", ()), ("spectral", ())];
-                choose("boundary", boundary, &known)?;
-                Body::Free
-            }
-        };
-        Ok(Self { body, e_star: Some(e_star) })
+        let surroundings = choose("boundary", boundary, &SURROUNDINGS)?;
+        Ok(Self { body: Body::HalfSpace(surroundings), e_star: Some(e_star) })
     }
 
     /// A coated, thin or graded body: elastic layers, bonded to each other and to a base.
@@ -209,7 +230,7 @@ impl HalfSpace {
     ///     What the lowest layer is bonded to: ``"rigid"``, or Young's modulus [Pa] and Poisson's ratio of an elastic
     ///     half-space, or its name.
     /// boundary : {"free", "love", "spectral"}
-    ///     As of `HalfSpace`.
+    ///     As of `HalfSpace`: layers repeat in both directions or in none.
     /// against : (float, float) or str, optional
     ///     The other body; rigid unless it is given.
     ///
@@ -297,8 +318,8 @@ impl HalfSpace {
     /// coefficients : callable
     ///     ``coefficients(di, dj)``: displacement [m/Pa] at an offset of di columns and dj rows from a cell under unit
     ///     pressure, for arrays of whole numbers in one dimension, called once. C(-di, -dj) must be C(di, dj).
-    /// boundary : {"free", "periodic"}
-    ///     With ``"periodic"`` the coefficients repeat with the grid.
+    /// boundary : {"free", "periodic", "x", "y"}
+    ///     With ``"periodic"`` the coefficients repeat with the grid, with ``"x"`` or ``"y"`` along this side alone.
     /// mean_displacement : {"arbitrary", "physical"}
     ///     As of `from_symbol`; it matters on a periodic body only.
     /// growth : {"unknown", "monotone", "convex"}
@@ -333,20 +354,18 @@ impl HalfSpace {
         self.e_star
     }
 
-    /// ``"free"``, ``"love"`` or ``"spectral"``, of layers too; of a body of your own ``"symbol"`` or ``"coefficients"``.
+    /// ``"free"``, ``"love"``, ``"spectral"``, ``"x"`` or ``"y"``; of a body of your own ``"symbol"`` or ``"coefficients"``.
     #[getter]
     fn boundary(&self) -> &'static str {
         match &self.body {
-            Body::Free => "free",
-            Body::Love => "love",
-            Body::Spectral => "spectral",
+            Body::HalfSpace(surroundings) => word(&SURROUNDINGS, surroundings),
             Body::Layers { around, .. } => word(&AROUND, around),
             Body::Symbol { .. } => "symbol",
             Body::Coefficients(_) => "coefficients",
         }
     }
 
-    /// Whether surface and body repeat with the sides of the grid.
+    /// Whether surface and body repeat with both sides of the grid.
     #[getter]
     fn is_periodic(&self) -> bool {
         self.surroundings() == Boundary::Periodic
@@ -483,7 +502,8 @@ fn _restore_half_space(
 fn _restore_layers(data: &str, boundary: &str) -> Fallible<HalfSpace> {
     let body: LayeredBody =
         serde_json::from_str(data).map_err(|error| Failure::arguments(error.to_string()))?;
-    let (around, e_star) = (choose("boundary", boundary, &AROUND)?, Some(body.surface_modulus()));
+    let around = choose("boundary", boundary, &AROUND)?;
+    let e_star = Some(body.surface_modulus());
     Ok(HalfSpace { body: Body::Layers { body, around }, e_star })
 }
 

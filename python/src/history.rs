@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PySliceMethods, PyTuple};
 
 use crate::arrays::{column, shape};
+use crate::choice::{BOUNDARIES, choose, word};
 use crate::errors::{Failure, Fallible};
 use crate::state::{self, EVENTS, State};
 use crate::targets::Targets;
@@ -398,8 +399,8 @@ impl History {
     fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {
         let restore = py.import("asperity._asperity")?.getattr("_restore_history")?;
         let Setting { grid, boundary, has_hardness } = self.setting;
-        let setting =
-            (shape(&grid), (grid.dx(), grid.dy()), boundary == Boundary::Periodic, has_hardness);
+        let boundary = word(&BOUNDARIES, &boundary);
+        let setting = (shape(&grid), (grid.dx(), grid.dy()), boundary, has_hardness);
         Ok((restore, (table(py, self.states())?, setting)).into_pyobject(py)?)
     }
 
@@ -489,15 +490,15 @@ fn _restore_states(table: &Bound<'_, PyDict>, is_one: bool) -> Fallible<State> {
     }
 }
 
-/// Shape, cell, whether it is periodic, and whether there is a hardness.
-type Pickled = ((usize, usize), (f64, f64), bool, bool);
+/// Shape, cell, boundary, and whether there is a hardness.
+type Pickled = ((usize, usize), (f64, f64), String, bool);
 
 /// A history that was pickled.
 #[pyfunction]
 fn _restore_history(table: &Bound<'_, PyDict>, setting: Pickled) -> Fallible<History> {
-    let ((rows, columns), (dx, dy), is_periodic, has_hardness) = setting;
+    let ((rows, columns), (dx, dy), boundary, has_hardness) = setting;
     let grid = Grid::new(columns, rows, dx, dy)?;
-    let boundary = if is_periodic { Boundary::Periodic } else { Boundary::Free };
+    let boundary = choose("boundary", &boundary, &BOUNDARIES)?;
     let history = Arc::new(states(table)?.into_iter().collect());
     Ok(History { history, setting: Setting { grid, boundary, has_hardness } })
 }

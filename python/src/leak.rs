@@ -1,6 +1,5 @@
 //! Leakage through the gap.
 
-use asperity::Boundary;
 use asperity::leak::{self, CriticalConstriction, Leak, LeakPoint};
 use asperity::surface::Axis;
 use numpy::PyArray1;
@@ -8,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Found, Kind, Lengths, column, rows};
-use crate::choice;
+use crate::choice::{self, Repeats};
 use crate::compute::detached;
 use crate::errors::Fallible;
 use crate::path::LoadingPath;
@@ -103,8 +102,9 @@ impl Seal {
     ///     Nodes through which nothing flows.
     /// size : (float, float) or float
     ///     Sides ``(x, y)`` [m]; one number is the side along x, with square cells.
-    /// periodic : bool
-    ///     Whether the sides along the flow are joined, or closed.
+    /// periodic : bool or {"x", "y"}
+    ///     Whether the map repeats with its sides, or the side along which it does. Sides along the flow are joined where it
+    ///     repeats across the flow, and closed otherwise.
     ///
     /// Returns
     /// -------
@@ -116,13 +116,13 @@ impl Seal {
         gap: &Bound<'py, PyAny>,
         contact_map: &Bound<'py, PyAny>,
         size: Lengths,
-        periodic: bool,
+        periodic: Repeats,
     ) -> Fallible<Bound<'py, PyAny>> {
         let found = Found::of(gap, "gap", Kind::Real)?;
         let grid = size.grid(found.rows_and_columns()?)?;
         let gap = found.on(&grid)?;
         let contact = Found::of(contact_map, "contact_map", Kind::Truth)?.map_on(&grid)?;
-        let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
+        let boundary = periodic.boundary()?;
         of_leak(py, detached(py, || self.seal.leak(&gap, &contact, (&grid, boundary)))??)
     }
 

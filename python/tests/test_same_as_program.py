@@ -61,6 +61,8 @@ CASES: dict[str, tuple[str, tuple[float, float], list[str], str, dict[str, Any]]
     "free": ("selfaffine_48", (1e-2, 1e-2), ["--e-star", "1"], "free", {}),
     "periodic": ("periodic_32x24", (32 * 2e-5, 24 * 3e-5), ["--e-star", "1", "--periodic", "love"], "love", {}),
     "spectral": ("periodic_32x24", (32 * 2e-5, 24 * 3e-5), ["--e-star", "1", "--periodic", "spectral"], "spectral", {}),
+    "along x": ("periodic_32x24", (32 * 2e-5, 24 * 3e-5), ["--e-star", "1", "--periodic", "x"], "x", {}),
+    "along y": ("periodic_32x24", (32 * 2e-5, 24 * 3e-5), ["--e-star", "1", "--periodic", "y"], "y", {}),
     "without a factor": (
         "selfaffine_48",
         (1e-2, 1e-2),

@@ -299,13 +299,14 @@ impl Solution {
 
 /// Solutions as bytes: the data of serde, in a format that keeps every bit of a number.
 mod pickle {
+    use crate::choice::{BOUNDARIES, choose, word};
     use super::*;
     use crate::errors::Failure;
-    use asperity::{Boundary, Grid};
+    use asperity::Grid;
     use pyo3::types::PyBytes;
 
     /// What is pickled.
-    type Pickled = ((usize, usize), (f64, f64), bool, bool);
+    type Pickled = ((usize, usize), (f64, f64), String, bool);
 
     pub(super) fn reduce<'py>(
         py: Python<'py>,
@@ -316,19 +317,19 @@ mod pickle {
         let text = serde_json::to_vec(solution);
         let text = text.map_err(|error| Failure::arguments(error.to_string()))?;
         let Setting { grid, boundary, has_hardness } = *setting;
-        let is_periodic = boundary == Boundary::Periodic;
-        let setting: Pickled = (shape(&grid), (grid.dx(), grid.dy()), is_periodic, has_hardness);
+        let boundary = word(&BOUNDARIES, &boundary);
+        let setting = (shape(&grid), (grid.dx(), grid.dy()), boundary, has_hardness);
         Ok((restore, (PyBytes::new(py, &text), setting)).into_pyobject(py)?)
     }
 
     /// A solution that was pickled.
     #[pyfunction]
     fn _restore_solution(data: &[u8], setting: Pickled) -> Fallible<Solution> {
-        let ((rows, columns), (dx, dy), is_periodic, has_hardness) = setting;
+        let ((rows, columns), (dx, dy), boundary, has_hardness) = setting;
         let solution = serde_json::from_slice(data);
         let solution = solution.map_err(|error| Failure::arguments(error.to_string()))?;
         let grid = Grid::new(columns, rows, dx, dy)?;
-        let boundary = if is_periodic { Boundary::Periodic } else { Boundary::Free };
+        let boundary = choose("boundary", &boundary, &BOUNDARIES)?;
         Ok(Solution { solution, setting: Setting { grid, boundary, has_hardness } })
     }
 

@@ -2,13 +2,13 @@
 
 use asperity::nalgebra::DMatrix;
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
-use asperity::{Boundary, Grid};
+use asperity::Grid;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Found, Kind, Lengths, column, rows};
-use crate::choice;
+use crate::choice::{self, Repeats};
 use crate::compute::detached;
 use crate::errors::Fallible;
 use crate::history::Setting;
@@ -173,8 +173,8 @@ impl PatchMap {
 ///     ``[row, column]``.
 /// size : (float, float) or float
 ///     Sides ``(x, y)`` [m]; one number is the side along x, with square cells.
-/// periodic : bool
-///     Whether the map repeats with its sides.
+/// periodic : bool or {"x", "y"}
+///     Whether the map repeats with its sides, or the side along which it does.
 /// connectivity : {8, 4}
 ///     Whether cells with a corner in common belong together.
 /// pressure : array_like of float, optional
@@ -189,7 +189,7 @@ fn label_patches(
     py: Python<'_>,
     contact_map: &Bound<'_, PyAny>,
     size: Lengths,
-    periodic: bool,
+    periodic: Repeats,
     connectivity: usize,
     pressure: Option<&Bound<'_, PyAny>>,
 ) -> Fallible<PatchMap> {
@@ -200,7 +200,7 @@ fn label_patches(
         Some(pressure) => Some(Found::of(pressure, "pressure", Kind::Real)?.on(&grid)?),
         None => None,
     };
-    let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
+    let boundary = periodic.boundary()?;
     let setting = Setting { grid, boundary, has_hardness: false };
     label(py, &contact, pressure.as_ref(), &setting, choice::connectivity(connectivity)?)
 }
