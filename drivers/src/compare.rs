@@ -76,7 +76,7 @@ pub(crate) fn same_path(
     let greatest = if yields { energies.fold(0.0, f64::max) } else { 0.0 };
     // Of the approach that is computed with, in which the load is contained.
     let computed = |state: &LoadingState| state.contact.approach + uniform(state.contact.load);
-    // States at one approach joined together, as a window began: they are ties as far as they say themselves.
+    // States at one approach joined together, as a window began: ties as far as they may be off.
     let is_together = |k: usize| {
         let neighbours = [k.checked_sub(1), Some(k + 1)];
         let mut neighbours = neighbours.into_iter().flatten().filter_map(|k| found.get(k));
@@ -87,6 +87,7 @@ pub(crate) fn same_path(
     let tie = |k: usize| {
         let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
         let together = if is_together(k) { found[k].approach_error } else { 0.0 };
+        let together = bounds.excess * together;
         tie.max(together)
     };
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {

@@ -155,9 +155,7 @@ impl HalfSpace {
                         Surroundings::Both(Around::Love) => {
                             boxed(PeriodicBoussinesq::new(grid, e_star)?)
                         }
-                        Surroundings::Both(Around::Spectral) => {
-                            boxed(Spectral::new(grid, e_star)?)
-                        }
+                        Surroundings::Both(Around::Spectral) => boxed(Spectral::new(grid, e_star)?),
                         Surroundings::Along(axis) => {
                             boxed(SemiPeriodicBoussinesq::new(grid, e_star, axis)?)
                         }

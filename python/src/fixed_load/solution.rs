@@ -299,8 +299,8 @@ impl Solution {
 
 /// Solutions as bytes: the data of serde, in a format that keeps every bit of a number.
 mod pickle {
-    use crate::choice::{BOUNDARIES, choose, word};
     use super::*;
+    use crate::choice::{BOUNDARIES, choose, word};
     use crate::errors::Failure;
     use asperity::Grid;
     use pyo3::types::PyBytes;

@@ -1,8 +1,8 @@
 //! The patches of one contact.
 
+use asperity::Grid;
 use asperity::nalgebra::DMatrix;
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
-use asperity::Grid;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
