@@ -1,9 +1,5 @@
-#[path = "../../../surfaces/src/io/full_disk/disk.rs"]
-mod disk;
+use std::io::{Cursor, ErrorKind};
 
-use std::io::Cursor;
-
-use self::disk::is_refused_at_every_byte;
 use super::*;
 use crate::surface::Paraboloid;
 use crate::{Boussinesq, LoadingSolver};
@@ -21,16 +17,22 @@ fn a_record_does_not_fit() -> Result<(), Box<dyn std::error::Error>> {
     let record = record()?;
     let name = format!("asperity-full-{}.npz", std::process::id());
     let file = std::env::temp_dir().join(name);
-    let tried = is_refused_at_every_byte(
-        |disk| record.write(disk, &[]),
-        |bytes| {
-            // A new file each time: some systems wait for the disk before they replace what is in one.
-            let _ = std::fs::remove_file(&file);
-            std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok()
-        },
-    );
+    let is_read = |bytes: &[u8]| {
+        // A new file each time: some systems wait for the disk before they replace what is in one.
+        let _ = std::fs::remove_file(&file);
+        std::fs::write(&file, bytes).is_ok() && LoadingRecord::read_npz(&file).is_ok()
+    };
+    let mut whole = Cursor::new(Vec::new());
+    record.write(&mut whole, &[])?;
+    let mut disk = whole.into_inner();
+    assert!(is_read(&disk));
+    // Whatever the room, down to nothing: the writer refuses what does not fit, and the reader what was written of it.
+    for room in 0..disk.len() {
+        let written = record.write(&mut Cursor::new(&mut disk[..room]), &[]);
+        let refused = written.is_err_and(|error| error.kind() == ErrorKind::WriteZero);
+        assert!(refused && !is_read(&disk[..room]), "room for {room} bytes");
+    }
     std::fs::remove_file(&file)?;
-    tried?;
     #[cfg(target_os = "linux")]
     {
         use std::os::unix::fs::FileTypeExt;

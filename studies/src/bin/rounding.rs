@@ -2,6 +2,8 @@
 //! aspect of cells and the size of the grid. Prints the tables of docs/reliability.md.
 
 use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use asperity::surface::HeightMap;
 use asperity::updater::RecursiveCholesky;
@@ -9,6 +11,10 @@ use asperity::{
     Boussinesq, FixedLoadSolver, Grid, InfluenceKernel, LoadingSolver, LoadingState,
     PeriodicBoussinesq, Problem, SelfAffine, Spectral,
 };
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, ORANGE, Series, Style};
+use asperity_cli::outcome::Failure;
+use asperity_cli::panel;
 use clap::{Parser, Subcommand};
 use nalgebra::DMatrix;
 
@@ -34,13 +40,27 @@ enum What {
         every: usize,
     },
     /// Condition numbers, and what is left of the conditions of contact on the path of each.
-    Condition,
+    Condition {
+        /// Draws the table into this folder.
+        #[arg(long)]
+        picture: Option<PathBuf>,
+    },
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    match Options::parse().what {
-        What::Drift { nodes, contact, every } => drift(nodes, contact, every),
-        What::Condition => condition(),
+fn main() -> ExitCode {
+    let failed = |error| Failure::new("cannot follow a path", error);
+    let done = match Options::parse().what {
+        What::Drift { nodes, contact, every } => drift(nodes, contact, every).map_err(failed),
+        What::Condition { picture } => condition()
+            .map_err(failed)
+            .and_then(|found| picture.as_deref().map_or(Ok(()), |folder| draw(&found, folder))),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
     }
 }
 
@@ -112,25 +132,60 @@ fn kernels(grid: Grid) -> [(&'static str, Result<Kernel, asperity::Error>); 3] {
     [("free, Love", free), ("periodic, Love", periodic), ("spectral", spectral)]
 }
 
-fn condition() -> Result<(), Box<dyn Error>> {
+fn condition() -> Result<[Vec<Residuals>; 3], Box<dyn Error>> {
     println!("| half-space | nodes | aspect | condition | least pressure | gap in contact |");
     println!("|---|---|---|---|---|---|");
     let sizes = [8, 16, 32].map(|nodes| (nodes, 1.0));
     let aspects = (1..=6).map(|power| (16, 10_f64.powi(power)));
+    let mut found: [Vec<Residuals>; 3] = Default::default();
     for (nodes, aspect) in sizes.into_iter().chain(aspects) {
         let grid = Grid::new(nodes, nodes, 1.0, 1.0 / aspect)?;
-        for (name, kernel) in kernels(grid) {
-            let rest = kernel
-                .and_then(|kernel| line(&grid, &*kernel))
-                .unwrap_or_else(|error| format!("refused: {error} | |"));
+        for ((name, kernel), found) in kernels(grid).into_iter().zip(&mut found) {
+            let residuals = kernel.and_then(|kernel| residuals(&grid, &*kernel));
+            let rest = match &residuals {
+                Ok([condition, pressure, gap]) => {
+                    format!("{condition:.1e} | {pressure:.1e} | {gap:.1e}")
+                }
+                Err(error) => format!("refused: {error} | |"),
+            };
             println!("| {name} | {nodes}² | {aspect:.0e} | {rest} |");
+            found.extend(residuals);
         }
     }
+    Ok(found)
+}
+
+fn draw(found: &[Vec<Residuals>; 3], folder: &Path) -> Result<(), Failure> {
+    let chart = |title: &str, y: &str, value: fn(&Residuals) -> f64| {
+        let names = ["free, Love", "periodic, Love", "spectral"];
+        let series = found.iter().zip(names).zip([BLUE, GREEN, ORANGE]);
+        let series = series.map(|((found, name), colour)| {
+            let points = found.iter().map(|residuals| (residuals[0], value(residuals)));
+            Series::new(name, colour, Style::Dots, points)
+        });
+        Chart {
+            title: title.to_string(),
+            x: Axis::plain_logarithmic("condition number of the influence matrix", 5.0, 5e7),
+            y: Axis::plain_logarithmic(y, 1e-16, 1e-7),
+            series: series.collect(),
+            legend: Corner::TopLeft,
+        }
+    };
+    let charts = [
+        chart("Pressure below zero", "relative to the mean pressure", |found| -found[1]),
+        chart("Gap in contact", "relative to the reference length", |found| found[2]),
+    ];
+    panel::register_font()?;
+    let name = folder.join("rounding.png");
+    std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, error))?;
+    println!("{}", chart::draw(&charts, 2, &name)?.display());
     Ok(())
 }
 
-/// Condition of the whole matrix, and the worst of the certificates of a path to full contact.
-fn line(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<String, asperity::Error> {
+/// Condition of the whole matrix, and the worst of the certificates of a path to full contact: least pressure, gap in contact.
+type Residuals = [f64; 3];
+
+fn residuals(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<Residuals, asperity::Error> {
     let surface = rough(grid)?;
     let problem = Problem::new(&surface, kernel)?;
     let nodes = grid.nodes();
@@ -147,6 +202,5 @@ fn line(grid: &Grid, kernel: &dyn InfluenceKernel) -> Result<String, asperity::E
         pressure = pressure.min(certificate.least_pressure);
         contact = contact.max(certificate.greatest_contact_gap);
     }
-    let condition = values.max() / values.min();
-    Ok(format!("{condition:.1e} | {pressure:.1e} | {contact:.1e}"))
+    Ok([values.max() / values.min(), pressure, contact])
 }

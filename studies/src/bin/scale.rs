@@ -1,18 +1,32 @@
 //! Long paths: how time and memory grow with the number of contact nodes.
 //!
 //! A self-affine surface, roll-off at a quarter of the side and short cut-off at four cells, up to a
-//! given number of nodes in contact.
+//! given number of nodes in contact. With `--picture` it draws time and memory of the default, of the factor alone and
+//! of iterations alone.
 
 use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Instant;
 
 use asperity::surface::{Amplitude, SelfAffine};
-use asperity::updater::{CholeskyTimings, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::updater::{
+    CholeskyTimings, ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky,
+};
 use asperity::{Boussinesq, Grid, LoadingSolver};
+use asperity_cli::axis::Axis;
+use asperity_cli::chart::{self, BLACK, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
+use asperity_cli::outcome::Failure;
+use asperity_cli::panel;
 use asperity_studies::peak_memory::peak_memory;
 use asperity_studies::phases;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+
+/// Side of the surface.
+const SIDE: f64 = 1e-2;
+/// States between two points of a curve.
+const STRIDE: u32 = 64;
 
 /// Times long paths.
 #[derive(Parser)]
@@ -32,6 +46,20 @@ struct Options {
     /// Seed of the surface.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Draws time and memory against the number of nodes in contact into this folder.
+    #[arg(long)]
+    picture: Option<PathBuf>,
+}
+
+impl Options {
+    fn surface(&self) -> Result<SelfAffine, asperity::SurfaceError> {
+        let (rolloff, cutoff) = (SIDE / 4.0, 4.0 * SIDE / self.nodes as f64);
+        SelfAffine::new(0.8, rolloff, cutoff, Amplitude::RmsHeight(50e-6), self.seed)
+    }
+
+    fn kernel(&self) -> Result<Boussinesq, asperity::Error> {
+        Boussinesq::new(Grid::square(self.nodes, SIDE)?, 1.0)
+    }
 }
 
 fn run<U: LinearUpdater>(
@@ -39,12 +67,7 @@ fn run<U: LinearUpdater>(
     updater: U,
     timings: Option<fn(&U) -> CholeskyTimings>,
 ) -> Result<(), Box<dyn Error>> {
-    const SIDE: f64 = 1e-2;
-    let rolloff = SIDE / 4.0;
-    let cutoff = 4.0 * SIDE / options.nodes as f64;
-    let roughness = Amplitude::RmsHeight(50e-6);
-    let surface = SelfAffine::new(0.8, rolloff, cutoff, roughness, options.seed)?;
-    let kernel = Boussinesq::new(Grid::square(options.nodes, SIDE)?, 1.0)?;
+    let (surface, kernel) = (options.surface()?, options.kernel()?);
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} nodes {elapsed}");
     let bar = ProgressBar::new(options.contact_nodes as u64)
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -93,12 +116,98 @@ fn run<U: LinearUpdater>(
     Ok(())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// Nodes in contact, seconds since the beginning, and the most bytes that the path has held.
+type Point = (f64, f64, f64);
+
+fn curve<U: LinearUpdater>(options: &Options, updater: U) -> Result<Vec<Point>, Box<dyn Error>> {
+    let (surface, kernel) = (options.surface()?, options.kernel()?);
+    let start = Instant::now();
+    let builder = LoadingSolver::builder(&surface, &kernel).updater(updater);
+    let mut path = builder.max_nodes(options.contact_nodes).build()?;
+    let (mut points, mut states, mut most) = (Vec::new(), 0_u32, 0.0_f64);
+    while let Some(state) = path.next() {
+        state?;
+        states += 1;
+        if states.is_multiple_of(STRIDE) {
+            most = most.max(path.bytes() as f64);
+            points.push((f64::from(states), start.elapsed().as_secs_f64(), most));
+        }
+    }
+    Ok(points)
+}
+
+fn charts(options: &Options) -> Result<[Chart; 2], Box<dyn Error>> {
+    let curves = [
+        ("factor alone", BLUE, Style::Line, curve(options, RecursiveCholesky::new())?),
+        ("iterations alone", ORANGE, Style::Line, curve(options, ConjugateGradient::new())?),
+        ("default", BLACK, Style::Dashed, curve(options, Handover::new())?),
+    ];
+    let (from, to) = (f64::from(STRIDE), options.contact_nodes as f64);
+    let series = |value: fn(&Point) -> f64| {
+        curves.iter().map(move |(name, colour, style, points)| {
+            Series::new(*name, *colour, *style, points.iter().map(|point| (point.0, value(point))))
+        })
+    };
+    // What a plain matrix product of as many operations takes on the machine of docs/performance.md.
+    let product = |n: f64| (n, n.powi(3) / 3.0 / 100e9);
+    let (few, many) = (to / 10.0, to);
+    let plain = [product(few), product(many)];
+    let mut times: Vec<Series> = series(|point| point.1).collect();
+    times.push(Series::new("n³/3 at 100 GFLOP/s", GREY, Style::Dashed, plain));
+    let ends = |value: fn(&Point) -> f64| {
+        let values = curves.iter().flat_map(|curve| curve.3.iter().map(value));
+        values.fold((f64::INFINITY, 0.0_f64), |(least, most), v| (least.min(v), most.max(v)))
+    };
+    let nodes = || Axis::plain_logarithmic("nodes in contact", from, to);
+    let (least, most) = ends(|point| point.1);
+    let (fewest, greatest) = ends(|point| point.2);
+    Ok([
+        Chart {
+            title: format!("Time of a path on {0} × {0} nodes", options.nodes),
+            x: nodes(),
+            y: Axis::logarithmic("time", "s", least, most).with_room(0.05, 0.05),
+            series: times,
+            legend: Corner::TopLeft,
+        },
+        Chart {
+            title: "Memory that it holds".to_string(),
+            x: nodes(),
+            y: Axis::logarithmic("memory", "B", fewest, greatest).with_room(0.1, 0.1),
+            series: series(|point| point.2).collect(),
+            legend: Corner::TopLeft,
+        },
+    ])
+}
+
+fn draw(options: &Options, folder: &Path) -> Result<(), Failure> {
+    let charts = charts(options).map_err(|error| Failure::new("cannot follow a path", error))?;
+    panel::register_font()?;
+    let name = folder.join("performance.png");
+    std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, error))?;
+    println!("{}", chart::draw(&charts, 2, &name)?.display());
+    Ok(())
+}
+
+fn main() -> ExitCode {
     let options = Options::parse();
+    let done = match &options.picture {
+        Some(folder) => draw(&options, folder),
+        None => time(&options).map_err(|error| Failure::new("cannot follow a path", error)),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn time(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.budget.is_some() {
-        run(&options, Handover::new(), None)
+        run(options, Handover::new(), None)
     } else {
         let timings = RecursiveCholesky::timings;
-        run(&options, RecursiveCholesky::new(), Some(timings))
+        run(options, RecursiveCholesky::new(), Some(timings))
     }
 }

@@ -1,12 +1,33 @@
 //! Outputs on which there is no room, for tests of everything that writes.
 
-mod disk;
+use std::io::{Cursor, ErrorKind, Result};
 
 use nalgebra::DMatrix;
 
-use self::disk::is_refused_at_every_byte;
 use super::{gsf, npy, vti, x3p};
 use crate::Grid;
+
+/// Whatever the room, from nothing on: what does not fit is refused by the writer, and what was written of it by the
+/// reader. All of it fits into as much as it takes.
+fn is_refused_at_every_byte(
+    write: impl Fn(&mut Cursor<&mut [u8]>) -> Result<()>,
+    reads: impl Fn(&[u8]) -> bool,
+) -> Result<()> {
+    for room in 0..1 << 16 {
+        let mut disk = vec![0; room];
+        match write(&mut Cursor::new(&mut disk[..])) {
+            Ok(()) => {
+                assert!(room > 0 && reads(&disk), "{room} bytes are not read");
+                return Ok(());
+            }
+            Err(error) if error.kind() == ErrorKind::WriteZero => {
+                assert!(!reads(&disk), "{room} bytes are read, but more was written");
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Err(ErrorKind::StorageFull.into())
+}
 
 #[test]
 fn fields_do_not_fit() -> std::result::Result<(), Box<dyn std::error::Error>> {
