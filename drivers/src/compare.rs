@@ -121,8 +121,12 @@ pub(crate) fn same_path(
         // What the state itself says of its approach, and what follows from it.
         let error = bounds.excess * state.approach_error;
         let rate = |state: &LoadingState| {
-            let rate = state.contact.contact_stiffness.or(state.contact.interfacial_stiffness);
-            rate.filter(|rate| rate.is_finite())
+            let contact = &state.contact;
+            let rate = contact.contact_stiffness.or(contact.interfacial_stiffness);
+            // In full contact the mean planes come closer by what sinks in alone.
+            let sinks =
+                contact.plastic.map(|plastic| contact.contact_area / plastic.volume_per_load);
+            [rate, sinks].into_iter().flatten().find(|rate| rate.is_finite())
         };
         // Full contact has none where the mean displacement is arbitrary: there it is the rate on the way to it.
         let before = k.checked_sub(1).and_then(|before| rate(&exact[before]));
