@@ -12,8 +12,8 @@ GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 SCRIPTS = sorted(script.name for script in GALLERY.glob("*.py") if not script.name.startswith("_"))
 
 
-def test_there_are_five() -> None:
-    assert len(SCRIPTS) == 5
+def test_there_are_six() -> None:
+    assert len(SCRIPTS) == 6
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
