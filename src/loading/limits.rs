@@ -26,8 +26,7 @@ pub enum LoadingEnd {
     Nodes,
     /// One more node would exceed the memory budget; the last item was the error that says so.
     Memory,
-    /// No gap closes any more and no pressure falls, although not all nodes are in contact. It never
-    /// happens with the kernels of this crate.
+    /// No gap closes any more and no pressure falls, although not all nodes are in contact. On half-spaces it never happens.
     NoMoreEvents,
     /// The last item was an error.
     Failed,

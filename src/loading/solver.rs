@@ -20,8 +20,8 @@ use crate::{Error, Grid, Problem};
 
 /// The exact loading path of a rigid rough surface on an elastic half-space.
 ///
-/// A fused iterator: it yields one [`LoadingState`] for each node that touches (or leaves, with a kernel that
-/// lets nodes leave), from first touch (approach 0, load 0) to full contact or a limit. If the limit is a load,
+/// A fused iterator: it yields one [`LoadingState`] for each node that touches (or yields, with a hardness, or leaves, with a
+/// kernel that lets nodes leave), from first touch (approach 0, load 0) to full contact or a limit. If the limit is a load,
 /// an approach or a mean gap, the last state is at exactly that limit. Afterwards, or after an error, it yields
 /// `None`, and [`end`](Self::end) says why; so it does if a user-defined updater has panicked and the panic was
 /// caught. Fields of the present state, the last one yielded, are computed on demand.

@@ -9,8 +9,8 @@ use crate::contact::ContactState;
 pub enum ContactEvent {
     /// The gap of a node has closed, and it joins the contact.
     Touch,
-    /// The pressure of a node has fallen to zero, and it leaves the contact. It never happens with the
-    /// kernels of this crate; see [`ContactGrowth`](crate::ContactGrowth).
+    /// The pressure of a node has fallen to zero, and it leaves the contact. On half-spaces it never happens, on stiff coats
+    /// it may; see [`ContactGrowth`](crate::ContactGrowth).
     Release,
     /// The pressure of a node has risen to its [hardness](super::LoadingBuilder::hardness), and it yields for good. It stays in
     /// contact.
@@ -21,8 +21,8 @@ pub enum ContactEvent {
 
 /// A state of a path: the instant of an event, with the event already done.
 ///
-/// The node that touches or leaves has no pressure at that instant; one that yields has its hardness, and no plastic depth yet. Load, approach, area and the other scalars are those of
-/// the contact: `state.contact.load`.
+/// The node that touches or leaves has no pressure at that instant; one that yields has its hardness, and no plastic depth yet. Load,
+/// approach, area and the other scalars are those of the contact: `state.contact.load`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

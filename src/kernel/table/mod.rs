@@ -170,7 +170,8 @@ impl KernelTable {
     ///
     /// There is no such constructor for a free boundary: a finite number of waves only describes bodies
     /// that repeat, and a symbol sampled on a larger grid gives the displacements of all its images as
-    /// well. The coefficients of a free layer are Hankel integrals, for [`from_fn`](Self::from_fn).
+    /// well. The coefficients of a free body are Hankel integrals, for [`from_fn`](Self::from_fn); those of layers are
+    /// [`Layered::free`](super::Layered::free).
     ///
     /// # Errors
     ///
