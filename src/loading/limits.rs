@@ -1,7 +1,7 @@
 //! Where a path ends, and why.
 
 use super::state::{ContactEvent, LoadingState};
-use crate::contact::ContactTarget;
+use crate::contact::{ContactState, ContactTarget};
 use crate::{Error, Grid};
 
 /// Why a path has ended.
@@ -208,7 +208,10 @@ impl Limits {
             (
                 LoadingEnd::Approach,
                 next.contact.approach > self.approach,
-                last.contact.at_approach(self.approach),
+                // In full contact mean planes come no closer before a node yields, but by what states are off.
+                last.contact
+                    .at_approach(self.approach)
+                    .or(Some(ContactState { approach: self.approach, ..last.contact })),
             ),
             (
                 LoadingEnd::MeanGap,
