@@ -276,7 +276,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         };
         let settles = self.rule == ContactRule::FirstContact;
         let procedure = match growth {
-            ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
+            ContactGrowth::Unknown => {
+                let refined = Refined::with_releases(self.window_size, settles);
+                Procedure::Stepwise(Box::new((Stepwise::default(), refined)))
+            }
             _ if plastic.is_some() => {
                 let refined = RefinedYielding::new(self.window_size, settles);
                 Procedure::Yielding(Box::new((Yielding::new(self.window_size), refined)))

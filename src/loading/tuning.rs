@@ -53,6 +53,19 @@ pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
 /// Newton steps to the root of a cubic that is nearly a line. Half or twice: no effect, for they converge quadratically.
 pub(super) const NEWTON: usize = 8;
 
+// Windows without a factor where nodes may leave
+
+/// Fewer nodes in contact take a solution an event: windows on them would hold a quarter as many events.
+pub(super) const LEAST_CONTACT: usize = 100;
+/// A window goes to this part of the time at which the first node would leave if none touched.
+pub(super) const BEFORE_RELEASE: f64 = 0.9;
+/// Nodes that would touch within so many times the span of a window are looked at between its ends.
+pub(super) const FURTHEST: f64 = 4.0;
+/// What the end of a window shows to be missing of a pressure or a gap may be missing in between as well, up to this many times.
+pub(super) const UNCERTAIN: f64 = 1.0;
+/// A pressure that falls below this part of what it was, or of what nodes that touched have taken off it, may have fallen to zero.
+pub(super) const NEARLY_LEFT: f64 = 0.05;
+
 // Near ties: the error of a time is estimated as the greatest of
 
 /// this many times the difference of the two corrections, by the Schur complement and by cubics. Half: fewer near ties, and errors
