@@ -134,7 +134,7 @@ impl Stepwise {
         let start = Instant::now();
         self.touches.clear();
         self.touches.reserve(run.problem.grid().nodes());
-        run.survey(true, |node, line| {
+        run.survey(Some(overlap), |node, line| {
             if line.closing > LEAST_RATE {
                 self.touches.push(Upcoming {
                     approach: approach + line.gap / line.closing,

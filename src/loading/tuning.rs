@@ -202,6 +202,9 @@ pub(super) const NEGLIGIBLE: f64 = 320.0;
 pub(super) const LEAST_WINDOW: usize = 64;
 /// Seconds of an event with a factor of n nodes, per n²: a matrix product. With the next two it decides when a factor is given up.
 pub(super) const FACTOR: f64 = 1.0e-11;
+/// The same of an event that is not in a window: per n², a solution and a row of the factor, and per node of the grid, the convolution of
+/// two fields.
+pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
 /// goes with them on the contact.
 pub(super) const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];

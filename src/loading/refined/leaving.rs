@@ -150,7 +150,8 @@ impl Before {
             let Some(&[value, slope]) = self.pressures.get(place) else {
                 continue;
             };
-            let terms: Vec<(usize, f64)> = of_node.iter().map(|&(_, event, w)| (event, w)).collect();
+            let terms: Vec<(usize, f64)> =
+                of_node.iter().map(|&(_, event, w)| (event, w)).collect();
             let end = [pressure[place], rate[place]];
             let time = course.sound_until(([value, slope], end), &terms, (first, tension));
             until = until.min(time);
@@ -189,8 +190,7 @@ impl Before {
                     .sum::<f64>();
                 table.between(own, table.place(window.node(position))) - answer
             };
-            let terms: Vec<(usize, f64)> =
-                course.positions.iter().map(acts).enumerate().collect();
+            let terms: Vec<(usize, f64)> = course.positions.iter().map(acts).enumerate().collect();
             let ends = ([gap, -closing], [end.gap, -end.closing]);
             let time = course.sound_until(ends, &terms, (0.0, -overlap));
             if time < span {
@@ -207,8 +207,7 @@ impl Course {
     fn of(window: &Window, events: &[WindowEvent], span: f64) -> Option<Self> {
         let positions: Vec<usize> = events.iter().map(|event| event.position).collect();
         let factor = WindowFactor::of(window.schur().clone(), &positions).ok()?;
-        let times: Vec<f64> =
-            events[1..].iter().map(|event| event.time).chain([span]).collect();
+        let times: Vec<f64> = events[1..].iter().map(|event| event.time).chain([span]).collect();
         let at = |(count, &time): (usize, &f64)| {
             let overlap = |&position: &usize| [-window.course(position).gap(time)];
             let mut pressures: Vec<[f64; 1]> = positions[..count].iter().map(overlap).collect();
@@ -216,10 +215,8 @@ impl Course {
             pressures.into_iter().flatten().collect()
         };
         let pressures = (1..).zip(&times).map(at).collect();
-        let mut rates: Vec<[f64; 1]> = positions
-            .iter()
-            .map(|&position| [window.course(position).closing(span)])
-            .collect();
+        let mut rates: Vec<[f64; 1]> =
+            positions.iter().map(|&position| [window.course(position).closing(span)]).collect();
         factor.solve_both(&mut rates);
         let rates = rates.into_iter().flatten().collect();
         Some(Self { positions, times, pressures, rates })
@@ -296,15 +293,15 @@ impl Course {
     fn bounds(&self, schur: &Schur, self_influence: f64) -> Vec<f64> {
         let (span, end) = (self.span(), &self.pressures[self.times.len() - 1]);
         let bound = |(time, pressures): (&f64, &Vec<f64>)| {
-            let off = end.iter().enumerate().map(|(event, end)| {
-                pressures.get(event).unwrap_or(&0.0) - time / span * end
-            });
+            let off = end
+                .iter()
+                .enumerate()
+                .map(|(event, end)| pressures.get(event).unwrap_or(&0.0) - time / span * end);
             let off: Vec<f64> = off.collect();
             let energy: f64 = (0..off.len())
                 .map(|i| {
-                    let row = (0..off.len()).map(|j| {
-                        schur.entry(self.positions[i], self.positions[j]) * off[j]
-                    });
+                    let row = (0..off.len())
+                        .map(|j| schur.entry(self.positions[i], self.positions[j]) * off[j]);
                     off[i] * row.sum::<f64>()
                 })
                 .sum();

@@ -23,8 +23,8 @@ use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
-    BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
-    WATCHED_UNSETTLED,
+    BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED,
+    SHORTER, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
@@ -221,7 +221,7 @@ impl Refined {
     fn survey(&mut self, run: &mut LoadingRun) -> Result<(), Error> {
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         run.scalars.renew_load(problem, contact, field);
-        fill(run, &mut self.ranking, false, GapLine::touches)?;
+        fill(run, &mut self.ranking, None, GapLine::touches)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         Ok(())
     }
@@ -340,7 +340,8 @@ impl Refined {
                 let tension = tolerances.overlap(run.scalars.approach())
                     / run.problem.table().self_influence();
                 let at = (run.scalars.approach(), time);
-                let after = before.sound_until(run, tension, at).map(|after| BEFORE_RELEASE * after);
+                let after =
+                    before.sound_until(run, tension, at).map(|after| BEFORE_RELEASE * after);
                 let after = after.or_else(|| (!found.tension.is_empty()).then_some(0.5 * time));
                 contradicted = after.map(|after| Outcome::Leaves { after });
             }
@@ -461,7 +462,9 @@ impl Refined {
             }
         }
         for &(time, node) in &self.ranking {
-            if time >= 0.0 {
+            // A gap that has closed may open again, where nodes may leave.
+            let may_overlap = time < 0.0 || self.may_leave && time == f64::INFINITY;
+            if !may_overlap {
                 continue;
             }
             if run.line(node).gap < overlap {
