@@ -278,7 +278,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let procedure = match growth {
             ContactGrowth::Unknown => {
                 let refined = Refined::with_releases(self.window_size, settles);
-                Procedure::Stepwise(Box::new((Stepwise::default(), refined)))
+                Procedure::Stepwise(Stepwise::default(), refined)
             }
             _ if plastic.is_some() => {
                 let refined = RefinedYielding::new(self.window_size, settles);

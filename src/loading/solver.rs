@@ -68,7 +68,7 @@ pub(super) enum Procedure {
     /// In windows: exact ones while there is a factor, and refined ones with iterations.
     Windows(Windowed, Refined),
     /// One at a time, and with iterations in windows until a node leaves.
-    Stepwise(Box<(Stepwise, Refined)>),
+    Stepwise(Stepwise, Refined),
     /// In windows in which nodes yield as well.
     Yielding(Box<(Yielding, RefinedYielding)>),
 }
@@ -152,8 +152,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             }
         }
         match (&mut self.procedure, phase) {
-            (Procedure::Stepwise(procedures), phase) => {
-                let (stepwise, refined) = &mut **procedures;
+            (Procedure::Stepwise(stepwise, refined), phase) => {
                 if let Phase::Iterations(iterations) = phase
                     && !is_enough
                 {
@@ -227,7 +226,7 @@ impl<U: LinearUpdater> Iterator for LoadingSolver<U> {
         if self.end.is_some() {
             return (0, Some(0));
         }
-        if let Procedure::Stepwise(_) = self.procedure {
+        if let Procedure::Stepwise(..) = self.procedure {
             // Nodes may leave and touch again.
             return (0, None);
         }
