@@ -239,8 +239,8 @@ impl HalfSpace {
     ///
     /// Notes
     /// -----
-    /// A coat that is stiffer than what it lies on may let nodes leave the contact: a path then finds each event by itself,
-    /// which takes longer.
+    /// A coat that is stiffer than what it lies on may let nodes leave the contact: a path then computes events
+    /// together only until a node leaves, which takes longer.
     #[staticmethod]
     #[pyo3(signature = (layers, base, boundary, *, against=None))]
     fn layered(

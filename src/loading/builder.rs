@@ -157,7 +157,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
     /// How many nodes to watch at a time. By default as many as make an event cheapest; states do not
     /// depend on it, except by rounding. With 1 every node costs one convolution and one row of the factor,
     /// as in the paper. Without a factor it is eight at least, to tell them apart; a kernel of
-    /// [`ContactGrowth::Unknown`] is always followed one event at a time.
+    /// [`ContactGrowth::Unknown`] is followed one event at a time as long as there is a factor.
     pub fn window_size(mut self, nodes: usize) -> Self {
         self.window_size = Some(nodes);
         self
@@ -276,7 +276,10 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         };
         let settles = self.rule == ContactRule::FirstContact;
         let procedure = match growth {
-            ContactGrowth::Unknown => Procedure::Stepwise(Stepwise::default()),
+            ContactGrowth::Unknown => {
+                let refined = Refined::with_releases(self.window_size, settles);
+                Procedure::Stepwise(Stepwise::default(), refined)
+            }
             _ if plastic.is_some() => {
                 let refined = RefinedYielding::new(self.window_size, settles);
                 Procedure::Yielding(Box::new((Yielding::new(self.window_size), refined)))

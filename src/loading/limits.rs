@@ -26,7 +26,8 @@ pub enum LoadingEnd {
     Nodes,
     /// One more node would exceed the memory budget; the last item was the error that says so.
     Memory,
-    /// No gap closes any more and no pressure falls, although not all nodes are in contact. On half-spaces it never happens.
+    /// No gap closes any more and no pressure falls, although not all nodes are in contact. Of the
+    /// kernels of this crate stiff coats with a free boundary let it happen.
     NoMoreEvents,
     /// The last item was an error.
     Failed,

@@ -8,7 +8,8 @@
 //! * In *windows*, if contact only ever grows: a δⱼ computed earlier is then a lower bound, and only the nodes
 //!   with the smallest ones need be watched until the *horizon*, the smallest bound among all others, is
 //!   reached. If bounds may fail, a window is checked at its end.
-//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel.
+//! * One at a time, nodes that *leave* among them, if nothing is known of the kernel. Without a factor, and with a hundred nodes in contact
+//!   or more, in windows as well: each ends before a node leaves, and is checked at its end and at each event in it.
 //!
 //! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Yielding` then takes the place of `Windowed`: it
 //! watches nodes of both kinds, and checks each window at its end before the updater learns of it. Without a factor it is

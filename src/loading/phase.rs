@@ -4,14 +4,14 @@ use super::factor_log::FactorLog;
 use super::gap_field;
 use super::refined::resumed::RefinedEnd;
 use super::run::LoadingRun;
-use super::tuning::{FACTOR, ITERATIONS, LEAST_WINDOW, WINDOW};
+use super::tuning::{FACTOR, ITERATIONS, LEAST_CONTACT, LEAST_WINDOW, STEP, WINDOW};
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
     ConjugateGradient, Iterations, Left, LinearUpdater, Method, RecursiveCholesky, Solution,
     WindowFactor, join_all,
 };
-use crate::{Error, Problem};
+use crate::{ContactGrowth, Error, Problem};
 
 /// The solver of a path.
 #[derive(Debug)]
@@ -71,7 +71,14 @@ impl<U: LinearUpdater> Phase<U> {
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);
         let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
         let fits = run.memory.check(needed, count).is_ok();
-        let pays = factor_seconds(count) <= iteration_seconds(nodes, count);
+        let pays = match run.problem.growth() {
+            // Iterations have windows there, and a factor has none.
+            ContactGrowth::Unknown => {
+                count < LEAST_CONTACT
+                    || step_seconds(nodes, count) <= iteration_seconds(nodes, count)
+            }
+            _ => factor_seconds(count) <= iteration_seconds(nodes, count),
+        };
         if fits && (pays || iterations.check_cells(&run.problem).is_err()) {
             return None;
         }
@@ -295,6 +302,11 @@ pub fn last_factor(nodes: usize) -> usize {
 
 fn factor_seconds(contact: usize) -> f64 {
     FACTOR * (contact as f64).powi(2)
+}
+
+/// Seconds of an event that has a solution of its own, with a factor.
+fn step_seconds(nodes: usize, contact: usize) -> f64 {
+    STEP[0] * (contact as f64).powi(2) + STEP[1] * nodes as f64
 }
 
 fn iteration_seconds(nodes: usize, contact: usize) -> f64 {

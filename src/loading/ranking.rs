@@ -23,7 +23,7 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
         }
     }
     let (approach, mut first) = (run.scalars.approach(), f64::INFINITY);
-    fill(run, ranking, true, |line| {
+    fill(run, ranking, Some(0.0), |line| {
         first = first.min(line.touches());
         ties_from(approach, *line)
     })?;
@@ -31,11 +31,11 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
     Ok(first)
 }
 
-/// Looks at all gaps at the present approach, and ranks them by a time. With `check` an overlap is an error.
+/// Looks at all gaps at the present approach, and ranks them by a time. With `check` an overlap is an error, beyond rounding and what a solution may leave.
 pub(super) fn fill(
     run: &mut LoadingRun,
     ranking: &mut Ranking,
-    check: bool,
+    check: Option<f64>,
     mut time: impl FnMut(&GapLine) -> f64,
 ) -> Result<(), Error> {
     ranking.clear();

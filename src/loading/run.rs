@@ -240,20 +240,21 @@ impl LoadingRun {
     }
 
     /// Visits all gaps out of contact, and takes the mean gap from them. With `check` an overlap is an
-    /// error.
+    /// error, beyond rounding and what a solution may leave.
     pub(super) fn survey(
         &mut self,
-        check: bool,
+        check: Option<f64>,
         mut visit: impl FnMut(usize, GapLine),
     ) -> Result<(), Error> {
         let approach = self.scalars.approach();
-        let least = -TOLERANCE * (self.problem.greatest_gap() + approach);
+        let rounding = TOLERANCE * (self.problem.greatest_gap() + approach);
+        let least = -check.map_or(f64::INFINITY, |overlap| rounding.max(overlap));
         let (mut mean_gap, mut closing) = (Sum::default(), Sum::default());
         for (node, line) in self.field.lines(&self.problem, &self.contact, approach) {
             if line.gap.is_nan() {
                 return Err(self.not_finite());
             }
-            if check && line.gap < least {
+            if line.gap < least {
                 return Err(self.not_monotone("gap", node, line.gap));
             }
             closing.add(line.closing);

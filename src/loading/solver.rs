@@ -8,6 +8,7 @@ use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::{Phase, last_factor};
 use super::refined::Refined;
+use super::refined::leaving::Attempt;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
@@ -66,7 +67,8 @@ pub struct LoadingSolver<U = Handover> {
 pub(super) enum Procedure {
     /// In windows: exact ones while there is a factor, and refined ones with iterations.
     Windows(Windowed, Refined),
-    Stepwise(Stepwise),
+    /// One at a time, and with iterations in windows until a node leaves.
+    Stepwise(Stepwise, Refined),
     /// In windows in which nodes yield as well.
     Yielding(Box<(Yielding, RefinedYielding)>),
 }
@@ -150,7 +152,24 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             }
         }
         match (&mut self.procedure, phase) {
-            (Procedure::Stepwise(stepwise), phase) => stepwise.produce(run, phase, most_nodes),
+            (Procedure::Stepwise(stepwise, refined), phase) => {
+                if let Phase::Iterations(iterations) = phase
+                    && !is_enough
+                {
+                    let attempt = refined.attempt(run, &mut **iterations)?;
+                    if attempt != Attempt::NotBegun {
+                        stepwise.forget();
+                    }
+                    if attempt == Attempt::Made {
+                        return Ok(());
+                    }
+                    if !stepwise.has_begun() {
+                        // Its solution is more exact.
+                        run.field.forget();
+                    }
+                }
+                stepwise.produce(run, phase, most_nodes)
+            }
             _ if is_enough => Ok(()),
             (Procedure::Yielding(windows), Phase::Factor { updater, .. }) => {
                 let failure = windows.0.produce(run, updater, limit)?;
@@ -207,7 +226,7 @@ impl<U: LinearUpdater> Iterator for LoadingSolver<U> {
         if self.end.is_some() {
             return (0, Some(0));
         }
-        if let Procedure::Stepwise(_) = self.procedure {
+        if let Procedure::Stepwise(..) = self.procedure {
             // Nodes may leave and touch again.
             return (0, None);
         }

@@ -9,8 +9,8 @@ use crate::contact::ContactState;
 pub enum ContactEvent {
     /// The gap of a node has closed, and it joins the contact.
     Touch,
-    /// The pressure of a node has fallen to zero, and it leaves the contact. On half-spaces it never happens, on stiff coats
-    /// it may; see [`ContactGrowth`](crate::ContactGrowth).
+    /// The pressure of a node has fallen to zero, and it leaves the contact. Of the kernels of
+    /// this crate stiff coats let it happen; see [`ContactGrowth`](crate::ContactGrowth).
     Release,
     /// The pressure of a node has risen to its [hardness](super::LoadingBuilder::hardness), and it yields for good. It stays in
     /// contact.

@@ -35,6 +35,16 @@ pub(super) struct Stepwise {
 }
 
 impl Stepwise {
+    /// Whether the next event is known at the present state.
+    pub(super) fn has_begun(&self) -> bool {
+        self.has_begun
+    }
+
+    /// Says that the path has gone on otherwise.
+    pub(super) fn forget(&mut self) {
+        self.has_begun = false;
+    }
+
     /// Computes one state, unless there is none with at most `most_nodes` in contact.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
@@ -124,7 +134,7 @@ impl Stepwise {
         let start = Instant::now();
         self.touches.clear();
         self.touches.reserve(run.problem.grid().nodes());
-        run.survey(true, |node, line| {
+        run.survey(Some(overlap), |node, line| {
             if line.closing > LEAST_RATE {
                 self.touches.push(Upcoming {
                     approach: approach + line.gap / line.closing,

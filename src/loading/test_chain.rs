@@ -38,7 +38,7 @@ pub(super) fn surveyed(
     let mut run = solved(gaps, contact, approach)?;
     let LoadingRun { problem, contact, field, scalars, .. } = &mut run;
     scalars.renew_load(problem, contact, field);
-    run.survey(false, |_, _| ())?;
+    run.survey(None, |_, _| ())?;
     Ok(run)
 }
 

@@ -53,6 +53,19 @@ pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
 /// Newton steps to the root of a cubic that is nearly a line. Half or twice: no effect, for they converge quadratically.
 pub(super) const NEWTON: usize = 8;
 
+// Windows without a factor where nodes may leave
+
+/// Fewer nodes in contact take a solution an event: windows on them would hold a quarter as many events.
+pub(super) const LEAST_CONTACT: usize = 100;
+/// A window goes to this part of the time at which the first node would leave if none touched.
+pub(super) const BEFORE_RELEASE: f64 = 0.9;
+/// Nodes that would touch within so many times the span of a window are looked at between its ends.
+pub(super) const FURTHEST: f64 = 4.0;
+/// What the end of a window shows to be missing of a pressure or a gap may be missing in between as well, up to this many times.
+pub(super) const UNCERTAIN: f64 = 1.0;
+/// A pressure that falls below this part of what it was, or of what nodes that touched have taken off it, may have fallen to zero.
+pub(super) const NEARLY_LEFT: f64 = 0.05;
+
 // Near ties: the error of a time is estimated as the greatest of
 
 /// this many times the difference of the two corrections, by the Schur complement and by cubics. Half: fewer near ties, and errors
@@ -189,6 +202,9 @@ pub(super) const NEGLIGIBLE: f64 = 320.0;
 pub(super) const LEAST_WINDOW: usize = 64;
 /// Seconds of an event with a factor of n nodes, per n²: a matrix product. With the next two it decides when a factor is given up.
 pub(super) const FACTOR: f64 = 1.0e-11;
+/// The same of an event that is not in a window: per n², a solution and a row of the factor, and per node of the grid, the convolution of
+/// two fields.
+pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
 /// goes with them on the contact.
 pub(super) const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];

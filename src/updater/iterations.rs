@@ -108,6 +108,12 @@ pub trait Iterations: Debug + Send + Sync {
         schur: &mut Schur,
     ) -> Result<Vec<[f64; 2]>, Error>;
 
+    /// How the contact answers the nodes that were proposed last, nearly: for each of them nodes in contact near it, and what a unit
+    /// pressure takes off them. Nothing if the iterations cannot tell: then no window is made where nodes may leave.
+    fn answers(&self) -> Vec<(&[u32], &[f64])> {
+        Vec::new()
+    }
+
     /// Solves on the whole contact, which nodes may have left since the last time, at an approach, and stays there. The rate is so exact that the solution keeps its tolerance over
     /// the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
     fn advance(

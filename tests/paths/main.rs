@@ -28,6 +28,7 @@ mod releases;
 mod resumed;
 mod semi_periodic;
 mod small_without_factor;
+mod stiff_coats;
 mod strips;
 mod ties;
 mod undisturbed;

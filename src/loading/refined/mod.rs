@@ -7,6 +7,7 @@
 
 pub(super) mod candidates;
 pub(super) mod correction;
+pub(super) mod leaving;
 mod near_ties;
 mod plateau;
 pub(super) mod resumed;
@@ -22,13 +23,14 @@ use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
-    WATCHED_UNSETTLED,
+    BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED,
+    SHORTER, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
 use candidates::{Candidates, cut, with_ties};
 use correction::Correction;
+use leaving::{Attempt, Before, Between};
 use near_ties::Settled;
 
 /// Finds events in windows that are corrected at their end.
@@ -37,6 +39,8 @@ pub(super) struct Refined {
     size: usize,
     /// Whether events that are too close to be told apart get a solution of their own.
     settles: bool,
+    /// Whether nodes may leave.
+    may_leave: bool,
     /// The nodes out of contact, at the present approach.
     ranking: Ranking,
     /// The contact and approach that the ranking belongs to.
@@ -58,6 +62,10 @@ enum Outcome {
     TakenBack,
     /// Nodes overlap that were not watched: (when they would touch, node), and how long it was. Nothing has changed.
     Overlap { outside: Ranking, time: f64 },
+    /// A node may leave after this time. Nothing has changed.
+    Leaves { after: f64 },
+    /// The next event is to have a solution of its own. Nothing has changed.
+    Alone,
 }
 
 /// The nodes at which a contact contradicts the conditions of contact at a window's end.
@@ -77,6 +85,7 @@ impl Refined {
         Self {
             size: size.unwrap_or(watched).max(FEWEST),
             settles,
+            may_leave: false,
             ranking: Vec::new(),
             ranked: None,
             last_span: 0.0,
@@ -84,6 +93,59 @@ impl Refined {
             left_out: 0.0,
             joined: Vec::new(),
         }
+    }
+
+    /// The same on a body on which nodes may leave.
+    pub(super) fn with_releases(size: Option<usize>, settles: bool) -> Self {
+        Self { may_leave: true, ..Self::new(size, settles) }
+    }
+
+    /// Computes a window of states before the next node leaves, where nodes may. Without one nothing has happened to the path.
+    pub(super) fn attempt(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+    ) -> Result<Attempt, Error> {
+        let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
+        if count < LEAST_CONTACT || count == nodes || iterations.check_cells(&run.problem).is_err()
+        {
+            return Ok(Attempt::NotBegun);
+        }
+        let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
+        let mut attempt = Attempt::NotBegun;
+        for _ in 0..MOST_TRIES {
+            let tolerances = WindowTolerances::of(run, iterations.tolerance());
+            self.begin(run, iterations)?;
+            let mut candidates = self.choose(run, &tolerances, &extra);
+            self.improve_rates(run, iterations, &tolerances, &mut candidates, &extra)?;
+            longest = longest.min(BEFORE_RELEASE * leaving::first_release(run));
+            let first = candidates.nodes.first().map_or(f64::INFINITY, |(time, _)| *time);
+            if candidates.group.is_some() || first.is_nan() || first >= longest {
+                return Ok(attempt);
+            }
+            attempt = Attempt::Failed;
+            let window = self.propose(run, iterations, candidates, longest)?;
+            if iterations.answers().len() != window.nodes().len() {
+                return Ok(attempt);
+            }
+            match self.follow(run, iterations, &tolerances, &window, nodes - count)? {
+                Outcome::Done if !run.queue.is_empty() => return Ok(Attempt::Made),
+                Outcome::Done => {
+                    longest = f64::INFINITY;
+                    extra.clear();
+                }
+                Outcome::TakenBack => longest = f64::INFINITY,
+                Outcome::Overlap { outside, time } => {
+                    longest = SHORTER * time;
+                    let room = self.size.saturating_sub(extra.len()).max(1);
+                    extra.extend(outside.into_iter().take(room).map(|(_, node)| node));
+                }
+                Outcome::Leaves { after } => longest = after,
+                Outcome::Alone => return Ok(attempt),
+            }
+            run.timings.taken_back += usize::from(run.queue.is_empty());
+        }
+        Ok(attempt)
     }
 
     /// Computes a window of states, with no more than `most_nodes` in contact.
@@ -120,6 +182,10 @@ impl Refined {
                     longest = f64::INFINITY;
                     run.timings.taken_back += 1;
                 }
+                // No node leaves.
+                Outcome::Leaves { .. } | Outcome::Alone => {
+                    return Err(run.not_monotone("gap or pressure", window.node(0), 0.0));
+                }
                 // The horizon was wrong: watch what overlapped as well, and not so far.
                 Outcome::Overlap { outside, time } => {
                     longest = SHORTER * time;
@@ -155,7 +221,7 @@ impl Refined {
     fn survey(&mut self, run: &mut LoadingRun) -> Result<(), Error> {
         let (problem, contact, field) = (&run.problem, &run.contact, &run.field);
         run.scalars.renew_load(problem, contact, field);
-        fill(run, &mut self.ranking, false, GapLine::touches)?;
+        fill(run, &mut self.ranking, None, GapLine::touches)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         Ok(())
     }
@@ -233,6 +299,9 @@ impl Refined {
         let mut first = window.clone();
         let bad = first.play(usize::MAX);
         let events = first.events();
+        if events.is_empty() && self.may_leave {
+            return Ok(Outcome::Alone);
+        }
         if events.is_empty() {
             return Err(match bad {
                 Some(bad) => run.not_positive_definite(bad),
@@ -245,6 +314,9 @@ impl Refined {
         let kept = most.min(with_ties(events, self.most_events(), tolerances));
         let (cut, time) = cut(events, window.horizon(), kept, tolerances);
         let first = &events[..cut];
+        if time <= tolerances.tie && self.may_leave {
+            return Ok(Outcome::Alone);
+        }
         if time <= tolerances.tie {
             // All of them touch at once. Their gaps are better known than those of the ranking.
             let known: Vec<usize> = first.iter().map(|event| window.node(event.position)).collect();
@@ -252,6 +324,7 @@ impl Refined {
             return Ok(Outcome::Done);
         }
         let mark = run.mark();
+        let before = self.may_leave.then(|| Before::of(run, self, window));
         let mut joined: Vec<usize> = first.iter().map(|event| event.position).collect();
         for _ in 0..MOST_TRIES {
             let found = match self.go_to_end(run, iterations, tolerances, window, &joined, time) {
@@ -262,7 +335,17 @@ impl Refined {
                     return Err(error);
                 }
             };
-            if found.is_empty() {
+            let mut contradicted = None;
+            if let Some(before) = &before {
+                let tension = tolerances.overlap(run.scalars.approach())
+                    / run.problem.table().self_influence();
+                let at = (run.scalars.approach(), time);
+                let after =
+                    before.sound_until(run, tension, at).map(|after| BEFORE_RELEASE * after);
+                let after = after.or_else(|| (!found.tension.is_empty()).then_some(0.5 * time));
+                contradicted = after.map(|after| Outcome::Leaves { after });
+            }
+            if found.is_empty() && contradicted.is_none() {
                 if joined.is_empty() {
                     self.last_span = time;
                     return Ok(Outcome::Done);
@@ -270,12 +353,24 @@ impl Refined {
                 let at = (&mark, time);
                 let passed =
                     self.refine(run, iterations, tolerances, window, (first, &joined), at)?;
-                if let Some((correction, settled)) = passed {
+                if let (Some(before), Some((correction, settled))) = (&before, &passed) {
+                    let events = (&correction.window, &settled.events[..]);
+                    let found = before.look_between(run, iterations, tolerances, events, time);
+                    contradicted = match found {
+                        Between::Nothing => None,
+                        Between::Until(after) => Some(Outcome::Leaves { after }),
+                        Between::Outside(outside) => Some(Outcome::Overlap { outside, time }),
+                    };
+                }
+                if let Some((correction, settled)) = passed.filter(|_| contradicted.is_none()) {
                     self.finish(run, correction, &settled, at, tolerances)?;
                     return Ok(Outcome::Done);
                 }
             }
             run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact))?;
+            if let Some(contradicted) = contradicted {
+                return Ok(contradicted);
+            }
             if found.is_empty() {
                 return Ok(Outcome::TakenBack);
             }
@@ -287,6 +382,9 @@ impl Refined {
             joined.retain(|position| !found.tension.contains(position));
             joined.extend(found.overlap);
             run.timings.taken_back += 1;
+        }
+        if self.may_leave {
+            return Ok(Outcome::Alone);
         }
         let node = window.node(first[0].position);
         Err(run.not_monotone("gap or pressure", node, 0.0))
@@ -364,7 +462,9 @@ impl Refined {
             }
         }
         for &(time, node) in &self.ranking {
-            if time >= 0.0 {
+            // A gap that has closed may open again, where nodes may leave.
+            let may_overlap = time < 0.0 || self.may_leave && time == f64::INFINITY;
+            if !may_overlap {
                 continue;
             }
             if run.line(node).gap < overlap {

@@ -82,7 +82,7 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     let mut run = test_chain::run(&[0.0, 1.0, 2.0, 5.0])?;
     run.scalars.place_at(0.5);
     let mut seen = Vec::new();
-    run.survey(false, |node, line| seen.push((node, line.gap, line.closing)))?;
+    run.survey(None, |node, line| seen.push((node, line.gap, line.closing)))?;
     assert_eq!(seen, [(0, -0.5, 1.0), (1, 0.5, 1.0), (2, 1.5, 1.0), (3, 4.5, 1.0)]);
     assert_eq!(run.scalars.state(0).mean_gap, 1.5);
     // One metre of approach takes one off.
@@ -90,8 +90,8 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     assert_eq!(run.scalars.state(0).mean_gap, 0.5);
     for (approach, is_refused) in [(4.9e-10, false), (5.1e-10, true)] {
         run.scalars.place_at(approach);
-        assert_eq!(run.survey(true, |_, _| ()).is_err(), is_refused, "{approach:e}");
-        run.survey(false, |_, _| ())?;
+        assert_eq!(run.survey(Some(0.0), |_, _| ()).is_err(), is_refused, "{approach:e}");
+        run.survey(None, |_, _| ())?;
     }
     // Node 3 alone is out of contact, and the greatest gap is that of node 2: 10⁻¹⁰ (5 + 3) m.
     let mut run = test_chain::run(&[0.0, 1.0, 5.0, 3.0])?;
@@ -100,8 +100,11 @@ fn a_survey_takes_the_mean_gap() -> Result<(), Error> {
     }
     for (overlap, is_refused) in [(7.9e-10, false), (8.1e-10, true)] {
         run.scalars.place_at(3.0 + overlap);
-        let found = run.survey(true, |_, _| ());
+        let found = run.survey(Some(0.0), |_, _| ());
         assert_eq!(found.is_err(), is_refused, "{overlap:e} {found:?}");
+        // And what a solution may leave, if that is more.
+        assert!(run.survey(Some(1e-9), |_, _| ()).is_ok());
+        assert_eq!(run.survey(Some(1e-12), |_, _| ()).is_err(), is_refused);
     }
     Ok(())
 }

@@ -185,6 +185,11 @@ impl Iterations for ConjugateGradient {
         })
     }
 
+    fn answers(&self) -> Vec<(&[u32], &[f64])> {
+        let solutions = self.solutions.as_ref();
+        solutions.map_or_else(Vec::new, |solutions| solutions.answers().collect())
+    }
+
     fn advance(
         &mut self,
         problem: &Problem,

@@ -59,6 +59,11 @@ impl Proposed {
         &self.complement
     }
 
+    /// For each node the contact near it, and what a unit pressure takes off that.
+    pub(super) fn answers(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
+        self.locals.iter().map(|local| (&local.contact[..], &local.weights[..]))
+    }
+
     /// Adds to `C_II⁻¹ s_I` what nodes that joined since they were watched add to it, and returns whether all nodes that
     /// joined were watched.
     pub(super) fn carry_row_sums(&self, contact: &ContactSequence, pressure: &mut [f64]) -> bool {

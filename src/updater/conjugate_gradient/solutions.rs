@@ -141,6 +141,11 @@ impl Solutions {
         Ok((self.proposed.complement(), displacements))
     }
 
+    /// How the contact answers the proposed nodes.
+    pub(super) fn answers(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
+        self.proposed.answers()
+    }
+
     /// Moves the path's solution to the whole contact at an approach, unless it is there and serves the aim.
     pub(super) fn advance(
         &mut self,

@@ -17,8 +17,8 @@ use asperity::loading::History;
 use asperity::surface::Paraboloid;
 use asperity::updater::ConjugateGradient;
 use asperity::{
-    Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid,
-    InfluenceKernel, LoadingSolver, LoadingState, SelfAffine, plane_strain_modulus,
+    Boussinesq, ContactEvent, ContactTarget, Error, FixedLoadSolver, Grid, InfluenceKernel,
+    LoadingSolver, LoadingState, SelfAffine, plane_strain_modulus,
 };
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
@@ -248,7 +248,7 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
          boundary; thicknesses in cells. Single loads from scratch to 10⁻¹⁰, at the load of each area fraction: steps of conjugate \
          gradients on the finest grid for the pressure + for the stiffness, and all convolutions there.\n\n\
          | body | 1 % | 10 % | 30 % | 60 % |\n|---|---:|---:|---:|---:|\n{loads}\n\
-         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`), a tenth of them where nothing is promised of contact growth: convolutions an event, windows, events \
+         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`): convolutions an event, windows, events \
          taken back, near ties settled.\n\n\
          | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{paths}"
     );
@@ -296,12 +296,9 @@ fn load_and_stretch(
         .updater(ConjugateGradient::new())
         .resume(&history)?;
     let before = path.convolutions().unwrap_or_default();
-    // One event takes a solution where nothing is promised.
-    let is_known = kernel.contact_growth() > ContactGrowth::Unknown;
-    let stretch = if is_known { STRETCH } else { STRETCH / 10 };
-    path.by_ref().take(stretch).try_for_each(|state| state.map(drop))?;
+    path.by_ref().take(STRETCH).try_for_each(|state| state.map(drop))?;
     // The events of the last window are all computed.
-    let events = (stretch + path.waiting()) as f64;
+    let events = (STRETCH + path.waiting()) as f64;
     let convolutions = (path.convolutions().unwrap_or_default() - before) as f64 / events;
     let timings = path.timings();
     let path =

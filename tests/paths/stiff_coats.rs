@@ -1,0 +1,116 @@
+//! Paths without a factor on bodies on which nodes may leave: windows until one does, beside paths of single events with a factor.
+
+use asperity::kernel::{Base, Layer, Layered, LayeredBody};
+use asperity::loading::History;
+use asperity::surface::{Amplitude, SelfAffine};
+use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::{
+    ContactEvent, ContactGrowth, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
+};
+
+/// A coat of E₁/E₂ and a thickness in cells, on cells of 1.
+fn coated(n: usize, ratio: f64, thickness: f64, is_free: bool) -> Layered {
+    let grid = Grid::square(n, n as f64).unwrap();
+    let coat = Layer { young: ratio, poisson: 0.3, thickness };
+    let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 1.0, poisson: 0.3 }).unwrap();
+    let kernel =
+        if is_free { Layered::free(grid, body) } else { Layered::periodic(grid, body) }.unwrap();
+    assert_eq!(kernel.contact_growth(), ContactGrowth::Unknown);
+    kernel
+}
+
+fn followed<U: LinearUpdater>(
+    surface: &SelfAffine,
+    kernel: &Layered,
+    updater: U,
+    nodes: usize,
+) -> (LoadingSolver<U>, Vec<LoadingState>) {
+    let builder = LoadingSolver::builder(surface, kernel).updater(updater);
+    let mut path = builder.max_nodes(nodes).build().unwrap();
+    let states = path.by_ref().map(Result::unwrap).collect();
+    (path, states)
+}
+
+/// Nodes along a side, ratio of moduli, thickness and shortest wavelength in cells, and a seed.
+const CASES: [([f64; 4], u64); 8] = [
+    ([20.0, 10.0, 0.4, 2.0], 1),
+    ([24.0, 10.0, 1.0, 2.0], 1),
+    // Gaps that close and open again within a window.
+    ([28.0, 30.0, 0.4, 3.0], 20),
+    ([32.0, 10.0, 1.0, 2.0], 6),
+    // Nodes that touch between the ends of a window.
+    ([32.0, 30.0, 1.0, 4.0], 20),
+    // Gaps that are all but closed behind nodes that left.
+    ([36.0, 10.0, 2.0, 6.0], 29),
+    ([40.0, 100.0, 4.0, 3.0], 10),
+    ([48.0, 10.0, 4.0, 4.0], 11),
+];
+
+/// Windows have the events of single steps with a factor, each of which has a solution that is exact to rounding: touches and releases,
+/// in the same order. Approaches are off by no more than states say, and loads by a part of some 10⁻⁵, which is asked to be 10⁻⁴; at least
+/// behind the first few, whose loads are nearly nothing.
+#[test]
+fn windows_have_the_events_of_single_steps() {
+    let (mut releases, mut events, mut convolutions) = (0, 0, 0);
+    for ([n, ratio, thickness, shortest], seed) in CASES {
+        for is_free in [true, false] {
+            let kernel = coated(n as usize, ratio, thickness, is_free);
+            let amplitude = Amplitude::RmsHeight(1.0);
+            let surface = SelfAffine::new(0.8, 0.5 * n, shortest, amplitude, seed).unwrap();
+            let nodes = (0.9 * n * n) as usize;
+            let (_, exact) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
+            let (path, found) = followed(&surface, &kernel, ConjugateGradient::new(), nodes);
+            let case = format!("{n} {ratio} {thickness} {shortest} {seed} {is_free}");
+            assert_eq!(found.len(), exact.len(), "{case}");
+            for (found, exact) in found.iter().zip(&exact) {
+                assert_eq!((found.event, found.node), (exact.event, exact.node), "{case}");
+                assert_eq!(found.step, exact.step);
+                assert_eq!(found.contact.contact_nodes, exact.contact.contact_nodes);
+                let error = (found.contact.approach - exact.contact.approach).abs();
+                let allowed = found.approach_error + 1e-10 * exact.contact.approach;
+                assert!(error <= allowed, "{case}: {error:e} of {allowed:e}: {found:?}");
+                let error = (found.contact.load / exact.contact.load - 1.0).abs();
+                assert!(found.step < 10 || error < 1e-4, "{case}: {error:e}: {found:?}");
+            }
+            releases += exact.iter().filter(|s| s.event == ContactEvent::Release).count();
+            events += found.len();
+            convolutions += path.convolutions().unwrap();
+        }
+    }
+    println!("{events} events, {releases} releases, {convolutions} convolutions");
+    assert!(releases > 100, "{releases}");
+    // Single steps take 15 convolutions each, as the first hundred events do here.
+    assert!(convolutions < 3 * events, "{convolutions} {events}");
+}
+
+/// A path that hands over to iterations as soon as these have windows has the same events, and one that ends and goes on, or is resumed
+/// from its states, as well.
+#[test]
+fn paths_hand_over_and_go_on() {
+    let (n, nodes) = (80, 1200);
+    let kernel = coated(n, 10.0, 1.0, true);
+    let amplitude = Amplitude::RmsHeight(1.0);
+    let surface = SelfAffine::new(0.8, 20.0, 4.0, amplitude, 3).unwrap();
+    let (_, exact) = followed(&surface, &kernel, RecursiveCholesky::new(), nodes);
+    let (path, found) = followed(&surface, &kernel, Handover::new(), nodes);
+    assert!(path.handed_over_at().is_some_and(|at| (100..1000).contains(&at)));
+    let events = |states: &[LoadingState]| -> Vec<_> {
+        states.iter().map(|state| (state.event, state.node)).collect()
+    };
+    let releases = exact.iter().filter(|state| state.event == ContactEvent::Release).count();
+    println!("{:?}, {releases} releases", path.handed_over_at());
+    assert!(releases > 0 && events(&found) == events(&exact));
+
+    let builder = || LoadingSolver::builder(&surface, &kernel);
+    let mut path = builder().max_nodes(700).build().unwrap();
+    let mut continued: Vec<LoadingState> = path.by_ref().map(Result::unwrap).collect();
+    let history: History = continued.iter().copied().collect();
+    let rest = |path: LoadingSolver| -> Vec<LoadingState> { path.map(Result::unwrap).collect() };
+    let resumed = rest(builder().max_nodes(nodes).resume(&history).unwrap());
+    let fraction = nodes as f64 / (n * n) as f64;
+    path.continue_to(ContactTarget::AreaFraction(fraction)).unwrap();
+    let begun = continued.len();
+    continued.extend(rest(path));
+    assert_eq!(events(&continued), events(&exact));
+    assert_eq!(events(&resumed), events(&exact[begun..]));
+}
