@@ -1,12 +1,15 @@
 //! How a watched node acts on the contact near it.
 
-use super::tuning::{CANDIDATES, NEAREST, REACH, SAME};
+use super::tuning::{BLOCK, CANDIDATES, NEAREST, REACH, SAME};
+use super::wide;
 use crate::Problem;
+use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::krylov::single::solve_in_place;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
+use std::collections::HashMap;
 
 /// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but
 /// that of K to answer it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds
@@ -27,6 +30,17 @@ impl Local {
     }
 }
 
+/// A candidate behind the nearest contact nodes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Farther {
+    /// Its place among all offsets.
+    pub(super) candidate: usize,
+    /// The node, if it is in contact.
+    pub(super) node: Option<u32>,
+    /// From the node in the middle \[cells\].
+    pub(super) offset: [i32; 2],
+}
+
 /// Offsets to the nodes around a node, nearest first.
 #[derive(Debug, Clone)]
 pub(super) struct Neighbourhood {
@@ -34,6 +48,12 @@ pub(super) struct Neighbourhood {
     boundary: Boundary,
     /// (squared distance, dy, dx)
     offsets: Vec<(f64, i32, i32)>,
+    blocks: Blocks,
+    /// Sides of a cell relative to those of a square one of the same area.
+    sides: [f64; 2],
+    /// Cells from a node to the sides of a patch of the grid that holds all of them, and its convolution, if there is one.
+    half_patch: [i32; 2],
+    convolution: Option<Convolution>,
 }
 
 impl Neighbourhood {
@@ -67,7 +87,39 @@ impl Neighbourhood {
         if let Some(&(last, _, _)) = offsets.get(CANDIDATES) {
             offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
         }
-        Self { grid, boundary, offsets }
+        let sides = [side_x, side_y];
+        let blocks = Blocks::new(&offsets, sides);
+        let half_patch = [
+            offsets.iter().map(|offset| offset.2.abs()).max().unwrap_or_default(),
+            offsets.iter().map(|offset| offset.1.abs()).max().unwrap_or_default(),
+        ];
+        let convolution = wide::convolution(problem.table(), half_patch);
+        Self { grid, boundary, offsets, blocks, sides, half_patch, convolution }
+    }
+
+    /// The boundary of the half-space.
+    pub(super) fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    /// Cells from a node to the sides of a patch of the grid around it.
+    pub(super) fn half_patch(&self) -> [i32; 2] {
+        self.half_patch
+    }
+
+    /// The convolution of a patch, if there is one.
+    pub(super) fn convolution(&self) -> Option<&Convolution> {
+        self.convolution.as_ref()
+    }
+
+    /// Blocks of the nodes around a node.
+    pub(super) fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// Sides of a cell relative to those of a square one of the same area.
+    pub(super) fn sides(&self) -> [f64; 2] {
+        self.sides
     }
 
     /// The grid of the nodes.
@@ -77,6 +129,18 @@ impl Neighbourhood {
 
     /// The contact nodes nearest to a node, in whole shells of one distance, so that symmetry is kept.
     fn nearest(&self, set: &NodeSet, node: usize) -> Vec<u32> {
+        self.around(set, node, NEAREST, |_| false)
+    }
+
+    /// The nearest `count` contact nodes, unless there are so few that all are, and in whole shells. While `farther` says so, it is
+    /// told of all others in reach.
+    pub(super) fn around(
+        &self,
+        set: &NodeSet,
+        node: usize,
+        count: usize,
+        mut farther: impl FnMut(Farther) -> bool,
+    ) -> Vec<u32> {
         if set.len() <= NEAREST {
             return set.nodes().to_vec();
         }
@@ -85,12 +149,10 @@ impl Neighbourhood {
         let (ix, iy) = (ix as i32, iy as i32);
         let [x_repeats, y_repeats] = self.boundary.repeats();
         let places = set.places();
-        let mut found = Vec::with_capacity(NEAREST);
+        let mut found = Vec::with_capacity(count);
         let mut last = 0.0;
-        for &(squared, dy, dx) in &self.offsets {
-            if found.len() >= NEAREST && squared > last * (1.0 + SAME) {
-                break;
-            }
+        for (k, &(squared, dy, dx)) in self.offsets.iter().enumerate() {
+            let is_farther = found.len() >= count && squared > last * (1.0 + SAME);
             let (mut x, mut y) = (ix + dx, iy + dy);
             if x_repeats {
                 x = x.rem_euclid(nx);
@@ -102,7 +164,14 @@ impl Neighbourhood {
                 continue;
             }
             let other = x as usize + self.grid.nx() * y as usize;
-            if places[other] != NodeSet::NONE {
+            if is_farther {
+                let node = other as u32;
+                let is_in = places[other] != NodeSet::NONE;
+                if !farther(Farther { candidate: k, node: is_in.then_some(node), offset: [dx, dy] })
+                {
+                    break;
+                }
+            } else if places[other] != NodeSet::NONE {
                 found.push(other as u32);
                 last = squared;
             }
@@ -156,6 +225,46 @@ impl Neighbourhood {
             || solve_in_place(&mut matrix, size, &mut x),
         );
         Local { node, contact, weights: x.into_iter().map(f64::from).collect() }
+    }
+}
+
+/// Blocks around a node: those of 3 × 3 square cells, and of three by three of these, the same in all directions.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Blocks {
+    /// Of each offset.
+    pub(super) of: Vec<BlocksOf>,
+    pub(super) count: usize,
+}
+
+/// The blocks of an offset.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BlocksOf {
+    pub(super) small: u32,
+    pub(super) large: u32,
+    /// From the node to the centre of the larger one \[sides of a square cell of the same area\].
+    pub(super) distance: f64,
+}
+
+impl Blocks {
+    fn new(offsets: &[(f64, i32, i32)], sides: [f64; 2]) -> Self {
+        let mut known = HashMap::new();
+        let small = sides.map(|side| ((BLOCK / side).round() as i32).max(1));
+        let block = |&(_, dy, dx): &(f64, i32, i32)| {
+            let along = |d: i32, cells: i32| d.signum() * ((d.abs() + cells / 2) / cells);
+            let mut place = |factor: i32| {
+                let [bx, by] = small.map(|cells| factor * cells);
+                let (qx, qy) = (along(dx, bx), along(dy, by));
+                let next = known.len() as u32;
+                let block = *known.entry((factor, qy, qx)).or_insert(next);
+                let x = f64::from(qx * bx) * sides[0];
+                (block, x.hypot(f64::from(qy * by) * sides[1]))
+            };
+            let (small, _) = place(1);
+            let (large, distance) = place(3);
+            BlocksOf { small, large, distance }
+        };
+        let of = offsets.iter().map(block).collect();
+        Self { of, count: known.len() }
     }
 }
 
@@ -215,7 +324,7 @@ mod tests {
     }
 
     /// Two rows of 80 have 159 candidates each way, fewer than are looked at. Of the 101 × 101 nodes of a free grid within 50 cells,
-    /// those within 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
+    /// those closer than 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
     #[test]
     fn nodes_far_away_are_out_of_reach() -> Result<(), Error> {
         for dx in [1.0, 2.0, 1e-3] {
@@ -225,7 +334,7 @@ mod tests {
         }
         let wide = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, false)?);
         let farthest = |beside: &Neighbourhood| beside.offsets.last().map(|last| last.0);
-        assert_eq!((wide.offsets.len(), farthest(&wide)), (CANDIDATES, Some(1024.0)));
+        assert_eq!((wide.offsets.len(), farthest(&wide)), (CANDIDATES, Some(1021.0)));
         let corner = set(51 * 51, |node| node < 20 * 51);
         // 20 of 51 rows, seen from the middle of the last one: those of 26 rows and more below are not.
         assert!(wide.nearest(&corner, 50 * 51 + 25).iter().all(|&node| node >= 18 * 51));

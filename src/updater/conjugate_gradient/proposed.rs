@@ -1,10 +1,11 @@
 //! The proposed nodes, and what their Schur complement says of them once some have joined.
 
 use super::equilibrium::Equilibrium;
-use super::galerkin;
+use super::groups::Wide;
 use super::local::{Local, Neighbourhood};
 use super::solver::Solver;
 use super::tuning::PRODUCTS;
+use super::wide;
 use crate::contact::ContactSequence;
 use crate::krylov::Field;
 use crate::updater::{Schur, Solved, WindowFactor};
@@ -29,15 +30,15 @@ impl Proposed {
         (nodes, count): (&[usize], usize),
         mut left: impl FnMut(&Local) -> f64,
     ) -> Result<Self, Error> {
-        let of = |&node: &usize| Local { node, ..Local::default() };
-        let mut locals: Vec<Local> = nodes.iter().map(of).collect();
-        let products = locals.len() * PRODUCTS;
-        parallel::for_each(products, &mut locals, |local| {
-            *local = neighbourhood.solve(problem.table(), solver.set(), local.node);
+        let mut answers: Vec<Wide> = nodes.iter().map(|&node| Wide::of(node)).collect();
+        let products = answers.len() * PRODUCTS;
+        parallel::for_each(products, &mut answers, |answer| {
+            *answer = neighbourhood.solve_wide(problem.table(), solver.set(), answer.local.node);
         });
         let mut complement = Schur::default();
         complement.resize(nodes.len())?;
-        galerkin::schur(problem, &locals, complement.as_mut_slice());
+        wide::schur(problem, &answers, neighbourhood, complement.as_mut_slice());
+        let locals: Vec<Local> = answers.into_iter().map(|answer| answer.local).collect();
         for (sum, local) in complement.row_sums_mut().iter_mut().zip(&locals) {
             *sum = left(local);
         }
