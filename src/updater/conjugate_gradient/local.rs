@@ -84,7 +84,7 @@ impl Neighbourhood {
             reach *= 2.0;
         }
         offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        if let Some(&(last, _, _)) = offsets.get(CANDIDATES) {
+        if let Some(&(last, _, _)) = offsets.get(CANDIDATES - 1) {
             offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
         }
         let sides = [side_x, side_y];
