@@ -14,8 +14,11 @@
 
 // Windows without a factor
 
-/// Nodes watched at a time. With 60, 1.0 to 1.6 times the convolutions on 512². Twice: more near ties, loads twice as wrong.
-pub(super) const WATCHED: usize = 90;
+/// Nodes watched at a time. Half: 1.46 times the convolutions. Twice: three times the near ties, loads twice as wrong.
+pub(super) const WATCHED: usize = 60;
+/// The same where Schur complements leave out little, since nodes far from a watched one answer in groups. With 60, 1.0 to 1.6 times the
+/// convolutions on 512². Twice: more near ties, loads twice as wrong.
+pub(super) const WATCHED_SHARP: usize = 90;
 /// The same if near ties are not settled: the error of the order grows with their number.
 pub(super) const WATCHED_UNSETTLED: usize = 128;
 /// A window watches one node for so many in contact, as long as that is less. Half: 0.97 of the convolutions. Twice: 1.1 times,

@@ -23,7 +23,7 @@ use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
     CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
-    WATCHED_UNSETTLED,
+    WATCHED_SHARP, WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
@@ -34,7 +34,10 @@ use near_ties::Settled;
 /// Finds events in windows that are corrected at their end.
 #[derive(Debug)]
 pub(super) struct Refined {
+    /// Nodes to watch.
     size: usize,
+    /// Whether that is for the path to choose.
+    grows: bool,
     /// Whether events that are too close to be told apart get a solution of their own.
     settles: bool,
     /// The nodes out of contact, at the present approach.
@@ -76,6 +79,7 @@ impl Refined {
         let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
         Self {
             size: size.unwrap_or(watched).max(FEWEST),
+            grows: size.is_none() && settles,
             settles,
             ranking: Vec::new(),
             ranked: None,
@@ -96,6 +100,10 @@ impl Refined {
         let most = most_nodes - run.contact.len();
         let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
         let mut without_events = 0;
+        if self.grows {
+            let is_sharp = iterations.is_sharp(run.contact.len());
+            self.size = if is_sharp { WATCHED_SHARP } else { WATCHED };
+        }
         loop {
             let tolerances = WindowTolerances::of(run, iterations.tolerance());
             self.begin(run, iterations)?;

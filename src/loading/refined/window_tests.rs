@@ -19,7 +19,7 @@ fn begun(gaps: &[f64]) -> Result<(LoadingRun, Refined), Error> {
 #[test]
 fn windows_have_their_sizes() {
     let size = |size, settles| Refined::new(size, settles).size;
-    assert_eq!([size(None, true), size(None, false)], [90, 128]);
+    assert_eq!([size(None, true), size(None, false)], [60, 128]);
     assert_eq!([size(Some(3), true), size(Some(20), false)], [8, 20]);
 }
 

@@ -1,5 +1,6 @@
 //! Contact nodes farther from a watched node, which answer it in groups.
 
+use super::grouping::Grouping;
 use super::local::{Farther, Local, Neighbourhood};
 use super::tuning::{ADJACENT, BLOCK, FINE, FINEST, GREATEST_ANSWER, REPRESENTATIVES, SINGLY};
 use crate::kernel::KernelTable;
@@ -170,8 +171,14 @@ pub(super) fn offset(grid: Grid, boundary: Boundary, from: usize, to: usize) -> 
 impl Neighbourhood {
     /// The answer of the contact near a node out of contact, in single precision: it enters a Schur complement by the square of
     /// its error.
-    pub(super) fn solve_wide(&self, table: &KernelTable, set: &NodeSet, node: usize) -> Wide {
-        let mut wide = self.gather(table, set, node);
+    pub(super) fn solve_wide(
+        &self,
+        table: &KernelTable,
+        set: &NodeSet,
+        grouping: &Grouping,
+        node: usize,
+    ) -> Wide {
+        let mut wide = self.gather(table, set, grouping, node);
         let grid = self.grid();
         let count = wide.nearest;
         let (size, unit) = (count + wide.groups.len(), table.self_influence().recip());
@@ -224,7 +231,13 @@ impl Neighbourhood {
     }
 
     /// The contact near a node in groups.
-    fn gather(&self, table: &KernelTable, set: &NodeSet, node: usize) -> Wide {
+    fn gather(
+        &self,
+        table: &KernelTable,
+        set: &NodeSet,
+        Grouping { blocks: around, .. }: &Grouping,
+        node: usize,
+    ) -> Wide {
         let mut farther = Vec::new();
         let nearest = self.around(set, node, SINGLY, |candidate| {
             farther.extend(candidate.node.map(|other| (candidate, other)));
@@ -238,9 +251,9 @@ impl Neighbourhood {
             (x * sx).hypot(y * sy)
         });
         let fine = (FINE * within).max(FINEST);
-        let mut blocks = vec![Block::default(); self.blocks().count];
+        let mut blocks = vec![Block::default(); around.count];
         let block_of = |k: usize| {
-            let of = &self.blocks().of[k];
+            let of = &around.of[k];
             if of.distance < fine { (of.small, BLOCK) } else { (of.large, 3.0 * BLOCK) }
         };
         for (Farther { candidate, offset, .. }, _) in &farther {
@@ -304,7 +317,12 @@ mod tests {
             set.assign(is_in);
             let neighbourhood = Neighbourhood::new(&problem);
             for node in [2, 9 + 80 * 40] {
-                let wide = neighbourhood.solve_wide(problem.table(), &set, node);
+                let wide = neighbourhood.solve_wide(
+                    problem.table(),
+                    &set,
+                    neighbourhood.grouping(problem.table()),
+                    node,
+                );
                 let mut found = wide.local.contact.clone();
                 found.sort_unstable();
                 let expected: Vec<u32> = (0..grid.nodes())
@@ -357,7 +375,12 @@ mod tests {
             set.assign(|node| nodes[node]);
             let node = if is_image { image(watched) } else { watched };
             let neighbourhood = Neighbourhood::new(&problem);
-            let Wide { local, .. } = neighbourhood.solve_wide(problem.table(), &set, node);
+            let Wide { local, .. } = neighbourhood.solve_wide(
+                problem.table(),
+                &set,
+                neighbourhood.grouping(problem.table()),
+                node,
+            );
             let mut weights = vec![0.0; grid.nodes()];
             for (&node, x) in local.contact.iter().zip(&local.weights) {
                 weights[node as usize] = *x;

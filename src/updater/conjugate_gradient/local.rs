@@ -1,15 +1,14 @@
 //! How a watched node acts on the contact near it.
 
-use super::tuning::{BLOCK, CANDIDATES, NEAREST, REACH, SAME};
-use super::wide;
+use super::grouping::Grouping;
+use super::tuning::{CANDIDATES, NEAREST, REACH, SAME};
 use crate::Problem;
-use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
 use crate::krylov::NodeSet;
 use crate::krylov::single::solve_in_place;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
-use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but
 /// that of K to answer it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds
@@ -48,12 +47,10 @@ pub(super) struct Neighbourhood {
     boundary: Boundary,
     /// (squared distance, dy, dx)
     offsets: Vec<(f64, i32, i32)>,
-    blocks: Blocks,
     /// Sides of a cell relative to those of a square one of the same area.
     sides: [f64; 2],
-    /// Cells from a node to the sides of a patch of the grid that holds all of them, and its convolution, if there is one.
-    half_patch: [i32; 2],
-    convolution: Option<Convolution>,
+    /// How the nodes around a node make groups, made at first use.
+    grouping: OnceLock<Grouping>,
 }
 
 impl Neighbourhood {
@@ -88,13 +85,7 @@ impl Neighbourhood {
             offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
         }
         let sides = [side_x, side_y];
-        let blocks = Blocks::new(&offsets, sides);
-        let half_patch = [
-            offsets.iter().map(|offset| offset.2.abs()).max().unwrap_or_default(),
-            offsets.iter().map(|offset| offset.1.abs()).max().unwrap_or_default(),
-        ];
-        let convolution = wide::convolution(problem.table(), half_patch);
-        Self { grid, boundary, offsets, blocks, sides, half_patch, convolution }
+        Self { grid, boundary, offsets, sides, grouping: OnceLock::new() }
     }
 
     /// The boundary of the half-space.
@@ -102,24 +93,17 @@ impl Neighbourhood {
         self.boundary
     }
 
-    /// Cells from a node to the sides of a patch of the grid around it.
-    pub(super) fn half_patch(&self) -> [i32; 2] {
-        self.half_patch
-    }
-
-    /// The convolution of a patch, if there is one.
-    pub(super) fn convolution(&self) -> Option<&Convolution> {
-        self.convolution.as_ref()
-    }
-
-    /// Blocks of the nodes around a node.
-    pub(super) fn blocks(&self) -> &Blocks {
-        &self.blocks
-    }
-
     /// Sides of a cell relative to those of a square one of the same area.
     pub(super) fn sides(&self) -> [f64; 2] {
         self.sides
+    }
+
+    /// How the nodes around a node make groups.
+    pub(super) fn grouping(&self, table: &KernelTable) -> &Grouping {
+        self.grouping.get_or_init(|| {
+            let offsets = self.offsets.iter().map(|&(_, dy, dx)| [dx, dy]);
+            Grouping::new(table, offsets, self.sides)
+        })
     }
 
     /// The grid of the nodes.
@@ -225,46 +209,6 @@ impl Neighbourhood {
             || solve_in_place(&mut matrix, size, &mut x),
         );
         Local { node, contact, weights: x.into_iter().map(f64::from).collect() }
-    }
-}
-
-/// Blocks around a node: those of 3 × 3 square cells, and of three by three of these, the same in all directions.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Blocks {
-    /// Of each offset.
-    pub(super) of: Vec<BlocksOf>,
-    pub(super) count: usize,
-}
-
-/// The blocks of an offset.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BlocksOf {
-    pub(super) small: u32,
-    pub(super) large: u32,
-    /// From the node to the centre of the larger one \[sides of a square cell of the same area\].
-    pub(super) distance: f64,
-}
-
-impl Blocks {
-    fn new(offsets: &[(f64, i32, i32)], sides: [f64; 2]) -> Self {
-        let mut known = HashMap::new();
-        let small = sides.map(|side| ((BLOCK / side).round() as i32).max(1));
-        let block = |&(_, dy, dx): &(f64, i32, i32)| {
-            let along = |d: i32, cells: i32| d.signum() * ((d.abs() + cells / 2) / cells);
-            let mut place = |factor: i32| {
-                let [bx, by] = small.map(|cells| factor * cells);
-                let (qx, qy) = (along(dx, bx), along(dy, by));
-                let next = known.len() as u32;
-                let block = *known.entry((factor, qy, qx)).or_insert(next);
-                let x = f64::from(qx * bx) * sides[0];
-                (block, x.hypot(f64::from(qy * by) * sides[1]))
-            };
-            let (small, _) = place(1);
-            let (large, distance) = place(3);
-            BlocksOf { small, large, distance }
-        };
-        let of = offsets.iter().map(block).collect();
-        Self { of, count: known.len() }
     }
 }
 

@@ -3,6 +3,7 @@
 mod both;
 mod equilibrium;
 mod galerkin;
+mod grouping;
 mod groups;
 mod instants;
 mod local;
@@ -27,7 +28,7 @@ use crate::parallel::inside;
 use crate::{Error, Problem};
 use solutions::Solutions;
 use tolerances::{Aim, Criteria};
-use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
+use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE, GROUPED};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
@@ -67,7 +68,8 @@ pub struct ConjugateGradient {
 
 impl Default for ConjugateGradient {
     fn default() -> Self {
-        Self { criteria: Criteria { tolerance: 1e-10, max_iterations: 5000 }, solutions: None }
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 5000, grouped: GROUPED };
+        Self { criteria, solutions: None }
     }
 }
 
@@ -101,6 +103,14 @@ impl ConjugateGradient {
         Ok(updater)
     }
 
+    /// The same with groups of nodes beside contacts of so many nodes and more.
+    #[cfg(test)]
+    pub(crate) fn grouped_from(contact: usize) -> Self {
+        let mut updater = Self::default();
+        updater.criteria.grouped = contact;
+        updater
+    }
+
     /// Solver and solutions of a problem, made at first use.
     ///
     /// # Errors
@@ -128,6 +138,10 @@ impl ConjugateGradient {
 impl Iterations for ConjugateGradient {
     fn tolerance(&self) -> f64 {
         self.criteria.tolerance
+    }
+
+    fn is_sharp(&self, contact: usize) -> bool {
+        contact >= self.criteria.grouped
     }
 
     fn take_over(

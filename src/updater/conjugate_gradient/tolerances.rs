@@ -32,6 +32,8 @@ pub(super) struct Criteria {
     /// Greatest residual of a gap in contact, relative to the approach.
     pub(super) tolerance: f64,
     pub(super) max_iterations: usize,
+    /// Beside so many nodes in contact and more, those far from a watched node answer it in groups.
+    pub(super) grouped: usize,
 }
 
 /// Greatest residuals of a solution.
@@ -77,7 +79,7 @@ mod tests {
     use super::*;
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1 };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: 0 };
         Tolerances::of(criteria, aim, length, open)
     }
 

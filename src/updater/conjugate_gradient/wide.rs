@@ -1,12 +1,13 @@
 //! Schur complements from local solutions that go on beyond the nearest nodes.
 
 use super::galerkin::{self, Axis, Source, displacement, distance};
+use super::grouping::Grouping;
 use super::groups::{Wide, offset};
 use super::local::{Local, Neighbourhood};
 use super::tuning::{FAR, FIELD, POINTS};
 use crate::convolution::Convolution;
 use crate::kernel::KernelTable;
-use crate::{Grid, Problem, parallel};
+use crate::{Problem, parallel};
 
 /// What a watched node does to pressures, and what that displaces.
 struct WideSource<'a> {
@@ -31,12 +32,12 @@ struct WideSource<'a> {
 pub(super) fn schur(
     problem: &Problem,
     answers: &[Wide],
-    neighbourhood: &Neighbourhood,
+    (neighbourhood, grouping): (&Neighbourhood, &Grouping),
     matrix: &mut [f64],
 ) {
     // Few nodes in contact all answer, however far they are.
     let is_narrow = answers.iter().all(|answer| answer.groups.is_empty());
-    let Some(convolution) = neighbourhood.convolution().filter(|_| !is_narrow) else {
+    let Some(convolution) = grouping.convolution.as_ref().filter(|_| !is_narrow) else {
         let locals: Vec<Local> = answers.iter().map(Wide::nearest_alone).collect();
         return galerkin::schur(problem, &locals, matrix);
     };
@@ -48,7 +49,8 @@ pub(super) fn schur(
     let products = size * (FIELD + size * POINTS.pow(4));
     parallel::for_each(products, &mut columns, |(j, column)| {
         let source = &sources[*j];
-        let patch = Patch::new(neighbourhood, convolution.clone(), &source.answer.local);
+        let around = (neighbourhood, grouping.half_patch);
+        let patch = Patch::new(around, convolution.clone(), &source.answer.local);
         for (i, other) in sources.iter().enumerate().skip(*j) {
             column[i] = other.energy(source, problem.table(), &patch);
         }
@@ -129,7 +131,7 @@ impl<'a> WideSource<'a> {
     }
 
     /// Work of one source on the displacement that another one causes, which is known on a patch.
-    fn energy(&self, other: &Self, table: &KernelTable, patch: &Patch<'_>) -> f64 {
+    fn energy(&self, other: &Self, table: &KernelTable, patch: &Patch) -> f64 {
         let (grid, boundary) = (table.grid(), table.boundary());
         let work = |here: &[(usize, f64)], there: &[(usize, f64)]| -> f64 {
             here.iter().map(|&(place, p)| p * displacement(table, place, there)).sum()
@@ -173,16 +175,21 @@ impl<'a> WideSource<'a> {
 }
 
 /// What a source displaces on the part of the grid around its watched node.
-struct Patch<'a> {
-    neighbourhood: &'a Neighbourhood,
+struct Patch {
+    /// Cells to its sides.
+    half: [i32; 2],
     displacement: Vec<f64>,
 }
 
-impl<'a> Patch<'a> {
-    fn new(neighbourhood: &'a Neighbourhood, mut convolution: Convolution, local: &Local) -> Self {
+impl Patch {
+    fn new(
+        (neighbourhood, half): (&Neighbourhood, [i32; 2]),
+        mut convolution: Convolution,
+        local: &Local,
+    ) -> Self {
         let (grid, boundary) = (neighbourhood.grid(), neighbourhood.boundary());
         let nodes = convolution.grid().nodes();
-        let mut patch = Self { neighbourhood, displacement: vec![0.0; nodes] };
+        let mut patch = Self { half, displacement: vec![0.0; nodes] };
         let mut pressure = vec![0.0; nodes];
         let mut add = |node: usize, p: f64| {
             let offset = offset(grid, boundary, local.node, node).map(|d| d as i32);
@@ -203,7 +210,7 @@ impl<'a> Patch<'a> {
 
     /// The place of an offset from the watched node.
     fn place(&self, [dx, dy]: [i32; 2]) -> Option<usize> {
-        let [hx, hy] = self.neighbourhood.half_patch();
+        let [hx, hy] = self.half;
         (dx.abs() <= hx && dy.abs() <= hy)
             .then(|| (dx + hx) as usize + (2 * hx + 1) as usize * (dy + hy) as usize)
     }
@@ -215,17 +222,9 @@ impl<'a> Patch<'a> {
 
     /// Whether it has nodes in common with one that lies so many cells away.
     fn meets_another(&self, [dx, dy]: [i32; 2]) -> bool {
-        let [hx, hy] = self.neighbourhood.half_patch();
+        let [hx, hy] = self.half;
         dx.abs() <= 2 * hx && dy.abs() <= 2 * hy
     }
-}
-
-/// The convolution of a patch so many cells to both sides of a node; `None` if there is none.
-pub(super) fn convolution(table: &KernelTable, [hx, hy]: [i32; 2]) -> Option<Convolution> {
-    let grid = table.grid();
-    let [nx, ny] = [hx, hy].map(|half| 2 * half as usize + 1);
-    let grid = Grid::new(nx, ny, grid.dx(), grid.dy()).ok()?;
-    Convolution::from_table(&table.patch(grid)).ok()
 }
 
 #[cfg(test)]

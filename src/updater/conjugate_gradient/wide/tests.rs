@@ -29,11 +29,12 @@ fn complement(problem: &Problem, watched: &[usize]) -> (Vec<Wide>, nalgebra::DMa
     let mut set = NodeSet::new(grid.nodes());
     set.assign(is_in(grid));
     let neighbourhood = Neighbourhood::new(problem);
-    let answers: Vec<Wide> =
-        watched.iter().map(|&node| neighbourhood.solve_wide(problem.table(), &set, node)).collect();
+    let (table, grouping) = (problem.table(), neighbourhood.grouping(problem.table()));
+    let answer = |&node: &usize| neighbourhood.solve_wide(table, &set, grouping, node);
+    let answers: Vec<Wide> = watched.iter().map(answer).collect();
     let size = watched.len();
     let mut matrix = nalgebra::DMatrix::zeros(size, size);
-    schur(problem, &answers, &neighbourhood, matrix.as_mut_slice());
+    schur(problem, &answers, (&neighbourhood, grouping), matrix.as_mut_slice());
     (answers, matrix / problem.table().self_influence())
 }
 
