@@ -73,8 +73,8 @@ pub trait Iterations: Debug + Send + Sync {
     fn tolerance(&self) -> f64;
 
     /// Whether Schur complements beside so many nodes in contact leave out so little that windows may be longer.
-    fn is_sharp(&self, contact: usize) -> bool {
-        let _ = contact;
+    fn is_sharp(&self, problem: &Problem, contact: usize) -> bool {
+        let _ = (problem, contact);
         false
     }
 

@@ -101,7 +101,7 @@ impl Refined {
         let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
         let mut without_events = 0;
         if self.grows {
-            let is_sharp = iterations.is_sharp(run.contact.len());
+            let is_sharp = iterations.is_sharp(&run.problem, run.contact.len());
             self.size = if is_sharp { WATCHED_SHARP } else { WATCHED };
         }
         loop {

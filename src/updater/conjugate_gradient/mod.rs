@@ -103,11 +103,11 @@ impl ConjugateGradient {
         Ok(updater)
     }
 
-    /// The same with groups of nodes beside contacts of so many nodes and more.
+    /// The same with groups of nodes from so few nodes in contact on, whatever the grid.
     #[cfg(test)]
     pub(crate) fn grouped_from(contact: usize) -> Self {
         let mut updater = Self::default();
-        updater.criteria.grouped = contact;
+        updater.criteria.grouped = Grouped { grid: 0, contact };
         updater
     }
 
@@ -140,8 +140,8 @@ impl Iterations for ConjugateGradient {
         self.criteria.tolerance
     }
 
-    fn is_sharp(&self, contact: usize) -> bool {
-        contact >= self.criteria.grouped
+    fn is_sharp(&self, problem: &Problem, contact: usize) -> bool {
+        self.criteria.has_groups(problem.grid(), contact)
     }
 
     fn take_over(

@@ -145,7 +145,7 @@ mod tests {
             assert_eq!(sums.count(), before);
             let beside = (&Neighbourhood::new(&problem), &solver);
             let left = |local: &Local| sums.left_at(&problem, local);
-            let proposed = Proposed::new(&problem, beside, (&[3, 7], before), left)?;
+            let proposed = Proposed::new(&problem, beside, (&[3, 7], false), left)?;
             for &node in joined {
                 contact.push(node)?;
             }

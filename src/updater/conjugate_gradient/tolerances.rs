@@ -1,8 +1,10 @@
 //! How exact solutions have to be.
 
 use super::tuning::{
-    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE,
+    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, LONGEST_GROUPED, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT,
+    RATE_TOLERANCE, REACH,
 };
+use crate::Grid;
 
 /// The purpose of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,14 +28,33 @@ impl Aim {
     }
 }
 
+/// The least nodes of the grid, and the least of them in contact, with which nodes far from a watched one answer it in groups.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grouped {
+    pub(super) grid: usize,
+    pub(super) contact: usize,
+}
+
 /// When iterations end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
     /// Greatest residual of a gap in contact, relative to the approach.
     pub(super) tolerance: f64,
     pub(super) max_iterations: usize,
-    /// Beside so many nodes in contact and more, those far from a watched node answer it in groups.
-    pub(super) grouped: usize,
+    pub(super) grouped: Grouped,
+}
+
+impl Criteria {
+    /// Whether nodes far from a watched one answer it in groups, beside a contact of so many nodes: not on strips and long cells, where
+    /// long waves make more of what groups leave out.
+    pub(super) fn has_groups(&self, grid: Grid, contact: usize) -> bool {
+        let (dx, dy) = (grid.dx(), grid.dy());
+        let sides = [(dx / dy).sqrt() * grid.nx() as f64, (dy / dx).sqrt() * grid.ny() as f64];
+        grid.nodes() >= self.grouped.grid
+            && contact >= self.grouped.contact
+            && dx.max(dy) <= LONGEST_GROUPED * dx.min(dy)
+            && sides.into_iter().all(|side| side >= 2.0 * REACH)
+    }
 }
 
 /// Greatest residuals of a solution.
@@ -79,7 +100,7 @@ mod tests {
     use super::*;
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: 0 };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: GROUPED };
         Tolerances::of(criteria, aim, length, open)
     }
 

@@ -3,6 +3,8 @@
 //! Each was halved and doubled on the four paths that `src/loading/tuning.rs` names; they take 835 (rough), 419 (white), 1899 (strip)
 //! and 245 (tiled) convolutions. "No effect" means that convolutions, near ties and errors stayed as they were.
 
+use super::tolerances::Grouped;
+
 // Local solutions
 
 /// Nodes in contact that a local solution takes into account at least, if there are so many in reach. Half: 1.3 times the
@@ -19,8 +21,13 @@ pub(super) const REACH: f64 = 32.0;
 pub(super) const SAME: f64 = 1e-9;
 /// Products, and look-ups that take as long, of a local solution.
 pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
-/// Nodes in contact from which on those far from a watched node answer it in groups: fewer make no convolution dear enough.
-pub(super) const GROUPED: usize = 1 << 14;
+/// On smaller grids, and beside fewer nodes in contact, the [`NEAREST`] answer alone. CPU time of an event with groups, relative to that
+/// without (one thread): GROUPEDFIGURES. Beside some hundred nodes, of which 144 are a large part, groups make loads and gaps
+/// twice as wrong.
+pub(super) const GROUPED: Grouped = Grouped { grid: 1 << 17, contact: 1 << 12 };
+/// Nor do groups answer on cells longer than this: of 10 : 1 interfacial stiffnesses near full contact are off by 4·10⁻⁴ with them, and
+/// by less than 3·10⁻⁴ without.
+pub(super) const LONGEST_GROUPED: f64 = 3.0;
 /// Nodes out of contact that are watched: so many of the nearest contact nodes answer one by one, and all others in reach in groups.
 /// On 512², at 18, 47 and 79 % contact, a window of 90 nodes takes 0.13, 0.10 and 0.11 convolutions an event, and with 144 of them 0.15,
 /// 0.09 and 0.10, but twice the time.

@@ -2,7 +2,7 @@ use super::*;
 use crate::contact::ContactSequence;
 use crate::krylov::NodeSet;
 use crate::updater::{Dense, LinearUpdater, Schur};
-use crate::{Boussinesq, Error, HeightMap, PeriodicBoussinesq};
+use crate::{Boussinesq, Error, Grid, HeightMap, PeriodicBoussinesq};
 
 fn flat(grid: Grid, periodic: bool) -> Result<Problem, Error> {
     let surface = HeightMap::new(nalgebra::DMatrix::zeros(grid.nx(), grid.ny()))?;
