@@ -73,6 +73,8 @@ pub(super) const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 /// this part of the mean spacing of events. Half: errors up to 1.7 times as close to their estimates. Twice: a third more near ties on
 /// the strip.
 pub(super) const OF_SPACING: f64 = 1e-3;
+/// The same where Schur complements leave out little: what the correction changes is less there, and residuals of the end are not.
+pub(super) const OF_SPACING_SHARP: f64 = 2e-3;
 /// The same of a window in which nodes yield as well: what pressures of nodes that touched and overlaps of nodes that yielded make of the
 /// error of a matrix may cancel at the window's end, and not before. On the four paths of `tests/paths/hardness_without_factor.rs` and
 /// on 128² errors come to 0.64 of their estimates; with H = 0.05 E* h′ on 256², 0.2 % of them exceed these, by 2.3 times at worst. Half: to

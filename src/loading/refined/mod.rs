@@ -7,6 +7,8 @@
 
 pub(super) mod candidates;
 pub(super) mod correction;
+#[cfg(test)]
+mod grouped_tests;
 mod near_ties;
 mod plateau;
 pub(super) mod resumed;
@@ -22,8 +24,8 @@ use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
-    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED, SHORTER, WATCHED,
-    WATCHED_SHARP, WATCHED_UNSETTLED,
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TRIES, OF_SPACING, OF_SPACING_SHARP, REMEMBERED,
+    SHORTER, WATCHED, WATCHED_SHARP, WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
@@ -313,7 +315,8 @@ impl Refined {
     ) -> Result<Option<(Correction, Settled)>, Error> {
         let ends = correction::at_end(window, run);
         let correction = correction::correct(window, &ends, time);
-        let settled = near_ties::second_pass(window, &correction, (first, joined, time));
+        let settled =
+            near_ties::second_pass(window, &correction, (first, joined, time), self.of_spacing());
         self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
         let change = near_ties::mean_change(first, &settled.events, time);
         let most_change = MOST_CHANGE * time / joined.len() as f64;
@@ -336,6 +339,11 @@ impl Refined {
             self.left_out = self.left_out.max(LEFT_OUT / half as f64);
         }
         Ok(settled.map(|settled| (correction, settled)))
+    }
+
+    /// The least error of a time, as a part of the mean spacing of events.
+    fn of_spacing(&self) -> f64 {
+        if self.grows && self.size == WATCHED_SHARP { OF_SPACING_SHARP } else { OF_SPACING }
     }
 
     /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with

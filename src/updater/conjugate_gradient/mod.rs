@@ -107,7 +107,7 @@ impl ConjugateGradient {
     #[cfg(test)]
     pub(crate) fn grouped_from(contact: usize) -> Self {
         let mut updater = Self::default();
-        updater.criteria.grouped = Grouped { grid: 0, contact };
+        updater.criteria.grouped = tolerances::Grouped { grid: 0, contact };
         updater
     }
 

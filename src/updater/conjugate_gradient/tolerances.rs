@@ -97,7 +97,35 @@ impl Tolerances {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tuning::GROUPED;
     use super::*;
+    use crate::Error;
+
+    /// Beside 2¹² nodes on a grid of 2¹⁷, on cells up to 3 : 1, and not on strips of less than 64 square cells.
+    #[test]
+    fn groups_are_for_large_grids_of_square_cells() -> Result<(), Error> {
+        for (shape, cell, contact, has_groups) in [
+            ((512, 256), (1.0, 1.0), 4096, true),
+            ((512, 256), (1.0, 1.0), 4095, false),
+            ((512, 255), (1.0, 1.0), 4096, false),
+            ((512, 256), (3.0, 1.0), 4096, true),
+            ((512, 256), (1e-3, 3.1e-3), 4096, false),
+            ((4096, 64), (1.0, 1.0), 4096, true),
+            ((4096, 63), (1.0, 1.0), 4096, false),
+            ((4096, 64), (2.0, 1.0), 4096, false),
+            ((4096, 91), (2.0, 1.0), 4096, true),
+            ((4096, 64), (1.0, 1.01), 4096, true),
+        ] {
+            let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: GROUPED };
+            let grid = Grid::new(shape.0, shape.1, cell.0, cell.1)?;
+            assert_eq!(
+                criteria.has_groups(grid, contact),
+                has_groups,
+                "{shape:?} {cell:?} {contact}"
+            );
+        }
+        Ok(())
+    }
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
         let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: GROUPED };
