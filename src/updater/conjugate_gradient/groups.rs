@@ -316,7 +316,7 @@ mod tests {
             let mut set = NodeSet::new(grid.nodes());
             set.assign(is_in);
             let neighbourhood = Neighbourhood::new(&problem);
-            for node in [2, 9 + 80 * 40] {
+            for node in [2, 11 + 80 * 40] {
                 let wide = neighbourhood.solve_wide(
                     problem.table(),
                     &set,

@@ -43,14 +43,14 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE, GROUPED};
 /// A path does not need that: it takes Schur complements that are nearly exact, and corrects them by what the
 /// next solution shows (see [`loading`](crate::loading)). Inside a window a Schur complement acts on what has changed since the
 /// window began only, and there the contact near a node answers for nearly all of it. With the local solutions
-/// `x_j = C_KK⁻¹ C_Kj` on the contact K within some 32 cells of each watched node j, the 80 nearest nodes one by one and others in
-/// groups,
+/// `x_j = C_KK⁻¹ C_Kj` on the 144 nearest contact nodes K of each watched node j,
 ///
 /// ```math
 /// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
 /// ```
 ///
-/// exceeds S by the square of the error of x: by some 10⁻⁴ of it. With a hardness nodes q in contact are watched too, with
+/// exceeds S by the square of the error of x. On grids of 2¹⁷ nodes and more all contact nodes within some 32 cells are in K, those
+/// far from j in groups of one pressure each. With a hardness nodes q in contact are watched too, with
 /// `x_q = C_KK⁻¹ e_q`: what a gap of q adds to the pressures near it.
 ///
 /// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too; a path does with
