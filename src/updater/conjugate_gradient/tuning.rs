@@ -103,7 +103,7 @@ pub(super) const SUMS_TOLERANCE: f64 = 3e-3;
 pub(super) const STALE: usize = 200;
 /// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left. On 512² mean closing rates
 /// are 0.03 before half of the area is in contact. With 0.03 in place of this every window from there on takes two convolutions more, a
-/// fifth of all, and interfacial stiffnesses are no better.
+/// fifth of all, and interfacial stiffnesses are off by 10⁻⁶ in place of 10⁻⁵ in the middle of the path, and by 3·10⁻⁵ at worst both ways.
 pub(super) const SUMS_OPEN: f64 = 1e-3;
 
 // Memory
