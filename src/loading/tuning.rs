@@ -19,7 +19,7 @@ pub(super) const WATCHED: usize = 60;
 /// The same where Schur complements leave out little, since nodes far from a watched one answer in groups. Convolutions an event on 512², at 8,
 /// 18, 47 and 79 % contact: 0.28, 0.13, 0.10 and 0.14 with 60, 0.28, 0.14, 0.09 and 0.13 with 72, 0.24, 0.11, 0.08 and 0.11 with 90.
 /// But with 90, errors on 64² (spectral kernel, groups from 1000 nodes on) exceed their estimates on two surfaces of five, by 2.2 times at
-/// worst; with 72 they come to 0.65 of them.
+/// worst; with 72 they come to 0.65 of them, on three surfaces.
 pub(super) const WATCHED_SHARP: usize = 72;
 /// The same if near ties are not settled: the error of the order grows with their number.
 pub(super) const WATCHED_UNSETTLED: usize = 128;
