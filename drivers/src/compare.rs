@@ -1,6 +1,6 @@
 //! Two paths that ought to be one, one of them found without a factor.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use asperity::LoadingState;
 
@@ -93,7 +93,14 @@ pub(crate) fn same_path(
         let together = bounds.excess * together;
         tie.max(together)
     };
+    // What has happened on one of the paths alone so far.
+    let mut pending = HashSet::new();
     for (k, (state, expected)) in found.iter().zip(exact).enumerate() {
+        for event in [(state.event, state.node), (expected.event, expected.node)] {
+            if !pending.insert(event) {
+                pending.remove(&event);
+            }
+        }
         let context = || format!("{state:?} in place of {expected:?}");
         ensure!(
             state.step == expected.step
@@ -177,6 +184,8 @@ pub(crate) fn same_path(
         ];
         for (a, b, allowed) in pairs {
             match (a, b) {
+                // Of other elastic nodes.
+                (Some(_), Some(_)) if yields && !pending.is_empty() => {}
                 (Some(a), Some(b)) if b.is_finite() => {
                     scalars.push(("stiffness", a, b, allowed * b));
                 }

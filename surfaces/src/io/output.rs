@@ -45,7 +45,11 @@ impl<W: Write> Output<W> {
 
 impl<W: Write> Write for Output<W> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        let written = self.attempt(bytes.len(), |inner| inner.write(bytes))?;
+        let written = self.attempt(bytes.len(), |inner| match inner.write(bytes)? {
+            // Nothing is taken any more: a failure too.
+            0 if !bytes.is_empty() => Err(ErrorKind::WriteZero.into()),
+            taken => Ok(taken),
+        })?;
         self.at += written as u64;
         self.end = self.end.max(self.at);
         Ok(written)
