@@ -15,7 +15,7 @@ use asperity::updater::{
 };
 use asperity::{Boussinesq, Grid, LoadingSolver};
 use asperity_cli::axis::Axis;
-use asperity_cli::chart::{self, BLACK, BLUE, Chart, Corner, GREY, ORANGE, Series, Style};
+use asperity_cli::chart::{self, BLACK, BLUE, Chart, Corner, ORANGE, Series, Style};
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel;
 use asperity_studies::peak_memory::peak_memory;
@@ -27,6 +27,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 const SIDE: f64 = 1e-2;
 /// States between two points of a curve.
 const STRIDE: u32 = 64;
+/// Nodes in contact at the first point.
+const FEWEST: u32 = 256;
 
 /// Times long paths.
 #[derive(Parser)]
@@ -116,7 +118,7 @@ fn run<U: LinearUpdater>(
     Ok(())
 }
 
-/// Nodes in contact, seconds since the beginning, and the most bytes that the path has held.
+/// Nodes in contact, seconds since the beginning, and the most megabytes that the path has held.
 type Point = (f64, f64, f64);
 
 fn curve<U: LinearUpdater>(options: &Options, updater: U) -> Result<Vec<Point>, Box<dyn Error>> {
@@ -128,9 +130,9 @@ fn curve<U: LinearUpdater>(options: &Options, updater: U) -> Result<Vec<Point>, 
     while let Some(state) = path.next() {
         state?;
         states += 1;
-        if states.is_multiple_of(STRIDE) {
+        if states >= FEWEST && states.is_multiple_of(STRIDE) {
             most = most.max(path.bytes() as f64);
-            points.push((f64::from(states), start.elapsed().as_secs_f64(), most));
+            points.push((f64::from(states), start.elapsed().as_secs_f64(), most / 1e6));
         }
     }
     Ok(points)
@@ -142,18 +144,12 @@ fn charts(options: &Options) -> Result<[Chart; 2], Box<dyn Error>> {
         ("iterations alone", ORANGE, Style::Line, curve(options, ConjugateGradient::new())?),
         ("default", BLACK, Style::Dashed, curve(options, Handover::new())?),
     ];
-    let (from, to) = (f64::from(STRIDE), options.contact_nodes as f64);
+    let (from, to) = (f64::from(FEWEST), options.contact_nodes as f64);
     let series = |value: fn(&Point) -> f64| {
         curves.iter().map(move |(name, colour, style, points)| {
             Series::new(*name, *colour, *style, points.iter().map(|point| (point.0, value(point))))
         })
     };
-    // What a plain matrix product of as many operations takes on the machine of docs/performance.md.
-    let product = |n: f64| (n, n.powi(3) / 3.0 / 100e9);
-    let (few, many) = (to / 10.0, to);
-    let plain = [product(few), product(many)];
-    let mut times: Vec<Series> = series(|point| point.1).collect();
-    times.push(Series::new("n³/3 at 100 GFLOP/s", GREY, Style::Dashed, plain));
     let ends = |value: fn(&Point) -> f64| {
         let values = curves.iter().flat_map(|curve| curve.3.iter().map(value));
         values.fold((f64::INFINITY, 0.0_f64), |(least, most), v| (least.min(v), most.max(v)))
@@ -166,13 +162,13 @@ fn charts(options: &Options) -> Result<[Chart; 2], Box<dyn Error>> {
             title: format!("Time of a path on {0} × {0} nodes", options.nodes),
             x: nodes(),
             y: Axis::logarithmic("time", "s", least, most).with_room(0.05, 0.05),
-            series: times,
+            series: series(|point| point.1).collect(),
             legend: Corner::TopLeft,
         },
         Chart {
             title: "Memory that it holds".to_string(),
             x: nodes(),
-            y: Axis::logarithmic("memory", "B", fewest, greatest).with_room(0.1, 0.1),
+            y: Axis::plain_logarithmic("memory [MB]", fewest, greatest).with_room(0.1, 0.1),
             series: series(|point| point.2).collect(),
             legend: Corner::TopLeft,
         },
