@@ -89,9 +89,8 @@ pub(crate) fn same_path(
     };
     let tie = |k: usize| {
         let tie = (TIE * computed(&exact[k])).max(FIRST_TIE * initial);
-        let together = if is_together(k) { found[k].approach_error } else { 0.0 };
-        let together = bounds.excess * together;
-        tie.max(together)
+        let off = if is_together(k) { bounds.excess * found[k].approach_error } else { 0.0 };
+        tie.max(off)
     };
     // What has happened on one of the paths alone so far.
     let mut pending = HashSet::new();

@@ -80,6 +80,24 @@ pub(crate) struct Setting {
     pub(crate) has_hardness: bool,
 }
 
+/// Shape, cell, boundary, and whether there is a hardness, as they are pickled.
+pub(crate) type PickledSetting = ((usize, usize), (f64, f64), String, bool);
+
+impl Setting {
+    pub(crate) fn pickled(&self) -> PickledSetting {
+        let Self { grid, boundary, has_hardness } = *self;
+        let boundary = word(&BOUNDARIES, &boundary).to_string();
+        (shape(&grid), (grid.dx(), grid.dy()), boundary, has_hardness)
+    }
+
+    pub(crate) fn restored(pickled: PickledSetting) -> Fallible<Self> {
+        let ((rows, columns), (dx, dy), boundary, has_hardness) = pickled;
+        let grid = Grid::new(columns, rows, dx, dy)?;
+        let boundary = choose("boundary", &boundary, &BOUNDARIES)?;
+        Ok(Self { grid, boundary, has_hardness })
+    }
+}
+
 /// The states of a path in the order of loading, as columns: new arrays of NumPy with one value for each state.
 ///
 /// A sequence of `State`; a slice of it is a history of fewer states, enough for slip, creep and conductance. `at` reads it exactly at any load, approach, mean gap or area: between two events a path is
@@ -398,10 +416,8 @@ impl History {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {
         let restore = py.import("asperity._asperity")?.getattr("_restore_history")?;
-        let Setting { grid, boundary, has_hardness } = self.setting;
-        let boundary = word(&BOUNDARIES, &boundary);
-        let setting = (shape(&grid), (grid.dx(), grid.dy()), boundary, has_hardness);
-        Ok((restore, (table(py, self.states())?, setting)).into_pyobject(py)?)
+        let state = (table(py, self.states())?, self.setting.pickled());
+        Ok((restore, state).into_pyobject(py)?)
     }
 
     fn __repr__(&self) -> String {
@@ -490,17 +506,12 @@ fn _restore_states(table: &Bound<'_, PyDict>, is_one: bool) -> Fallible<State> {
     }
 }
 
-/// Shape, cell, boundary, and whether there is a hardness.
-type Pickled = ((usize, usize), (f64, f64), String, bool);
-
 /// A history that was pickled.
 #[pyfunction]
-fn _restore_history(table: &Bound<'_, PyDict>, setting: Pickled) -> Fallible<History> {
-    let ((rows, columns), (dx, dy), boundary, has_hardness) = setting;
-    let grid = Grid::new(columns, rows, dx, dy)?;
-    let boundary = choose("boundary", &boundary, &BOUNDARIES)?;
+fn _restore_history(table: &Bound<'_, PyDict>, setting: PickledSetting) -> Fallible<History> {
+    let setting = Setting::restored(setting)?;
     let history = Arc::new(states(table)?.into_iter().collect());
-    Ok(History { history, setting: Setting { grid, boundary, has_hardness } })
+    Ok(History { history, setting })
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -300,13 +300,9 @@ impl Solution {
 /// Solutions as bytes: the data of serde, in a format that keeps every bit of a number.
 mod pickle {
     use super::*;
-    use crate::choice::{BOUNDARIES, choose, word};
     use crate::errors::Failure;
-    use asperity::Grid;
+    use crate::history::PickledSetting;
     use pyo3::types::PyBytes;
-
-    /// What is pickled.
-    type Pickled = ((usize, usize), (f64, f64), String, bool);
 
     pub(super) fn reduce<'py>(
         py: Python<'py>,
@@ -316,21 +312,15 @@ mod pickle {
         let restore = py.import("asperity._asperity")?.getattr("_restore_solution")?;
         let text = serde_json::to_vec(solution);
         let text = text.map_err(|error| Failure::arguments(error.to_string()))?;
-        let Setting { grid, boundary, has_hardness } = *setting;
-        let boundary = word(&BOUNDARIES, &boundary);
-        let setting = (shape(&grid), (grid.dx(), grid.dy()), boundary, has_hardness);
-        Ok((restore, (PyBytes::new(py, &text), setting)).into_pyobject(py)?)
+        Ok((restore, (PyBytes::new(py, &text), setting.pickled())).into_pyobject(py)?)
     }
 
     /// A solution that was pickled.
     #[pyfunction]
-    fn _restore_solution(data: &[u8], setting: Pickled) -> Fallible<Solution> {
-        let ((rows, columns), (dx, dy), boundary, has_hardness) = setting;
+    fn _restore_solution(data: &[u8], setting: PickledSetting) -> Fallible<Solution> {
         let solution = serde_json::from_slice(data);
         let solution = solution.map_err(|error| Failure::arguments(error.to_string()))?;
-        let grid = Grid::new(columns, rows, dx, dy)?;
-        let boundary = choose("boundary", &boundary, &BOUNDARIES)?;
-        Ok(Solution { solution, setting: Setting { grid, boundary, has_hardness } })
+        Ok(Solution { solution, setting: Setting::restored(setting)? })
     }
 
     pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
