@@ -27,8 +27,8 @@ use crate::krylov::{Field, check_cells};
 use crate::parallel::inside;
 use crate::{Error, Problem};
 use solutions::Solutions;
-use tolerances::{Aim, Criteria, Grouped};
-use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
+use tolerances::{Aim, Criteria};
+use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE, GROUPED};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
 /// get large and reach the computation or storage limitation", as the paper has it).
@@ -68,7 +68,7 @@ pub struct ConjugateGradient {
 
 impl Default for ConjugateGradient {
     fn default() -> Self {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 5000, grouped: Grouped::LARGE };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 5000, grouped: GROUPED };
         Self { criteria, solutions: None }
     }
 }
@@ -107,7 +107,7 @@ impl ConjugateGradient {
     #[cfg(test)]
     pub(crate) fn grouped_from(contact: usize) -> Self {
         let mut updater = Self::default();
-        updater.criteria.grouped = Grouped { grid: 0, contact };
+        updater.criteria.grouped = tolerances::Grouped { grid: 0, contact };
         updater
     }
 

@@ -1,8 +1,8 @@
 //! How exact solutions have to be.
 
 use super::tuning::{
-    ADJOINT, DRIFT, LEAST_GROUPED, LEAST_GROUPED_GRID, LEAST_RATE_TOLERANCE, LONGEST_GROUPED,
-    OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE, REACH,
+    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, LONGEST_GROUPED, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT,
+    RATE_TOLERANCE, REACH,
 };
 use crate::Grid;
 
@@ -33,11 +33,6 @@ impl Aim {
 pub(super) struct Grouped {
     pub(super) grid: usize,
     pub(super) contact: usize,
-}
-
-impl Grouped {
-    /// Where they pay.
-    pub(super) const LARGE: Self = Self { grid: LEAST_GROUPED_GRID, contact: LEAST_GROUPED };
 }
 
 /// When iterations end.
@@ -102,6 +97,7 @@ impl Tolerances {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tuning::GROUPED;
     use super::*;
     use crate::Error;
 
@@ -120,8 +116,7 @@ mod tests {
             ((4096, 91), (2.0, 1.0), 4096, true),
             ((4096, 64), (1.0, 1.01), 4096, true),
         ] {
-            let criteria =
-                Criteria { tolerance: 1e-10, max_iterations: 1, grouped: Grouped::LARGE };
+            let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: GROUPED };
             let grid = Grid::new(shape.0, shape.1, cell.0, cell.1)?;
             assert_eq!(
                 criteria.has_groups(grid, contact),
@@ -133,7 +128,7 @@ mod tests {
     }
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: Grouped::LARGE };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: GROUPED };
         Tolerances::of(criteria, aim, length, open)
     }
 

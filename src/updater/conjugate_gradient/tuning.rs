@@ -3,6 +3,8 @@
 //! Each was halved and doubled on the four paths that `src/loading/tuning.rs` names; they take 835 (rough), 419 (white), 1899 (strip)
 //! and 245 (tiled) convolutions. "No effect" means that convolutions, near ties and errors stayed as they were.
 
+use super::tolerances::Grouped;
+
 // Local solutions
 
 /// Nodes in contact that a local solution takes into account at least, if there are so many in reach. Half: 1.3 times the
@@ -23,9 +25,7 @@ pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
 /// without: 1.2 on 256² up to 16 384 nodes, 0.97 on 384² up to 12 000; on 512², with windows of 90 nodes, 0.6 at 9000 nodes, 0.8 at 12 500
 /// to 47 000, 0.7 at 90 000 to 160 000 and 0.6 at 207 000. Beside some hundred nodes, of which 144 are a large part, states are less exact
 /// with groups: loads on 32 × 32 nodes are off by 6·10⁻⁵.
-pub(super) const LEAST_GROUPED_GRID: usize = 1 << 17;
-/// The least of them in contact.
-pub(super) const LEAST_GROUPED: usize = 1 << 12;
+pub(super) const GROUPED: Grouped = Grouped { grid: 1 << 17, contact: 1 << 12 };
 /// Nor do groups answer on cells longer than this: of 10 : 1 interfacial stiffnesses near full contact are off by 4·10⁻⁴ with them, and
 /// by less than 3·10⁻⁴ without.
 pub(super) const LONGEST_GROUPED: f64 = 3.0;
