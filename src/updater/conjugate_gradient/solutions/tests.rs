@@ -1,8 +1,7 @@
 use super::super::tests::{by_gap, problem};
-use super::super::tuning::GROUPED;
 use super::*;
 
-const CRITERIA: Criteria = Criteria { tolerance: 1e-10, max_iterations: 1000, grouped: GROUPED };
+const CRITERIA: Criteria = Criteria { tolerance: 1e-10, max_iterations: 1000 };
 
 /// A window at its end: 60 nodes were in contact and ten proposed, of which six have joined.
 struct Window {
