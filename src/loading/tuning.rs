@@ -16,11 +16,6 @@
 
 /// Nodes watched at a time. Half: 1.46 times the convolutions. Twice: three times the near ties, loads twice as wrong.
 pub(super) const WATCHED: usize = 60;
-/// The same where Schur complements leave out little, since nodes far from a watched one answer in groups. Convolutions an event on 512², at 8,
-/// 18, 47 and 79 % contact: 0.28, 0.13, 0.10 and 0.14 with 60, 0.28, 0.14, 0.09 and 0.13 with 72, 0.24, 0.11, 0.08 and 0.11 with 90.
-/// But with 90, errors on 64² (spectral kernel, groups from 1000 nodes on) exceed their estimates on two surfaces of five, by 2.2 times at
-/// worst; with 72 they come to 0.65 of them, on three surfaces.
-pub(super) const WATCHED_SHARP: usize = 72;
 /// The same if near ties are not settled: the error of the order grows with their number.
 pub(super) const WATCHED_UNSETTLED: usize = 128;
 /// A window watches one node for so many in contact, as long as that is less. Half: 0.97 of the convolutions. Twice: 1.1 times,
@@ -55,9 +50,6 @@ pub(super) const CERTAIN: usize = 2;
 /// The least determinant of `WᵀV`, relative to the product of its diagonal, with which it is inverted: rounding of these products.
 /// No effect.
 pub(super) const LEAST_DETERMINANT: f64 = 1e-6;
-/// By so much it may lie below zero: where Schur complements leave out 10⁻⁴ of a pivot and less, residuals of the end are no longer small
-/// beside what it shows. With 10⁻⁶ half of the windows on 512² are not corrected at 47 % contact, and a tenth more of them has near ties.
-pub(super) const OF_NOISE: f64 = 0.1;
 /// Newton steps to the root of a cubic that is nearly a line. Half or twice: no effect, for they converge quadratically.
 pub(super) const NEWTON: usize = 8;
 
@@ -88,9 +80,6 @@ pub(super) const OF_CHANGE_UNCORRECTED: f64 = 0.5;
 /// this part of the mean spacing of events. Half: errors up to 1.7 times as close to their estimates. Twice: a third more near ties on
 /// the strip.
 pub(super) const OF_SPACING: f64 = 1e-3;
-/// The same where Schur complements leave out little: what the correction changes is less there, and residuals of the end are not. With
-/// 10⁻³, and windows of 72 nodes, errors on 64² come to 0.65 of their estimates in place of 0.29.
-pub(super) const OF_SPACING_SHARP: f64 = 2e-3;
 /// The same of a window in which nodes yield as well: what pressures of nodes that touched and overlaps of nodes that yielded make of the
 /// error of a matrix may cancel at the window's end, and not before. On the four paths of `tests/paths/hardness_without_factor.rs` and
 /// on 128² errors come to 0.64 of their estimates; with H = 0.05 E* h′ on 256², 0.2 % of them exceed these, by 2.3 times at worst. Half: to
@@ -218,6 +207,6 @@ pub(super) const FACTOR: f64 = 1.0e-11;
 pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
 /// goes with them on the contact.
-pub(super) const ITERATIONS: [f64; 2] = [1.2e-9, 4.0e-9];
+pub(super) const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];
 /// The same for any grid: local solutions and events.
 pub(super) const WINDOW: f64 = 3.0e-4;

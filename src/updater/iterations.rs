@@ -72,12 +72,6 @@ pub trait Iterations: Debug + Send + Sync {
     /// Greatest gap in contact that a solution leaves, relative to the approach.
     fn tolerance(&self) -> f64;
 
-    /// Whether Schur complements beside so many nodes in contact leave out so little that windows may be longer.
-    fn is_sharp(&self, problem: &Problem, contact: usize) -> bool {
-        let _ = (problem, contact);
-        false
-    }
-
     /// Goes on from a contact and the solution on it.
     fn take_over(
         &mut self,

@@ -329,21 +329,6 @@ impl KernelTable {
         ix + iy * (2 * self.grid.nx() - 1)
     }
 
-    /// The same coefficients on another grid of the same cells, on a free half-space: a patch. Offsets between nodes that are not both
-    /// on this grid have none, that is zero.
-    pub(crate) fn patch(&self, grid: Grid) -> Self {
-        let (nx, ny) = (grid.nx() as isize, grid.ny() as isize);
-        let rows = (1 - ny..ny).flat_map(|dj| (1 - nx..nx).map(move |di| (di, dj)));
-        Self {
-            grid,
-            boundary: Boundary::Free,
-            growth: ContactGrowth::Unknown,
-            mean: self.mean,
-            origin: KernelOrigin::Other,
-            values: rows.map(|(di, dj)| self.coefficient(di, dj).unwrap_or(0.0)).collect(),
-        }
-    }
-
     /// The coefficient between two nodes given by their places.
     #[inline]
     pub(crate) fn between(&self, place: usize, other: usize) -> f64 {

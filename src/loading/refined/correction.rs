@@ -1,6 +1,6 @@
 //! A window played anew with what the exact solution at its end shows.
 
-use crate::loading::tuning::{LEAST_DETERMINANT, OF_NOISE};
+use crate::loading::tuning::LEAST_DETERMINANT;
 use nalgebra::{Matrix2, Vector2};
 
 use crate::loading::run::LoadingRun;
@@ -148,7 +148,7 @@ fn update(window: &mut Window, ends: &[AtEnd], time: f64) -> bool {
     true
 }
 
-/// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction, or one and noise;
+/// The inverse of a positive semidefinite `WᵀV`, the pseudoinverse if the error of S̃ has but one direction;
 /// `None` if it is not positive semidefinite.
 fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
     // Where one of the diagonal is not positive, neither this nor the determinant is a number.
@@ -158,9 +158,8 @@ fn inverse(products: Matrix2<f64>) -> Option<Matrix2<f64>> {
     // With unit diagonal.
     let (own, other) = if determinant > LEAST_DETERMINANT {
         (1.0 / determinant, -correlation / determinant)
-    } else if determinant > -OF_NOISE {
-        let own = 0.5 / (1.0 + correlation.abs());
-        (own, own.copysign(correlation))
+    } else if determinant > -LEAST_DETERMINANT {
+        (0.25, 0.25_f64.copysign(correlation))
     } else {
         return None;
     };
@@ -270,8 +269,8 @@ mod tests {
         }
     }
 
-    /// (4, 1; 1, 1) has the determinant 3. Correlations near 1, and a little beyond it, are those of an error in one direction, and far
-    /// beyond it of none.
+    /// (4, 1; 1, 1) has the determinant 3. Correlations near 1 are those of an error in one direction, and beyond it
+    /// of none.
     #[test]
     fn inverses_of_two_by_two() {
         let inverse_of = |a: f64, b: f64, c: f64| {
@@ -291,14 +290,12 @@ mod tests {
         let regular = correlation(2e-6);
         let [own, other] = [5e5, -5e5 * regular];
         close(inverse_of(1.0, regular, 1.0), [own, other, other, own], 1e-9);
-        // 1/(2 + 2c) of the sum of both columns, or of their difference: a quarter for one direction alone.
-        for determinant in [5e-7, -5e-7, -0.09] {
+        for determinant in [5e-7, -5e-7] {
             let c = correlation(determinant);
-            let own = 0.5 / (1.0 + c);
-            close(inverse_of(1.0, c, 1.0), [own; 4], 1e-15);
-            close(inverse_of(1.0, -c, 1.0), [own, -own, -own, own], 1e-15);
+            assert_eq!(inverse_of(1.0, c, 1.0), Some([0.25; 4]));
+            assert_eq!(inverse_of(1.0, -c, 1.0), Some([0.25, -0.25, -0.25, 0.25]));
         }
-        assert_eq!(inverse_of(1.0, correlation(-0.11), 1.0), None);
+        assert_eq!(inverse_of(1.0, correlation(-2e-6), 1.0), None);
         for (a, c) in
             [(0.0, 1.0), (1.0, 0.0), (0.0, 0.0), (-1.0, 1.0), (1.0, -1.0), (f64::NAN, 1.0)]
         {

@@ -7,8 +7,6 @@
 
 pub(super) mod candidates;
 pub(super) mod correction;
-#[cfg(test)]
-mod grouped_tests;
 pub(super) mod leaving;
 mod near_ties;
 mod plateau;
@@ -25,8 +23,8 @@ use super::run::{LoadingRun, Mark};
 use super::tolerances::WindowTolerances;
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
-    BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, OF_SPACING,
-    OF_SPACING_SHARP, REMEMBERED, SHORTER, WATCHED, WATCHED_SHARP, WATCHED_UNSETTLED,
+    BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED,
+    SHORTER, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
@@ -38,10 +36,7 @@ use near_ties::Settled;
 /// Finds events in windows that are corrected at their end.
 #[derive(Debug)]
 pub(super) struct Refined {
-    /// Nodes to watch.
     size: usize,
-    /// Whether that is for the path to choose.
-    grows: bool,
     /// Whether events that are too close to be told apart get a solution of their own.
     settles: bool,
     /// Whether nodes may leave.
@@ -89,7 +84,6 @@ impl Refined {
         let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
         Self {
             size: size.unwrap_or(watched).max(FEWEST),
-            grows: size.is_none() && settles,
             settles,
             may_leave: false,
             ranking: Vec::new(),
@@ -164,10 +158,6 @@ impl Refined {
         let most = most_nodes - run.contact.len();
         let (mut extra, mut longest) = (Vec::new(), f64::INFINITY);
         let mut without_events = 0;
-        if self.grows {
-            let is_sharp = iterations.is_sharp(&run.problem, run.contact.len());
-            self.size = if is_sharp { WATCHED_SHARP } else { WATCHED };
-        }
         loop {
             let tolerances = WindowTolerances::of(run, iterations.tolerance());
             self.begin(run, iterations)?;
@@ -413,8 +403,7 @@ impl Refined {
     ) -> Result<Option<(Correction, Settled)>, Error> {
         let ends = correction::at_end(window, run);
         let correction = correction::correct(window, &ends, time);
-        let settled =
-            near_ties::second_pass(window, &correction, (first, joined, time), self.of_spacing());
+        let settled = near_ties::second_pass(window, &correction, (first, joined, time));
         self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
         let change = near_ties::mean_change(first, &settled.events, time);
         let most_change = MOST_CHANGE * time / joined.len() as f64;
@@ -437,11 +426,6 @@ impl Refined {
             self.left_out = self.left_out.max(LEFT_OUT / half as f64);
         }
         Ok(settled.map(|settled| (correction, settled)))
-    }
-
-    /// The least error of a time, as a part of the mean spacing of events.
-    fn of_spacing(&self) -> f64 {
-        if self.grows && self.size == WATCHED_SHARP { OF_SPACING_SHARP } else { OF_SPACING }
     }
 
     /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with

@@ -1,8 +1,8 @@
 //! Events that are too close to each other to be told apart without a solution of their own.
 
 use crate::loading::tuning::{
-    BETWEEN_CORRECTIONS, CONTRADICTED, OF_CHANGE, OF_CHANGE_UNCORRECTED, OF_ERROR, OF_WAY, POOR,
-    RATE_ERROR, SAME_GAP, SAME_PIVOT, SAME_RATE,
+    BETWEEN_CORRECTIONS, CONTRADICTED, OF_CHANGE, OF_CHANGE_UNCORRECTED, OF_ERROR, OF_SPACING,
+    OF_WAY, POOR, RATE_ERROR, SAME_GAP, SAME_PIVOT, SAME_RATE,
 };
 use std::ops::Range;
 
@@ -59,12 +59,11 @@ pub(super) fn settle(
 
 /// Plays the events that joined under the corrected Schur complement, and estimates their errors. `first` is
 /// what they were in the first pass, `joined` the positions of the nodes that joined, and the window ends after
-/// `time`. Errors are this part `of_spacing` of events at least.
+/// `time`.
 pub(super) fn second_pass(
     window: &Window,
     correction: &Correction,
     (first, joined, time): (&[WindowEvent], &[usize], f64),
-    of_spacing: f64,
 ) -> Settled {
     let end = time * (1.0 + 1e-9);
     let pass = |window: &Window| {
@@ -88,7 +87,7 @@ pub(super) fn second_pass(
         let of_rate = RATE_ERROR * event.time / closing;
         let changed = part * (distance(first, event, time) + change);
         let between = BETWEEN_CORRECTIONS * distance(&other, event, time);
-        between.max(changed).max(of_spacing * time / count) + of_rate
+        between.max(changed).max(OF_SPACING * time / count) + of_rate
     };
     Settled { errors: events.iter().map(error).collect(), events }
 }

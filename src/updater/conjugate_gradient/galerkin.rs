@@ -7,18 +7,16 @@ use crate::{Boundary, Grid, Problem, parallel};
 
 /// What a watched node does to pressures: of one out of contact unit pressure and the answer of the contact near it, `e_j − x_j`; of
 /// one in contact what its overlap takes off that contact, `−x_q`.
-pub(super) struct Source {
+struct Source {
     /// (place in the table, pressure) of all nodes, by the first.
-    pub(super) near: Vec<(usize, f64)>,
-    /// The same by offsets from the watched node \[cells\].
-    pub(super) answers: Vec<([i32; 2], f64)>,
+    near: Vec<(usize, f64)>,
     /// The place of the watched node itself.
     own: usize,
     is_in_contact: bool,
     /// The same interpolated to few nodes.
-    pub(super) far: Vec<(usize, f64)>,
-    pub(super) centre: [f64; 2],
-    pub(super) radius: f64,
+    far: Vec<(usize, f64)>,
+    centre: [f64; 2],
+    radius: f64,
 }
 
 /// ```math
@@ -55,7 +53,7 @@ fn products(nodes: usize, size: usize) -> usize {
 }
 
 impl Source {
-    pub(super) fn new(problem: &Problem, local: &Local) -> Self {
+    fn new(problem: &Problem, local: &Local) -> Self {
         let (grid, table) = (problem.grid(), problem.table());
         let own = grid.coordinates(local.node);
         let own = [own.0 as i32, own.1 as i32];
@@ -91,7 +89,7 @@ impl Source {
         let axes = [0, 1].map(|axis| Axis::of(answers.iter().map(|(offset, _)| offset[axis])));
         let mut weights = [[0.0; POINTS]; POINTS];
         for (offset, pressure) in &answers {
-            let [x, y] = [0, 1].map(|axis| axes[axis].weights(f64::from(offset[axis])));
+            let [x, y] = [0, 1].map(|axis| axes[axis].weights(offset[axis]));
             for (row, y) in weights.iter_mut().zip(y) {
                 for (weight, x) in row.iter_mut().zip(x) {
                     *weight += pressure * x * y;
@@ -112,7 +110,6 @@ impl Source {
         let half = |axis: usize| 0.5 * f64::from(axes[axis].last() - axes[axis].first());
         Self {
             near,
-            answers,
             own: table.place(local.node),
             is_in_contact,
             far,
@@ -133,30 +130,17 @@ impl Source {
         }
         // The answer of the contact near a watched node takes its displacement away there. What a node in contact displaces there is
         // nothing but its own overlap, which goes with the last term.
-        let mut work = if self.is_in_contact { other.at(self.own) } else { 0.0 };
-        for (place, pressure) in self.felt(other) {
-            work += pressure * displacement(table, place, &other.near);
-        }
-        work
-    }
-
-    /// (place, pressure) of the nodes at which the answer of another source leaves a displacement.
-    pub(super) fn felt<'a>(
-        &'a self,
-        other: &'a Self,
-    ) -> impl Iterator<Item = (usize, f64)> + use<'a> {
         let mut answering = other.near.iter().peekable();
-        self.near.iter().copied().filter(move |&(place, _)| {
+        let mut work = if self.is_in_contact { other.at(self.own) } else { 0.0 };
+        for &(place, pressure) in &self.near {
             while answering.next_if(|(other, _)| *other < place).is_some() {}
             let is_taken_away = (place != other.own || other.is_in_contact)
                 && answering.peek().is_some_and(|(other, _)| *other == place);
-            !is_taken_away
-        })
-    }
-
-    /// Offsets along an axis.
-    pub(super) fn offsets(&self, axis: usize) -> impl Iterator<Item = i32> + Clone {
-        self.answers.iter().map(move |(offset, _)| offset[axis])
+            if !is_taken_away {
+                work += pressure * displacement(table, place, &other.near);
+            }
+        }
+        work
     }
 
     /// Pressure at a place.
@@ -167,13 +151,13 @@ impl Source {
 }
 
 /// Displacement of a place under some pressures.
-pub(super) fn displacement(table: &KernelTable, place: usize, pressures: &[(usize, f64)]) -> f64 {
+fn displacement(table: &KernelTable, place: usize, pressures: &[(usize, f64)]) -> f64 {
     let terms = pressures.iter().map(|&(other, p)| table.between(place, other) * p);
     terms.sum()
 }
 
 /// How far two points are from each other, the shorter way round where the half-space repeats.
-pub(super) fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2]) -> f64 {
+fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2]) -> f64 {
     let (lx, ly) = grid.sides();
     let repeats = boundary.repeats();
     let [dx, dy] = [(0, lx), (1, ly)].map(|(axis, side)| {
@@ -185,13 +169,13 @@ pub(super) fn distance(grid: Grid, boundary: Boundary, a: [f64; 2], b: [f64; 2])
 
 /// Up to four points between the least and the greatest offset along an axis.
 #[derive(Default)]
-pub(super) struct Axis {
+struct Axis {
     points: [i32; POINTS],
     count: usize,
 }
 
 impl Axis {
-    pub(super) fn of(offsets: impl Iterator<Item = i32> + Clone) -> Self {
+    fn of(offsets: impl Iterator<Item = i32> + Clone) -> Self {
         let (first, last) =
             (offsets.clone().min().unwrap_or_default(), offsets.max().unwrap_or_default());
         let count = POINTS.min((last - first + 1) as usize);
@@ -203,27 +187,22 @@ impl Axis {
         Self { points, count }
     }
 
-    /// The points.
-    pub(super) fn points(&self) -> &[i32] {
-        &self.points[..self.count]
-    }
-
-    pub(super) fn first(&self) -> i32 {
+    fn first(&self) -> i32 {
         self.points[0]
     }
 
-    pub(super) fn last(&self) -> i32 {
+    fn last(&self) -> i32 {
         self.points[self.count - 1]
     }
 
     /// Lagrange's polynomials at an offset.
-    pub(super) fn weights(&self, offset: f64) -> [f64; POINTS] {
+    fn weights(&self, offset: i32) -> [f64; POINTS] {
         let mut weights = [0.0; POINTS];
         let points = &self.points[..self.count];
         for (k, (weight, &point)) in weights.iter_mut().zip(points).enumerate() {
             let others = points.iter().enumerate().filter(|(other, _)| *other != k);
             *weight = others
-                .map(|(_, &other)| (offset - f64::from(other)) / f64::from(point - other))
+                .map(|(_, &other)| f64::from(offset - other) / f64::from(point - other))
                 .product();
         }
         weights

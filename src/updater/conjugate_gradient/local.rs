@@ -1,6 +1,5 @@
 //! How a watched node acts on the contact near it.
 
-use super::grouping::Grouping;
 use super::tuning::{CANDIDATES, NEAREST, REACH, SAME};
 use crate::Problem;
 use crate::kernel::KernelTable;
@@ -8,7 +7,6 @@ use crate::krylov::NodeSet;
 use crate::krylov::single::solve_in_place;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
-use std::sync::OnceLock;
 
 /// `x = C_KK⁻¹ C_Kj` on the contact nodes K near a watched node j: what pressure on j, and none but
 /// that of K to answer it, takes off K. Of a node j in contact, which is one of K, it is `x = C_KK⁻¹ e_j`: what a gap of j adds
@@ -29,17 +27,6 @@ impl Local {
     }
 }
 
-/// A candidate behind the nearest contact nodes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Farther {
-    /// Its place among all offsets.
-    pub(super) candidate: usize,
-    /// The node, if it is in contact.
-    pub(super) node: Option<u32>,
-    /// From the node in the middle \[cells\].
-    pub(super) offset: [i32; 2],
-}
-
 /// Offsets to the nodes around a node, nearest first.
 #[derive(Debug, Clone)]
 pub(super) struct Neighbourhood {
@@ -47,10 +34,6 @@ pub(super) struct Neighbourhood {
     boundary: Boundary,
     /// (squared distance, dy, dx)
     offsets: Vec<(f64, i32, i32)>,
-    /// Sides of a cell relative to those of a square one of the same area.
-    sides: [f64; 2],
-    /// How the nodes around a node make groups, made at first use.
-    grouping: OnceLock<Grouping>,
 }
 
 impl Neighbourhood {
@@ -81,29 +64,10 @@ impl Neighbourhood {
             reach *= 2.0;
         }
         offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        if let Some(&(last, _, _)) = offsets.get(CANDIDATES - 1) {
+        if let Some(&(last, _, _)) = offsets.get(CANDIDATES) {
             offsets.retain(|(squared, _, _)| *squared <= last * (1.0 + SAME));
         }
-        let sides = [side_x, side_y];
-        Self { grid, boundary, offsets, sides, grouping: OnceLock::new() }
-    }
-
-    /// The boundary of the half-space.
-    pub(super) fn boundary(&self) -> Boundary {
-        self.boundary
-    }
-
-    /// Sides of a cell relative to those of a square one of the same area.
-    pub(super) fn sides(&self) -> [f64; 2] {
-        self.sides
-    }
-
-    /// How the nodes around a node make groups.
-    pub(super) fn grouping(&self, table: &KernelTable) -> &Grouping {
-        self.grouping.get_or_init(|| {
-            let offsets = self.offsets.iter().map(|&(_, dy, dx)| [dx, dy]);
-            Grouping::new(table, offsets, self.sides)
-        })
+        Self { grid, boundary, offsets }
     }
 
     /// The grid of the nodes.
@@ -113,18 +77,6 @@ impl Neighbourhood {
 
     /// The contact nodes nearest to a node, in whole shells of one distance, so that symmetry is kept.
     fn nearest(&self, set: &NodeSet, node: usize) -> Vec<u32> {
-        self.around(set, node, NEAREST, |_| false)
-    }
-
-    /// The nearest `count` contact nodes, unless there are so few that all are, and in whole shells. While `farther` says so, it is
-    /// told of all others in reach.
-    pub(super) fn around(
-        &self,
-        set: &NodeSet,
-        node: usize,
-        count: usize,
-        mut farther: impl FnMut(Farther) -> bool,
-    ) -> Vec<u32> {
         if set.len() <= NEAREST {
             return set.nodes().to_vec();
         }
@@ -133,10 +85,12 @@ impl Neighbourhood {
         let (ix, iy) = (ix as i32, iy as i32);
         let [x_repeats, y_repeats] = self.boundary.repeats();
         let places = set.places();
-        let mut found = Vec::with_capacity(count);
+        let mut found = Vec::with_capacity(NEAREST);
         let mut last = 0.0;
-        for (k, &(squared, dy, dx)) in self.offsets.iter().enumerate() {
-            let is_farther = found.len() >= count && squared > last * (1.0 + SAME);
+        for &(squared, dy, dx) in &self.offsets {
+            if found.len() >= NEAREST && squared > last * (1.0 + SAME) {
+                break;
+            }
             let (mut x, mut y) = (ix + dx, iy + dy);
             if x_repeats {
                 x = x.rem_euclid(nx);
@@ -148,14 +102,7 @@ impl Neighbourhood {
                 continue;
             }
             let other = x as usize + self.grid.nx() * y as usize;
-            if is_farther {
-                let node = other as u32;
-                let is_in = places[other] != NodeSet::NONE;
-                if !farther(Farther { candidate: k, node: is_in.then_some(node), offset: [dx, dy] })
-                {
-                    break;
-                }
-            } else if places[other] != NodeSet::NONE {
+            if places[other] != NodeSet::NONE {
                 found.push(other as u32);
                 last = squared;
             }
@@ -268,7 +215,7 @@ mod tests {
     }
 
     /// Two rows of 80 have 159 candidates each way, fewer than are looked at. Of the 101 × 101 nodes of a free grid within 50 cells,
-    /// those closer than 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
+    /// those within 32 are; where the grid repeats within 25, all of them, and half of them beyond a circle of that radius.
     #[test]
     fn nodes_far_away_are_out_of_reach() -> Result<(), Error> {
         for dx in [1.0, 2.0, 1e-3] {
@@ -278,7 +225,7 @@ mod tests {
         }
         let wide = Neighbourhood::new(&flat(Grid::new(51, 51, 1.0, 1.0)?, false)?);
         let farthest = |beside: &Neighbourhood| beside.offsets.last().map(|last| last.0);
-        assert_eq!((wide.offsets.len(), farthest(&wide)), (CANDIDATES, Some(1021.0)));
+        assert_eq!((wide.offsets.len(), farthest(&wide)), (CANDIDATES, Some(1024.0)));
         let corner = set(51 * 51, |node| node < 20 * 51);
         // 20 of 51 rows, seen from the middle of the last one: those of 26 rows and more below are not.
         assert!(wide.nearest(&corner, 50 * 51 + 25).iter().all(|&node| node >= 18 * 51));

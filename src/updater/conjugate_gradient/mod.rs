@@ -3,8 +3,6 @@
 mod both;
 mod equilibrium;
 mod galerkin;
-mod grouping;
-mod groups;
 mod instants;
 mod local;
 mod plastic_sums;
@@ -16,7 +14,6 @@ mod solver;
 mod tests;
 mod tolerances;
 mod tuning;
-mod wide;
 
 use super::{
     Behind, Beside, Iterations, Kept, Left, LinearUpdater, Method, Proposal, Schur, Solution,
@@ -27,7 +24,7 @@ use crate::krylov::{Field, check_cells};
 use crate::parallel::inside;
 use crate::{Error, Problem};
 use solutions::Solutions;
-use tolerances::{Aim, Criteria, Grouped};
+use tolerances::{Aim, Criteria};
 use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 
 /// Solves by preconditioned conjugate gradients with one convolution a step ("when the total nodes
@@ -49,9 +46,8 @@ use tuning::{BYTES_A_CONTACT_NODE, BYTES_A_NODE};
 /// \tilde S_{ij} = (e_i - x_i)^T C\, (e_j - x_j)
 /// ```
 ///
-/// exceeds S by the square of the error of x. On grids of 2¹⁷ nodes and more all contact nodes within some 32 cells are in K, those
-/// far from j in groups of one pressure each. With a hardness nodes q in contact are watched too, with
-/// `x_q = C_KK⁻¹ e_q`: what a gap of q adds to the pressures near it.
+/// exceeds S by the square of the error of x. With a hardness nodes q in contact are watched too, with `x_q = C_KK⁻¹ e_q`: what a gap
+/// of q adds to the pressures near it.
 ///
 /// As an updater of nodes that yield ([`watch_both`](LinearUpdater::watch_both)) it takes a solution for each node too; a path does with
 /// local ones there as well.
@@ -68,8 +64,7 @@ pub struct ConjugateGradient {
 
 impl Default for ConjugateGradient {
     fn default() -> Self {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 5000, grouped: Grouped::LARGE };
-        Self { criteria, solutions: None }
+        Self { criteria: Criteria { tolerance: 1e-10, max_iterations: 5000 }, solutions: None }
     }
 }
 
@@ -103,14 +98,6 @@ impl ConjugateGradient {
         Ok(updater)
     }
 
-    /// The same with groups of nodes from so few nodes in contact on, whatever the grid.
-    #[cfg(test)]
-    pub(crate) fn grouped_from(contact: usize) -> Self {
-        let mut updater = Self::default();
-        updater.criteria.grouped = Grouped { grid: 0, contact };
-        updater
-    }
-
     /// Solver and solutions of a problem, made at first use.
     ///
     /// # Errors
@@ -138,10 +125,6 @@ impl ConjugateGradient {
 impl Iterations for ConjugateGradient {
     fn tolerance(&self) -> f64 {
         self.criteria.tolerance
-    }
-
-    fn is_sharp(&self, problem: &Problem, contact: usize) -> bool {
-        self.criteria.has_groups(problem.grid(), contact)
     }
 
     fn take_over(

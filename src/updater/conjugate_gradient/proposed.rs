@@ -2,11 +2,9 @@
 
 use super::equilibrium::Equilibrium;
 use super::galerkin;
-use super::groups::Wide;
 use super::local::{Local, Neighbourhood};
 use super::solver::Solver;
 use super::tuning::PRODUCTS;
-use super::wide;
 use crate::contact::ContactSequence;
 use crate::krylov::Field;
 use crate::updater::{Schur, Solved, WindowFactor};
@@ -23,39 +21,27 @@ pub(super) struct Proposed {
 }
 
 impl Proposed {
-    /// Proposes nodes beside the contact that a solver has chosen, of which those far away answer in groups, if it `is_grouped`. What
-    /// the contact leaves of their row sums is `left`.
+    /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. What the contact leaves of their row sums
+    /// is `left`.
     pub(super) fn new(
         problem: &Problem,
         (neighbourhood, solver): (&Neighbourhood, &Solver),
-        (nodes, is_grouped): (&[usize], bool),
+        (nodes, count): (&[usize], usize),
         mut left: impl FnMut(&Local) -> f64,
     ) -> Result<Self, Error> {
-        let (table, set) = (problem.table(), solver.set());
+        let of = |&node: &usize| Local { node, ..Local::default() };
+        let mut locals: Vec<Local> = nodes.iter().map(of).collect();
+        let products = locals.len() * PRODUCTS;
+        parallel::for_each(products, &mut locals, |local| {
+            *local = neighbourhood.solve(problem.table(), solver.set(), local.node);
+        });
         let mut complement = Schur::default();
         complement.resize(nodes.len())?;
-        let products = nodes.len() * PRODUCTS;
-        let locals = if is_grouped {
-            let grouping = neighbourhood.grouping(table);
-            let mut answers: Vec<Wide> = nodes.iter().map(|&node| Wide::of(node)).collect();
-            parallel::for_each(products, &mut answers, |answer| {
-                *answer = neighbourhood.solve_wide(table, set, grouping, answer.local.node);
-            });
-            wide::schur(problem, &answers, (neighbourhood, grouping), complement.as_mut_slice());
-            answers.into_iter().map(|answer| answer.local).collect()
-        } else {
-            let of = |&node: &usize| Local { node, ..Local::default() };
-            let mut locals: Vec<Local> = nodes.iter().map(of).collect();
-            parallel::for_each(products, &mut locals, |local| {
-                *local = neighbourhood.solve(table, set, local.node);
-            });
-            galerkin::schur(problem, &locals, complement.as_mut_slice());
-            locals
-        };
+        galerkin::schur(problem, &locals, complement.as_mut_slice());
         for (sum, local) in complement.row_sums_mut().iter_mut().zip(&locals) {
             *sum = left(local);
         }
-        Ok(Self { locals, count: set.len(), complement })
+        Ok(Self { locals, count, complement })
     }
 
     /// The nodes.

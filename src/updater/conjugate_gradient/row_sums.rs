@@ -128,9 +128,9 @@ mod tests {
             (200, &[3][..], 0.5, false),
             (199, &[3], 0.5, true),
             (200, &[3, 7], 0.5, true),
-            (200, &[3], 0.0011, false),
+            (200, &[3], 0.031, false),
             (200, &[3], SUMS_OPEN, true),
-            (200, &[3], 0.0009, true),
+            (200, &[3], 0.029, true),
             (200, &[9], 0.5, true),
             (200, &[], 0.5, false),
         ] {
@@ -145,7 +145,7 @@ mod tests {
             assert_eq!(sums.count(), before);
             let beside = (&Neighbourhood::new(&problem), &solver);
             let left = |local: &Local| sums.left_at(&problem, local);
-            let proposed = Proposed::new(&problem, beside, (&[3, 7], false), left)?;
+            let proposed = Proposed::new(&problem, beside, (&[3, 7], before), left)?;
             for &node in joined {
                 contact.push(node)?;
             }

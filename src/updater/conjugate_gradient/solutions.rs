@@ -129,8 +129,7 @@ impl Solutions {
         }
         self.instants.clear();
         let beside = (&self.neighbourhood, &self.solver);
-        let is_grouped = criteria.has_groups(problem.grid(), contact.len());
-        self.proposed = Proposed::new(problem, beside, (nodes, is_grouped), |local| {
+        self.proposed = Proposed::new(problem, beside, (nodes, contact.len()), |local| {
             if periodic {
                 // All row sums are the same, so that y₂ explains them.
                 problem.row_sums()[local.node] * (1.0 - self.now.rate.displacement[local.node])

@@ -1,10 +1,8 @@
 //! How exact solutions have to be.
 
 use super::tuning::{
-    ADJOINT, DRIFT, LEAST_GROUPED, LEAST_GROUPED_GRID, LEAST_RATE_TOLERANCE, LONGEST_GROUPED,
-    OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE, REACH,
+    ADJOINT, DRIFT, LEAST_RATE_TOLERANCE, OF_LENGTH, OF_OPEN, OF_SPAN, RATE_DRIFT, RATE_TOLERANCE,
 };
-use crate::Grid;
 
 /// The purpose of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,38 +26,12 @@ impl Aim {
     }
 }
 
-/// The least nodes of the grid, and the least of them in contact, with which nodes far from a watched one answer it in groups.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Grouped {
-    pub(super) grid: usize,
-    pub(super) contact: usize,
-}
-
-impl Grouped {
-    /// Where they pay.
-    pub(super) const LARGE: Self = Self { grid: LEAST_GROUPED_GRID, contact: LEAST_GROUPED };
-}
-
 /// When iterations end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Criteria {
     /// Greatest residual of a gap in contact, relative to the approach.
     pub(super) tolerance: f64,
     pub(super) max_iterations: usize,
-    pub(super) grouped: Grouped,
-}
-
-impl Criteria {
-    /// Whether nodes far from a watched one answer it in groups, beside a contact of so many nodes: not on strips and long cells, where
-    /// long waves make more of what groups leave out.
-    pub(super) fn has_groups(&self, grid: Grid, contact: usize) -> bool {
-        let (dx, dy) = (grid.dx(), grid.dy());
-        let sides = [(dx / dy).sqrt() * grid.nx() as f64, (dy / dx).sqrt() * grid.ny() as f64];
-        grid.nodes() >= self.grouped.grid
-            && contact >= self.grouped.contact
-            && dx.max(dy) <= LONGEST_GROUPED * dx.min(dy)
-            && sides.into_iter().all(|side| side >= 2.0 * REACH)
-    }
 }
 
 /// Greatest residuals of a solution.
@@ -103,37 +75,9 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Error;
-
-    /// Beside 2¹² nodes on a grid of 2¹⁷, on cells up to 3 : 1, and not on strips of less than 64 square cells.
-    #[test]
-    fn groups_are_for_large_grids_of_square_cells() -> Result<(), Error> {
-        for (shape, cell, contact, has_groups) in [
-            ((512, 256), (1.0, 1.0), 4096, true),
-            ((512, 256), (1.0, 1.0), 4095, false),
-            ((512, 255), (1.0, 1.0), 4096, false),
-            ((512, 256), (3.0, 1.0), 4096, true),
-            ((512, 256), (1e-3, 3.1e-3), 4096, false),
-            ((4096, 64), (1.0, 1.0), 4096, true),
-            ((4096, 63), (1.0, 1.0), 4096, false),
-            ((4096, 64), (2.0, 1.0), 4096, false),
-            ((4096, 91), (2.0, 1.0), 4096, true),
-            ((4096, 64), (1.0, 1.01), 4096, true),
-        ] {
-            let criteria =
-                Criteria { tolerance: 1e-10, max_iterations: 1, grouped: Grouped::LARGE };
-            let grid = Grid::new(shape.0, shape.1, cell.0, cell.1)?;
-            assert_eq!(
-                criteria.has_groups(grid, contact),
-                has_groups,
-                "{shape:?} {cell:?} {contact}"
-            );
-        }
-        Ok(())
-    }
 
     fn tolerances(aim: Aim, length: f64, open: f64) -> Tolerances {
-        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1, grouped: Grouped::LARGE };
+        let criteria = Criteria { tolerance: 1e-10, max_iterations: 1 };
         Tolerances::of(criteria, aim, length, open)
     }
 

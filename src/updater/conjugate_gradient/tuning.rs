@@ -9,45 +9,15 @@
 /// convolutions on all four, three times the near ties, states two to five times as wrong. Twice: 0.85 of the convolutions (0.46 on the
 /// strip) and states three times as good, but the work of a local solution is eight times as much.
 pub(super) const NEAREST: usize = 144;
-/// Nodes among which they are looked for: those within a circle of 32 square cells, the centre left out, so that a
-/// patch of the grid that holds them has 63 nodes a side. Half or twice: no effect on
+/// Nodes among which they are looked for: those of a circle of 32 square cells, the centre left out. Half or twice: no effect on
 /// these grids; on cells ten times as long as wide loads were wrong by 3·10⁻⁴ with far fewer.
-pub(super) const CANDIDATES: usize = 3204;
+pub(super) const CANDIDATES: usize = 3208;
 /// The radius in which the search for them begins \[sides of a square cell of the same area\]: it is doubled until there are enough.
 pub(super) const REACH: f64 = 32.0;
 /// Squared distances that differ by less, relatively, are those of one shell: rounding of a sum of two squares.
 pub(super) const SAME: f64 = 1e-9;
 /// Products, and look-ups that take as long, of a local solution.
 pub(super) const PRODUCTS: usize = NEAREST * NEAREST * NEAREST;
-/// On smaller grids, and beside fewer nodes in contact, the [`NEAREST`] answer alone. CPU time of one thread with groups, relative to that
-/// without: 1.2 on 256² up to 16 384 nodes, 0.97 on 384² up to 12 000; on 512², with windows of 90 nodes, 0.6 at 9000 nodes, 0.8 at 12 500
-/// to 47 000, 0.7 at 90 000 to 160 000 and 0.6 at 207 000. Beside some hundred nodes, of which 144 are a large part, states are less exact
-/// with groups: loads on 32 × 32 nodes are off by 6·10⁻⁵.
-pub(super) const LEAST_GROUPED_GRID: usize = 1 << 17;
-/// The least of them in contact.
-pub(super) const LEAST_GROUPED: usize = 1 << 12;
-/// Nor do groups answer on cells longer than this: of 10 : 1 interfacial stiffnesses near full contact are off by 4·10⁻⁴ with them, and
-/// by less than 3·10⁻⁴ without.
-pub(super) const LONGEST_GROUPED: f64 = 3.0;
-/// So many of the nearest contact nodes answer one by one then, and all others in reach in groups.
-/// On 512², at 18, 47 and 79 % contact, a window of 90 nodes takes 0.13, 0.10 and 0.11 convolutions an event, and with 144 of them 0.15,
-/// 0.09 and 0.10, but twice the time.
-pub(super) const SINGLY: usize = 80;
-/// Side of a block of cells whose contact nodes answer together; farther away it is three by three of these \[sides of a square cell of
-/// the same area\].
-pub(super) const BLOCK: f64 = 3.0;
-/// Blocks are small up to so many times the distance of the last node that answers one by one, and up to this distance \[sides of
-/// a square cell\].
-pub(super) const FINE: f64 = 2.0;
-pub(super) const FINEST: f64 = 10.0;
-/// What is closer to the centre of a group than so many sides of its block sees each of its nodes.
-pub(super) const ADJACENT: f64 = 1.2;
-/// Nodes of a group that stand for all of them in what they do to each other.
-pub(super) const REPRESENTATIVES: usize = 12;
-/// Greater pressures do not answer unit pressure: then groups are given up.
-pub(super) const GREATEST_ANSWER: f32 = 1.0;
-/// Products that take as long as a convolution on a patch.
-pub(super) const FIELD: usize = 1 << 19;
 /// Interpolation points along one side of the box of a source seen from afar.
 pub(super) const POINTS: usize = 6;
 /// Two sources are far from each other if their centres are more than this times the sum of their radii
@@ -101,10 +71,9 @@ pub(super) const SUMS_TOLERANCE: f64 = 3e-3;
 /// The row sums are solved for when one node in so many is new in contact. Until then local solutions tell what
 /// those near a watched node make of it. No effect below 10 000 nodes in contact, where every window has as many new ones.
 pub(super) const STALE: usize = 200;
-/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left. On 512² mean closing rates
-/// are 0.03 before half of the area is in contact. With 0.03 in place of this every window from there on takes two convolutions more, a
-/// fifth of all, and interfacial stiffnesses are off by 10⁻⁶ in place of 10⁻⁵ in the middle of the path, and by 3·10⁻⁵ at worst both ways.
-pub(super) const SUMS_OPEN: f64 = 1e-3;
+/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left. No effect, for the same
+/// reason.
+pub(super) const SUMS_OPEN: f64 = 0.03;
 
 // Memory
 

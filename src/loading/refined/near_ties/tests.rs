@@ -4,7 +4,6 @@ use nalgebra::DMatrix;
 
 use super::*;
 use crate::loading::test_chain::{self, course, events, pairs, tolerances};
-use crate::loading::tuning::OF_SPACING;
 
 /// Nodes that do not act on each other, with `[gap, closing]` of each.
 fn alone(nodes: &[usize], lines: &[[f64; 2]]) -> Window {
@@ -40,7 +39,7 @@ fn errors_are_what_the_passes_differ_by() {
     let mut correction = correction(&window, &DMatrix::identity(5, 5));
     correction.window.set_courses(of([1.25, 3.5, 4.0, 4.5, 3.0]));
     correction.by_courses.set_courses(of([1.25, 3.0, 4.0, 4.5, 3.0]));
-    let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0), OF_SPACING);
+    let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0));
     // What has not touched by the end is put there.
     let expected = [(0, 1.25), (1, 3.5), (2, 4.0), (3, 4.0)];
     assert_eq!(pairs(&settled.events), expected);
@@ -51,12 +50,12 @@ fn errors_are_what_the_passes_differ_by() {
     close(&settled.errors, &of_rates([0.081_25, 1.0, 0.056_25, 8.0]));
     // Half of the changes.
     correction.is_updated = false;
-    let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0), OF_SPACING);
+    let settled = second_pass(&window, &correction, (&first, &[0, 1, 2, 3], 4.0));
     close(&settled.errors, &of_rates([0.406_25, 1.031_25, 0.281_25, 8.0]));
     // Where all agree, a thousandth of the mean spacing: 4 over 2.
     let same = events(&[(0, 1.25), (1, 3.0)]);
     correction.window = correction.by_courses.clone();
-    let settled = second_pass(&window, &correction, (&same, &[0, 1], 4.0), OF_SPACING);
+    let settled = second_pass(&window, &correction, (&same, &[0, 1], 4.0));
     let rates = [1.25 / 0.5, 3.0 / 0.25].map(|time| 5e-7 * time);
     close(&settled.errors, &[0.002 + rates[0], 0.002 + rates[1]]);
 }

@@ -40,7 +40,7 @@ fn interpolation_is_exact_for_polynomials() {
         let at = |x: i32| polynomial.iter().rev().fold(0.0, |sum, c| sum * f64::from(x) + c);
         let axis = Axis::of([first, last].into_iter());
         for offset in first..=last {
-            let weights = axis.weights(f64::from(offset));
+            let weights = axis.weights(offset);
             let points = &axis.points[..axis.count];
             let found: f64 = points.iter().zip(weights).map(|(&x, weight)| at(x) * weight).sum();
             // Rounding errors of numbers up to 10³.

@@ -88,7 +88,7 @@ fn nodes_are_proposed() -> Result<(), Error> {
     let mut solver = Solver::new(&problem);
     solver.choose(&contact, 2);
     let beside = (&Neighbourhood::new(&problem), &solver);
-    let found = Proposed::new(&problem, beside, (&[1, 3], false), |local| local.node as f64)?;
+    let found = Proposed::new(&problem, beside, (&[1, 3], 2), |local| local.node as f64)?;
     assert_eq!((found.count, found.complement().size()), (2, 2));
     assert_eq!(found.complement().row_sums(), [1.0, 3.0]);
     for (i, j) in [(0, 0), (1, 0), (1, 1)] {

@@ -95,8 +95,7 @@ impl Solutions {
             }
         }
         let mut sums = kept.row_sums.iter().copied();
-        let is_grouped = criteria.has_groups(problem.grid(), kept.proposed_beside);
-        let nodes = (&kept.proposed[..], is_grouped);
+        let nodes = (&kept.proposed[..], kept.proposed_beside);
         let proposed = Proposed::new(problem, (neighbourhood, solver), nodes, |_| {
             // One for each node, in their order.
             sums.next().unwrap_or_default()

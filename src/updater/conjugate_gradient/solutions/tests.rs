@@ -1,9 +1,7 @@
 use super::super::tests::{by_gap, problem};
-use super::super::tolerances::Grouped;
 use super::*;
 
-const CRITERIA: Criteria =
-    Criteria { tolerance: 1e-10, max_iterations: 1000, grouped: Grouped::LARGE };
+const CRITERIA: Criteria = Criteria { tolerance: 1e-10, max_iterations: 1000 };
 
 /// A window at its end: 60 nodes were in contact and ten proposed, of which six have joined.
 struct Window {
