@@ -31,16 +31,17 @@ pub(super) fn rank(run: &mut LoadingRun, ranking: &mut Ranking) -> Result<f64, E
     Ok(first)
 }
 
-/// Looks at all gaps at the present approach, and ranks them by a time. With `check` an overlap is an error, beyond rounding and what a solution may leave.
+/// Looks at all gaps at the present approach, and ranks them by a time. With `allowed`, the overlap that a solution may leave, more than
+/// that and than rounding is an error.
 pub(super) fn fill(
     run: &mut LoadingRun,
     ranking: &mut Ranking,
-    check: Option<f64>,
+    allowed: Option<f64>,
     mut time: impl FnMut(&GapLine) -> f64,
 ) -> Result<(), Error> {
     ranking.clear();
     ranking.reserve(run.problem.grid().nodes());
-    run.survey(check, |node, line| ranking.push((time(&line), node)))
+    run.survey(allowed, |node, line| ranking.push((time(&line), node)))
 }
 
 #[cfg(test)]

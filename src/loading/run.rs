@@ -239,16 +239,16 @@ impl LoadingRun {
         Ok(())
     }
 
-    /// Visits all gaps out of contact, and takes the mean gap from them. With `check` an overlap is an
-    /// error, beyond rounding and what a solution may leave.
+    /// Visits all gaps out of contact, and takes the mean gap from them. With `allowed`, the overlap that a solution may leave, more
+    /// than that and than rounding is an error.
     pub(super) fn survey(
         &mut self,
-        check: Option<f64>,
+        allowed: Option<f64>,
         mut visit: impl FnMut(usize, GapLine),
     ) -> Result<(), Error> {
         let approach = self.scalars.approach();
         let rounding = TOLERANCE * (self.problem.greatest_gap() + approach);
-        let least = -check.map_or(f64::INFINITY, |overlap| rounding.max(overlap));
+        let least = -allowed.map_or(f64::INFINITY, |overlap| rounding.max(overlap));
         let (mut mean_gap, mut closing) = (Sum::default(), Sum::default());
         for (node, line) in self.field.lines(&self.problem, &self.contact, approach) {
             if line.gap.is_nan() {

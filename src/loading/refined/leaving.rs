@@ -105,7 +105,7 @@ impl Before {
             return Between::Nothing;
         }
         let overlap = tolerances.overlap(run.scalars.approach());
-        let tension = overlap / run.problem.table().self_influence();
+        let tension = tolerances.tension(run);
         let Some(course) = Course::of(window, events, span) else {
             return Between::Until(0.5 * span);
         };

@@ -337,8 +337,7 @@ impl Refined {
             };
             let mut contradicted = None;
             if let Some(before) = &before {
-                let tension = tolerances.overlap(run.scalars.approach())
-                    / run.problem.table().self_influence();
+                let tension = tolerances.tension(run);
                 let at = (run.scalars.approach(), time);
                 let after =
                     before.sound_until(run, tension, at).map(|after| BEFORE_RELEASE * after);
