@@ -127,8 +127,9 @@ pub(crate) fn same_path(
             "{}",
             context()
         );
-        // What the state itself says of its approach, and what follows from it.
-        let error = bounds.excess * state.approach_error;
+        // What the state itself says of its approach, or what that is off by, and what follows from it.
+        let off = (state.contact.approach - expected.contact.approach).abs();
+        let error = (bounds.excess * state.approach_error).max(off);
         let rate = |state: &LoadingState| {
             let contact = &state.contact;
             let rate = contact.contact_stiffness.or(contact.interfacial_stiffness);

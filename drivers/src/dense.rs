@@ -114,6 +114,11 @@ impl Dense {
         self.gap.len()
     }
 
+    /// What a pressure displaces where it acts.
+    pub(crate) fn self_influence(&self) -> f64 {
+        self.influence[(0, 0)]
+    }
+
     pub(crate) fn gap(&self) -> &DVector<f64> {
         &self.gap
     }

@@ -4,6 +4,7 @@ use asperity::loading::{LoadingBuilder, LoadingEnd};
 use asperity::updater::LinearUpdater;
 use asperity::{Error, Grid, LoadingState, SurfaceError};
 
+use crate::dense::Dense;
 use crate::draw::Draw;
 use crate::verdict::{Violation, ensure};
 
@@ -38,6 +39,22 @@ impl Limit {
             }
             4 => Self::Area(choose(part, some.contact.contact_area_fraction)),
             _ => Self::Nodes(draw.whole(0, grid.nodes() + 1)),
+        }
+    }
+
+    /// This, or none if it is an approach of mean planes that is nothing but rounding, as on a flat periodic surface. `states` are those
+    /// of the whole path.
+    pub(crate) fn unless_rounding(self, dense: &Dense, states: &[LoadingState]) -> Self {
+        match (self, states.last()) {
+            (Self::Approach(approach), Some(last))
+                if approach > 0.0
+                    && approach
+                        < Dense::rounding(dense.nodes())
+                            * dense.uniform_displacement(last.contact.load) =>
+            {
+                Self::None
+            }
+            _ => self,
         }
     }
 

@@ -68,14 +68,8 @@ impl<'a> Trial<'a> {
         };
         let earlier = &expected[..from];
         if from == 0 {
-            variant.limit = Limit::draw(draw, &expected, &self.grid);
-            // Of a flat periodic surface the approach of the mean planes is rounding.
-            if let (Limit::Approach(approach), Some(last)) = (variant.limit, expected.last()) {
-                let uniform = self.dense.uniform_displacement(last.contact.load);
-                if approach > 0.0 && approach < Dense::rounding(self.dense.nodes()) * uniform {
-                    variant.limit = Limit::None;
-                }
-            }
+            variant.limit =
+                Limit::draw(draw, &expected, &self.grid).unless_rounding(&self.dense, &expected);
         }
         let context = || format!("{variant:?} behind {from} states");
         let windows = self.circumstances.growth != ContactGrowth::Unknown;

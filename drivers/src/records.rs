@@ -84,7 +84,8 @@ fn record(
     let Ok((_, states)) = follow(Limit::None) else {
         return Ok(None);
     };
-    let limit = Limit::draw(draw, &states, &sample.kernel.grid());
+    let dense = Dense::of_sample(sample).in_gauge_of_paths(sample.kernel.contact_growth());
+    let limit = Limit::draw(draw, &states, &sample.kernel.grid()).unless_rounding(&dense, &states);
     let Ok((path, mut states)) = follow(limit) else {
         return Ok(None);
     };

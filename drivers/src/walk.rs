@@ -45,6 +45,9 @@ pub(crate) struct Walk<'a> {
     /// The greatest error of a dense gap so far: a mean gap is carried by the closing rates of all contacts before, whose
     /// errors add up to no more than that, since their ways add up to the approach.
     gap_error: f64,
+    /// Greatest gap that a node which ties had when it touched, or what was missing of a pressure displaces: of ties the lowest comes
+    /// first, and windows carry on what that leaves.
+    left_open: f64,
     /// The greatest norms so far, with a hardness.
     norms: Norms,
     tally: Tally,
@@ -62,6 +65,7 @@ impl<'a> Walk<'a> {
             yielded: Vec::new(),
             last: None,
             gap_error: 0.0,
+            left_open: 0.0,
             norms: Norms::default(),
             tally: Tally::default(),
             blind: false,
@@ -221,6 +225,8 @@ impl<'a> Walk<'a> {
                 let (what, value, allowed) = if state.event == ContactEvent::Yield {
                     let hardness = self.hardness(node);
                     let left = hardness - instant.pressure[node];
+                    let open = self.dense.self_influence() * left.abs();
+                    self.left_open = self.left_open.max(open);
                     let allowed = set.norms.inverse * instant.carried_error + TIE * hardness;
                     ("pressure missing where a node yields", left, allowed)
                 } else if set.contains(node) {
@@ -228,6 +234,7 @@ impl<'a> Walk<'a> {
                     ("pressure of the node that leaves", value, instant.pressure_error)
                 } else {
                     let allowed = instant.carried_error + TIE * instant.lengths;
+                    self.left_open = self.left_open.max(size);
                     ("gap of the node that touches", size, allowed)
                 };
                 self.tally.close(what, value, 0.0, allowed)?;
@@ -265,7 +272,8 @@ impl<'a> Walk<'a> {
             return None;
         }
         let set = self.set()?;
-        let instant = set.at(self.dense.of(state).own_approach);
+        let mut instant = set.at(self.dense.of(state).own_approach);
+        instant.carried_error += self.left_open;
         let worst = instant.gap_error.max(set.closing_error);
         (worst <= self.demands.hopeless).then_some((set, instant))
     }

@@ -159,7 +159,7 @@ impl RefinedYielding {
         tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         let approach = run.scalars.approach();
-        let slack = slack(run, (&run.problem, &run.contact), tolerances, approach);
+        let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
         self.ranked = None;
         self.left = slack.pressure;
         self.rates = survey(run, plastic, &mut self.ranking, slack)?;
@@ -329,13 +329,18 @@ impl RefinedYielding {
             let at = (start + time, self.rate_span);
             self.go_to(run, plastic, iterations, &trial, at)?;
             let there = (&trial.problem, &trial.contact);
-            let slack = slack(run, there, tolerances, start + time);
-            let Some(until) = contradiction(run, plastic, &trial, (start + time, slack)) else {
+            let [least, most] = slacks(run, there, tolerances, start + time);
+            let contradicted = |slack| contradiction(run, plastic, &trial, (start + time, slack));
+            let Some(until) = contradicted(least) else {
                 break trial;
             };
+            let own = events[kept - 1].time;
+            let is_shortest = kept == 1 && time <= own;
+            if is_shortest && contradicted(most).is_none() {
+                break trial;
+            }
             iterations.cut(&run.problem, &run.contact)?;
             run.timings.taken_back += 1;
-            let own = events[kept - 1].time;
             if kept > 1 {
                 // What joined or yielded without need says nothing of when that was.
                 let fewer = if until.is_finite() {
@@ -344,7 +349,7 @@ impl RefinedYielding {
                     kept / 2
                 };
                 (kept, time) = cut(&times, opened.horizon, fewer.clamp(1, kept - 1), tolerances);
-            } else if time > own {
+            } else if !is_shortest {
                 time = own;
             } else {
                 let node = first.node(events[0].position);
@@ -505,8 +510,8 @@ impl RefinedYielding {
         self.go_to(run, plastic, iterations, &trial, (approach, self.rate_span))?;
         // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
         // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
-        let slack_there = slack(run, (&trial.problem, &trial.contact), tolerances, approach);
-        let late = lateness(run, plastic, &trial, (approach, slack_there));
+        let [_, most] = slacks(run, (&trial.problem, &trial.contact), tolerances, approach);
+        let late = lateness(run, plastic, &trial, (approach, most));
         let late = if late <= most_late { late } else { 0.0 };
         let (time, approach, error) = (time + late, approach + late, error.max(late));
         if late > 0.0 {
@@ -524,22 +529,24 @@ impl RefinedYielding {
     }
 }
 
-/// By how much the solution on a contact at an approach may contradict what contact that grows does. What is left of gaps in contact says
-/// how far pressures are off, and gaps elsewhere: by less, for they see all of it from afar.
-fn slack(
+/// By how much the solution on a contact at an approach may contradict what contact that grows does: where the window can be shorter,
+/// and at all. What is left of gaps in contact says how far pressures are off, and gaps elsewhere: by less, for they see all of it
+/// from afar.
+fn slacks(
     run: &LoadingRun,
     (problem, contact): (&Problem, &ContactSequence),
     tolerances: &WindowTolerances,
     approach: f64,
-) -> Slack {
-    let gap = tolerances.overlap(approach);
+) -> [Slack; 2] {
     let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
     let left = left.fold(0.0, f64::max);
-    Slack {
+    let of = |left: f64, gap: f64| Slack {
         gap: gap.max(OF_RESIDUAL_BEYOND * left),
         pressure: OF_RESIDUAL * left.max(gap),
         rate: SLACK_OF_RATE,
-    }
+    };
+    let solved = tolerances.tolerance * tolerances.length.max(approach);
+    [of(left, solved), of(left, tolerances.overlap(approach))]
 }
 
 /// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
