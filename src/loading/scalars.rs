@@ -135,11 +135,22 @@ impl PathScalars {
         self.load += way * (end.load - walked.load);
         self.mean_gap += way * (end.mean_gap - walked.mean_gap);
         self.energy += way * way * (end.energy - walked.energy);
-        if let (Some(own), Some(end), Some(walked)) =
-            (&mut self.plastic, end.plastic, walked.plastic)
+    }
+
+    /// The same of plastic sums, in proportion to what they have grown since `start`: before the first node yields they are what they
+    /// were there.
+    pub(super) fn pin_plastic(&mut self, start: &Self, walked: &Self, end: &Self) {
+        let start = start.plastic.unwrap_or_default();
+        if let (Some(own), Some(walked), Some(end)) =
+            (&mut self.plastic, walked.plastic, end.plastic)
         {
-            own.depth += way * (end.depth - walked.depth);
-            own.work += way * (end.work - walked.work);
+            let pinned = |own: f64, [start, walked, end]: [f64; 3]| {
+                let all = walked - start;
+                let part = if all > 0.0 { ((own - start) / all).clamp(0.0, 1.0) } else { 0.0 };
+                own + part * (end - walked)
+            };
+            own.depth = pinned(own.depth, [start.depth, walked.depth, end.depth]);
+            own.work = pinned(own.work, [start.work, walked.work, end.work]);
         }
     }
 
@@ -354,6 +365,28 @@ mod tests {
         scalars.pin(&walked, &end, 0.5);
         // Half of 0.5 and of −0.25, a quarter of 2.
         assert_eq!((scalars.load, scalars.mean_gap, scalars.energy), (0.25, 1.875, 0.5));
+        Ok(())
+    }
+
+    /// What plastic sums lack comes in proportion to what they grow by: from 2 to 4 instead of 3, and not at all where they have not
+    /// grown yet, or do not grow.
+    #[test]
+    fn plastic_sums_are_pinned_to_their_ends() -> Result<(), Error> {
+        let with = |sum: f64| -> Result<PathScalars, Error> {
+            let plastic = PlasticScalars { nodes: 1, depth: sum, work: 2.0 * sum, rates: [0.0; 2] };
+            Ok(PathScalars { plastic: Some(plastic), ..touched()? })
+        };
+        for (own, walked, expected) in
+            [(2.0, 3.0, 2.0), (2.5, 3.0, 3.0), (3.0, 3.0, 4.0), (2.0, 2.0, 2.0)]
+        {
+            let mut scalars = with(own)?;
+            scalars.pin_plastic(&with(2.0)?, &with(walked)?, &with(4.0)?);
+            let found = scalars.plastic.map(|plastic| (plastic.depth, plastic.work));
+            assert_eq!(found, Some((expected, 2.0 * expected)), "{own} {walked}");
+        }
+        let mut none = with(0.0)?;
+        none.pin_plastic(&touched()?, &with(1.0)?, &with(2.0)?);
+        assert_eq!(none.plastic.map(|plastic| plastic.depth), Some(0.0));
         Ok(())
     }
 

@@ -130,6 +130,7 @@ pub(super) fn enqueue(
         let node = window.node(event.position);
         let bounds = walk.pass(node, event.kind);
         scalars.pin(&walked, &own, event.time / span);
+        scalars.pin_plastic(&start, &walked, &own);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
         walk.take(&mut scalars, rates[k]);
