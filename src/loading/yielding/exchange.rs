@@ -79,20 +79,24 @@ pub(super) struct Exchange {
     events: Vec<Event>,
     /// Rates of plastic depths that are negative by no more are rounding, or the error of the matrix.
     tolerance: f64,
+    /// Whether all elastic nodes are watched: then the stiffness is the sum of their rates. Where few are left of many, what events take
+    /// from it is no use.
+    is_whole: bool,
 }
 
 impl Exchange {
     /// Begins at an approach with the nodes of [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), and the
-    /// rates of all there.
+    /// rates of all `elastic` ones there.
     pub(super) fn begin(
         &mut self,
         approach: f64,
         watched: &[Watched],
         complement: &Schur,
-        rates: Rates,
+        (rates, elastic): (Rates, usize),
     ) {
         let size = watched.len();
         self.approach = approach;
+        self.is_whole = watched.iter().filter(|watched| watched.is_elastic).count() == elastic;
         self.nodes.clear();
         self.nodes.extend(watched.iter().map(|watched| watched.node));
         self.hardness.clear();
@@ -257,6 +261,7 @@ impl Exchange {
             now: Course::default(),
             events: Vec::new(),
             tolerance: self.tolerance,
+            is_whole: false,
         }
     }
 
@@ -330,11 +335,19 @@ impl Exchange {
         course.states[position] = if touches { NodeState::Elastic } else { NodeState::Yielded };
         // Nodes that yielded since the beginning are counted among the gaps, with their own sign.
         let mut yielded = [0.0; 2];
+        let mut elastic = 0.0;
         for k in 0..size {
-            if course.states[k] == NodeState::Yielded {
-                yielded[0] += course.rates[k];
-                yielded[1] += self.hardness[k] * course.rates[k];
+            match course.states[k] {
+                NodeState::Out => {}
+                NodeState::Elastic => elastic += course.rates[k],
+                NodeState::Yielded => {
+                    yielded[0] += course.rates[k];
+                    yielded[1] += self.hardness[k] * course.rates[k];
+                }
             }
+        }
+        if self.is_whole {
+            course.unit_stiffness = elastic;
         }
         let [gaps, depth, work] = [0, 1, 2].map(|k| course.rates[size + k]);
         let rates = Rates {
@@ -442,7 +455,7 @@ mod tests {
         });
         let mut window = Exchange::default();
         let rates = Rates { unit_stiffness: 0.0, closing: 2.0, plastic: [0.0; 2] };
-        window.begin(0.0, &watched, &schur, rates);
+        window.begin(0.0, &watched, &schur, (rates, 0));
         Ok(window)
     }
 
@@ -519,7 +532,7 @@ mod tests {
         });
         let mut window = Exchange::default();
         let rates = Rates { unit_stiffness: 0.5, closing: 0.0, plastic: [0.0; 2] };
-        window.begin(1.0, &watched, &schur, rates);
+        window.begin(1.0, &watched, &schur, (rates, 2));
         assert_eq!(window.play(f64::INFINITY, 0, 9), None);
         assert!(window.events().is_empty());
         assert_eq!(window.play(f64::INFINITY, 1, 9), None);
@@ -545,7 +558,7 @@ mod tests {
         };
         let mut window = Exchange::default();
         let rates = Rates { unit_stiffness: 0.0, closing: 1.0, plastic: [0.0; 2] };
-        window.begin(0.0, &[watched], &schur, rates);
+        window.begin(0.0, &[watched], &schur, (rates, 0));
         let bad = window.play(f64::INFINITY, 1, 9);
         assert_eq!(bad, Some(BadPivot { node: 3, time: 2.0, pivot: -1.0 }));
         assert!(window.events().is_empty());

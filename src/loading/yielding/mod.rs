@@ -296,7 +296,7 @@ impl Yielding {
                 Watched { node, is_elastic: false, hardness, value, rate, sums }
             })
             .collect();
-        self.window.begin(approach, &watched, &self.schur, rates);
+        self.window.begin(approach, &watched, &self.schur, (rates, order.len()));
         self.watched_before.clear();
         self.watched_before.extend(outside);
         run.timings.windows += 1;

@@ -94,6 +94,15 @@ fn completed(start: &Rates, events: &[Rates], exact: &Rates) -> Vec<Rates> {
     found.into_iter().map(rates_of).collect()
 }
 
+/// The stiffness of so many elastic nodes that is nearly `found`: one of them has that of one `alone`, and more are stiffer.
+fn stiffness_of(elastic: usize, found: f64, alone: f64) -> f64 {
+    match elastic {
+        0 => found,
+        1 => alone,
+        _ => found.max(alone),
+    }
+}
+
 /// Queues the states of the events of a corrected window, which it has gone through, from where it began to the present approach.
 ///
 /// Rates are those of its matrix, and end where they should; load, mean gap, energies and plastic sums follow by integration, and what
@@ -108,7 +117,13 @@ pub(super) fn enqueue(
     let Passed { start, before, span } = passed;
     let events = window.events();
     let found: Vec<Rates> = events.iter().map(|event| event.rates).collect();
-    let rates = completed(&window.start_rates(), &found, &exact);
+    let mut rates = completed(&window.start_rates(), &found, &exact);
+    let mut elastic = before.nodes[0];
+    let alone = run.problem.table().self_influence().recip();
+    for (event, rates) in events.iter().zip(&mut rates) {
+        elastic = if event.kind == ContactEvent::Touch { elastic + 1 } else { elastic - 1 };
+        rates.unit_stiffness = stiffness_of(elastic, rates.unit_stiffness, alone);
+    }
     let mut walk = Walk::new(plastic, before);
     let mut walked = start;
     let mut along = Vec::with_capacity(events.len());

@@ -62,6 +62,8 @@ pub(super) struct Opened {
     watched: Vec<Watched>,
     schur: Schur,
     rates: Rates,
+    /// How many nodes were elastic.
+    elastic: usize,
     horizon: f64,
 }
 
@@ -69,7 +71,7 @@ impl Opened {
     /// The window with another matrix, and with bent courses.
     fn with<'a>(&self, schur: &Schur, courses: impl Iterator<Item = &'a Course>) -> Exchange {
         let mut window = Exchange::default();
-        window.begin(self.approach, &self.watched, schur, self.rates);
+        window.begin(self.approach, &self.watched, schur, (self.rates, self.elastic));
         window.bend(courses.map(|course| course.curve));
         window.tolerate(SLACK_OF_RATE);
         window
@@ -279,11 +281,11 @@ impl RefinedYielding {
         });
         let watched: Vec<Watched> = watched.collect();
         let mut window = Exchange::default();
-        window.begin(approach, &watched, &schur, self.rates);
+        window.begin(approach, &watched, &schur, (self.rates, count));
         window.tolerate(SLACK_OF_RATE);
         run.timings.windows += 1;
         let (rates, horizon) = (self.rates, TRUSTED * candidates.horizon);
-        Ok(Opened { window, approach, watched, schur, rates, horizon })
+        Ok(Opened { window, approach, watched, schur, rates, elastic: count, horizon })
     }
 
     /// Goes through a window, and queues its states.
