@@ -42,8 +42,8 @@ impl Bounds {
         order: 0.0,
     };
     /// The same where nodes yield. Ties are settled by solutions whose gaps are off by 1e-10 of the approach. Where nearly all of it is plastic
-    /// depth, elastic gaps are not much larger, and events are in order as far as they say: two of them, each off by its excess.
-    pub(crate) const SMALL_YIELDING: Self = Self { order: 2.0 * Self::SMALL.excess, ..Self::SMALL };
+    /// depth, elastic gaps are not much larger, and events are in order as far as they say, or are off at worst.
+    pub(crate) const SMALL_YIELDING: Self = Self { order: FAR_OFF, ..Self::SMALL };
     /// Of larger ones on cells up to 100 times as long as wide: some three times the worst of 3000 paths, and for the interfacial
     /// stiffness twice the worst of 17 000, on 15 × 24 nodes where a window is an eighth of the path.
     pub(crate) const LARGE: Self = Self {

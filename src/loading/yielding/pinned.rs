@@ -8,7 +8,7 @@ use crate::loading::run::LoadingRun;
 use crate::loading::scalars::{PathScalars, Rates};
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
-use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
+use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME, RATE_ERROR};
 
 /// A window that the path has gone through.
 pub(super) struct Passed {
@@ -134,10 +134,11 @@ pub(super) fn enqueue(
         along.push(walked);
     }
     walked.advance(run.scalars.approach());
-    // What the load may be off by: what is spread, and what the events so far would change of it.
+    // What the load may be off by: what is spread, what rates are off by, and what the events so far would change of it.
     let spacing = span / events.len() as f64;
-    let mut load_error =
-        run.scalars.load_beyond(&walked).abs() + run.scalars.load_over(OF_END * spacing);
+    let mut load_error = run.scalars.load_beyond(&walked).abs()
+        + RATE_ERROR * run.scalars.load_beyond(&start).abs()
+        + run.scalars.load_over(OF_END * spacing);
     let mut stiffness = window.start_rates().unit_stiffness;
     let mut walk = Walk::new(plastic, before);
     let own = run.scalars;

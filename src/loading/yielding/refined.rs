@@ -316,20 +316,25 @@ impl RefinedYielding {
             .collect();
         let most = with_ties(&times, self.most_events(), tolerances).min(within(events, touches));
         let (mut kept, mut time) = cut(&times, opened.horizon, most, tolerances);
-        if time <= tolerances.tie {
-            // All of them happen at once. Their courses are better known than those of the ranking.
-            let known: Vec<usize> =
-                events[..kept].iter().map(|event| first.node(event.position)).collect();
-            self.enter(run, plastic, iterations, tolerances, (time, &known), touches)?;
-            return Ok(Outcome::Done);
-        }
         let start = run.scalars.approach();
+        let mut has_moved = false;
         let trial = loop {
+            if time <= tolerances.tie {
+                // All of them happen at once. Their courses are better known than those of the ranking.
+                let node = |event: &Event| first.node(event.position);
+                let known: Vec<usize> = events[..kept].iter().map(node).collect();
+                if has_moved {
+                    self.begin(run, plastic, iterations, tolerances)?;
+                }
+                self.enter(run, plastic, iterations, tolerances, (time, &known), touches)?;
+                return Ok(Outcome::Done);
+            }
             let event = |event: &Event| (first.node(event.position), event.kind);
             let trial = Trial::of(run, plastic, events[..kept].iter().map(event))?;
             self.rate_span = time.max(self.last_span);
             let at = (start + time, self.rate_span);
             self.go_to(run, plastic, iterations, &trial, at)?;
+            has_moved = true;
             let there = (&trial.problem, &trial.contact);
             let [least, most] = slacks(run, there, tolerances, start + time);
             let contradicted = |slack| contradiction(run, plastic, &trial, (start + time, slack));
