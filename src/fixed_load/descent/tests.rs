@@ -114,7 +114,8 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
         approach: descent.approach(),
         pressure: begin.clone(),
     };
-    descent.stop_at_the_edge(&start)?;
+    let part = edge(&start.pressure, &descent.pressure);
+    descent.stop_at_the_edge(&start, part)?;
     for (place, (x, begin)) in descent.pressure.iter().zip(begin).enumerate() {
         let expected = begin * (1.0 + 0.25 * change(place));
         assert_eq!(*x, expected, "{place}");
