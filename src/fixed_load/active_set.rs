@@ -3,9 +3,7 @@
 use super::descent::Descent;
 use super::iterate::{Criteria, Errors, Iterate, Progress};
 use super::level::{Level, Prescribed};
-use super::tuning::{
-    DEAD_BAND, INNER, INNER_TO_THE_EDGE, PATIENCE, STRICTER, STRICTEST, UNCONFIRMED,
-};
+use super::tuning::{DEAD_BAND, INNER, INNER_DOWNHILL, PATIENCE, STRICTER, STRICTEST, UNCONFIRMED};
 use crate::Error;
 use crate::krylov::{dot, greatest, sum, sum_over};
 
@@ -155,23 +153,16 @@ impl<'a> ActiveSet<'a> {
         self.descend(criteria, |descent, progress| descent.run(INNER, progress))
     }
 
-    /// A round of the primal active-set method: the node that overlaps most joins the solution on a set, and pressures go
-    /// towards the new solution as far as none becomes negative. The energy falls with every change of the set, so
-    /// that no set comes again (Nocedal and Wright, Numerical Optimization, 2006, 16.5).
+    /// A round of the primal active-set method: nodes that overlap join the solution on a set, and pressures go towards the new
+    /// solution as far as the energy falls. It is less with every solution, so that no set comes again with one; and between two of
+    /// them nodes only leave (Nocedal and Wright, Numerical Optimization, 2006, 16.5, where they do one at a time).
     fn cautious_round(&mut self, criteria: Criteria, deepest: f64) -> Result<Errors, Error> {
-        let total_gap = &self.level.iterate.total_gap;
-        let pressure = &self.level.iterate.pressure;
-        let lower = |best: Option<usize>, node: usize| match best {
-            Some(best) if total_gap[best] <= total_gap[node] => Some(best),
-            _ => Some(node),
-        };
-        let overlapping = (0..total_gap.len()).filter(|&node| total_gap[node] < deepest);
-        let joining =
-            overlapping.filter(|&node| self.is_solved && pressure[node] == 0.0).fold(None, lower);
-        self.level
-            .choose_contact(|node, pressure, _| pressure[node] > 0.0 || joining == Some(node))?;
+        let joins = self.is_solved;
+        self.level.choose_contact(|node, pressure, total_gap| {
+            pressure[node] > 0.0 || (joins && total_gap[node] < deepest)
+        })?;
         let errors = self.descend(criteria, |descent, progress| {
-            descent.run_to_the_edge(INNER_TO_THE_EDGE, progress)
+            descent.run_downhill(INNER_DOWNHILL, progress)
         })?;
         self.is_solved = errors.residual < f64::INFINITY;
         Ok(errors)

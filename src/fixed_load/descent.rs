@@ -1,9 +1,10 @@
 //! Projected conjugate gradients on a contact set.
 
+use super::hierarchy::scale;
 use super::iterate::{Criteria, Errors, Progress};
 use super::level::{Level, Prescribed};
 use super::release::release;
-use super::tuning::ULPS;
+use super::tuning::{MOST_HALVINGS, ULPS};
 use crate::Error;
 use crate::krylov::{Directions, NodeSet, add_scaled, dot, greatest, sum, sum_over};
 
@@ -57,14 +58,10 @@ impl<'a> Descent<'a> {
         self.run_and(inner, progress, Self::release)
     }
 
-    /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as none
-    /// becomes negative: the nodes that lose their pressure first are set free.
-    pub(super) fn run_to_the_edge(
-        self,
-        inner: f64,
-        progress: &mut Progress,
-    ) -> Result<Errors, Error> {
-        self.run_and(inner, progress, Self::stop_at_the_edge)
+    /// The same, but from the start, whose pressures must not be negative, only as far towards the solution as the energy is less
+    /// than it was with all nodes on the way set free that lose their pressure.
+    pub(super) fn run_downhill(self, inner: f64, progress: &mut Progress) -> Result<Errors, Error> {
+        self.run_and(inner, progress, Self::go_downhill)
     }
 
     /// Conjugate gradients, and `cure` where they leave tension.
@@ -88,10 +85,42 @@ impl<'a> Descent<'a> {
         Ok(errors)
     }
 
-    fn stop_at_the_edge(&mut self, start: &Start) -> Result<(), Error> {
-        let pairs = start.pressure.iter().zip(&self.pressure);
-        let reach = pairs.filter(|(_, x)| **x < 0.0).map(|(from, x)| from / (from - x));
-        let part = reach.fold(1.0, f64::min);
+    /// The whole way, half of it, and so on until the energy is less, but not less far than to where the first pressures vanish: up to
+    /// there it falls.
+    fn go_downhill(&mut self, start: &Start) -> Result<(), Error> {
+        let end = self.pressure.clone();
+        let edge = edge(&start.pressure, &end);
+        let mut part = 1.0;
+        for _ in 0..MOST_HALVINGS {
+            if part <= edge {
+                break;
+            }
+            for ((x, from), end) in self.pressure.iter_mut().zip(&start.pressure).zip(&end) {
+                *x = (from + part * (end - from)).max(0.0);
+            }
+            scale(&mut self.pressure, self.prescribed);
+            self.move_there()?;
+            if self.energy_since(start) < 0.0 {
+                return Ok(());
+            }
+            part *= 0.5;
+        }
+        self.pressure = end;
+        self.stop_at_the_edge(start, edge)
+    }
+
+    /// What the energy has changed by since the start, less the approach times the change of the sum: of both displacements, so that
+    /// nothing cancels.
+    fn energy_since(&self, start: &Start) -> f64 {
+        let (x, total_gap) = (&self.pressure, &self.total_gap);
+        sum_over(x.len(), |i| {
+            let gap = 0.5 * (total_gap[i] + start.total_gap[i]) - start.approach;
+            (x[i] - start.pressure[i]) * gap
+        })
+    }
+
+    /// Where the first pressures vanish, which part of the way is that.
+    fn stop_at_the_edge(&mut self, start: &Start, part: f64) -> Result<(), Error> {
         for (x, from) in self.pressure.iter_mut().zip(&start.pressure) {
             let is_free = *x < 0.0 && from / (from - *x) <= part;
             *x = if is_free { 0.0 } else { (from + part * (*x - from)).max(0.0) };
@@ -223,6 +252,12 @@ impl<'a> Descent<'a> {
             tension: greatest(x.len(), 0.0, |i| -x[i]) * self.level.self_influence,
         }
     }
+}
+
+/// The part of the way between pressures that are not negative and others at which the first ones vanish; 1 if none does.
+fn edge(from: &[f64], to: &[f64]) -> f64 {
+    let falling = from.iter().zip(to).filter(|(_, to)| **to < 0.0);
+    falling.map(|(from, to)| from / (from - to)).fold(1.0, f64::min)
 }
 
 #[cfg(test)]

@@ -16,8 +16,10 @@
 /// Inner iterations stop when the residual on the contact set is below this part of the worst
 /// error in the set itself. Half: no effect. Twice: 1.03 times the convolutions.
 pub(super) const INNER: f64 = 0.5;
-/// The same where nodes join one by one: the energy must fall by more than that leaves. No effect.
-pub(super) const INNER_TO_THE_EDGE: f64 = 0.01;
+/// The same where the energy must fall by more than that leaves. No effect.
+pub(super) const INNER_DOWNHILL: f64 = 0.01;
+/// How often a way down is halved before it ends where the first pressure vanishes. No effect.
+pub(super) const MOST_HALVINGS: usize = 10;
 /// After so many answers that a fresh convolution does not confirm, the tolerance is below rounding. No effect.
 pub(super) const UNCONFIRMED: usize = 10;
 /// Rounding, or tension that was cut off, can spoil an answer so that it is not confirmed: it is asked
@@ -28,8 +30,9 @@ pub(super) const STRICTEST: f64 = 0.125;
 /// Nodes join for overlaps above this part of the tolerance: what is smaller is rounding, and nodes
 /// would come and go without end. No effect: it must be well below 1, and is above rounding.
 pub(super) const DEAD_BAND: f64 = 0.1;
-/// Rounds without a smaller error in the set after which nodes join one by one. Where contact grows with the load that
-/// does not happen; on other bodies whole groups of nodes may come and go without end. No effect.
+/// Rounds without a smaller error in the set after which the energy must fall. Half-spaces never have three. On stiff coats whole groups
+/// of nodes may come and go without end; 12 loads each on 256² nodes, coats of 8 cells, 30 times as stiff, and of 16, ten times: 2, 5, 10 and
+/// 20 rounds take 646, 698, 687 and 642 convolutions, and 324, 322, 325 and 325.
 pub(super) const PATIENCE: usize = 20;
 
 // Nodes under tension

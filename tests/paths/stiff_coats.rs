@@ -32,11 +32,13 @@ fn followed<U: LinearUpdater>(
 }
 
 /// Nodes along a side, ratio of moduli, thickness and shortest wavelength in cells, and a seed.
-const CASES: [([f64; 4], u64); 8] = [
+const CASES: [([f64; 4], u64); 9] = [
     ([20.0, 10.0, 0.4, 2.0], 1),
     ([24.0, 10.0, 1.0, 2.0], 1),
     // Gaps that close and open again within a window.
     ([28.0, 30.0, 0.4, 3.0], 20),
+    // Another node touches first if nothing is looked at between the ends of windows.
+    ([28.0, 30.0, 0.4, 3.0], 6),
     ([32.0, 10.0, 1.0, 2.0], 6),
     // Nodes that touch between the ends of a window.
     ([32.0, 30.0, 1.0, 4.0], 20),

@@ -114,7 +114,8 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
         approach: descent.approach(),
         pressure: begin.clone(),
     };
-    descent.stop_at_the_edge(&start)?;
+    let part = edge(&start.pressure, &descent.pressure);
+    descent.stop_at_the_edge(&start, part)?;
     for (place, (x, begin)) in descent.pressure.iter().zip(begin).enumerate() {
         let expected = begin * (1.0 + 0.25 * change(place));
         assert_eq!(*x, expected, "{place}");
@@ -122,6 +123,67 @@ fn the_edge_is_where_the_first_pressures_vanish() -> Result<(), Error> {
     assert_eq!(sum(&descent.pressure), sum(&descent.level.iterate.pressure));
     Ok(())
 }
+
+/// Half of the way, a quarter and so on where the energy is no less there, and no less than to the first pressure that vanishes; nodes that
+/// lose their pressure on the way are all set free, and the sum stays.
+#[test]
+fn the_way_down_ends_where_the_energy_is_less() -> Result<(), Error> {
+    // The energy is least at 1 and is what it was at 2, a little less far for what is cut off; the first pressure vanishes at 1.04.
+    for (overshoot, halvings) in [(1.5, Some(0)), (3.0, Some(1)), (6.0, Some(2)), (1e6, None)] {
+        let (mut level, prescribed) = spread_out()?;
+        let begin = level.iterate.pressure.clone();
+        let mut descent = Descent::new(&mut level, prescribed, CRITERIA);
+        let start = Start {
+            pressure: descent.pressure.clone(),
+            total_gap: descent.total_gap.clone(),
+            approach: descent.approach(),
+        };
+        let mean = sum(&start.pressure) / start.pressure.len() as f64;
+        for (x, start) in descent.pressure.iter_mut().zip(&start.pressure) {
+            *x = start + overshoot * (start - mean);
+        }
+        let end = descent.pressure.clone();
+        let edge = edge(&start.pressure, &end);
+        descent.go_downhill(&start)?;
+        let on_the_way = |part: f64| -> Vec<f64> {
+            let both = start.pressure.iter().zip(&end);
+            both.map(|(from, end)| (from + part * (end - from)).max(0.0)).collect()
+        };
+        let mut parts = Vec::new();
+        if let Some(halvings) = halvings {
+            parts.extend((0..=halvings).map(|k| 0.5_f64.powi(k)));
+        } else {
+            parts.extend((0..MOST_HALVINGS).map(|k| 0.5_f64.powi(k as i32)).chain([edge]));
+        }
+        let change = descent.energy_since(&start);
+        let found = descent.pressure.clone();
+        let contact = level.iterate.contact.clone();
+        let before = energy(&mut level, &begin)?;
+        // Energies are displacements in double precision times pressures.
+        let rounding = 1e-12 * before;
+        for (k, &part) in parts.iter().enumerate() {
+            let mut expected = on_the_way(part);
+            if part > edge {
+                scale(&mut expected, prescribed);
+            }
+            let mut everywhere = begin.clone();
+            contact.scatter(&expected, &mut everywhere);
+            let after = energy(&mut level, &everywhere)?;
+            if k + 1 < parts.len() {
+                assert!(after >= before, "{overshoot} {part}: {after} {before}");
+                continue;
+            }
+            for (found, expected) in found.iter().zip(&expected) {
+                // The first to vanish is zero, and rounds otherwise.
+                assert!((found - expected).abs() <= 1e-14 * mean, "{overshoot} {part}");
+            }
+            assert!(found.contains(&0.0));
+            assert!(after < before && (after - before - change).abs() < rounding, "{overshoot}");
+        }
+    }
+    Ok(())
+}
+
 /// From a start with tension, too: what the energy says on the way from there is not to the point.
 #[test]
 fn nodes_with_tension_at_the_start_are_released() -> Result<(), Error> {

@@ -13,7 +13,12 @@
 //! eigenvalues are ±1, each twice, and (A² − 1)² = 0, so that with B = A² − 1
 //!
 //! ```math
-//! e^{-A x} = \cosh x + \tfrac12 x \sinh x\, B - A \bigl(\sinh x + \tfrac12 (x \cosh x - \sinh x)\, B\bigr) .
+//! e^{-A x} = \cosh x + \tfrac12 x \sinh x\, B - A \bigl(\sinh x + \tfrac12 (x \cosh x - \sinh x)\, B\bigr) ,
+//! ```
+//!
+//! ```math
+//! B = d \begin{pmatrix} -1 & 0 & 0 & 1 \\ 0 & 1 & -1 & 0 \\ 0 & 1 & -1 & 0 \\ -1 & 0 & 0 & 1 \end{pmatrix}, \qquad
+//! AB = d \begin{pmatrix} 0 & -1 & 1 & 0 \\ 1 & 0 & 0 & -1 \\ 1 & 0 & 0 & -1 \\ 0 & -1 & 1 & 0 \end{pmatrix} .
 //! ```
 //!
 //! With (W, U) = S (n, τ) below, blocks of this matrix give the same above. S is symmetric and positive, and errors in it fade on the
@@ -87,24 +92,25 @@ struct Transfer {
 impl Transfer {
     fn new(nu: f64, x: f64) -> Self {
         let (b, c, d) = (nu / (1.0 - nu), (1.0 - 2.0 * nu) / (1.0 - nu), 1.0 / (1.0 - nu));
-        let a =
-            [[0.0, -b, -c, 0.0], [1.0, 0.0, 0.0, -2.0], [0.0, 0.0, 0.0, -1.0], [0.0, -d, b, 0.0]];
-        let (cosh, sinh) = (libm::cosh(x), libm::sinh(x));
-        let identity = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        let product = |m: &[[f64; 4]; 4], i: usize, j: usize| -> f64 {
-            (0..4).map(|k| a[i][k] * m[k][j]).sum()
-        };
-        let excess: [[f64; 4]; 4] =
-            std::array::from_fn(|i| std::array::from_fn(|j| product(&a, i, j) - identity(i, j)));
-        let (even, odd) = (0.5 * x * sinh, 0.5 * x_cosh_less_sinh(x, cosh, sinh));
-        let element = |i: usize, j: usize| {
-            cosh * identity(i, j) + even * excess[i][j]
-                - (sinh * a[i][j] + odd * product(&excess, i, j))
-        };
-        let block = |row: usize, column: usize| -> Block {
-            std::array::from_fn(|i| std::array::from_fn(|j| element(row + i, column + j)))
-        };
-        Self { blocks: [[block(0, 0), block(0, 2)], [block(2, 0), block(2, 2)]] }
+        // e^x − 1 has all digits of a small x.
+        let grown = libm::expm1(x);
+        let cosh = 1.0 + 0.5 * grown * grown / (1.0 + grown);
+        let sinh = 0.5 * (grown + grown / (1.0 + grown));
+        let even = 0.5 * d * x * sinh;
+        let odd = 0.5 * d * x_cosh_less_sinh(x, cosh, sinh);
+        let (less, more) = (cosh - even, cosh + even);
+        Self {
+            blocks: [
+                [
+                    [[less, b * sinh + odd], [-(sinh + odd), more]],
+                    [[c * sinh - odd, even], [-even, 2.0 * sinh + odd]],
+                ],
+                [
+                    [[-odd, even], [-even, d * sinh + odd]],
+                    [[less, sinh + odd], [-(b * sinh + odd), more]],
+                ],
+            ],
+        }
     }
 
     fn applied(&self, below: Compliance) -> Compliance {
@@ -136,20 +142,66 @@ fn x_cosh_less_sinh(x: f64, cosh: f64, sinh: f64) -> f64 {
     if x > 1.0 {
         return x * cosh - sinh;
     }
-    // Σ 2k x^(2k + 1) / (2k + 1)!, of which the eleventh term is below 10⁻²⁰ of the first.
     let square = x * x;
-    let (mut term, mut sum) = (x, 0.0);
-    for k in 1..=11 {
-        let k = f64::from(k);
-        term *= square / (2.0 * k * (2.0 * k + 1.0));
-        sum += 2.0 * k * term;
-    }
-    sum
+    x * square * SERIES.iter().rev().fold(0.0, |sum, term| sum * square + term)
 }
+
+/// 2k / (2k + 1)! of Σ 2k x^(2k + 1) / (2k + 1)!, of which the eleventh term is below 10⁻²⁰ of the first.
+const SERIES: [f64; 10] = {
+    let mut series = [0.0; 10];
+    let (mut k, mut factorial) = (0, 1.0);
+    while k < 10 {
+        let even = 2.0 * (k + 1) as f64;
+        factorial *= even * (even + 1.0);
+        series[k] = even / factorial;
+        k += 1;
+    }
+    series
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The elements that are written out, beside the sum of the powers of A.
+    #[test]
+    fn transfers_are_exponentials() {
+        for nu in [-0.9_f64, 0.0, 0.3, 0.5] {
+            let (b, c, d) = (nu / (1.0 - nu), (1.0 - 2.0 * nu) / (1.0 - nu), 1.0 / (1.0 - nu));
+            let a = [
+                [0.0, -b, -c, 0.0],
+                [1.0, 0.0, 0.0, -2.0],
+                [0.0, 0.0, 0.0, -1.0],
+                [0.0, -d, b, 0.0],
+            ];
+            for x in [1e-6, 0.1, 0.9, 1.1, 3.9] {
+                let identity = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+                let mut term: [[f64; 4]; 4] =
+                    std::array::from_fn(|i| std::array::from_fn(|j| identity(i, j)));
+                let mut sum = term;
+                for power in 1..60 {
+                    let next = |i: usize, j: usize| -> f64 {
+                        let products = (0..4).map(|k| a[i][k] * term[k][j]);
+                        -x / f64::from(power) * products.sum::<f64>()
+                    };
+                    term = std::array::from_fn(|i| std::array::from_fn(|j| next(i, j)));
+                    for (total, value) in sum.as_flattened_mut().iter_mut().zip(term.as_flattened())
+                    {
+                        *total += value;
+                    }
+                }
+                let transfer = Transfer::new(nu, x);
+                for (i, row) in sum.iter().enumerate() {
+                    for (j, expected) in row.iter().enumerate() {
+                        let found = transfer.blocks[i / 2][j / 2][i % 2][j % 2];
+                        // Terms of both sums are below those of e^(x ‖A‖) with ‖A‖ ≤ 3.5; each rounds a few times.
+                        let allowed = 8.0 * f64::EPSILON * libm::exp(3.5 * x);
+                        assert!((found - expected).abs() < allowed, "{nu} {x} {i} {j}");
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_series_meets_the_difference() {

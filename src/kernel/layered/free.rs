@@ -4,13 +4,14 @@ use std::f64::consts::PI;
 
 use super::body::{Base, LayeredBody};
 use super::cell::{Smoothness, integral};
+use super::far::Far;
 use super::radial::{Radial, Spectrum};
 use crate::kernel::{Boussinesq, InfluenceKernel};
 use crate::parallel::for_each_chunk;
 use crate::{Error, Grid};
 
 /// Deep layers are felt up to this wave number, in units of 1 / thickness of the uppermost one: 10⁻²⁰ of the whole is left.
-const DEEPEST: f64 = 26.0;
+pub(super) const DEEPEST: f64 = 26.0;
 /// What is left of the response of a half-space where a layer on a rigid base has none: more than the errors of the table.
 const NOTHING: f64 = 1e-12;
 
@@ -22,8 +23,8 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
     let (nx, ny) = grid.shape();
     let (dx, dy) = (grid.dx(), grid.dy());
     let love = Boussinesq::new(*grid, body.surface_modulus())?;
-    let (lx, ly) = grid.sides();
-    let difference = Difference::new(body, libm::hypot(lx, ly));
+    let difference = Difference::new(body, Far::distance(grid));
+    let far = Far::new(grid, difference.smoothness(), |r| difference.radial.at_each(r));
     let counterpart =
         body.counterpart().map(|e_star| Boussinesq::new(*grid, e_star)).transpose()?;
     let half_diagonal = 0.5 * libm::hypot(dx, dy);
@@ -31,6 +32,7 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
     // On square cells symmetric to the last bit, so that ties of symmetric surfaces are ties.
     let is_mirrored = |ix: usize, iy: usize| dx == dy && ix < iy && iy < nx;
     for_each_chunk(&mut values, nx, |iy, row| {
+        let far_row = far.row(iy);
         for (ix, value) in row.iter_mut().enumerate() {
             if is_mirrored(ix, iy) {
                 continue;
@@ -40,6 +42,8 @@ pub(super) fn coefficients(grid: &Grid, body: &LayeredBody) -> Result<Vec<f64>, 
             let (di, dj) = (ix as isize, iy as isize);
             *value = if libm::hypot(x, y) - half_diagonal > difference.reach {
                 counterpart.as_ref().map_or(0.0, |other| other.coefficient(di, dj))
+            } else if far.serves(ix, iy) {
+                love.coefficient(di, dj) + far_row.integral(ix)
             } else {
                 love.coefficient(di, dj) + difference.over_cell((x, y), (dx, dy))
             };
@@ -89,9 +93,12 @@ impl Difference {
         Self { radial, depth, reach }
     }
 
+    fn smoothness(&self) -> Smoothness {
+        Smoothness { depth: self.depth, most: f64::INFINITY }
+    }
+
     fn over_cell(&self, center: (f64, f64), sides: (f64, f64)) -> f64 {
-        let smoothness = Smoothness { depth: self.depth, most: f64::INFINITY };
-        integral(&|r| self.radial.at_each(r), smoothness, center, sides)
+        integral(&|r| self.radial.at_each(r), self.smoothness(), center, sides)
     }
 }
 

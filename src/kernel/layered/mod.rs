@@ -3,6 +3,7 @@
 mod body;
 mod cell;
 mod compliance;
+mod far;
 mod free;
 mod growth;
 mod periodic;

@@ -1,8 +1,10 @@
 //! The symbol of a layered body that repeats with the grid.
 
+use std::f64::consts::TAU;
+
 use super::body::LayeredBody;
 use super::cell::{Smoothness, integral};
-use super::free::spectrum;
+use super::free::{DEEPEST, spectrum};
 use super::radial::{Radial, Spectrum};
 use crate::kernel::PeriodicBoussinesq;
 use crate::kernel::periodic::{CosineSeries, Even, sinc, wave_number};
@@ -16,7 +18,7 @@ const OVER: f64 = 1.5;
 const WIDTHS: f64 = 6.0;
 /// Distance in long sides of a cell at which what cells add is 10⁻¹⁷ of the greatest.
 const REACH: f64 = 9.0;
-/// Thickness in long sides of a cell from which on waves do all.
+/// Thickness in long sides of a cell from which on waves do all: those before the difference has faded.
 const THICK: f64 = 3.5;
 
 /// Ĉ of uniform pressures on cells and on all their images, `mean` at k = 0.
@@ -32,16 +34,21 @@ pub(super) fn cells(grid: &Grid, body: &LayeredBody, mean: f64) -> Result<Even, 
     let top = body.top_modulus();
     let part = |q: f64| 0.5 * libm::erfc((q * long - HANDOVER) / OVER);
     let difference = |q: f64| body.reduced_compliance(q) - 2.0 / top;
-    let most = (HANDOVER + WIDTHS * OVER) / long;
     let near = if body.top_thickness() < THICK * long {
         Some(Near::new(grid, body, |q| difference(q) * (1.0 - part(q))))
     } else {
         None
     };
-    let along = |side: f64| (most * side / std::f64::consts::TAU + 0.5).ceil() as isize;
+    let most = match near {
+        Some(_) => (HANDOVER + WIDTHS * OVER) / long,
+        None => DEEPEST / body.top_thickness(),
+    };
+    let along = |side: f64| (most * side / TAU + 0.5).ceil() as isize;
     let (most_x, most_y) = (along(dx), along(dy));
     let width = nx / 2 + 1;
     let mut values = vec![0.0; width * (ny / 2 + 1)];
+    // On square grids symmetric to the last bit, as free ones are.
+    let is_square = dx == dy && nx == ny;
     for_each_chunk(&mut values, width, |ky, row| {
         let near = near.as_ref().map(|near| near.row(ky));
         for (kx, value) in row.iter_mut().enumerate() {
@@ -49,15 +56,23 @@ pub(super) fn cells(grid: &Grid, body: &LayeredBody, mean: f64) -> Result<Even, 
                 *value = mean;
                 continue;
             }
+            if is_square && kx < ky {
+                continue;
+            }
             let mut sum = 0.0;
             for my in -most_y..=most_y {
                 let turn_y = ky as f64 / ny as f64 + my as f64;
+                let weight_y = sinc(turn_y);
                 for mx in -most_x..=most_x {
                     let turn_x = kx as f64 / nx as f64 + mx as f64;
-                    let weight = sinc(turn_x) * sinc(turn_y);
-                    let q = std::f64::consts::TAU * libm::hypot(turn_x / dx, turn_y / dy);
-                    if weight != 0.0 && q < most {
-                        sum += weight * part(q) * difference(q) / q;
+                    let q = TAU * libm::hypot(turn_x / dx, turn_y / dy);
+                    if q >= most || weight_y == 0.0 {
+                        continue;
+                    }
+                    let weight = sinc(turn_x) * weight_y;
+                    if weight != 0.0 {
+                        let part = if near.is_some() { part(q) } else { 1.0 };
+                        sum += weight * part * difference(q) / q;
                     }
                 }
             }
@@ -67,7 +82,11 @@ pub(super) fn cells(grid: &Grid, body: &LayeredBody, mean: f64) -> Result<Even, 
             *value = love.symbol(kx as isize, ky as isize) + sum;
         }
     });
-    Ok(Even::from_fn((nx, ny), |kx, ky| values[kx + width * ky]))
+    let at = |kx: usize, ky: usize| {
+        let (kx, ky) = if is_square { (kx.max(ky), kx.min(ky)) } else { (kx, ky) };
+        values[kx + width * ky]
+    };
+    Ok(Even::from_fn((nx, ny), at))
 }
 
 /// Ĉ of the waves of the grid alone, `mean` at k = 0.
