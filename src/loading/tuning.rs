@@ -215,6 +215,6 @@ pub(super) const FACTOR: f64 = 1.0e-11;
 pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
 /// goes with them on the contact.
-pub(super) const ITERATIONS: [f64; 2] = [4.0e-9, 6.0e-9];
+pub(super) const ITERATIONS: [f64; 2] = [1.2e-9, 4.0e-9];
 /// The same for any grid: local solutions and events.
 pub(super) const WINDOW: f64 = 3.0e-4;
