@@ -137,21 +137,20 @@ impl PathScalars {
         self.energy += way * way * (end.energy - walked.energy);
     }
 
-    /// The same of plastic sums, in proportion to what they have grown since `start`: before the first node yields they are what they
-    /// were there.
-    pub(super) fn pin_plastic(&mut self, start: &Self, walked: &Self, end: &Self) {
-        let start = start.plastic.unwrap_or_default();
+    /// The same of plastic sums, each by its own `parts`.
+    pub(super) fn pin_plastic(&mut self, walked: &Self, end: &Self, [depth, work]: [f64; 2]) {
         if let (Some(own), Some(walked), Some(end)) =
             (&mut self.plastic, walked.plastic, end.plastic)
         {
-            let pinned = |own: f64, [start, walked, end]: [f64; 3]| {
-                let all = walked - start;
-                let part = if all > 0.0 { ((own - start) / all).clamp(0.0, 1.0) } else { 0.0 };
-                own + part * (end - walked)
-            };
-            own.depth = pinned(own.depth, [start.depth, walked.depth, end.depth]);
-            own.work = pinned(own.work, [start.work, walked.work, end.work]);
+            own.depth += depth * (end.depth - walked.depth);
+            own.work += work * (end.work - walked.work);
         }
+    }
+
+    /// The approach, and both plastic sums.
+    pub(super) fn lengths(&self) -> [f64; 3] {
+        let plastic = self.plastic.unwrap_or_default();
+        [self.approach, plastic.depth, plastic.work]
     }
 
     /// What the reported approach may be off by, if the one in the gauge of the kernel is by `approach`, and the load at a
@@ -368,25 +367,19 @@ mod tests {
         Ok(())
     }
 
-    /// What plastic sums lack comes in proportion to what they grow by: from 2 to 4 instead of 3, and not at all where they have not
-    /// grown yet, or do not grow.
+    /// What plastic sums lack comes in parts: of 1 and of 2.
     #[test]
     fn plastic_sums_are_pinned_to_their_ends() -> Result<(), Error> {
-        let with = |sum: f64| -> Result<PathScalars, Error> {
-            let plastic = PlasticScalars { nodes: 1, depth: sum, work: 2.0 * sum, rates: [0.0; 2] };
+        let with = |depth: f64| -> Result<PathScalars, Error> {
+            let plastic = PlasticScalars { nodes: 1, depth, work: 2.0 * depth, rates: [0.0; 2] };
             Ok(PathScalars { plastic: Some(plastic), ..touched()? })
         };
-        for (own, walked, expected) in
-            [(2.0, 3.0, 2.0), (2.5, 3.0, 3.0), (3.0, 3.0, 4.0), (2.0, 2.0, 2.0)]
-        {
-            let mut scalars = with(own)?;
-            scalars.pin_plastic(&with(2.0)?, &with(walked)?, &with(4.0)?);
-            let found = scalars.plastic.map(|plastic| (plastic.depth, plastic.work));
-            assert_eq!(found, Some((expected, 2.0 * expected)), "{own} {walked}");
-        }
-        let mut none = with(0.0)?;
-        none.pin_plastic(&touched()?, &with(1.0)?, &with(2.0)?);
-        assert_eq!(none.plastic.map(|plastic| plastic.depth), Some(0.0));
+        let mut scalars = with(2.5)?;
+        scalars.pin_plastic(&with(3.0)?, &with(4.0)?, [0.5, 0.25]);
+        assert_eq!(scalars.lengths(), [0.0, 3.0, 5.5]);
+        // The first node yields behind the end of the walk.
+        scalars.pin_plastic(&touched()?, &with(4.0)?, [1.0; 2]);
+        assert_eq!(scalars.lengths(), [0.0, 3.0, 5.5]);
         Ok(())
     }
 

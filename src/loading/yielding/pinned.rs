@@ -59,6 +59,30 @@ impl<'a> Walk<'a> {
     }
 }
 
+/// What has changed along a window while nodes were elastic: the approach, and both plastic sums. On plateaus, where none is, all rates
+/// are known.
+#[derive(Debug, Clone, Copy, Default)]
+struct Open([f64; 3]);
+
+impl Open {
+    /// Advances scalars to an approach, with so many nodes that are elastic.
+    fn advance(&mut self, scalars: &mut PathScalars, approach: f64, elastic: usize) {
+        let before = scalars.lengths();
+        scalars.advance(approach);
+        if elastic > 0 {
+            let after = scalars.lengths();
+            (0..3).for_each(|k| self.0[k] += after[k] - before[k]);
+        }
+    }
+
+    /// How much of all that changes this is: nothing if nothing does.
+    fn parts_of(&self, all: &Self) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            if all.0[k] > 0.0 { (self.0[k] / all.0[k]).clamp(0.0, 1.0) } else { 0.0 }
+        })
+    }
+}
+
 /// The numbers of rates.
 fn numbers(rates: &Rates) -> [f64; 4] {
     let Rates { unit_stiffness, closing, plastic: [depth, work] } = *rates;
@@ -126,14 +150,16 @@ pub(super) fn enqueue(
     }
     let mut walk = Walk::new(plastic, before);
     let mut walked = start;
+    let mut open = Open::default();
     let mut along = Vec::with_capacity(events.len());
     for (event, rates) in events.iter().zip(&rates) {
-        walked.advance(start.approach() + event.time);
+        let elastic = walk.carried.nodes[0];
+        open.advance(&mut walked, start.approach() + event.time, elastic);
         walk.pass(window.node(event.position), event.kind);
         walk.take(&mut walked, *rates);
-        along.push(walked);
+        along.push((walked, open));
     }
-    walked.advance(run.scalars.approach());
+    open.advance(&mut walked, run.scalars.approach(), walk.carried.nodes[0]);
     // What the load may be off by: what is spread, what rates are off by, and what the events so far would change of it.
     let spacing = span / events.len() as f64;
     let mut load_error = run.scalars.load_beyond(&walked).abs()
@@ -142,11 +168,12 @@ pub(super) fn enqueue(
     let mut stiffness = window.start_rates().unit_stiffness;
     let mut walk = Walk::new(plastic, before);
     let own = run.scalars;
-    for (k, (mut scalars, event)) in along.into_iter().zip(events).enumerate() {
+    for (k, ((mut scalars, so_far), event)) in along.into_iter().zip(events).enumerate() {
         let node = window.node(event.position);
         let bounds = walk.pass(node, event.kind);
-        scalars.pin(&walked, &own, event.time / span);
-        scalars.pin_plastic(&start, &walked, &own);
+        let [way, depth, work] = so_far.parts_of(&open);
+        scalars.pin(&walked, &own, way);
+        scalars.pin_plastic(&walked, &own, [depth, work]);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
         walk.take(&mut scalars, rates[k]);
@@ -185,4 +212,32 @@ pub(super) fn enqueue_together(
         run.enqueue_at(&scalars, (walk.step, kind, node), walk.contact_nodes(), error)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One elastic node, a plateau with one that has yielded, and an elastic one beside it: what the window lacks belongs to the first
+    /// and the last third.
+    #[test]
+    fn plateaus_lack_nothing() -> Result<(), Error> {
+        let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;
+        let mut scalars = PathScalars::new(&problem);
+        let rates = |depth| Rates { unit_stiffness: 0.5, closing: 3.0, plastic: [depth, 0.0] };
+        let mut open = Open::default();
+        let mut along = Vec::new();
+        for (approach, nodes, depth) in [(1.0, [1, 0], 0.0), (2.0, [0, 1], 1.0), (3.0, [1, 1], 1.0)]
+        {
+            scalars.change_rates(rates(depth), nodes, 0.0);
+            open.advance(&mut scalars, approach, nodes[0]);
+            along.push(open);
+        }
+        let parts: Vec<_> = along.iter().map(|so_far| so_far.parts_of(&open)).collect();
+        assert_eq!(parts, [[0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+        // Nothing but a plateau.
+        let none = Open::default();
+        assert_eq!(none.parts_of(&none), [0.0; 3]);
+        Ok(())
+    }
 }
