@@ -1,5 +1,7 @@
 //! Exact stiffnesses: the change with a little more load.
 
+use std::borrow::Cow;
+
 use nalgebra::DMatrix;
 
 use super::level::Level;
@@ -132,7 +134,7 @@ impl Tangent {
             contact,
         };
         let (solved, iterations) =
-            system.solve(&equation, start, &base, &mut Directions::default())?;
+            system.solve(&equation, start, Cow::Owned(base), &mut Directions::default())?;
         let nodes = contact.nodes();
         let left = |i: usize| {
             let node = nodes[i] as usize;

@@ -1,6 +1,8 @@
 //! Preconditioned conjugate gradients for one linear system on a contact set, from a start and what is known of its
 //! displacements.
 
+use std::borrow::Cow;
+
 use super::tuning::{MARGIN, SINGLE};
 use super::{Directions, NodeSet, Operator, Preconditioner, add_scaled, dot, greatest};
 use crate::Error;
@@ -63,7 +65,7 @@ impl LinearSystem<'_> {
         &mut self,
         equation: &Equation<F>,
         mut start: Vec<f64>,
-        base: &Field,
+        base: Cow<'_, Field>,
         directions: &mut Directions,
     ) -> Result<(Field, usize), Error> {
         let contact = self.contact;
@@ -77,9 +79,13 @@ impl LinearSystem<'_> {
         if base.is_known() {
             let mut change = Vec::new();
             contact.fill(&mut change, |place, node| x[place] - base.pressure[node]);
-            u = base.displacement.clone();
+            drift = base.drift;
+            u = match base {
+                Cow::Owned(base) => base.displacement,
+                Cow::Borrowed(base) => base.displacement.clone(),
+            };
             let added = self.operator.add(contact, &change, &mut u)?;
-            drift = base.drift.hypot(spoilt(added, dot(&change, &change).sqrt()));
+            drift = drift.hypot(spoilt(added, dot(&change, &change).sqrt()));
         } else {
             u = self.operator.apply(contact, &x)?.to_vec();
             drift = 0.0;
@@ -168,7 +174,8 @@ mod tests {
             Equation { rhs: |_| rhs, tolerance: 1e-10, most_drift: f64::INFINITY, max_iterations };
         let nothing = Field::zero(grid.nodes());
         let start = nothing.pressure.clone();
-        let solved = system.solve(&equation, start, &nothing, &mut Directions::default());
+        let solved =
+            system.solve(&equation, start, Cow::Owned(nothing), &mut Directions::default());
         solved.map(|(_, iterations)| iterations)
     }
 

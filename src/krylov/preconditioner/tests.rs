@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use nalgebra::DMatrix;
 
 use super::*;
@@ -82,7 +84,8 @@ fn takes_fewer_steps_than_the_sparse_inverse() -> Result<(), Error> {
         };
         let nothing = Field::zero(grid.nodes());
         let start = nothing.pressure.clone();
-        let solved = system.solve(&equation, start, &nothing, &mut Directions::default());
+        let solved =
+            system.solve(&equation, start, Cow::Owned(nothing), &mut Directions::default());
         solved.map(|(_, iterations)| iterations)
     };
     let two = steps(&mut preconditioner)?;

@@ -1,5 +1,6 @@
 //! What sums over all nodes answer to a pressure on a node or to an overlap of one, beside nodes that have yielded.
 
+use std::borrow::Cow;
 use std::mem;
 
 use super::both::{Both, Change};
@@ -92,7 +93,7 @@ impl PlasticSums {
                 max_iterations,
             };
             let start = base.pressure.clone();
-            self.fields[which] = solver.solve(&equation, start, &base, directions)?;
+            self.fields[which] = solver.solve(&equation, start, Cow::Owned(base), directions)?;
         }
         self.under = [beside.unit.to_vec(), beside.load.to_vec()];
         Ok(())

@@ -20,6 +20,15 @@ pub(super) struct Proposed {
     complement: Schur,
 }
 
+/// What residuals of a solution add to it, for pressure and rate.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Improvement {
+    /// To the pressures of proposed nodes that have joined, in their order.
+    pressures: Vec<[f64; 2]>,
+    /// To the displacements of the others.
+    pub(super) displacements: Vec<(usize, [f64; 2])>,
+}
+
 impl Proposed {
     /// Proposes nodes beside the contact of `count` nodes that a solver has chosen. What the contact leaves of their row sums
     /// is `left`.
@@ -107,8 +116,7 @@ impl Proposed {
         self.locals.iter().map(of).collect()
     }
 
-    /// Improves what a solution says of the proposed nodes, of which some have joined since:
-    /// the pressures of these, and the displacements of the others.
+    /// Improves what a solution says of the proposed nodes, of which some have joined since.
     pub(super) fn improve(
         &self,
         problem: &Problem,
@@ -116,13 +124,33 @@ impl Proposed {
         equilibrium: &Equilibrium,
         solved: &mut Solved,
     ) {
-        let from = self.count;
-        let Some(joined) = contact.order()[..equilibrium.count].get(from..) else {
+        let Some(improvement) = self.improvement(problem, contact, equilibrium) else {
             return;
         };
-        let Some(factor) = self.factor_of(joined) else {
-            return;
-        };
+        let Solved { solution, displacement } = solved;
+        let pressures = [&mut solution.pressure, &mut solution.rate];
+        let fields = if equilibrium.rate.is_known() { 2 } else { 1 };
+        let fields = pressures.into_iter().zip(displacement).take(fields);
+        for (k, (pressures, displacement)) in fields.enumerate() {
+            for (pressure, change) in pressures[self.count..].iter_mut().zip(&improvement.pressures)
+            {
+                *pressure += change[k];
+            }
+            for (node, change) in &improvement.displacements {
+                displacement[*node] += change[k];
+            }
+        }
+    }
+
+    /// What residuals of a solution say of the proposed nodes; `None` if one has joined that was not proposed.
+    pub(super) fn improvement(
+        &self,
+        problem: &Problem,
+        contact: &ContactSequence,
+        equilibrium: &Equilibrium,
+    ) -> Option<Improvement> {
+        let joined = contact.order()[..equilibrium.count].get(self.count..)?;
+        let factor = self.factor_of(joined)?;
         let near: Vec<[f64; 2]> =
             self.locals.iter().map(|local| equilibrium.left_near(problem, local)).collect();
         let places = factor.positions();
@@ -130,25 +158,18 @@ impl Proposed {
             let left = equilibrium.left(problem, node);
             [0, 1].map(|k| left[k] - near[place][k])
         });
-        let mut change: Vec<[f64; 2]> = left.collect();
-        factor.solve_both(&mut change);
-        let Solved { solution, displacement } = solved;
-        let pressures = [&mut solution.pressure, &mut solution.rate];
-        let fields = if equilibrium.rate.is_known() { 2 } else { 1 };
-        let fields = pressures.into_iter().zip(displacement).take(fields);
-        for (k, (pressures, displacement)) in fields.enumerate() {
-            for (pressure, change) in pressures[from..].iter_mut().zip(&change) {
-                *pressure += change[k];
-            }
-            for (i, (local, near)) in self.locals.iter().zip(&near).enumerate() {
-                if !factor.has_touched(i) {
-                    let of_joined = places.iter().zip(&change);
-                    let of_joined = of_joined
-                        .map(|(&place, change)| self.complement.entry(i, place) * change[k]);
-                    displacement[local.node] += near[k] + of_joined.sum::<f64>();
-                }
-            }
-        }
+        let mut pressures: Vec<[f64; 2]> = left.collect();
+        factor.solve_both(&mut pressures);
+        let change = |i: usize, k: usize| {
+            let of_joined = places.iter().zip(&pressures);
+            let of_joined =
+                of_joined.map(|(&place, change)| self.complement.entry(i, place) * change[k]);
+            near[i][k] + of_joined.sum::<f64>()
+        };
+        let others = self.locals.iter().enumerate().filter(|(i, _)| !factor.has_touched(*i));
+        let displacements =
+            others.map(|(i, local)| (local.node, [0, 1].map(|k| change(i, k)))).collect();
+        Some(Improvement { pressures, displacements })
     }
 
     /// The factor of the Schur complement of some proposed nodes; `None` if one was not proposed.

@@ -3,6 +3,7 @@
 mod behind;
 mod kept;
 
+use std::borrow::Cow;
 use std::mem;
 
 use super::both::Both;
@@ -206,11 +207,12 @@ impl Solutions {
             None => Self::solve_from_nothing(criteria, problem, contact, at, aim),
         };
         self.before = before;
-        let mut solved = Solved::default();
         let (equilibrium, _) = found?;
-        equilibrium.write(contact, &mut solved);
-        self.proposed.improve(problem, contact, &equilibrium, &mut solved);
-        let [displacement, _] = solved.displacement;
+        let improvement = self.proposed.improvement(problem, contact, &equilibrium);
+        let mut displacement = equilibrium.load.displacement;
+        for (node, [change, _]) in improvement.unwrap_or_default().displacements {
+            displacement[node] += change;
+        }
         Ok(displacement)
     }
 
@@ -267,7 +269,7 @@ impl Solutions {
         };
         let nothing = Field::zero(problem.grid().nodes());
         let start = nothing.pressure.clone();
-        self.solver.solve(&equation, start, &nothing, &mut Directions::default())
+        self.solver.solve(&equation, start, Cow::Owned(nothing), &mut Directions::default())
     }
 
     /// Solves with the first `count` nodes in contact for rate and pressure, in this order: the directions of the one serve the
@@ -302,7 +304,8 @@ impl Solutions {
                 max_iterations,
             };
             let (start, _) = self.proposed.carried(&from.rate, joined, equation.rhs);
-            rate = self.solver.solve(&equation, start, &from.rate, &mut directions)?;
+            let base = Cow::Borrowed(&from.rate);
+            rate = self.solver.solve(&equation, start, base, &mut directions)?;
         }
         let equation = Equation {
             rhs: overlap,
@@ -317,7 +320,7 @@ impl Solutions {
         if !wants_rate {
             self.instants.complete(sum, &mut start);
         }
-        let load = self.solver.solve(&equation, start, &base, &mut directions)?;
+        let load = self.solver.solve(&equation, start, Cow::Owned(base), &mut directions)?;
         if let Some(carried) = carried {
             if wants_rate {
                 self.instants.clear();

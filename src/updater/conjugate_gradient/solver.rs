@@ -1,5 +1,7 @@
 //! The operator of a contact and its preconditioner.
 
+use std::borrow::Cow;
+
 use crate::contact::ContactSequence;
 #[cfg(test)]
 use crate::krylov::worst;
@@ -37,9 +39,9 @@ impl Solver {
 
     /// Makes the set the first `count` nodes of a contact.
     pub(super) fn choose(&mut self, contact: &ContactSequence, count: usize) {
-        let mut is_in = vec![false; self.set.places().len()];
-        for &node in &contact.order()[..count] {
-            is_in[node] = true;
+        let mut is_in = contact.membership().to_vec();
+        for &node in &contact.order()[count..] {
+            is_in[node] = false;
         }
         if self.set.assign(|node| is_in[node]) {
             self.preconditioner.update(&self.set);
@@ -113,7 +115,7 @@ impl Solver {
         &mut self,
         equation: &Equation<F>,
         start: Vec<f64>,
-        base: &Field,
+        base: Cow<'_, Field>,
         directions: &mut Directions,
     ) -> Result<Field, Error> {
         let mut system = LinearSystem {

@@ -68,12 +68,10 @@ pub(super) const UNSPOILT: f64 = 10.0;
 /// exact at the ends of windows anyway, and local solutions know nearly all of what a residual leaves. Half: no effect. Twice: 0.97 of the
 /// convolutions.
 pub(super) const SUMS_TOLERANCE: f64 = 3e-3;
-/// The row sums are solved for when one node in so many is new in contact. Until then local solutions tell what
-/// those near a watched node make of it. No effect below 10 000 nodes in contact, where every window has as many new ones.
-pub(super) const STALE: usize = 200;
-/// At lower mean closing rates, close to full contact, always: differences of row sums are all that is left. No effect, for the same
-/// reason.
-pub(super) const SUMS_OPEN: f64 = 0.03;
+/// The row sums are solved for when one in so many of the nodes in contact, or of those out of it if these are fewer, is new. Until then
+/// local solutions tell what new ones near a watched node make of it. On 512², at 47, 79 and 95 % contact: 0.98, 0.97 and 0.97 of the
+/// convolutions of 50, 0.96, 0.91 and 0.84 of those of 200; interfacial stiffnesses change by 10⁻⁷.
+pub(super) const STALE: usize = 20;
 
 // Memory
 

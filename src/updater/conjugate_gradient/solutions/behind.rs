@@ -4,6 +4,7 @@
 //! the contact before, with what joined and what yielded, has displacements that are known but for the change; in the end those under
 //! the yielded nodes are taken off.
 
+use std::borrow::Cow;
 use std::mem;
 
 use super::{Passage, Solutions};
@@ -187,7 +188,7 @@ impl Solutions {
             let change = Change { joined: &passage.joined, fixed: &at_rest };
             let (start, _) = both.carried(problem, &from.rate, change, |_| 1.0);
             let base = self.solver.moved(&from.rate, start.clone())?;
-            rate = self.solver.solve(&equation, start, &base, &mut directions)?;
+            rate = self.solver.solve(&equation, start, Cow::Owned(base), &mut directions)?;
         }
         let equation = Equation {
             rhs: overlap,
@@ -223,7 +224,7 @@ impl Solutions {
             base.pressure[node] = 0.0;
         }
         let start = base.pressure.clone();
-        let load = self.solver.solve(&equation, start, &base, &mut directions)?;
+        let load = self.solver.solve(&equation, start, Cow::Owned(base), &mut directions)?;
         if let Some(carried) = carried {
             if wants_rate {
                 self.instants.clear();

@@ -22,7 +22,7 @@ fn solved(
     solver.choose(&contact, contact.len());
     let equation = Equation { rhs: |_| 1.0, tolerance, most_drift, max_iterations: 1000 };
     let start = if base.is_known() { base.pressure.clone() } else { vec![0.0; 240] };
-    let field = solver.solve(&equation, start, base, &mut Directions::default())?;
+    let field = solver.solve(&equation, start, Cow::Borrowed(base), &mut Directions::default())?;
     let mut fresh = Field::of(field.pressure.clone());
     solver.complete(&mut fresh)?;
     let mut dense = Solution::default();
@@ -91,7 +91,7 @@ fn noise_of_long_cells_is_counted() -> Result<(), Error> {
         };
         let start = vec![0.0; 49];
         let base = Field::default();
-        let field = solver.solve(&equation, start, &base, &mut Directions::default())?;
+        let field = solver.solve(&equation, start, Cow::Owned(base), &mut Directions::default())?;
         let mut fresh = Field::of(field.pressure);
         solver.complete(&mut fresh)?;
         let left = contact.order().iter();
@@ -111,7 +111,7 @@ fn iterations_come_to_an_end() -> Result<(), Error> {
         let equation =
             Equation { rhs: |_| 1.0, tolerance, most_drift: f64::INFINITY, max_iterations: most };
         let failed =
-            solver.solve(&equation, vec![0.0; 240], &Field::default(), &mut Directions::default());
+            solver.solve(&equation, vec![0.0; 240], Cow::default(), &mut Directions::default());
         assert!(
             matches!(
                 failed,
