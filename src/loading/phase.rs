@@ -323,26 +323,26 @@ mod tests {
     use crate::updater::Handover;
     use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, Spectral};
 
-    /// 10 ps · n², and 0.3 ms, 4 ns a node and 6 ns a node in contact.
+    /// 10 ps · n², and 0.3 ms, 1.2 ns a node and 4 ns a node in contact.
     #[test]
     fn costs_of_an_event() {
         for (nodes, contact, cost) in [
             (0, 1000, 1e-5),
             (1_000_000, 10_000, 1e-3),
-            (10_000, 10_000, 3e-4 + 4e-5 + 6e-5),
-            (1_000_000, 100_000, 3e-4 + 4e-3 + 6e-4),
+            (10_000, 10_000, 3e-4 + 1.2e-5 + 4e-5),
+            (1_000_000, 100_000, 3e-4 + 1.2e-3 + 4e-4),
         ] {
             let found = event_seconds(nodes, contact);
             assert!((found / cost - 1.0).abs() < 1e-14, "{nodes} {contact}: {found:e}");
         }
     }
 
-    /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 4·10⁻⁹ N + 6·10⁻⁹ n`, rounded up; all nodes if there is none among them.
+    /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 1.2·10⁻⁹ N + 4·10⁻⁹ n`, rounded up; all nodes if there is none among them.
     #[test]
     fn a_factor_is_given_up_where_costs_meet() {
         for nodes in [128 * 128, 256 * 256, 512 * 512] {
-            let fixed = 3e-4 + 4e-9 * nodes as f64;
-            let root = (6e-9 + (36e-18 + 4e-11 * fixed).sqrt()) / 2e-11;
+            let fixed = 3e-4 + 1.2e-9 * nodes as f64;
+            let root = (4e-9 + (16e-18 + 4e-11 * fixed).sqrt()) / 2e-11;
             assert_eq!(last_factor(nodes), root.ceil() as usize);
         }
         assert_eq!([100, 1000].map(last_factor), [100, 1000]);

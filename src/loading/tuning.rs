@@ -214,7 +214,9 @@ pub(super) const FACTOR: f64 = 1.0e-11;
 /// two fields.
 pub(super) const STEP: [f64; 2] = [5.0e-10, 5.0e-8];
 /// Seconds of an event by iterations, per node of the grid and per node in contact: convolutions, and what
-/// goes with them on the contact.
+/// goes with them on the contact. An event takes 1.1 ms on 512² with 47 % in contact, and 2.3 ms with 95 %. With a factor the path needs
+/// the most memory where it is given up: 3.3 times as great the first number, and 1.5 times the second, made a path to 6 % of 512² 0.95
+/// times as long and its peak 704 MB instead of 372.
 pub(super) const ITERATIONS: [f64; 2] = [1.2e-9, 4.0e-9];
 /// The same for any grid: local solutions and events.
 pub(super) const WINDOW: f64 = 3.0e-4;

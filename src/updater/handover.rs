@@ -11,9 +11,9 @@ use crate::{Error, Problem};
 /// No path ends for want of memory for n² numbers, unless the budget is less than iterations take on the grid alone; and full
 /// contact on 512 × 512 nodes takes minutes.
 ///
-/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 4 ns for each node of
-/// the grid and 6 ns for each one in contact: the factor is given up at some 6400 contact nodes on a grid of
-/// 128², 7800 on 256², and 11 900 on 512². These are constants and not measurements, so that a path is the
+/// An event costs some n² times 10 ps with a factor of n nodes, and without some 0.3 ms, 1.2 ns for each node of
+/// the grid and 4 ns for each one in contact: the factor is given up at some 5900 contact nodes on a grid of
+/// 128², 6400 on 256², 8000 on 512², and 12 700 on 1024². These are constants and not measurements, so that a path is the
 /// same on every run. The budget is that of
 /// [`LoadingBuilder::memory_budget`](crate::loading::LoadingBuilder::memory_budget).
 ///
