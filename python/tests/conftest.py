@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +21,12 @@ DATA = REPOSITORY / "tests" / "data"
 def measured(name: str, size: tuple[float, float]) -> asp.Surface:
     """A surface of the tests of the library, whose arrays are [ix, iy]."""
     return asp.Surface(np.load(DATA / f"{name}.npy").T, size=size)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interrupts() -> None:
+    """Ctrl-C interrupts, also where a shell that runs the tests in the background has it ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
