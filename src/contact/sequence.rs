@@ -103,11 +103,6 @@ impl ContactSequence {
         self.is_in.get(node).copied().unwrap_or(false)
     }
 
-    /// Whether each node of the grid is in contact.
-    pub(crate) fn membership(&self) -> &[bool] {
-        &self.is_in
-    }
-
     /// A number that changes with every edit: two sequences of the same revision are equal.
     #[must_use]
     pub fn revision(&self) -> u64 {

@@ -39,9 +39,9 @@ impl Solver {
 
     /// Makes the set the first `count` nodes of a contact.
     pub(super) fn choose(&mut self, contact: &ContactSequence, count: usize) {
-        let mut is_in = contact.membership().to_vec();
-        for &node in &contact.order()[count..] {
-            is_in[node] = false;
+        let mut is_in = vec![false; self.set.places().len()];
+        for &node in &contact.order()[..count] {
+            is_in[node] = true;
         }
         if self.set.assign(|node| is_in[node]) {
             self.preconditioner.update(&self.set);
