@@ -305,7 +305,8 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             timings: LoadingTimings::default(),
         };
         let mut phase = Phase::new(self.updater);
-        let handed_over_at = phase.hand_over(&mut run)?.then_some(0);
+        let end = limits.expected_nodes(grid.nodes(), None);
+        let handed_over_at = phase.hand_over(&mut run, end)?.then_some(0);
         phase.make_room(&run)?;
         Ok(LoadingSolver {
             run,

@@ -131,14 +131,17 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 
     /// Pressure \[Pa\] at the present state, zero before the first: one backward substitution with the
-    /// factor at hand.
+    /// factor at hand. None is negative: tension within the error of a state, as on a node that has just touched, is zero.
     ///
     /// # Errors
     ///
-    /// Those of the updater.
+    /// Those of the updater; [`Error::NotOnPath`] for more tension than that.
     pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
         match self.state {
-            Some(state) => Ok(Snapshot::of(&self.run, &mut self.phase, &state)?.pressure),
+            Some(state) => {
+                let snapshot = Snapshot::of(&self.run, &mut self.phase, &state)?;
+                snapshot.into_pressure(&self.run, &self.phase, &state)
+            }
             None => Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny())),
         }
     }
@@ -160,7 +163,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.check_reached(state)?;
         let snapshot = Snapshot::of(&self.run, &mut self.phase, state)?;
         snapshot.recognise(&mut self.run, &self.phase, state)?;
-        Ok(snapshot.pressure)
+        snapshot.into_pressure(&self.run, &self.phase, state)
     }
 
     /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean if the

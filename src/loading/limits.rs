@@ -179,6 +179,26 @@ impl Limits {
         self.nodes.min(self.area_nodes)
     }
 
+    /// About how many of the `nodes` of the grid are in contact at the end, as far as a state tells: rather too many. Contact grows no
+    /// faster than the load, and the load by no greater part of itself for each step of the approach, or of the mean gap, than now.
+    pub(super) fn expected_nodes(&self, nodes: usize, state: Option<ContactState>) -> usize {
+        let most = self.most_nodes().min(nodes);
+        let Some(state) = state.filter(|state| state.load > 0.0) else {
+            return most;
+        };
+        let over = |stiffness: Option<f64>, way: f64| {
+            // In full contact the mean gap has no way to go, and its stiffness is infinite.
+            let grown =
+                stiffness.map_or(f64::INFINITY, |stiffness| (stiffness * way / state.load).exp());
+            if grown.is_nan() { f64::INFINITY } else { grown }
+        };
+        let growth = (self.load / state.load)
+            .min(over(state.contact_stiffness, self.approach - state.approach))
+            .min(over(state.interfacial_stiffness, state.mean_gap - self.least_mean_gap));
+        // Beyond usize it is usize::MAX.
+        most.min((state.contact_nodes as f64 * growth.max(1.0)).ceil() as usize)
+    }
+
     /// Why so many nodes in contact are enough, if they are.
     pub(super) fn enough(&self, nodes: usize) -> Option<LoadingEnd> {
         if nodes >= self.area_nodes {
@@ -327,6 +347,38 @@ mod tests {
         whole = Limits::default();
         whole.set_nodes(21)?;
         assert!(whole.targets(&grid()?).is_empty());
+        Ok(())
+    }
+
+    /// Two nodes of twenty under a load of 4, at an approach of 1 with a stiffness of 4, and at a mean gap of 1 with one of 2.
+    #[test]
+    fn the_end_is_known_or_bounded() -> Result<(), Error> {
+        use ContactTarget::{Approach, AreaFraction, Load, MeanGap};
+        let contact = state(2, 4.0)?.contact;
+        for (targets, nodes) in [
+            (&[][..], 20),
+            (&[AreaFraction(0.25)], 5),
+            (&[Load(12.0)], 6),
+            (&[Load(13.0)], 7),
+            (&[Load(4.0)], 2),
+            (&[Load(1e300)], 20),
+            // 2 exp(4 · 1 / 4) = 5.4, and 2 exp(2 · 1 / 4) = 3.3.
+            (&[Approach(2.0)], 6),
+            (&[Approach(1e9)], 20),
+            (&[MeanGap(0.0)], 4),
+            (&[Load(12.0), Approach(2.0), MeanGap(0.0), AreaFraction(0.25)], 4),
+            (&[AreaFraction(0.15), Load(12.0)], 3),
+        ] {
+            let limits = limits(targets)?;
+            assert_eq!(limits.expected_nodes(20, Some(contact)), nodes, "{targets:?}");
+        }
+        // Nothing is known before first touch, or without a stiffness.
+        let limits = limits(&[Load(12.0), Approach(2.0)])?;
+        let full = ContactState { interfacial_stiffness: Some(f64::INFINITY), ..contact };
+        let unknown = ContactState { contact_stiffness: None, load: 0.0, ..contact };
+        assert_eq!(limits.expected_nodes(20, None), 20);
+        assert_eq!(limits.expected_nodes(20, Some(full)), 6);
+        assert_eq!(limits.expected_nodes(20, Some(unknown)), 20);
         Ok(())
     }
 

@@ -73,6 +73,7 @@ mod builder;
 #[allow(clippy::panic)]
 mod complementary;
 mod cost;
+mod event_cost;
 mod factor_log;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -104,12 +105,12 @@ mod windowed;
 mod yielding;
 
 pub use builder::LoadingBuilder;
+#[doc(hidden)] // for the program and the tests of this repository
+pub use event_cost::{event_seconds, greatest_factor, last_factor};
 #[cfg(feature = "io")]
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
-#[doc(hidden)]
-pub use phase::{event_seconds, last_factor};
 #[cfg(feature = "io")]
 pub(crate) use refined::resumed::RefinedEnd;
 pub(crate) use resume::{Replayed, replay};

@@ -1,10 +1,11 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
+use super::event_cost::{Rest, last_factor};
 use super::factor_log::FactorLog;
 use super::gap_field;
 use super::refined::resumed::RefinedEnd;
 use super::run::LoadingRun;
-use super::tuning::{FACTOR, ITERATIONS, LEAST_CONTACT, LEAST_WINDOW, STEP, WINDOW};
+use super::tuning::{LEAST_CONTACT, LEAST_WINDOW};
 use super::window::Window;
 use crate::contact::ContactSequence;
 use crate::updater::{
@@ -16,7 +17,7 @@ use crate::{ContactGrowth, Error, Problem};
 /// The solver of a path.
 #[derive(Debug)]
 pub(super) enum Phase<U> {
-    /// An updater; the path gives it up for iterations when these are cheaper, if `may_end`.
+    /// An updater; the path gives it up for iterations when its rest is cheaper with these, if `may_end`.
     Factor { updater: U, may_end: bool },
     /// Iterations, whose Schur complements the path corrects.
     Iterations(Box<dyn Iterations>),
@@ -32,11 +33,11 @@ impl<U: LinearUpdater> Phase<U> {
         }
     }
 
-    /// Gives up the factor if it does not serve any more. Returns whether it has just done so.
-    pub(super) fn hand_over(&mut self, run: &mut LoadingRun) -> Result<bool, Error> {
+    /// Gives up the factor if it does not serve any more on a path to `end` nodes in contact. Returns whether it has just done so.
+    pub(super) fn hand_over(&mut self, run: &mut LoadingRun, end: usize) -> Result<bool, Error> {
         let (problem, contact) = (&run.problem, &run.contact);
         let count = contact.len();
-        let Some(iterations) = self.successor(run, count) else {
+        let Some(iterations) = self.successor(run, count, end) else {
             return Ok(false);
         };
         let mut solution = Solution::default();
@@ -60,9 +61,10 @@ impl<U: LinearUpdater> Phase<U> {
         Ok(true)
     }
 
-    /// The iterations that take the place of a factor with `count` nodes in contact, if that is one which may end: where they are
-    /// cheaper and can do, or where it leaves no room for one more window. Without room for iterations it stays as long as it can.
-    fn successor(&self, run: &LoadingRun, count: usize) -> Option<Box<dyn Iterations>> {
+    /// The iterations that take the place of a factor with `count` nodes, if that is one which may end: where the rest of a path to
+    /// `end` nodes in contact is cheaper with them and they can do, or where the factor leaves no room for one more window. Without
+    /// room for iterations it stays as long as it can.
+    fn successor(&self, run: &LoadingRun, count: usize, end: usize) -> Option<Box<dyn Iterations>> {
         let Self::Factor { updater, may_end: true } = self else {
             return None;
         };
@@ -71,19 +73,31 @@ impl<U: LinearUpdater> Phase<U> {
         let needed = updater.bytes(count + LEAST_WINDOW, LEAST_WINDOW);
         let needed = needed.saturating_add(WindowFactor::bytes(LEAST_WINDOW));
         let fits = run.memory.check(needed, count).is_ok();
-        let pays = match run.problem.growth() {
-            // Iterations have windows there, and a factor has none.
-            ContactGrowth::Unknown => {
-                count < LEAST_CONTACT
-                    || step_seconds(nodes, count) <= iteration_seconds(nodes, count)
-            }
-            _ => factor_seconds(count) <= iteration_seconds(nodes, count),
-        };
-        if fits && (pays || iterations.check_cells(&run.problem).is_err()) {
+        let is_cheaper = rest(run, count, end).is_cheaper_without();
+        // Fewer nodes have no windows without a factor where contact need not grow.
+        let has_windows = run.problem.growth() != ContactGrowth::Unknown || count >= LEAST_CONTACT;
+        let pays = is_cheaper && has_windows && iterations.check_cells(&run.problem).is_ok();
+        if fits && !pays {
             return None;
         }
         let has_room = run.memory.check(iterations.bytes(nodes, count), count).is_ok();
         (has_room || count == 0).then_some(iterations)
+    }
+
+    /// The number of nodes in contact at which a factor is looked at again, wherever windows begin: where it is given up on the way to
+    /// `end` of them, if it is.
+    pub(super) fn stop(&self, run: &LoadingRun, end: usize) -> usize {
+        let nodes = run.problem.grid().nodes();
+        let last = last_factor(nodes);
+        let may_stop = matches!(self, Self::Factor { may_end: true, .. });
+        if may_stop
+            && run.contact.len() < last
+            && Rest::growing(nodes, last, end).is_cheaper_without()
+        {
+            last
+        } else {
+            nodes
+        }
     }
 
     /// Makes the gap field of a path that of its contact at an approach.
@@ -152,9 +166,14 @@ impl<U: LinearUpdater> Phase<U> {
     }
 
     /// Begins anew with a contact that is known. Returns whether the factor is given up at once.
-    pub(super) fn restore(&mut self, run: &mut LoadingRun, order: &[usize]) -> Result<bool, Error> {
+    pub(super) fn restore(
+        &mut self,
+        run: &mut LoadingRun,
+        order: &[usize],
+        end: usize,
+    ) -> Result<bool, Error> {
         run.contact = ContactSequence::new(run.problem.grid());
-        let successor = self.successor(run, order.len());
+        let successor = self.successor(run, order.len(), end);
         let hands_over = successor.is_some();
         if let Some(iterations) = successor {
             *self = Self::Iterations(iterations);
@@ -274,43 +293,18 @@ impl<U: LinearUpdater> Phase<U> {
     }
 }
 
-/// Seconds that an event with so many nodes in contact takes on a grid of `nodes`, on a machine with
-/// two cores: for telling how long a path will take.
-#[doc(hidden)]
-#[must_use]
-pub fn event_seconds(nodes: usize, contact: usize) -> f64 {
-    factor_seconds(contact).min(iteration_seconds(nodes, contact))
-}
-
-/// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: where it is given up if
-/// memory allows.
-#[doc(hidden)]
-#[must_use]
-pub fn last_factor(nodes: usize) -> usize {
-    // Both costs grow with the contact, and that of a factor faster: one crossing.
-    let (mut low, mut high) = (0, nodes);
-    while low < high {
-        let middle = low.midpoint(high);
-        if factor_seconds(middle) > iteration_seconds(nodes, middle) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    low
-}
-
-fn factor_seconds(contact: usize) -> f64 {
-    FACTOR * (contact as f64).powi(2)
-}
-
-/// Seconds of an event that has a solution of its own, with a factor.
-fn step_seconds(nodes: usize, contact: usize) -> f64 {
-    STEP[0] * (contact as f64).powi(2) + STEP[1] * nodes as f64
-}
-
-fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
-    WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
+/// What is left of a path with `count` nodes in its factor and `end` nodes in contact at the end.
+fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
+    let nodes = run.problem.grid().nodes();
+    let Some(plastic) = &run.plastic else {
+        let rest = Rest::growing(nodes, count, end);
+        let has_windows = run.problem.growth() != ContactGrowth::Unknown;
+        return if has_windows { rest } else { rest.stepwise() };
+    };
+    // Of the nodes that are to touch most yield as well; those that have not yet leave the factor as others come.
+    let yielded = plastic.count();
+    let (touches, yields) = (end.saturating_sub(count + yielded), end.saturating_sub(yielded));
+    Rest::steady(nodes, count, touches + yields)
 }
 
 #[cfg(test)]
@@ -322,31 +316,6 @@ mod tests {
     use crate::surface::{Amplitude, SelfAffine};
     use crate::updater::Handover;
     use crate::{Boussinesq, Grid, HeightMap, InfluenceKernel, Spectral};
-
-    /// 10 ps · n², and 0.3 ms, 1.2 ns a node and 4 ns a node in contact.
-    #[test]
-    fn costs_of_an_event() {
-        for (nodes, contact, cost) in [
-            (0, 1000, 1e-5),
-            (1_000_000, 10_000, 1e-3),
-            (10_000, 10_000, 3e-4 + 1.2e-5 + 4e-5),
-            (1_000_000, 100_000, 3e-4 + 1.2e-3 + 4e-4),
-        ] {
-            let found = event_seconds(nodes, contact);
-            assert!((found / cost - 1.0).abs() < 1e-14, "{nodes} {contact}: {found:e}");
-        }
-    }
-
-    /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 1.2·10⁻⁹ N + 4·10⁻⁹ n`, rounded up; all nodes if there is none among them.
-    #[test]
-    fn a_factor_is_given_up_where_costs_meet() {
-        for nodes in [128 * 128, 256 * 256, 512 * 512] {
-            let fixed = 3e-4 + 1.2e-9 * nodes as f64;
-            let root = (4e-9 + (16e-18 + 4e-11 * fixed).sqrt()) / 2e-11;
-            assert_eq!(last_factor(nodes), root.ceil() as usize);
-        }
-        assert_eq!([100, 1000].map(last_factor), [100, 1000]);
-    }
 
     /// A path on a flat surface of 128 × 128 nodes, of which the updater may hold so many bytes.
     fn flat(kernel: &dyn InfluenceKernel, budget: usize) -> Result<LoadingRun, Error> {
@@ -365,7 +334,9 @@ mod tests {
     #[test]
     fn a_factor_fits_with_one_more_window() -> Result<(), Error> {
         let phase = Phase::new(Handover::new());
-        let has_successor = |run: &LoadingRun, count: usize| phase.successor(run, count).is_some();
+        // On the way to full contact.
+        let successor = |run: &LoadingRun, count: usize| phase.successor(run, count, 128 * 128);
+        let has_successor = |run: &LoadingRun, count: usize| successor(run, count).is_some();
         let square = Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?;
         // There is no other way on cells that iterations are not made for, while it fits.
         let long = Spectral::new(Grid::new(128, 128, 1.0, 1e4)?, 1.0)?;
@@ -390,8 +361,24 @@ mod tests {
             assert_eq!(found, given_up);
             // A factor that was asked for stays.
             let chosen = Phase::new(RecursiveCholesky::new());
-            assert!(chosen.successor(&run, last).is_none());
+            assert!(chosen.successor(&run, last, 128 * 128).is_none());
         }
+        Ok(())
+    }
+
+    /// Paths that end soon behind the place where events cost the same keep their factor, and have no window that ends there.
+    #[test]
+    fn a_factor_is_given_up_for_what_is_left() -> Result<(), Error> {
+        let square = Boussinesq::new(Grid::square(128, 1.0)?, 1.0)?;
+        let run = flat(&square, usize::MAX)?;
+        let last = last_factor(128 * 128);
+        let phase = Phase::new(Handover::new());
+        for (end, is_given_up) in [(last + 500, false), (2 * last, true)] {
+            assert_eq!(phase.successor(&run, last, end).is_some(), is_given_up, "{end}");
+            assert_eq!(phase.stop(&run, end), if is_given_up { last } else { 128 * 128 });
+        }
+        let chosen = Phase::new(RecursiveCholesky::new());
+        assert_eq!(chosen.stop(&run, 2 * last), 128 * 128);
         Ok(())
     }
 
@@ -399,7 +386,7 @@ mod tests {
     fn two_in_contact() -> Result<(LoadingRun, Phase<Handover>), Error> {
         let mut run = test_chain::run(&[0.0, 9.0, 1.0, 9.0, 2.0, 9.0])?;
         let mut phase = Phase::new(Handover::new());
-        assert!(!phase.restore(&mut run, &[2, 0])?);
+        assert!(!phase.restore(&mut run, &[2, 0], 6)?);
         assert_eq!((run.contact.order(), phase.tolerance()), (&[2, 0][..], 0.0));
         Ok((run, phase))
     }
@@ -417,11 +404,11 @@ mod tests {
         ] {
             let (mut run, mut phase) = two_in_contact()?;
             run.memory.budget = run.memory.fixed + budget;
-            assert_eq!(phase.hand_over(&mut run)?, is_given_up, "{budget}");
+            assert_eq!(phase.hand_over(&mut run, 6)?, is_given_up, "{budget}");
             assert_eq!(matches!(phase, Phase::Iterations(_)), is_given_up);
             assert_eq!(phase.tolerance(), if is_given_up { 1e-10 } else { 0.0 });
             // Once.
-            assert!(!phase.hand_over(&mut run)?);
+            assert!(!phase.hand_over(&mut run, 6)?);
             phase.renew_field(&mut run, 3.0)?;
             assert!(run.field.belongs_to(&run.contact, 3.0));
             let Solution { pressure, rate } = run.field.solution();
@@ -440,7 +427,7 @@ mod tests {
         for (budget, is_given_up) in [(with_window(2), false), (with_window(2) - 1, true)] {
             run.memory.budget = run.memory.fixed + budget;
             let mut phase = Phase::new(Handover::new());
-            assert_eq!(phase.restore(&mut run, &[0, 2])?, is_given_up);
+            assert_eq!(phase.restore(&mut run, &[0, 2], 6)?, is_given_up);
             assert_eq!(matches!(phase, Phase::Iterations(_)), is_given_up);
             assert_eq!(run.contact.order(), [0, 2]);
         }
@@ -459,7 +446,7 @@ mod tests {
             let mut run = test_chain::run(&[0.0; 6])?;
             run.memory.budget = run.memory.fixed + budget;
             let mut phase = Phase::new(Handover::new());
-            assert_eq!(phase.hand_over(&mut run)?, hands_over, "{budget}");
+            assert_eq!(phase.hand_over(&mut run, 6)?, hands_over, "{budget}");
             assert_eq!(phase.make_room(&run).is_ok(), has_room, "{budget}");
         }
         Ok(())

@@ -43,7 +43,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         let (run, phase) = (&mut self.run, &mut self.phase);
         let order = run.contact.order().to_vec();
-        if phase.restore(run, &order)? {
+        let end = self.limits.expected_nodes(run.problem.grid().nodes(), Some(last.contact));
+        if phase.restore(run, &order, end)? {
             self.handed_over_at = Some(order.len());
         }
         if let Procedure::Windows(windowed, _) = &mut self.procedure {

@@ -41,7 +41,7 @@ pub(super) struct Snapshot {
     approach: f64,
     /// dW/dδ for that approach.
     stiffness: f64,
-    pub(super) pressure: DMatrix<f64>,
+    pressure: DMatrix<f64>,
 }
 
 impl Snapshot {
@@ -91,25 +91,56 @@ impl Snapshot {
         let load = cell_area * self.pressure.iter().sum::<f64>();
         let scale = load.abs().max(self.stiffness * self.approach);
         // At first touch, and where nodes have yielded under next to nothing, all that is left is what contact is closed to.
-        let rounding = TOLERANCE * self.stiffness * self.lengths(run);
+        let rounding = self.rounding(run);
         // NaN is refused as well.
         let same_load = (load - state.contact.load).abs() <= (allowed * scale).max(rounding);
         if !same_load || !state.contact.approach.is_finite() {
             return refused("load", load, "the load of the state");
         }
-        let least = self.nodes.iter().map(|&node| self.pressure[node]);
-        let least = least.fold(f64::INFINITY, f64::min);
-        let allowed_tension = (allowed * self.pressure.max())
-            .max(rounding / cell_area)
-            .max(self.pressure_error(run, phase.tolerance()));
-        if least < -allowed_tension {
-            return refused("least pressure in contact", least, "no tension");
-        }
+        self.check_tension(run, phase.tolerance(), state)?;
         let overlap = self.worst_overlap(run, state.step)?;
         if overlap < -self.allowed_gap(run, state) {
             return refused("least gap out of contact", overlap, "no overlap");
         }
         Ok(())
+    }
+
+    /// The pressure, without the tension that errors leave of a pressure of zero.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotOnPath`] for more tension than that.
+    pub(super) fn into_pressure<U: LinearUpdater>(
+        self,
+        run: &LoadingRun,
+        phase: &Phase<U>,
+        state: &LoadingState,
+    ) -> Result<DMatrix<f64>, Error> {
+        self.check_tension(run, phase.tolerance(), state)?;
+        Ok(self.pressure.map(|pressure| if pressure <= 0.0 { 0.0 } else { pressure }))
+    }
+
+    /// `Ok` if no node is pulled by more than pressures of a state may be off, with solutions of a tolerance.
+    fn check_tension(
+        &self,
+        run: &LoadingRun,
+        tolerance: f64,
+        state: &LoadingState,
+    ) -> Result<(), Error> {
+        let least = self.nodes.iter().map(|&node| self.pressure[node]);
+        let least = least.fold(f64::INFINITY, f64::min);
+        let allowed = (allowed(state) * self.pressure.max())
+            .max(self.rounding(run) / run.problem.grid().cell_area())
+            .max(self.pressure_error(run, tolerance));
+        if least < -allowed {
+            return Err(not_on_path(state, "least pressure in contact", least, "no tension"));
+        }
+        Ok(())
+    }
+
+    /// What the gaps that contact is closed to are worth as a load.
+    fn rounding(&self, run: &LoadingRun) -> f64 {
+        TOLERANCE * self.stiffness * self.lengths(run)
     }
 
     /// `Ok` if the gaps that a certificate of the state was made of are closed in contact, and not negative elsewhere: [`recognise`](Self::recognise) looks at the node that touches next alone.
@@ -363,6 +394,31 @@ mod tests {
                 ..ALONE
             };
             assert_eq!(full.refused()?, None);
+        }
+        Ok(())
+    }
+
+    /// Three millionths of the greatest pressure are no tension of an estimated state, and are an error of an exact one.
+    #[test]
+    fn tension_within_errors_is_zero() -> Result<(), Error> {
+        let run = test_chain::run(&[0.0, 8.0, 4.0])?;
+        let phase = Phase::new(Dense);
+        for (error, is_refused) in [(1e-12, false), (0.0, true)] {
+            let contact = ContactState::new(&run.problem.grid(), 2, 4.0, 2.0, 0.0);
+            let mut state = LoadingState::new(2, ContactEvent::Touch, (2, 0), contact);
+            state.approach_error = error;
+            let snapshot = Snapshot {
+                nodes: vec![0, 2],
+                yielded: Vec::new(),
+                approach: 4.0,
+                stiffness: 0.5,
+                pressure: DMatrix::from_column_slice(3, 1, &[1.0, 0.0, -3e-6]),
+            };
+            match snapshot.into_pressure(&run, &phase, &state) {
+                Ok(pressure) => assert!(!is_refused && pressure.as_slice() == [1.0, 0.0, 0.0]),
+                Err(Error::NotOnPath { value, .. }) => assert!(is_refused && value == -3e-6),
+                Err(error) => return Err(error),
+            }
         }
         Ok(())
     }

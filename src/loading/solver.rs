@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
-use super::phase::{Phase, last_factor};
+use super::phase::Phase;
 use super::refined::Refined;
 use super::refined::leaving::Attempt;
 use super::rule::ContactRule;
@@ -137,20 +137,23 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Computes at least one more state, unless the path is at its end.
     fn produce(&mut self) -> Result<(), Error> {
         let (run, phase) = (&mut self.run, &mut self.phase);
-        let most_nodes = self.limits.most_nodes().min(run.problem.grid().nodes());
+        let nodes = run.problem.grid().nodes();
+        let most_nodes = self.limits.most_nodes().min(nodes);
         let limit = self.limits.most_nodes();
+        let end = self.limits.expected_nodes(nodes, self.state.map(|state| state.contact));
         // With a hardness nodes yield behind full contact.
         let is_enough = match &run.plastic {
             Some(_) => run.contact_nodes() >= limit,
             None => run.contact.len() >= most_nodes,
         };
-        if !is_enough && phase.hand_over(run)? {
+        if !is_enough && phase.hand_over(run, end)? {
             self.handed_over_at = Some(run.contact.len());
             if let Procedure::Windows(windowed, _) = &mut self.procedure {
                 // How the factor grew is of no use any more.
                 windowed.follow_on(FactorLog::default());
             }
         }
+        let stop = phase.stop(run, end);
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise, refined), phase) => {
                 if let Phase::Iterations(iterations) = phase
@@ -185,15 +188,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             }
             (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
                 // A whole window, whatever the limit: a path that goes on behind it has the same windows.
-                let all = run.problem.grid().nodes();
-                refined.produce(run, &mut **iterations, all)
+                refined.produce(run, &mut **iterations, nodes)
             }
-            (Procedure::Windows(windowed, _), Phase::Factor { updater, may_end }) => {
-                // A factor is given up with one number of nodes in contact, wherever windows begin.
-                let last = last_factor(run.problem.grid().nodes());
-                let ends_here = *may_end && run.contact.len() < last;
-                let most = if ends_here { most_nodes.min(last) } else { most_nodes };
-                let failure = windowed.produce(run, updater, most)?;
+            (Procedure::Windows(windowed, _), Phase::Factor { updater, .. }) => {
+                let failure = windowed.produce(run, updater, most_nodes.min(stop))?;
                 if run.queue.is_empty() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
                     return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));

@@ -257,7 +257,7 @@ impl Updater {
         match self {
             Self::Cholesky => contact,
             Self::Iterative => 0,
-            Self::Auto => contact.min(asperity::loading::last_factor(nodes)),
+            Self::Auto => asperity::loading::greatest_factor(nodes, contact),
         }
     }
 
