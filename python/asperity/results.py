@@ -113,7 +113,7 @@ class Percolation:
     contact_x, contact_y : State or None
         The first state at which one patch alone leads all the way.
     leak_x, leak_y : State or None
-        The first state at which no channel does: the last one is closed.
+        The first state at which no channel does: from there on the gap seals.
     """
 
     contact_x: State | None
