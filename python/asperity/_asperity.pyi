@@ -640,7 +640,7 @@ def steady_cycle(
     period: float,
     steps: int = 96,
     tolerance: float = 1e-5,
-    most: int = 60,
+    most: int = 1000,
 ) -> results.Cycle: ...
 def steady_cycles(
     path: LoadingPath | History,
@@ -651,7 +651,7 @@ def steady_cycles(
     periods: ArrayLike,
     steps: int = 96,
     tolerance: float = 1e-5,
-    most: int = 60,
+    most: int = 1000,
 ) -> list[results.Cycle]: ...
 def conductance(
     path: LoadingPath | History,

@@ -488,8 +488,8 @@ class Cycle:
         The last cycle [m, N].
     cycles : int
         How many cycles were run.
-    change : float
-        By how much the last one lost more or less than the one before, over the product of amplitudes.
+    distance : float
+        How far the energy lost is from that of the steady cycle, over the product of amplitudes: an estimate.
     """
 
     period: float
@@ -502,4 +502,4 @@ class Cycle:
     approach: NDArray[np.float64] = field(compare=False, repr=False)
     load: NDArray[np.float64] = field(compare=False, repr=False)
     cycles: int
-    change: float
+    distance: float
