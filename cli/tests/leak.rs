@@ -143,3 +143,73 @@ fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
     is_refused(&run(&folder, &none)?, &["--resistivity"]);
     Ok(())
 }
+
+/// One record of a periodic half-space whose last channel from end to end closes later than the last one around the grid: `leak`,
+/// `patches` with and without corners, and `creep` say the same.
+#[test]
+fn all_commands_seal_at_one_state() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("seals")?;
+    let made = [
+        "path",
+        "--nodes",
+        "64",
+        "--seed",
+        "3",
+        "--periodic",
+        "love",
+        "--max-area-fraction",
+        "0.6",
+        "--record",
+        "path.npz",
+        "--out=path",
+    ];
+    assert!(run(&folder, &made)?.status.success());
+    let answer = |arguments: &[&str]| -> Result<Value, Box<dyn Error>> {
+        let done = run(&folder, arguments)?;
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        Ok(serde_json::from_slice(&done.stdout)?)
+    };
+    for axis in ["x", "y"] {
+        let leak = answer(&[
+            "leak",
+            "path.npz",
+            "--viscosity=1e-3",
+            "--pressure-drop=1",
+            "--along",
+            axis,
+            "--states=3",
+            "--json",
+        ])?;
+        assert_eq!(leak["leak_rate"].as_f64(), Some(0.0));
+        let (load, step) = (leak["load"].as_f64().ok_or("no load")?, &leak["step"]);
+        for corners in [&["--corners"][..], &[]] {
+            let patches = answer(&[&["patches", "path.npz", "--json"], corners].concat())?;
+            assert_eq!(&patches[format!("seals_{axis}")]["step"], step);
+            let around = &patches[format!("no_channel_winds_{axis}")]["step"];
+            assert!(around.as_u64() <= step.as_u64() && !around.is_null());
+            if axis == "x" {
+                assert_ne!(around, step, "both questions are the same on this surface");
+            }
+            let at = format!("{:e}", load);
+            let before = ["patches", "path.npz", "--json", "--at-load", &at];
+            assert!(answer(&before)?[format!("channel_{axis}")].is_null());
+            // A load that is put on at once seals at once from there on, and not before.
+            for (factor, at_once) in [(1.0 + 1e-9, true), (1.0 - 1e-9, false)] {
+                let held = format!("{:e}", factor * load);
+                let creep = [
+                    "creep",
+                    "path.npz",
+                    "--prony",
+                    "1,0.01",
+                    "--time=10",
+                    "--json",
+                    "--load",
+                    &held,
+                ];
+                let sealed = &answer(&[&creep[..], corners].concat())?[format!("seals_{axis}")];
+                assert_eq!(sealed.as_f64() == Some(0.0), at_once, "{sealed}");
+            }
+        }
+    }
+    Ok(())
+}

@@ -245,13 +245,13 @@ fn patches_say_what_to_run_and_where_a_leak_passes() -> Done {
     let folder = Scratch::new("channels")?;
     run(&folder.0, "path --nodes 32 --periodic love --max-area-fraction 0.1 --record p.npz")?;
     let words = printed(&run(&folder.0, "patches p.npz")?);
-    assert!(words.contains("seals along x      not on this path"), "{words}");
+    assert!(words.contains("seals along x            not on this path"), "{words}");
     assert!(words.contains("the widest channel along x is narrowest at node"), "{words}");
     let command = words.split("asperity path ").nth(1).ok_or("no command")?;
     let command = command.split(", and then").next().ok_or("no end")?;
     run(&folder.0, &format!("path {command}"))?;
     let words = printed(&run(&folder.0, "patches p.npz")?);
-    assert!(words.contains("seals along x      from state"), "{words}");
+    assert!(words.contains("seals along x            from state"), "{words}");
     assert!(words.contains("no channel along x: the contact seals"), "{words}");
     Ok(())
 }

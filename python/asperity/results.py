@@ -113,7 +113,7 @@ class Percolation:
     contact_x, contact_y : State or None
         The first state at which one patch alone leads all the way.
     leak_x, leak_y : State or None
-        The first state at which no channel does: the last one is closed.
+        The first state at which no channel does: from there on the gap seals.
     """
 
     contact_x: State | None
@@ -488,8 +488,8 @@ class Cycle:
         The last cycle [m, N].
     cycles : int
         How many cycles were run.
-    change : float
-        By how much the last one lost more or less than the one before, over the product of amplitudes.
+    distance : float
+        How far the energy lost is from that of the steady cycle, over the product of amplitudes: an estimate.
     """
 
     period: float
@@ -502,4 +502,4 @@ class Cycle:
     approach: NDArray[np.float64] = field(compare=False, repr=False)
     load: NDArray[np.float64] = field(compare=False, repr=False)
     cycles: int
-    change: float
+    distance: float

@@ -117,7 +117,7 @@ def test_when_it_percolates_and_seals(rough: asp.Surface) -> None:
     history = path.run(check=False)
     found = asp.patches(path)
     percolation = found.percolation()
-    assert percolation == found.spanning()  # on a free boundary
+    assert percolation == found.winding()  # on a free boundary
     # Where contact leads along one axis, no channel does along the other.
     assert percolation.leak_x == percolation.contact_y and percolation.leak_y == percolation.contact_x
     state = percolation.contact_x
@@ -139,6 +139,28 @@ def test_when_it_percolates_and_seals(rough: asp.Surface) -> None:
     again = one.constriction("y")
     assert again is not None and (again.row, again.column) == (narrow.row, narrow.column)
     assert len(one.patches()) == len(found.at(before))
+
+
+def test_it_seals_where_the_leak_ends() -> None:
+    """On a periodic surface: fluid goes from end to end and passes the border across. Around the grid is another question."""
+    path = asp.load_path(
+        asp.example_surface(64, seed=3), asp.HalfSpace(115e9, boundary="love"), area_fraction=0.6, check=False
+    )
+    history = path.run(check=False)
+    for connectivity in (4, 8):
+        found = asp.patches(path, connectivity=connectivity)  # type: ignore[arg-type]
+        seals, winds = found.percolation(), found.winding()
+        for along, state, around in (
+            ("x", seals.leak_x, winds.leak_x),
+            ("y", seals.leak_y, winds.leak_y),
+        ):
+            assert state is not None and around is not None and around.step <= state.step
+            before = history[state.step - 2]
+            assert asp.Seal(1e-3, 1.0, along=along).curve(path, states=3).closing == state  # type: ignore[arg-type]
+            assert path.constriction(along, state) is None and path.constriction(along, before)  # type: ignore[arg-type]
+        assert winds.leak_x != seals.leak_x
+        assert seals.contact_x is not None and winds.contact_x is not None
+        assert seals.contact_x.step <= winds.contact_x.step
 
 
 def test_distributions(rough: asp.Surface, body: asp.HalfSpace) -> None:

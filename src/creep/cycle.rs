@@ -26,8 +26,9 @@ pub struct Cycle {
     pub path: Vec<(f64, f64)>,
     /// How many cycles were run.
     pub cycles: usize,
-    /// By how much the last cycle lost more or less than the one before, over the product of amplitudes.
-    pub change: f64,
+    /// How far the energy lost is from that of the steady cycle, over the product of amplitudes: an estimate, from how fast the changes from cycle to
+    /// cycle die out. Infinite after one cycle.
+    pub distance: f64,
 }
 
 /// How a cycle is run.
@@ -35,7 +36,7 @@ pub struct Cycle {
 pub struct CycleSettings {
     /// Steps of a cycle.
     pub steps: usize,
-    /// The change of the energy lost, over the product of amplitudes, at which a cycle is steady.
+    /// The estimated [distance](Cycle::distance) from the steady cycle at which a cycle is taken for it.
     pub tolerance: f64,
     /// No more cycles than these.
     pub most: usize,
@@ -44,7 +45,35 @@ pub struct CycleSettings {
 impl Default for CycleSettings {
     /// Half a percent of the energy that an elastic solid with tan φ = 0.1 would lose comes of the steps.
     fn default() -> Self {
-        Self { steps: 96, tolerance: 1e-5, most: 60 }
+        Self { steps: 96, tolerance: 1e-5, most: 1000 }
+    }
+}
+
+/// How the energy lost comes nearer to that of the steady cycle.
+#[derive(Debug, Default)]
+struct Approach {
+    before: Option<f64>,
+    change: Option<f64>,
+    ratio: Option<f64>,
+}
+
+impl Approach {
+    /// What is still to come after a cycle: a geometric series whose ratio is the greater one of the last two, and no greater than that of the longest
+    /// retardation time, `slowest`. A single small change says nothing: a slow mode changes little in a cycle that is much shorter than its time.
+    fn distance(&mut self, dissipated: f64, slowest: f64) -> f64 {
+        let change = self.before.map(|before| dissipated - before);
+        let ratio = match (self.change, change) {
+            (Some(earlier), Some(change)) => Some((change / earlier).abs()),
+            _ => None,
+        };
+        let greatest = match (self.ratio, ratio) {
+            (Some(earlier), Some(ratio)) => earlier.max(ratio).min(slowest),
+            _ => slowest,
+        };
+        let left = greatest / (1.0 - greatest);
+        *self = Self { before: Some(dissipated), change, ratio };
+        // The last change itself where nothing is to come: rounding.
+        change.map_or(f64::INFINITY, |change| change.abs() * left.max(f64::EPSILON))
     }
 }
 
@@ -74,7 +103,7 @@ impl ViscoelasticBed<'_> {
         Ok(())
     }
 
-    /// Cycles the load around a mean until each costs as much energy as the one before. The bed goes on from its present state, so that
+    /// Cycles the load around a mean until the energy that a cycle costs is that of the steady one, within the tolerance. The bed goes on from its present state, so that
     /// [`settle`](Self::settle) before, or a sweep from period to period, saves cycles.
     ///
     /// # Errors
@@ -102,7 +131,10 @@ impl ViscoelasticBed<'_> {
         if self.state().load != mean_load {
             self.step(0.0, Control::Load(mean_load))?;
         }
-        let mut before: Option<f64> = None;
+        let longest = self.prony().creep_terms().last().map_or(0.0, |term| term.time);
+        // How much of the slowest mode is left after a cycle.
+        let slowest = (-period / longest).exp();
+        let mut approach = Approach::default();
         let mut cycles = 0;
         loop {
             let path = self.round(mean_load, amplitude, period, steps)?;
@@ -117,8 +149,8 @@ impl ViscoelasticBed<'_> {
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let approach_amplitude = 0.5 * (high - low);
             let scale = amplitude * approach_amplitude;
-            let change = before.map_or(f64::INFINITY, |before| (dissipated - before) / scale);
-            if change.abs() <= tolerance || cycles >= most {
+            let distance = approach.distance(dissipated, slowest) / scale;
+            if distance <= tolerance || cycles >= most {
                 return Ok(Cycle {
                     period,
                     mean_load,
@@ -129,10 +161,9 @@ impl ViscoelasticBed<'_> {
                     loss_factor: dissipated / (std::f64::consts::PI * scale),
                     path,
                     cycles,
-                    change,
+                    distance,
                 });
             }
-            before = Some(dissipated);
         }
     }
 

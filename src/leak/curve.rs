@@ -111,8 +111,8 @@ fn closing<U: LinearUpdater>(
         Err(Error::NodeLeaves { .. }) => return Ok(None),
         Err(error) => return Err(error),
     };
-    // Channels pass through sides of cells: patches hang together through corners too.
-    let found = Percolation::spanning(&contact, path.problem().boundary(), Connectivity::Eight);
+    // Of the channels alone, whatever joins patches.
+    let found = Percolation::of(&contact, path.problem().boundary(), Connectivity::Eight);
     let nodes = match along {
         Axis::X => found.leak_x,
         Axis::Y => found.leak_y,

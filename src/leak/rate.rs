@@ -6,7 +6,7 @@ use super::Seal;
 use super::flow::Flow;
 use super::mean_field::bruggeman;
 use super::network::{BEHIND, Beyond, LEFT, Network, Place, RIGHT};
-use crate::patches::{Connectivity, spanning_constriction};
+use crate::patches;
 use crate::surface::Axis;
 use crate::{Boundary, Error, Grid};
 
@@ -195,7 +195,7 @@ impl Flows<'_> {
         let (nx, ny) = gap.shape();
         let is_closed = self.network.places.iter().map(|place| *place != Place::Flowing);
         let closed = DMatrix::from_iterator(nx, ny, is_closed);
-        let found = spanning_constriction(gap, &closed, on, Connectivity::Eight, along)?;
+        let found = patches::constriction(gap, &closed, on, along)?;
         Ok(found.map(|found| {
             let node = found.node.0 + nx * found.node.1;
             let out = self.out_of(node);

@@ -2,9 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::Connectivity;
 use super::lattice::Lattice;
-use super::percolation::percolates;
+use super::percolation::{CHANNELS, percolates};
 use crate::surface::Axis;
 use crate::{Boundary, Error, Grid};
 
@@ -19,9 +18,8 @@ pub struct Constriction {
 }
 
 /// The narrowest place of the widest channel that leads along an axis through the nodes out of contact: of all channels
-/// the one whose least gap is greatest. `None` if no channel leads all the way, which is as in
-/// [`Percolation::of`](super::Percolation::of). `connectivity` is that of patches; channels have the
-/// [dual](Connectivity::dual) one.
+/// the one whose least gap is greatest. Channels lead from one end of the grid to the other through the sides of cells, as in
+/// [`Percolation::of`](super::Percolation::of). `None` if none does: the contact seals.
 ///
 /// It takes O(n log n) for n nodes out of contact.
 ///
@@ -32,35 +30,6 @@ pub fn constriction(
     gap: &DMatrix<f64>,
     contact_map: &DMatrix<bool>,
     (grid, boundary): (&Grid, Boundary),
-    connectivity: Connectivity,
-    axis: Axis,
-) -> Result<Option<Constriction>, Error> {
-    let lattice = Lattice::new(*grid, boundary, connectivity.dual());
-    narrowest(gap, contact_map, (grid, lattice), axis)
-}
-
-/// The same of channels from one end of the grid to the other, whatever the boundary: see
-/// [`Percolation::spanning`](super::Percolation::spanning).
-///
-/// # Errors
-///
-/// Those of [`constriction`].
-pub fn spanning_constriction(
-    gap: &DMatrix<f64>,
-    contact_map: &DMatrix<bool>,
-    (grid, boundary): (&Grid, Boundary),
-    connectivity: Connectivity,
-    axis: Axis,
-) -> Result<Option<Constriction>, Error> {
-    let lattice = Lattice::new(*grid, boundary, connectivity.dual()).cut(axis);
-    narrowest(gap, contact_map, (grid, lattice), axis)
-}
-
-/// On a lattice.
-fn narrowest(
-    gap: &DMatrix<f64>,
-    contact_map: &DMatrix<bool>,
-    (grid, lattice): (&Grid, Lattice),
     axis: Axis,
 ) -> Result<Option<Constriction>, Error> {
     grid.check_shape(contact_map.shape())?;
@@ -69,6 +38,7 @@ fn narrowest(
         (0..grid.nodes()).filter(|&node| !contact_map.as_slice()[node]).collect();
     let gap_of = |node: usize| gap.as_slice()[node];
     open.sort_by(|a, b| gap_of(*b).total_cmp(&gap_of(*a)));
+    let lattice = Lattice::new(*grid, boundary, CHANNELS).cut(axis);
     let count = percolates(lattice, axis, open.iter().copied());
     Ok(count.and_then(|count| {
         let node = *open.get(count.checked_sub(1)?)?;

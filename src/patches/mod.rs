@@ -8,8 +8,8 @@
 //! |---|---|
 //! | how many patches, how large, how long their edges, at every state | [`PatchHistory`] |
 //! | the contact area without the error of whole cells | [`Perimeter::corrected_area`], [`ContactEdge`] |
-//! | when does contact percolate, when is the last channel closed | [`Percolation`] |
-//! | where is a channel through one state narrowest | [`constriction`], [`spanning_constriction`] |
+//! | when does contact percolate, when does the gap seal | [`Percolation`] |
+//! | where is a channel through one state narrowest | [`constriction`] |
 //! | which patch came from where, and merged into which | [`MergeTree`] |
 //! | each patch of one state: place, area, load, pressures | [`Patches`] |
 //! | at which load did each node touch | [`activation_map`] |
@@ -69,7 +69,7 @@ mod perimeter;
 mod tests;
 
 pub use connectivity::Connectivity;
-pub use constriction::{Constriction, constriction, spanning_constriction};
+pub use constriction::{Constriction, constriction};
 pub use distribution::{FieldDistribution, gap_distribution, pressure_distribution};
 pub use edge::ContactEdge;
 pub use histogram::{Bins, Histogram};

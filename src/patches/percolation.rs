@@ -7,24 +7,28 @@ use crate::Boundary;
 use crate::contact::ContactSequence;
 use crate::surface::Axis;
 
-/// The states at which contact percolates and leakage ends, each given as a number of nodes in contact.
+/// Which nodes out of contact are neighbours: fluid flows through the sides of cells.
+pub(super) const CHANNELS: Connectivity = Connectivity::Four;
+
+/// The states at which contact percolates and at which the gap seals, each given as a number of nodes in contact.
 ///
-/// *Contact percolates* along x at the first state at which one patch alone leads all the way along x. *Leakage ends*
-/// along x at the first state at which the nodes out of contact no longer do: the last channel for a fluid along x is
-/// closed. `None` stands for what had not happened at the last state.
+/// *Contact percolates* along x at the first state at which one patch alone leads all the way along x. *The gap seals*
+/// along x at the first state at which no channel through the nodes out of contact does: from there on nothing leaks
+/// along x. `None` stands for what had not happened at the last state. There are two questions:
 ///
-/// What all the way is depends on the boundary:
+/// * [`of`](Self::of), *from end to end*: a patch or a channel leads from one end of the grid to the other. Where the boundary repeats along
+///   the other direction it may lead across that border; the border between the ends is cut. This is a seal, with the fluid before one end and
+///   behind the other, and what percolation and sealing mean everywhere in this crate: [`Seal`](crate::leak::Seal) finds a leak exactly
+///   before `leak_x`.
+/// * [`winding`](Self::winding), *around the grid*: along a direction in which the boundary repeats, a patch or a channel winds around
+///   the grid, and so goes on without end in the repeated surface. One that climbs as it winds around goes on along both directions. What winds
+///   around leads from end to end as well, but what leads from end to end need not meet its own beginning across the border: contact percolates
+///   no later than it winds, and the gap seals no sooner than the last channel that winds is closed. Where the boundary does not repeat
+///   both are the same.
 ///
-/// * [`of`](Self::of): on a free boundary, from one end of the grid to the other; on a periodic one, around it: a
-///   patch that goes on without end in the periodic surface. A patch that climbs as it winds around goes on
-///   along both directions.
-/// * [`spanning`](Self::spanning): from one end of the grid to the other, whatever the boundary. On a periodic one the
-///   border is closed along the direction asked for, and open along the other: a piece of a seal, with
-///   the fluid before one end and behind the other.
-///
-/// Channels have the [dual](Connectivity::dual) connectivity of contact, so that a patch and a channel cannot cross.
-/// From end to end, one of the two leads along one direction exactly if the other does not lead along the other: on a
-/// free boundary `leak_x` is `contact_y`, and `leak_y` is `contact_x`.
+/// Patches have the `connectivity` given. Channels pass through the sides of cells, as [flow](crate::leak) does, whatever the connectivity, so that
+/// a patch and a channel never cross. With [`Connectivity::Eight`], from end to end, one of the two leads along one direction exactly if
+/// the other does not lead along the other: on a free boundary `leak_x` is `contact_y`, and `leak_y` is `contact_x`.
 ///
 /// Nodes that never touch are open throughout. Both take O(n α(n)), the channels from the last state backwards.
 ///
@@ -50,27 +54,27 @@ pub struct Percolation {
     pub contact_x: Option<usize>,
     /// The same along y.
     pub contact_y: Option<usize>,
-    /// The first state at which no channel leads along x.
+    /// The first state at which no channel leads along x: it seals.
     pub leak_x: Option<usize>,
     /// The same along y.
     pub leak_y: Option<usize>,
 }
 
 impl Percolation {
-    /// From end to end on a free boundary, around a periodic one.
+    /// From one end of the grid to the other.
     #[must_use]
     pub fn of(contact: &ContactSequence, boundary: Boundary, connectivity: Connectivity) -> Self {
-        Self::on(contact, boundary, connectivity, |lattice, _| lattice)
+        Self::on(contact, boundary, connectivity, Lattice::cut)
     }
 
-    /// From end to end on any boundary.
+    /// Around the grid, where the boundary repeats.
     #[must_use]
-    pub fn spanning(
+    pub fn winding(
         contact: &ContactSequence,
         boundary: Boundary,
         connectivity: Connectivity,
     ) -> Self {
-        Self::on(contact, boundary, connectivity, Lattice::cut)
+        Self::on(contact, boundary, connectivity, |lattice, _| lattice)
     }
 
     /// On the lattices that `ends` makes for each direction.
@@ -87,7 +91,7 @@ impl Percolation {
             percolates(ends(lattice, axis), axis, contact.order().iter().copied())
         };
         let of_channels = |axis| {
-            let lattice = Lattice::new(contact.grid(), boundary, connectivity.dual());
+            let lattice = Lattice::new(contact.grid(), boundary, CHANNELS);
             let never = (0..nodes).filter(|&node| !contact.contains(node));
             let backwards = contact.order().iter().rev().copied();
             let open = percolates(ends(lattice, axis), axis, never.chain(backwards))?;

@@ -8,7 +8,7 @@ use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE
 use asperity_cli::outcome::Failure;
 
 use super::followed::Followed;
-use super::passages::Passage;
+use crate::passages::Passage;
 
 type Quantity = fn(&CreepState) -> f64;
 
@@ -16,7 +16,7 @@ type Quantity = fn(&CreepState) -> f64;
 /// corners of its own over time itself, unless most of it is one long hold.
 pub(super) fn draw(
     followed: &Followed,
-    passages: &[Passage],
+    passages: &[Passage<f64>],
     has_corners: bool,
     name: &Path,
 ) -> Result<PathBuf, Failure> {
@@ -116,10 +116,10 @@ pub(super) fn draw(
 }
 
 /// Passages at the same time have one mark.
-fn together(passages: &[Passage]) -> Vec<(f64, String)> {
+fn together(passages: &[Passage<f64>]) -> Vec<(f64, String)> {
     let mut marks: Vec<(f64, String)> = Vec::new();
     for passage in passages {
-        let Some(time) = passage.time else {
+        let Some(time) = passage.at else {
             continue;
         };
         match marks.iter_mut().find(|(at, _)| *at == time) {

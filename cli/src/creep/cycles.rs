@@ -49,7 +49,7 @@ impl Sweep {
         let bed = Bed::new(&thinned)?;
         let mut contact = ViscoelasticBed::new(&bed, &task.prony)?;
         contact.settle(cycles.mean)?;
-        let settings = CycleSettings { steps: 64, tolerance: 1e-4, most: 40 };
+        let settings = CycleSettings { steps: 64, tolerance: 1e-4, most: 1000 };
         let mut found = Vec::new();
         for frequency in frequencies(task) {
             let period = 1.0 / frequency;
@@ -71,7 +71,7 @@ impl Sweep {
 
     pub(super) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
         let mut text = String::from(
-            "frequency,amplitude,approach_amplitude,dissipated,stiffness,loss_factor,cycles,change\n",
+            "frequency,amplitude,approach_amplitude,dissipated,stiffness,loss_factor,cycles,distance\n",
         );
         for cycle in &self.cycles {
             // Writing to a text cannot fail.
@@ -85,7 +85,7 @@ impl Sweep {
                 cycle.stiffness,
                 cycle.loss_factor,
                 cycle.cycles,
-                cycle.change
+                cycle.distance
             );
         }
         outcome::write(name, text)

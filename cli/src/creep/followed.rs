@@ -4,12 +4,14 @@ use std::path::Path;
 
 use asperity::bed::Bed;
 use asperity::creep::{Course, Creep, CreepState, Relaxation, ViscoelasticBed};
+use asperity::patches::{Connectivity, contact_sequence};
 use asperity::record::LoadingRecord;
-use asperity::{BedError, CreepError, Error};
+use asperity::{BedError, ContactEvent, CreepError, Error};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 
 use super::course::Task;
+use crate::passages::{self, Passage};
 use crate::path::fields::Fields;
 
 /// A history that has been followed.
@@ -54,6 +56,26 @@ struct Part {
 impl<'a> Followed<'a> {
     pub(super) fn new(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Failure> {
         Self::along(bed, task).map_err(|error| Failure::new("cannot follow the history", error))
+    }
+
+    /// When contact percolates and when the gap seals, in the order of contact of the path.
+    pub(super) fn passages(
+        &self,
+        record: &LoadingRecord,
+        connectivity: Connectivity,
+    ) -> Result<[Passage<f64>; 4], Error> {
+        let states = record.states();
+        let events = states.iter().map(|state| (state.event, state.node));
+        let contact = contact_sequence(record.grid(), events)?;
+        // The states at which nodes touch, among all.
+        let touches = states.iter().enumerate();
+        let touches = touches.filter(|(_, state)| state.event == ContactEvent::Touch);
+        let touches: Vec<usize> = touches.map(|(k, _)| k).collect();
+        let boundary = record.kernel().boundary;
+        Ok(passages::from_end_to_end(&contact, boundary, connectivity, |nodes| {
+            let knot = touches.get(nodes.checked_sub(1)?)?;
+            self.times.get(*knot).copied()
+        }))
     }
 
     fn along(bed: &'a Bed<'a>, task: &Task) -> Result<Self, Error> {

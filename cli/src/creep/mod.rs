@@ -9,7 +9,6 @@ mod cycles;
 mod followed;
 mod object;
 mod options;
-mod passages;
 mod table;
 mod touch_times;
 mod words;
@@ -24,7 +23,6 @@ use course::Task;
 use cycles::Sweep;
 use followed::Followed;
 pub(crate) use options::Options;
-use passages::Passage;
 
 /// Reads the record, follows the history on it, says what happens, and writes the files.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
@@ -38,7 +36,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let task = Task::new(options)?;
     let bed = Bed::of(&record).map_err(failed)?;
     let followed = Followed::new(&bed, &task)?;
-    let passages = Passage::all(&record, &followed, options.connectivity()).map_err(failed)?;
+    let passages = followed.passages(&record, options.connectivity()).map_err(failed)?;
     let sweep = task.cycles.as_ref().map(|cycles| Sweep::new(&record, &task, cycles));
     if followed.states.is_empty() {
         return followed.whole(&task, &options.record);

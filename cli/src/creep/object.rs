@@ -7,12 +7,12 @@ use asperity::Error;
 use super::course::Task;
 use super::cycles::Sweep;
 use super::followed::{Followed, Method};
-use super::passages::Passage;
+use crate::passages::Passage;
 
 pub(super) fn object(
     task: &Task,
     followed: &Followed,
-    passages: &[Passage],
+    passages: &[Passage<f64>],
     sweep: Option<&Result<Sweep, Error>>,
 ) -> Value {
     let mut object = Map::new();
@@ -39,7 +39,7 @@ pub(super) fn object(
     put("states", json!(followed.states.len()));
     put("fluidity", json!(task.prony.fluidity()));
     for passage in passages {
-        put(passage.key, json!(passage.time));
+        put(passage.key, json!(passage.at));
     }
     let cycles = sweep.and_then(|sweep| sweep.as_ref().ok()).map(|sweep| {
         let cycles = sweep.cycles.iter().map(|cycle| {

@@ -56,7 +56,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, requires = "load")]
     pub(super) cycle_amplitude: Option<f64>,
 
-    /// Nodes that share only a corner belong to one patch too, and no channel passes between them
+    /// Nodes that share only a corner belong to one patch too; channels pass through sides of cells either way
     #[arg(long)]
     pub(super) corners: bool,
 

@@ -9,7 +9,7 @@ use super::Options;
 use super::course::Task;
 use super::cycles::Sweep;
 use super::followed::{Followed, Method};
-use super::passages::Passage;
+use crate::passages::Passage;
 
 /// About as many lines as a table has.
 const LINES: usize = 10;
@@ -18,7 +18,7 @@ pub(super) fn print(
     options: &Options,
     task: &Task,
     followed: &Followed,
-    passages: &[Passage],
+    passages: &[Passage<f64>],
     sweep: Option<&Result<Sweep, Error>>,
 ) {
     bodies(task);
@@ -26,7 +26,7 @@ pub(super) fn print(
     method(followed);
     table(&followed.states);
     for passage in passages {
-        match passage.time {
+        match passage.at {
             Some(time) => say!("{:18} from t = {} on", passage.name, quantity(time, "s", 4)),
             None => say!("{:18} not in this time", passage.name),
         }

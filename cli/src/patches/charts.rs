@@ -9,7 +9,8 @@ use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, GREEN, GREY, ORANGE, PURPLE, Series, Style};
 use asperity_cli::outcome::Failure;
 
-use super::followed::{Followed, Passage};
+use super::followed::Followed;
+use crate::passages::Passage;
 
 /// A quantity of a state with its patches.
 type Quantity<'a> = &'a dyn Fn(&LoadingState, &PatchState) -> f64;
@@ -127,10 +128,10 @@ impl Mark<'_> {
 }
 
 /// In the order of loading.
-fn marks(passages: &[Passage]) -> Vec<Mark<'_>> {
+fn marks(passages: &[Passage<LoadingState>]) -> Vec<Mark<'_>> {
     let mut marks: Vec<Mark> = Vec::new();
     for passage in passages {
-        let Some(state) = &passage.state else {
+        let Some(state) = &passage.at else {
             continue;
         };
         match marks.iter_mut().find(|mark| mark.state.step == state.step) {

@@ -1,10 +1,10 @@
 //! The patches of a path from state to state.
 
-use asperity::patches::{
-    Connectivity, MergeTree, PatchHistory, PatchState, Percolation, contact_sequence,
-};
+use asperity::patches::{Connectivity, MergeTree, PatchHistory, PatchState, contact_sequence};
 use asperity::record::LoadingRecord;
 use asperity::{ContactEvent, Error, LoadingState};
+
+use crate::passages::{self, Passage};
 
 /// The patches of a path without nodes that leave.
 pub(super) struct Followed {
@@ -13,16 +13,10 @@ pub(super) struct Followed {
     /// One for each of them.
     pub(super) patches: Vec<PatchState>,
     pub(super) tree: MergeTree,
-    pub(super) passages: [Passage; 4],
-}
-
-/// Something that happens once on a path, if it does.
-pub(super) struct Passage {
-    /// What holds from this state on, in few words.
-    pub(super) name: &'static str,
-    /// The same for programs.
-    pub(super) key: &'static str,
-    pub(super) state: Option<LoadingState>,
+    /// From end to end.
+    pub(super) passages: [Passage<LoadingState>; 4],
+    /// Around a grid that repeats.
+    pub(super) around: Vec<Passage<LoadingState>>,
 }
 
 impl Followed {
@@ -32,25 +26,17 @@ impl Followed {
         let events = events.map(|state| (state.event, state.node));
         let contact = contact_sequence(record.grid(), events)?;
         let boundary = record.kernel().boundary;
-        let found = Percolation::of(&contact, boundary, connectivity);
         let touches = record.states().iter().filter(|state| state.event == ContactEvent::Touch);
         let touches: Vec<LoadingState> = touches.copied().collect();
         let at = |step: usize| touches.get(step.checked_sub(1)?).copied();
-        let passage = |name, key, step: Option<usize>| {
-            let state = step.and_then(at);
-            Passage { name, key, state }
-        };
-        let passages = [
-            passage("percolates along x", "percolates_x", found.contact_x),
-            passage("percolates along y", "percolates_y", found.contact_y),
-            passage("seals along x", "seals_x", found.leak_x),
-            passage("seals along y", "seals_y", found.leak_y),
-        ];
+        let passages = passages::from_end_to_end(&contact, boundary, connectivity, at);
+        let around = passages::around(&contact, boundary, connectivity, at);
         Ok(Self {
             touches,
             patches: PatchHistory::new(&contact, boundary, connectivity).collect(),
             tree: MergeTree::new(&contact, boundary, connectivity),
             passages,
+            around,
         })
     }
 }

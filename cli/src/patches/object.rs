@@ -1,6 +1,6 @@
 //! What is printed for programs.
 
-use asperity::patches::{Connectivity, constriction};
+use asperity::patches::constriction;
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
 use asperity::{Error, LoadingState};
@@ -14,7 +14,6 @@ pub(super) fn of(
     record: &LoadingRecord,
     followed: Option<&Followed>,
     moment: &Moment,
-    connectivity: Connectivity,
 ) -> Result<Value, Error> {
     let mut object = json!({
         "states": record.states().len(),
@@ -27,12 +26,14 @@ pub(super) fn of(
             "mean_pressure": carried.mean_pressure,
         })),
     });
-    for passage in followed.iter().flat_map(|followed| &followed.passages) {
-        object[passage.key] = json!(passage.state.as_ref().map(state));
+    if let Some(followed) = followed {
+        for passage in followed.passages.iter().chain(&followed.around) {
+            object[passage.key] = json!(passage.at.as_ref().map(state));
+        }
     }
     let on = (&record.grid(), record.kernel().boundary);
     for (name, axis) in [("channel_x", Axis::X), ("channel_y", Axis::Y)] {
-        let narrowest = constriction(&moment.gap, &moment.contact_map, on, connectivity, axis)?;
+        let narrowest = constriction(&moment.gap, &moment.contact_map, on, axis)?;
         object[name] = json!(
             narrowest
                 .map(|place| json!({ "node": [place.node.0, place.node.1], "gap": place.gap }))

@@ -19,39 +19,46 @@ use super::moment::Moment;
 /// What the record is of.
 pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
     let (nx, ny) = record.grid().shape();
-    let (boundary, all_the_way) = match record.kernel().boundary {
-        Boundary::Free => ("free", "from end to end"),
-        Boundary::Periodic => ("periodic", "around the periodic grid"),
-        Boundary::PeriodicX => {
-            ("along x periodic", "around the grid along x, or from end to end along y")
-        }
-        Boundary::PeriodicY => {
-            ("along y periodic", "around the grid along y, or from end to end along x")
-        }
+    let boundary = match record.kernel().boundary {
+        Boundary::Free => "free",
+        Boundary::Periodic => "periodic",
+        Boundary::PeriodicX => "along x periodic",
+        Boundary::PeriodicY => "along y periodic",
     };
-    let (joined, channels) = match connectivity {
-        Connectivity::Four => ("a side", "sides and corners"),
-        Connectivity::Eight => ("a side or a corner", "sides"),
+    let joined = match connectivity {
+        Connectivity::Four => "a side",
+        Connectivity::Eight => "a side or a corner",
     };
     say!("{} states on {nx} x {ny} nodes, {boundary} boundary", record.states().len());
-    say!("patches: nodes in contact that share {joined}; channels pass across {channels}");
     say!(
-        "the contact percolates when one patch extends {all_the_way}, and seals when no channel does any more"
+        "patches: nodes in contact that share {joined}; channels pass through sides, as a leak does"
+    );
+    let and_across = match record.kernel().boundary {
+        Boundary::Free => "",
+        _ => ", with the periodic border across open to it",
+    };
+    say!(
+        "the contact percolates when one patch extends from end to end, and seals when no channel does any more{and_across}"
     );
     say!();
 }
 
 /// When contact percolates and when it seals, and how to see what the path has not reached.
 pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Followed) {
-    for passage in &followed.passages {
-        match &passage.state {
+    let passages = || followed.passages.iter().chain(&followed.around);
+    let width = passages().map(|passage| passage.name.len()).max().unwrap_or_default();
+    for passage in passages() {
+        match &passage.at {
             Some(state) => {
-                say!("{:18} from state {} on: {}", passage.name, state.step, described(state))
+                say!("{:width$} from state {} on: {}", passage.name, state.step, described(state))
             }
-            None => say!("{:18} not on this path", passage.name),
+            None => say!("{:width$} not on this path", passage.name),
         }
     }
-    let is_missing = followed.passages.iter().any(|passage| passage.state.is_none());
+    if !followed.around.is_empty() {
+        say!("(what winds goes around the periodic grid and on without end)");
+    }
+    let is_missing = followed.passages.iter().any(|passage| passage.at.is_none());
     let can_go_on = record.kernel().origin != KernelOrigin::Other;
     let reached = record.states().last().map_or(0.0, |state| state.contact.contact_area_fraction);
     if is_missing && can_go_on && reached < 1.0 {
@@ -68,15 +75,11 @@ pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Fol
 }
 
 /// The narrowest place of the widest channel, and what looks wrong.
-pub(super) fn print_channels(
-    record: &LoadingRecord,
-    moment: &Moment,
-    connectivity: Connectivity,
-) -> Result<(), Error> {
+pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<(), Error> {
     let (grid, boundary) = (record.grid(), record.kernel().boundary);
     for (name, axis) in [("x", Axis::X), ("y", Axis::Y)] {
         let on = (&grid, boundary);
-        match constriction(&moment.gap, &moment.contact_map, on, connectivity, axis)? {
+        match constriction(&moment.gap, &moment.contact_map, on, axis)? {
             Some(narrowest) => say!(
                 "the widest channel along {name} is narrowest at node ({}, {}), where the gap is {}",
                 narrowest.node.0,

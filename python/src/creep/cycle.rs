@@ -33,7 +33,7 @@ use crate::results::result;
 /// steps : int
 ///     Steps of a cycle, at least 8.
 /// tolerance : float
-///     Change of the energy lost, over the product of amplitudes, at which a cycle is steady.
+///     Estimated distance of the energy lost from that of the steady cycle, over the product of amplitudes, at which a cycle is taken for it.
 /// most : int
 ///     No more cycles than these.
 ///
@@ -41,7 +41,7 @@ use crate::results::result;
 /// -------
 /// results.Cycle
 #[pyfunction]
-#[pyo3(signature = (path, prony, *, mean_load, amplitude, period, steps=96, tolerance=1e-5, most=60))]
+#[pyo3(signature = (path, prony, *, mean_load, amplitude, period, steps=96, tolerance=1e-5, most=1000))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn steady_cycle<'py>(
     py: Python<'py>,
@@ -74,7 +74,7 @@ fn steady_cycle<'py>(
 /// -------
 /// list of results.Cycle
 #[pyfunction]
-#[pyo3(signature = (path, prony, *, mean_load, amplitude, periods, steps=96, tolerance=1e-5, most=60))]
+#[pyo3(signature = (path, prony, *, mean_load, amplitude, periods, steps=96, tolerance=1e-5, most=1000))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn steady_cycles<'py>(
     py: Python<'py>,
@@ -125,7 +125,7 @@ fn of<'py>(py: Python<'py>, cycle: &Cycle) -> Fallible<Bound<'py, PyAny>> {
         approach: column(py, approach),
         load: column(py, load),
         cycles: cycle.cycles,
-        change: cycle.change,
+        distance: cycle.distance,
     })
 }
 

@@ -248,25 +248,20 @@ impl Solution {
     /// Parameters
     /// ----------
     /// axis : {"x", "y"}
-    /// connectivity : {8, 4}
-    ///     That of patches; channels have the other one.
     ///
     /// Returns
     /// -------
     /// results.Constriction or None
     ///     None if no channel leads all the way.
-    #[pyo3(signature = (axis, *, connectivity=8))]
     fn constriction<'py>(
         &self,
         py: Python<'py>,
         axis: &str,
-        connectivity: usize,
     ) -> Fallible<Option<Bound<'py, PyAny>>> {
-        let (axis, connectivity) = (choice::axis(axis)?, choice::connectivity(connectivity)?);
+        let axis = choice::axis(axis)?;
         let Setting { grid, boundary, .. } = self.setting;
         let (gap, contact) = (&self.solution.gap, &self.solution.contact_map);
-        let found =
-            detached(py, || constriction(gap, contact, (&grid, boundary), connectivity, axis))??;
+        let found = detached(py, || constriction(gap, contact, (&grid, boundary), axis))??;
         found
             .map(|found| {
                 result!(py, "Constriction", {

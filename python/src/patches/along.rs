@@ -165,7 +165,10 @@ impl PatchAnalysis {
         self.reals(py, |state| state.corrected_area(&self.setting.grid))
     }
 
-    /// When contact percolates, and when the last channel closes: from end to end on a free boundary, around a periodic one.
+    /// When contact percolates, and when the gap seals: from one end of the surface to the other, whatever the boundary.
+    ///
+    /// Where a periodic boundary is open across, patches and channels pass it. Channels pass through sides of cells, whatever the connectivity of
+    /// patches: from ``leak_x`` on `Seal` finds no leak along x.
     ///
     /// Returns
     /// -------
@@ -178,14 +181,17 @@ impl PatchAnalysis {
         self.percolation_of(py, &found)
     }
 
-    /// The same from end to end on any boundary, as of a piece of a seal.
+    /// When a patch winds around a periodic grid, and so goes on without end, and when the last channel that does is closed.
+    ///
+    /// Along a direction in which the boundary does not repeat it is `percolation`. A patch winds no sooner than it leads from end to
+    /// end, and the last channel that winds closes no later than the last one from end to end.
     ///
     /// Returns
     /// -------
     /// results.Percolation
-    fn spanning<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyAny>> {
+    fn winding<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyAny>> {
         let found = detached(py, || {
-            Percolation::spanning(&self.contact, self.setting.boundary, self.connectivity)
+            Percolation::winding(&self.contact, self.setting.boundary, self.connectivity)
         })?;
         self.percolation_of(py, &found)
     }

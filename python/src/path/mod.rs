@@ -522,27 +522,23 @@ impl LoadingPath {
     /// axis : {"x", "y"}
     /// state : State, optional
     ///     As of `pressure`.
-    /// connectivity : {8, 4}
-    ///     That of patches; channels have the other one.
     ///
     /// Returns
     /// -------
     /// results.Constriction or None
     ///     None if no channel leads all the way.
-    #[pyo3(signature = (axis, state=None, *, connectivity=8))]
+    #[pyo3(signature = (axis, state=None))]
     fn constriction<'py>(
         &self,
         py: Python<'py>,
         axis: &str,
         state: Option<PyRef<'_, State>>,
-        connectivity: usize,
     ) -> Fallible<Option<Bound<'py, PyAny>>> {
         let axis = choice::axis(axis)?;
-        let connectivity = choice::connectivity(connectivity)?;
         let Setting { grid, boundary, .. } = self.setting;
         let found = self.at(py, state, |engine, state| {
             let (gap, contact) = (engine.gap_at(state)?, engine.contact_map_at(state)?);
-            constriction(&gap, &contact, (&grid, boundary), connectivity, axis)
+            constriction(&gap, &contact, (&grid, boundary), axis)
         })?;
         found
             .map(|found| {

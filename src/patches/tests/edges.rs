@@ -72,12 +72,12 @@ proptest! {
         for axis in [Axis::X, Axis::Y] {
             let grid = case.grid()?;
             let found =
-                constriction(&gap, &is_in, (&grid, case.boundary), case.connectivity, axis)?;
+                constriction(&gap, &is_in, (&grid, case.boundary), axis)?;
             let leads = |least: &u8| {
                 let mut closed = case.picture(case.order.len());
                 let nodes = closed.is_in.iter_mut().zip(&gaps);
                 nodes.for_each(|(is_in, gap)| *is_in |= gap < least);
-                closed.channels().percolates(axis)
+                closed.channels().cut(axis).percolates(axis)
             };
             let expected = (0..12).rev().find(leads).map(f64::from);
             prop_assert_eq!(found.map(|found| found.gap), expected);
@@ -98,7 +98,7 @@ fn what_does_not_fit_is_refused() -> Result<(), Error> {
     let made = ContactEdge::of(&map, grid, Boundary::Free);
     assert!(matches!(made, Err(Error::GridMismatch { .. })));
     let on = (&grid, Boundary::Free);
-    let through = |gap: &DMatrix<f64>, map| constriction(gap, map, on, Connectivity::Four, Axis::X);
+    let through = |gap: &DMatrix<f64>, map| constriction(gap, map, on, Axis::X);
     let found = through(&gap, &map);
     assert!(matches!(found, Err(Error::GridMismatch { .. })));
     let map = DMatrix::from_element(3, 3, false);

@@ -111,11 +111,11 @@ impl Picture {
         sides
     }
 
-    /// The nodes that are not in, as a picture of their own with the other kind of neighbours.
+    /// The nodes that are not in, as a picture of their own, through sides alone.
     pub(super) fn channels(&self) -> Self {
         Self {
             is_in: self.is_in.iter().map(|is_in| !is_in).collect(),
-            corners: !self.corners,
+            corners: false,
             ..self.clone()
         }
     }

@@ -92,15 +92,19 @@ fn a_patch_across_the_border_is_put_together() -> Result<(), Error> {
 }
 
 /// A diagonal that climbs one period while it winds around once goes on along both directions, and so
-/// do the channels beside it. From end to end there is contact, and no channel.
+/// do the channels beside it. On a free boundary there is contact from end to end, and no channel.
 #[test]
 fn a_patch_that_climbs_leads_along_both_directions() -> Result<(), Error> {
     let contact = ContactSequence::with_order(Grid::square(4, 1.0)?, [0, 5, 10, 15])?;
-    let around = Percolation::of(&contact, Boundary::Periodic, Connectivity::Eight);
+    let around = Percolation::winding(&contact, Boundary::Periodic, Connectivity::Eight);
     assert_eq!((around.contact_x, around.contact_y), (Some(4), Some(4)));
     assert_eq!((around.leak_x, around.leak_y), (None, None));
-    let across = Percolation::of(&contact, Boundary::Periodic, Connectivity::Four);
+    let across = Percolation::winding(&contact, Boundary::Periodic, Connectivity::Four);
     assert_eq!((across.contact_x, across.contact_y), (None, None));
+    // Between the ends as well, where channels pass the border across.
+    let ends = Percolation::of(&contact, Boundary::Periodic, Connectivity::Eight);
+    assert_eq!((ends.contact_x, ends.contact_y), (Some(4), Some(4)));
+    assert_eq!((ends.leak_x, ends.leak_y), (None, None));
     let free = Percolation::of(&contact, Boundary::Free, Connectivity::Eight);
     assert_eq!((free.contact_x, free.contact_y), (Some(4), Some(4)));
     assert_eq!((free.leak_x, free.leak_y), (Some(4), Some(4)));
@@ -231,7 +235,10 @@ fn random_contact_percolates_at_the_threshold_of_the_square_lattice() -> Result<
     {
         for boundary in [Boundary::Free, Boundary::Periodic] {
             let found = Percolation::of(&contact, boundary, connectivity);
-            for step in [found.contact_x, found.contact_y, found.leak_x, found.leak_y] {
+            // Channels pass through sides, as patches without corners do.
+            let contact = [found.contact_x, found.contact_y].map(|step| (step, threshold));
+            let leaks = [found.leak_x, found.leak_y].map(|step| (step, 1.0 - four));
+            for (step, threshold) in contact.into_iter().chain(leaks) {
                 let share = step.map(|step| step as f64 / grid.nodes() as f64);
                 assert!(share.is_some_and(|share| (share - threshold).abs() < 0.009), "{found:?}");
             }

@@ -38,12 +38,12 @@ impl Case {
         for &node in self.order.iter().take(contact_nodes) {
             is_in[node] = true;
         }
-        let repeats = self.boundary == Boundary::Periodic;
+        let [x_repeats, y_repeats] = self.boundary.repeats();
         Picture {
             nx,
             ny,
             is_in,
-            repeats: (repeats, repeats),
+            repeats: (x_repeats, y_repeats),
             corners: self.connectivity == Connectivity::Eight,
         }
     }
@@ -65,7 +65,7 @@ fn by_height(shape: (usize, usize), waves: &[(u8, u8, f64)], noise: &[f64]) -> V
     order
 }
 
-/// Random orders and random surfaces on grids of up to 8 × 8 nodes, to full contact or not, on both boundaries and with
+/// Random orders and random surfaces on grids of up to 8 × 8 nodes, to full contact or not, on all boundaries and with
 /// both connectivities.
 fn cases() -> impl Strategy<Value = Case> {
     let shapes = (1_usize..=8, 1_usize..=8);
@@ -78,16 +78,21 @@ fn cases() -> impl Strategy<Value = Case> {
             let rough =
                 (waves, noise).prop_map(move |(waves, noise)| by_height(shape, &waves, &noise));
             let order = prop_oneof![random, rough];
-            (Just(shape), order, 0..=nodes, any::<bool>(), any::<bool>(), any::<bool>())
+            (Just(shape), order, 0..=nodes, any::<bool>(), 0_usize..4, any::<bool>())
         })
-        .prop_map(|(shape, mut order, few, full, periodic, corners)| {
+        .prop_map(|(shape, mut order, few, full, boundary, corners)| {
             if !full {
                 order.truncate(few);
             }
             Case {
                 shape,
                 order,
-                boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
+                boundary: [
+                    Boundary::Free,
+                    Boundary::Periodic,
+                    Boundary::PeriodicX,
+                    Boundary::PeriodicY,
+                ][boundary],
                 connectivity: if corners { Connectivity::Eight } else { Connectivity::Four },
             }
         })
