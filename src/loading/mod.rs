@@ -103,13 +103,15 @@ mod window_end;
 mod windowed;
 mod yielding;
 
+#[doc(hidden)] // for the programs of this repository
+pub use crate::memory::default_budget;
 pub use builder::LoadingBuilder;
 #[cfg(feature = "io")]
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
-#[doc(hidden)]
-pub use phase::{event_seconds, last_factor};
+#[doc(hidden)] // for the programs of this repository
+pub use phase::{factor_seconds, iteration_seconds, last_factor};
 #[cfg(feature = "io")]
 pub(crate) use refined::resumed::RefinedEnd;
 pub(crate) use resume::{Replayed, replay};

@@ -274,14 +274,6 @@ impl<U: LinearUpdater> Phase<U> {
     }
 }
 
-/// Seconds that an event with so many nodes in contact takes on a grid of `nodes`, on a machine with
-/// two cores: for telling how long a path will take.
-#[doc(hidden)]
-#[must_use]
-pub fn event_seconds(nodes: usize, contact: usize) -> f64 {
-    factor_seconds(contact).min(iteration_seconds(nodes, contact))
-}
-
 /// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: where it is given up if
 /// memory allows.
 #[doc(hidden)]
@@ -300,7 +292,10 @@ pub fn last_factor(nodes: usize) -> usize {
     low
 }
 
-fn factor_seconds(contact: usize) -> f64 {
+/// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path will take.
+#[doc(hidden)]
+#[must_use]
+pub fn factor_seconds(contact: usize) -> f64 {
     FACTOR * (contact as f64).powi(2)
 }
 
@@ -309,7 +304,10 @@ fn step_seconds(nodes: usize, contact: usize) -> f64 {
     STEP[0] * (contact as f64).powi(2) + STEP[1] * nodes as f64
 }
 
-fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
+/// The same by iterations, with so many nodes in contact on a grid of `nodes`.
+#[doc(hidden)]
+#[must_use]
+pub fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
     WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
 }
 
@@ -326,15 +324,13 @@ mod tests {
     /// 10 ps · n², and 0.3 ms, 1.2 ns a node and 4 ns a node in contact.
     #[test]
     fn costs_of_an_event() {
-        for (nodes, contact, cost) in [
-            (0, 1000, 1e-5),
-            (1_000_000, 10_000, 1e-3),
-            (10_000, 10_000, 3e-4 + 1.2e-5 + 4e-5),
-            (1_000_000, 100_000, 3e-4 + 1.2e-3 + 4e-4),
-        ] {
-            let found = event_seconds(nodes, contact);
-            assert!((found / cost - 1.0).abs() < 1e-14, "{nodes} {contact}: {found:e}");
-        }
+        let is_near = |found: f64, cost: f64| {
+            assert!((found / cost - 1.0).abs() < 1e-14, "{found:e} {cost:e}")
+        };
+        is_near(factor_seconds(1000), 1e-5);
+        is_near(factor_seconds(10_000), 1e-3);
+        is_near(iteration_seconds(10_000, 10_000), 3e-4 + 1.2e-5 + 4e-5);
+        is_near(iteration_seconds(1_000_000, 100_000), 3e-4 + 1.2e-3 + 4e-4);
     }
 
     /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 1.2·10⁻⁹ N + 4·10⁻⁹ n`, rounded up; all nodes if there is none among them.

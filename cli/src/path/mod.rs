@@ -6,6 +6,7 @@
 //! `path.csv` are written, and the exit code is 130.
 
 mod curves;
+mod expected;
 pub(crate) mod fields;
 mod follow;
 mod interrupt;
@@ -28,15 +29,17 @@ use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
 use asperity::{LoadingSolver, LoadingState};
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_cli::{note, panel, say, speech};
+use asperity_cli::{answer, note, panel, say, speech};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
 use crate::ensemble::Member;
 use crate::settings::Settings;
+use expected::Expected;
 use follow::{Followed, PathFile};
 use interrupt::Interrupt;
 use job::Job;
+use joint::Named;
 pub(crate) use options::Options;
 
 /// The path, whatever updater it has.
@@ -49,6 +52,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let interrupt = Interrupt::listen()?;
     if options.ensemble.seeds.is_none() {
+        if options.dry_run {
+            return estimate(options, "");
+        }
         return follow_one(options, &interrupt)?.finish();
     }
     let there = options.ensemble.there(&options.out)?;
@@ -67,11 +73,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let seeds = options.ensemble.seeds_of_task();
     let mut members =
         seeds.filter(|seed| !there.contains(seed)).map(|seed| Member::new(seed, &options.out));
-    if options.ensemble.dry_run {
-        if let Some(first) = members.next() {
-            say!("{}", Job::new(&options.of(&first))?.expected());
-        }
-        return Ok(());
+    if options.dry_run {
+        return members.next().map_or(Ok(()), |first| estimate(&options.of(&first), " for each"));
     }
     members.try_for_each(|member| {
         match follow_one(&options.of(&member), &interrupt) {
@@ -92,8 +95,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     })
 }
 
-/// Does one job and writes its files.
-fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+/// The job, and the conductances that it is asked for, with what looks wrong.
+fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
     let job = Job::new(options)?;
     if options.unload && !job.has_hardness() {
         return Err(Failure::request(
@@ -105,6 +108,23 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
     let conductions = options.joint.check(&job)?;
+    Ok((job, conductions))
+}
+
+/// Prints what a path will take.
+fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
+    let (job, _) = prepare(options)?;
+    let expected = Expected::of(&job, options.unload)?;
+    match options.json {
+        true => answer!("{}", expected.object()),
+        false => answer!("{expected}{of}"),
+    }
+    Ok(())
+}
+
+/// Does one job and writes its files.
+fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let (job, conductions) = prepare(options)?;
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;

@@ -110,6 +110,10 @@ pub(crate) struct Options {
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
 
+    /// Print about how much time and memory the path takes, or each path of --seeds, and stop; no file is written
+    #[arg(long)]
+    pub(super) dry_run: bool,
+
     /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure and
     /// warnings (SI units; null where there is no number); one line for each seed
     #[arg(long)]
@@ -244,23 +248,6 @@ pub(super) enum Updater {
 }
 
 impl Updater {
-    /// What an event costs with so many nodes in contact on a grid, in some unit of time.
-    pub(super) fn event_cost(self, nodes: usize, contact: usize) -> f64 {
-        match self {
-            Self::Cholesky => (contact as f64).powi(2),
-            Self::Auto | Self::Iterative => asperity::loading::event_seconds(nodes, contact),
-        }
-    }
-
-    /// Nodes that a factor has at most on the way to so many in contact.
-    pub(super) fn factor_nodes(self, nodes: usize, contact: usize) -> usize {
-        match self {
-            Self::Cholesky => contact,
-            Self::Iterative => 0,
-            Self::Auto => contact.min(asperity::loading::last_factor(nodes)),
-        }
-    }
-
     pub(super) fn make(self) -> Box<dyn LinearUpdater> {
         match self {
             Self::Auto => Box::new(Handover::new()),
