@@ -55,6 +55,19 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
+/// A number for a command line with so many significant digits, not below the value: what must be enough is rounded up.
+pub fn at_least(value: f64, digits: usize) -> String {
+    let text = format!("{value:.*e}", digits.saturating_sub(1));
+    match text.parse::<f64>() {
+        Ok(rounded) if rounded < value => {
+            // A unit in the last place more; its own rounding is far below that.
+            let unit = 10_f64.powi(value.abs().log10().floor() as i32 + 1 - digits as i32);
+            format!("{:.*e}", digits.saturating_sub(1), rounded + unit)
+        }
+        _ => text,
+    }
+}
+
 /// An area with up to `digits` significant digits, in m² or the square of a shorter length.
 pub fn area(value: f64, digits: usize) -> String {
     let (scale, unit) = area_unit(value);
@@ -171,6 +184,34 @@ mod tests {
             (f64::NAN, "NaN Pa"),
         ] {
             assert_eq!(quantity(value, "Pa", 4), text);
+        }
+    }
+
+    #[test]
+    fn what_must_be_enough_is_rounded_up() {
+        for (value, text) in [
+            (10.0 / 3.0, "3.3334e0"),
+            (3.500_000_000_000_000_4, "3.5001e0"),
+            (3.5, "3.5000e0"),
+            (9.999_96, "1.0000e1"),
+            (9.999_91, "1.0000e1"),
+            (1.234_51e-9, "1.2346e-9"),
+            (0.0, "0.0000e0"),
+            (f64::INFINITY, "inf"),
+        ] {
+            let told = at_least(value, 5);
+            assert_eq!(told, text);
+            assert!(told.parse().is_ok_and(|told: f64| told >= value), "{value}");
+        }
+        let mut value = 1e-20;
+        while value < 1e20 {
+            for digits in 1..8 {
+                let told = at_least(value, digits);
+                let told: f64 = told.parse().unwrap_or(f64::NAN);
+                let unit = 10_f64.powi(1 - digits as i32);
+                assert!(told >= value && told <= value * (1.0 + unit), "{value} {told}");
+            }
+            value *= 1.037;
         }
     }
 

@@ -161,7 +161,7 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
     let surface = format!("--surface {} --side 1e-2 --material steel", surface.display());
     assert!(run(&folder.0, "path --nodes 32 --record r.npz")?.status.success());
     // Files as they are, and their number.
-    let written = || -> Result<(Vec<Vec<u8>>, usize), Box<dyn Error>> {
+    let written = || -> std::io::Result<(Vec<Vec<u8>>, usize)> {
         let files = ["r.npz", "out/path.csv", "out/settings.json", "out/contact_map.png"];
         let files = files.map(|name| fs::read(folder.join(name)));
         Ok((files.into_iter().collect::<Result<_, _>>()?, fs::read_dir(&folder.0)?.count()))
