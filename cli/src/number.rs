@@ -1,5 +1,7 @@
 //! Numbers for people: powers of ten and SI prefixes.
 
+use std::fmt::Display;
+
 /// A number as m × 10ⁿ with `digits` significant digits.
 pub fn scientific(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -53,6 +55,17 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
         Some((scale, prefix)) => format!("{} {prefix}{unit}", plain(rounded / scale, digits)),
         None => format!("{} {unit}", short(rounded, digits)),
     }
+}
+
+/// So many things, by the name of one: `1 state`, `2 states`.
+pub fn counted(count: impl Display, of_one: &str) -> String {
+    let count = count.to_string();
+    let ending = match (count.as_str(), of_one.ends_with("ch")) {
+        ("1", _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{count} {of_one}{ending}")
 }
 
 /// A number for a command line with so many significant digits, not below the value: what must be enough is rounded up.
@@ -185,6 +198,15 @@ mod tests {
         ] {
             assert_eq!(quantity(value, "Pa", 4), text);
         }
+    }
+
+    #[test]
+    fn one_is_no_plural() {
+        let told = [0_u64, 1, 2].map(|count| [counted(count, "state"), counted(count, "patch")]);
+        assert_eq!(
+            told,
+            [["0 states", "0 patches"], ["1 state", "1 patch"], ["2 states", "2 patches"]]
+        );
     }
 
     #[test]

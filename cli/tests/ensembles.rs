@@ -28,7 +28,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     let more = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..3 --out runs";
     let done = run(&folder.0, more)?;
     let told = String::from_utf8(done.stdout)?;
-    assert!(told.contains("1 paths to follow, 2 finished"), "{told}");
+    assert!(told.contains("1 path to follow, 2 finished"), "{told}");
     for (other, words) in [
         ("--max-area-fraction 0.2", &["targets", "0.2", "0.1"][..]),
         ("--max-area-fraction 0.1 --periodic love", &["half_space", "free", "Love"]),

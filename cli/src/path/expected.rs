@@ -6,7 +6,7 @@ use std::time::Instant;
 use asperity::loading::{default_budget, factor_seconds, iteration_seconds, last_factor};
 use asperity::reference::AreaLoadLaw;
 use asperity::{ContactTarget, FixedLoadSolver, InfluenceKernel};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use serde_json::{Value, json};
 
@@ -278,8 +278,8 @@ impl fmt::Display for Expected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "about {:.0} nodes in contact, {} and {} of memory",
-            self.contact,
+            "about {} in contact, {} and {} of memory",
+            counted(self.contact.round(), "node"),
             quantity(self.seconds, "s", 2),
             quantity(self.bytes, "B", 2)
         )

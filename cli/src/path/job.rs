@@ -7,8 +7,8 @@ use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::surface::{HeightMap, Topography};
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    Warning,
+    Boundary, ContactRule, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver,
+    LoadingState, Warning,
 };
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ use crate::elasticity::Bodies;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 
 /// A surface on its grid and what is asked of it.
@@ -96,9 +96,8 @@ impl Job {
     fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
         let record = LoadingRecord::read_npz(file).map_err(failed)?;
-        let (periodic, bodies) = Bodies::of_record(&record.kernel().origin).map_err(failed)?;
+        let (periodic, bodies) = Bodies::of_record(&record).map_err(failed)?;
         let heights = record.heights().matrix().clone();
-        options.reading.only_sides("the surface of a record")?;
         let surface =
             Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
         let grid = *surface.grid();
@@ -137,7 +136,7 @@ impl Job {
             targets: &targets,
         };
         Ok(Self {
-            name: format!("{}, {} states", file.display(), record.states().len()),
+            name: format!("{}, {}", file.display(), counted(record.states().len(), "state")),
             rms_gradient: rms_gradient(&surface)?,
             settings: parts.settings(&grid, source)?,
             periodic,
@@ -224,6 +223,16 @@ impl Job {
 
     pub(super) fn e_star(&self) -> f64 {
         self.bodies.e_star
+    }
+
+    /// The record of its path so far.
+    pub(super) fn record_of(
+        &self,
+        solver: &Solver,
+        states: &[LoadingState],
+    ) -> Result<LoadingRecord, Error> {
+        let bodies: Vec<_> = self.bodies.elastic.iter().map(|&[e, nu]| (e, nu)).collect();
+        LoadingRecord::new(solver, states.iter().copied().collect())?.with_bodies(&bodies)
     }
 
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.

@@ -5,6 +5,7 @@
 //! an error, everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and
 //! `path.csv` are written, and the exit code is 130.
 
+mod again;
 mod curves;
 mod expected;
 pub(crate) mod fields;
@@ -25,12 +26,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use asperity::patches::ContactEdge;
-use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
 use asperity::{LoadingSolver, LoadingState};
+use asperity_cli::number::counted;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, say, speech};
-use clap::ValueEnum;
+use clap::ArgMatches;
 use nalgebra::DMatrix;
 
 use crate::ensemble::Member;
@@ -45,8 +46,8 @@ pub(crate) use options::Options;
 /// The path, whatever updater it has.
 type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 
-/// Follows one path, or that of each seed.
-pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+/// Follows one path, or that of each seed, with the options that were given.
+pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
@@ -55,7 +56,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         if options.dry_run {
             return estimate(options, "");
         }
-        return follow_one(options, &interrupt)?.finish();
+        return follow_one(options, given, &interrupt)?.finish();
     }
     let there = options.ensemble.there(&options.out)?;
     // What is there must be what would be computed now.
@@ -69,7 +70,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             .map_err(|failure| failure.with_advice("give another --out, or remove that folder"))?;
     }
     let missing = options.ensemble.count() - there.len() as u128;
-    say!("{missing} paths to follow, {} finished", there.len());
+    let missing = counted(missing, "path");
+    say!("{missing} to follow, {} finished", there.len());
     let seeds = options.ensemble.seeds_of_task();
     let mut members =
         seeds.filter(|seed| !there.contains(seed)).map(|seed| Member::new(seed, &options.out));
@@ -77,7 +79,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         return members.next().map_or(Ok(()), |first| estimate(&options.of(&first), " for each"));
     }
     members.try_for_each(|member| {
-        match follow_one(&options.of(&member), &interrupt) {
+        match follow_one(&options.of(&member), given, &interrupt) {
             Err(failure) if failure.code() == interrupt::EXIT_CODE => {
                 member.abandon()?;
                 let seed = member.seed;
@@ -123,7 +125,11 @@ fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
 }
 
 /// Does one job and writes its files.
-fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+fn follow_one(
+    options: &Options,
+    given: &ArgMatches,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
     let (job, conductions) = prepare(options)?;
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
@@ -139,7 +145,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
-    let ended = followed.follow(&mut solver, interrupt, |state| job.progress(state));
+    let ended = followed.follow(&job, &mut solver, interrupt);
     let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
     let (states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
@@ -151,19 +157,19 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     if is_interrupted {
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);
-        outcome.written(save(name, &solver, &states, &[]));
+        outcome.written(save(name, &job, &solver, &states, &[]));
         outcome.written(file.finish());
         outcome.finish()?;
-        return Err(interrupted(options, name, states.len()));
+        return Err(interrupted(given, name, states.len()));
     }
     // First without the fields, which take time and memory.
     let record = job.record();
-    let mut kept = record.map(|name| save(name, &solver, &states, &[]));
+    let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
     outcome.written(file.finish());
     match fields::of(&mut solver) {
         Ok(fields) => {
             if let (Some(name), Some(Ok(_))) = (record, &kept) {
-                kept = Some(save(name, &solver, &states, &fields));
+                kept = Some(save(name, &job, &solver, &states, &fields));
             }
             if let Some(format) = options.fields {
                 let written = fields::write(&fields, &job.grid(), format, &options.out);
@@ -189,17 +195,11 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
 }
 
 /// How to go on with a path that was interrupted.
-fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
-    let updater = match options.updater.to_possible_value() {
-        Some(value) if value.get_name() != "auto" => format!(" --updater {}", value.get_name()),
-        _ => String::new(),
-    };
-    let record = record.display();
+fn interrupted(given: &ArgMatches, record: &Path, states: usize) -> Failure {
+    let again = again::command(record, given);
+    let states = counted(states, "state");
     Failure::with_code(
-        format!(
-            "interrupted: {states} states in {record}; continue with `asperity path --resume {record}{updater} --out {}`",
-            options.out.display()
-        ),
+        format!("interrupted: {states} in {}; continue with `{again}`", record.display()),
         interrupt::EXIT_CODE,
     )
 }
@@ -207,13 +207,14 @@ fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
 /// Writes the record of the path so far, and fields of its last state.
 fn save(
     name: &Path,
+    job: &Job,
     solver: &Solver,
     states: &[LoadingState],
     fields: &[(&str, DMatrix<f64>)],
 ) -> Result<PathBuf, Failure> {
     let fields = fields.iter().map(|(name, field)| (*name, field));
     let fields: Vec<_> = fields.collect();
-    LoadingRecord::new(solver, states.iter().copied().collect())
+    job.record_of(solver, states)
         .and_then(|record| record.write_npz(name, &fields))
         .map(|()| name.to_path_buf())
         .map_err(|error| Failure::writing(name, error))
