@@ -11,7 +11,7 @@ const RESERVED: usize = 256 << 20;
 /// it (Linux), and no limit elsewhere. That is the least of the memory of the machine, the limits of its control groups (containers,
 /// batch systems) and the limit of its address space (`ulimit -v`). What else runs makes no difference, so that results do not depend on
 /// it.
-pub(crate) fn default_budget() -> usize {
+pub fn default_budget() -> usize {
     let of_machine = read_to_string("/proc/meminfo").ok().and_then(|text| total(&text));
     let of_groups = read_to_string("/proc/self/cgroup").ok();
     let of_groups = of_groups.and_then(|text| of_groups_in(Path::new("/sys/fs/cgroup"), &text));

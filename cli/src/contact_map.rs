@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::{ContactState, Grid};
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -20,8 +20,8 @@ pub(crate) fn draw(
     let yielded = yielded_map.map_or(0, |map| map.iter().filter(|has| **has).count());
     let of_them = if yielded > 0 { format!(", {yielded} of them yielded") } else { String::new() };
     let caption = format!(
-        "{} nodes in contact{of_them}, A/A₀ = {:.4} %, W = {}",
-        state.contact_nodes,
+        "{} in contact{of_them}, A/A₀ = {:.4} %, W = {}",
+        counted(state.contact_nodes, "node"),
         100.0 * state.contact_area_fraction,
         quantity(state.load, "N", 4)
     );

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use asperity::kernel::{KernelOrigin, LayeredBody};
 use asperity::material::Material as Known;
+use asperity::record::LoadingRecord;
 use asperity::{Boundary, Error, Grid, InfluenceKernel, composite_modulus, plane_strain_modulus};
 use asperity_cli::half_space::{Periodic, half_space, layered};
 use asperity_cli::number::quantity;
@@ -72,11 +73,15 @@ impl Bodies {
     /// # Errors
     ///
     /// [`Error::ForeignKernel`] if it is of others.
-    pub(crate) fn of_record(origin: &KernelOrigin) -> Result<(Option<Periodic>, Self), Error> {
-        let plain = |e_star: &f64| Self::of_modulus(*e_star, "composite modulus of the record");
+    pub(crate) fn of_record(record: &LoadingRecord) -> Result<(Option<Periodic>, Self), Error> {
+        let elastic = record.bodies();
+        let plain = |e_star: &f64| Self {
+            elastic: elastic.iter().map(|&(e, nu)| [e, nu]).collect(),
+            ..Self::of_modulus(*e_star, &of_record_in_words(elastic))
+        };
         let layers = |body: &LayeredBody| Self::of_layers(body.clone());
         let (love, spectral) = (Some(Periodic::Love), Some(Periodic::Spectral));
-        match origin {
+        match &record.kernel().origin {
             KernelOrigin::Boussinesq { e_star } => Ok((None, plain(e_star))),
             KernelOrigin::PeriodicBoussinesq { e_star } => Ok((love, plain(e_star))),
             KernelOrigin::Spectral { e_star } => Ok((spectral, plain(e_star))),
@@ -106,6 +111,18 @@ impl Bodies {
         match &self.layered {
             None => half_space(periodic, grid, self.e_star),
             Some(body) => layered(periodic, grid, body),
+        }
+    }
+}
+
+/// What a record says of its bodies.
+fn of_record_in_words(elastic: &[(f64, f64)]) -> String {
+    let body = |&(e, nu): &(f64, f64)| Material { name: None, e, nu, hardness: None }.to_string();
+    match elastic {
+        [] => "composite modulus of the record".to_string(),
+        [first, rest @ ..] => {
+            let second = rest.first().map_or_else(|| "rigid".to_string(), body);
+            format!("of the record: {} against {second}", body(first))
         }
     }
 }

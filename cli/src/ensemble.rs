@@ -4,11 +4,9 @@
 //! skipped, so that a job that was killed is simply started again, and several machines may share the work.
 
 use std::collections::BTreeSet;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
@@ -22,10 +20,6 @@ pub(crate) struct Ensemble {
     /// Only the K-th of N equal shares of the seeds, for job arrays; K counts from 0 or from 1
     #[arg(long, value_name = "K/N", requires = "seeds")]
     task: Option<Task>,
-
-    /// Print what would be done, and about how much memory and time it takes, and stop
-    #[arg(long, requires = "seeds")]
-    pub(crate) dry_run: bool,
 }
 
 /// Seeds from the first to the last.
@@ -148,24 +142,5 @@ impl Member {
             std::fs::rename(&unfinished, &self.folder)
         };
         named.map_err(|error| Failure::new(format!("cannot name {}", self.folder.display()), error))
-    }
-}
-
-/// What one path will take.
-pub(crate) struct Expected {
-    pub(crate) nodes: f64,
-    pub(crate) seconds: f64,
-    pub(crate) bytes: f64,
-}
-
-impl fmt::Display for Expected {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "about {:.0} nodes in contact, {} and {} of memory for each",
-            self.nodes,
-            quantity(self.seconds, "s", 2),
-            quantity(self.bytes, "B", 2)
-        )
     }
 }

@@ -8,7 +8,7 @@ use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
 use asperity::{FixedLoadSolver, Grid, InfluenceKernel, Warning};
 use asperity_cli::half_space::Periodic;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::{answer, note, panel, speech};
 use clap::Args;
@@ -329,8 +329,8 @@ fn print_words(
     );
     if let Some(plastic) = &solution.plastic {
         note!(
-            "  {} nodes have yielded, plastic volume {}, energy lost {}",
-            plastic.yielded_nodes(),
+            "  {} yielded, plastic volume {}, energy lost {}",
+            counted(plastic.yielded_nodes(), "node"),
             quantity(plastic.volume, "m³", 4),
             quantity(plastic.work, "J", 4)
         );

@@ -28,7 +28,7 @@ use std::process::ExitCode;
 
 use asperity_cli::outcome::Failure;
 use asperity_cli::{say, speech};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 /// Elastic contact of rough surfaces by the boundary element method: the whole loading path, event by event, or single loads.
 ///
@@ -70,7 +70,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::try_parse().unwrap_or_else(|error| {
+    let parsed = Arguments::command().try_get_matches().and_then(|given| {
+        let arguments = Arguments::from_arg_matches(&given)?;
+        Ok((given, arguments))
+    });
+    let (given, arguments) = parsed.unwrap_or_else(|error| {
         if let Some(sentence) = physics::left_out(&error) {
             eprint!("{sentence}");
             std::process::exit(2);
@@ -81,8 +85,10 @@ fn main() -> ExitCode {
         speech::be_quiet();
     }
     let done = match arguments.command {
-        None => example(),
-        Some(Command::Path(options)) => path::run(&options),
+        None => example(&given),
+        Some(Command::Path(options)) => {
+            path::run(&options, given.subcommand_matches("path").unwrap_or(&given))
+        }
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
@@ -103,8 +109,8 @@ fn main() -> ExitCode {
 }
 
 /// The main job on a generated surface, and what to do next.
-fn example() -> Result<(), Failure> {
-    path::run(&path::Options::parse_from(["asperity path"]))?;
+fn example(given: &ArgMatches) -> Result<(), Failure> {
+    path::run(&path::Options::parse_from(["asperity path"]), given)?;
     say!(
         "\nnext: `asperity info FILE` describes your surface; `asperity path --help` lists the options of this command"
     );

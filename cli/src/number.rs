@@ -1,5 +1,7 @@
 //! Numbers for people: powers of ten and SI prefixes.
 
+use std::fmt::Display;
+
 /// A number as m × 10ⁿ with `digits` significant digits.
 pub fn scientific(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -52,6 +54,30 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     match prefix(rounded) {
         Some((scale, prefix)) => format!("{} {prefix}{unit}", plain(rounded / scale, digits)),
         None => format!("{} {unit}", short(rounded, digits)),
+    }
+}
+
+/// So many things, by the name of one: `1 state`, `2 states`.
+pub fn counted(count: impl Display, of_one: &str) -> String {
+    let count = count.to_string();
+    let ending = match (count.as_str(), of_one.ends_with("ch")) {
+        ("1", _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{count} {of_one}{ending}")
+}
+
+/// A number for a command line with so many significant digits, not below the value: what must be enough is rounded up.
+pub fn at_least(value: f64, digits: usize) -> String {
+    let text = format!("{value:.*e}", digits.saturating_sub(1));
+    match text.parse::<f64>() {
+        Ok(rounded) if rounded < value => {
+            // A unit in the last place more; its own rounding is far below that.
+            let unit = 10_f64.powi(value.abs().log10().floor() as i32 + 1 - digits as i32);
+            format!("{:.*e}", digits.saturating_sub(1), rounded + unit)
+        }
+        _ => text,
     }
 }
 
@@ -171,6 +197,43 @@ mod tests {
             (f64::NAN, "NaN Pa"),
         ] {
             assert_eq!(quantity(value, "Pa", 4), text);
+        }
+    }
+
+    #[test]
+    fn one_is_no_plural() {
+        let told = [0_u64, 1, 2].map(|count| [counted(count, "state"), counted(count, "patch")]);
+        assert_eq!(
+            told,
+            [["0 states", "0 patches"], ["1 state", "1 patch"], ["2 states", "2 patches"]]
+        );
+    }
+
+    #[test]
+    fn what_must_be_enough_is_rounded_up() {
+        for (value, text) in [
+            (10.0 / 3.0, "3.3334e0"),
+            (3.500_000_000_000_000_4, "3.5001e0"),
+            (3.5, "3.5000e0"),
+            (9.999_96, "1.0000e1"),
+            (9.999_91, "1.0000e1"),
+            (1.234_51e-9, "1.2346e-9"),
+            (0.0, "0.0000e0"),
+            (f64::INFINITY, "inf"),
+        ] {
+            let told = at_least(value, 5);
+            assert_eq!(told, text);
+            assert!(told.parse().is_ok_and(|told: f64| told >= value), "{value}");
+        }
+        let mut value = 1e-20;
+        while value < 1e20 {
+            for digits in 1..8 {
+                let told = at_least(value, digits);
+                let told: f64 = told.parse().unwrap_or(f64::NAN);
+                let unit = 10_f64.powi(1 - digits as i32);
+                assert!(told >= value && told <= value * (1.0 + unit), "{value} {told}");
+            }
+            value *= 1.037;
         }
     }
 

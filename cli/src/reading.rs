@@ -6,7 +6,7 @@ use asperity::SurfaceError;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
 use asperity::surface::{Topography, Trend};
 use asperity_cli::note;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value};
@@ -90,11 +90,13 @@ impl Reading {
         given.filter_map(|(name, value)| Some((name.to_string(), value?))).collect()
     }
 
-    /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for this one.
-    pub(crate) fn only_sides(&self, this: &str) -> Result<(), Failure> {
+    /// `Ok` if nothing else was asked for than sides: the rest is for a surface that is read from a file, and not for one that is generated.
+    pub(crate) fn only_sides(&self) -> Result<(), Failure> {
         match self.given().keys().next() {
             None => Ok(()),
-            Some(option) => Err(Failure::request(format!("--{option} has no effect on {this}"))),
+            Some(option) => Err(Failure::request(format!(
+                "--{option} has no effect on a generated surface: use it with --surface FILE"
+            ))),
         }
     }
 
@@ -135,7 +137,7 @@ impl Reading {
         if measured.missing > 0 && self.fill {
             let missing = measured.missing;
             measured = measured.fill_missing().map_err(failed)?;
-            note!("filled     {missing} nodes, interpolated from the nodes around them");
+            note!("filled     {}, interpolated from the nodes around", counted(missing, "node"));
         }
         let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();

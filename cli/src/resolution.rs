@@ -4,7 +4,7 @@ use std::fmt;
 
 use asperity::patches::{Connectivity, ContactEdge, Patches};
 use asperity::{Boundary, Error, Grid, Warning};
-use asperity_cli::number::area;
+use asperity_cli::number::{area, counted};
 use nalgebra::DMatrix;
 
 /// The patches of a contact, and what cells count too much along their edges.
@@ -42,11 +42,10 @@ impl fmt::Display for Resolution {
         if self.patches == 0 {
             return write!(f, "no patch");
         }
-        let plural = if self.patches == 1 { "patch" } else { "patches" };
         write!(
             f,
-            "{} {plural} of {:.1} nodes on average; contact area {} as counted in cells, {} corrected ({:.1} % less)",
-            self.patches,
+            "{} of {:.1} nodes on average; contact area {} as counted in cells, {} corrected ({:.1} % less)",
+            counted(self.patches, "patch"),
             self.contact_nodes as f64 / self.patches as f64,
             area(self.area, 4),
             area(self.corrected_area, 4),

@@ -117,6 +117,33 @@ fn histories_from_files() -> Done {
     Ok(())
 }
 
+/// The advice of a refusal is enough, so that the same command then ends well; so is a path that ends at the load over what is left of
+/// the modulus, which rounding puts above or below.
+#[test]
+fn what_is_advised_is_enough() -> Done {
+    let folder = Scratch::new("creep-advice")?;
+    let path = "path --nodes 32 --material rubber --periodic love";
+    run(&folder.0, &format!("{path} --max-load 1.9 --record path.npz"))?;
+    for history in [
+        "--prony 0.1,0.3 10,0.4 --load 0.7 --time 1e6",
+        "--prony 0.1,0.3 10,0.5 --load 0.7 --time 1e6",
+        "--prony 0.1,0.3 10,0.5 --load 1.234567 --time 1e6",
+        "--prony 0.1,0.3 10,0.5 --approach 1.234567e-4",
+    ] {
+        let line = format!("creep path.npz {history} --json");
+        let refused = said(&output(&folder.0, &line)?);
+        let advice = refused.split('`').nth(1).ok_or(refused.clone())?;
+        run(&folder.0, advice.strip_prefix("asperity ").ok_or(refused.clone())?)?;
+        run(&folder.0, &line)?;
+    }
+    for (share, end) in [(0.4, 0.7 / 0.3), (0.5, 3.5), (0.6, 7.0)] {
+        run(&folder.0, &format!("{path} --max-load {end} --record end.npz"))?;
+        let line = format!("creep end.npz --prony 0.1,0.3 10,{share} --load 0.7 --time 1e6 --json");
+        run(&folder.0, &line)?;
+    }
+    Ok(())
+}
+
 /// What the path does not reach, and what is no history, is said; what was reached is written.
 #[test]
 fn refusals() -> Done {

@@ -28,7 +28,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     let more = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..3 --out runs";
     let done = run(&folder.0, more)?;
     let told = String::from_utf8(done.stdout)?;
-    assert!(told.contains("1 paths to follow, 2 finished"), "{told}");
+    assert!(told.contains("1 path to follow, 2 finished"), "{told}");
     for (other, words) in [
         ("--max-area-fraction 0.2", &["targets", "0.2", "0.1"][..]),
         ("--max-area-fraction 0.1 --periodic love", &["half_space", "free", "Love"]),
@@ -149,5 +149,63 @@ fn settings_lie_beside_every_path() -> Done {
             assert!(text.contains(word), "{word} is not in {text}");
         }
     }
+    Ok(())
+}
+
+/// A dry run of any path prints what it takes, as JSON too, and no file comes or changes. Nodes are those of the path. Times and memory are
+/// compared with what was measured on two idle cores: within a factor of 3, and of 1.6.
+#[test]
+fn a_dry_run_estimates_and_writes_nothing() -> Done {
+    let folder = Scratch::new("ensemble-dry")?;
+    let surface = common::data("selfaffine_128.npy");
+    let surface = format!("--surface {} --side 1e-2 --material steel", surface.display());
+    assert!(run(&folder.0, "path --nodes 32 --record r.npz")?.status.success());
+    // Files as they are, and their number.
+    let written = || -> std::io::Result<(Vec<Vec<u8>>, usize)> {
+        let files = ["r.npz", "out/path.csv", "out/settings.json", "out/contact_map.png"];
+        let files = files.map(|name| fs::read(folder.join(name)));
+        Ok((files.into_iter().collect::<Result<_, _>>()?, fs::read_dir(&folder.0)?.count()))
+    };
+    let before = written()?;
+    for (line, nodes, seconds, megabytes) in [
+        ("--nodes 64 --max-area-fraction 1", 4096, 0.31, 105.0),
+        ("--nodes 128", 1638, 0.10, 49.0),
+        ("--nodes 128 --max-area-fraction 0.4", 6554, 1.23, 168.0),
+        ("--nodes 256", 6554, 1.24, 211.0),
+        ("--nodes 128 --periodic love --max-area-fraction 1", 16384, 5.5, 174.0),
+        ("--nodes 128 --updater iterative", 1638, 0.83, 53.0),
+        ("--nodes 128 --updater iterative --periodic love", 1638, 1.22, 46.0),
+        ("--nodes 512 --max-area-fraction 0.01 --updater iterative", 2621, 3.08, 223.0),
+        ("--nodes 512 --max-area-fraction 0.01", 2621, 0.36, 145.0),
+        ("--nodes 128 --updater cholesky --max-area-fraction 0.4", 6554, 0.94, 233.0),
+        ("--nodes 128 --hardness 2.5e9", 1638, 0.16, 40.0),
+        ("--nodes 64 --hardness 2.5e9 --max-area-fraction 1", 4096, 0.16, 30.0),
+        ("--nodes 128 --hardness 2e10 --max-area-fraction 0.3", 4915, 1.06, 64.0),
+        ("--nodes 128 --mean-pressure 1e9", 951, 0.06, 42.0),
+        ("--nodes 128 --max-area-fraction 0.4 --hardness 2.5e9 --unload", 6554, 1.58, 193.0),
+        (&format!("{surface} --mean-pressure 2e9"), 1533, 0.09, 50.0),
+        (&format!("{surface} --max-approach 1e-4"), 539, 0.05, 39.0),
+        ("--resume r.npz --max-area-fraction 1", 1024, 0.06, 34.0),
+    ] {
+        let done = run(&folder.0, &format!("path {line} --dry-run --json --out out"))?;
+        assert!(done.status.success(), "{line}: {}", said(&done));
+        let object: serde_json::Value = serde_json::from_slice(&done.stdout)?;
+        let number = |name: &str| object[name].as_f64().ok_or_else(|| format!("{line}: no {name}"));
+        assert_eq!(number("contact_nodes")?, f64::from(nodes), "{line}");
+        let times = number("seconds")? / seconds;
+        assert!((1.0 / 3.0..3.0).contains(&times), "{line}: {times} of the time");
+        let memory = number("bytes")? / 1e6 / megabytes;
+        assert!((0.6..1.6).contains(&memory), "{line}: {memory} of the memory");
+        assert!(written()? == before, "{line} has written");
+    }
+    let done = run(&folder.0, "path --nodes 32 --dry-run")?;
+    let told = String::from_utf8(done.stdout)?;
+    assert!(
+        told.starts_with("about 102 nodes in contact, ") && told.ends_with("of memory\n"),
+        "{told}"
+    );
+    // What the path would refuse is refused.
+    is_refused(&run(&folder.0, "path --nodes 32 --dry-run --unload")?, &["--hardness"]);
+    assert!(written()? == before);
     Ok(())
 }

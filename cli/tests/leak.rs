@@ -132,9 +132,25 @@ fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
     ));
     assert_eq!(bounds.lines().count(), lines.len());
 
-    // A record knows no Poisson's ratio.
-    let missing =
-        run(&folder, &[&again[..], &["--fe-table", "csv", "--friction", "0.2"]].concat())?;
+    // A record knows its bodies: (2 - ν)/(2 (1 - ν)) of steel against a rigid one. One of a modulus alone does not.
+    let table = ["--fe-table", "csv", "--friction", "0.2"];
+    let mut texts = Vec::new();
+    for ratio in [&[][..], &["--compliance-ratio", "1.2142857142857142"]] {
+        assert!(run(&folder, &[&again[..], &table, ratio].concat())?.status.success());
+        texts.push(fs::read_to_string(folder.join("again/interface.csv"))?);
+    }
+    assert_eq!(texts[0].lines().count(), texts[1].lines().count());
+    for (known, given) in texts[0].lines().skip(1).zip(texts[1].lines().skip(1)) {
+        for (known, given) in known.split(',').zip(given.split(',')) {
+            let (known, given): (f64, f64) = (known.parse()?, given.parse()?);
+            // Digits of the table.
+            assert!((known - given).abs() <= 1e-11 * given.abs(), "{known} {given}");
+        }
+    }
+    let modulus = ["path", "--nodes", "16", "--e-star", "1e9", "--record", "modulus.npz"];
+    assert!(run(&folder, &modulus)?.status.success());
+    let again_of_modulus = ["path", "--resume", "modulus.npz", "--out", "modulus"];
+    let missing = run(&folder, &[&again_of_modulus[..], &table].concat())?;
     is_refused(&missing, &["--compliance-ratio"]);
     let both =
         run(&folder, &[&again[..], &["--fe-table", "csv", "--resistivity", "1e-8"]].concat())?;

@@ -263,14 +263,39 @@ fn interrupted_paths_go_on() -> Done {
         let states = fs::read_to_string(folder.join("out/path.csv"))?.lines().count() - 1;
         assert!(states < 4915, "it was at its end");
         let told = format!(
-            "{states} states in {record}; continue with `asperity path --resume {record} --updater cholesky --out out`"
+            "{states} states in {record}; continue with `asperity path --resume {record} --max-area-fraction 0.3 --updater cholesky`"
         );
         assert!(said.contains(&told), "{said}");
-        let again = format!("path --resume {record} --updater cholesky --out out");
+        let again = format!("path --resume {record} --max-area-fraction 0.3 --updater cholesky");
         printed(&folder.0, &again)?;
         are_identical(&folder.join("out/path.csv"), &folder.join("whole/path.csv"))?;
         fs::remove_dir_all(folder.join("out"))?;
     }
+    // All options come again, and do what they would have done.
+    let options = "--max-load 1e6 --fields npy --save-every 200 --conductivity 50,40 --gap-conductivity 0.026 \
+                   --fe-table csv --friction 0.2 --unload --hardness 2e10 --record with.npz --memory-budget 1e9";
+    let given = "--nodes 128 --seed 1 --material steel --against glass --max-area-fraction 0.3";
+    let done = signalled(&folder.0, &format!("path {given} {options}"), &["-INT"])?;
+    let told = said(&done);
+    assert_eq!(done.status.code(), Some(130), "{told}");
+    let again = told.split('`').nth(1).ok_or(told.clone())?;
+    for option in options
+        .split(" --")
+        .filter(|option| !option.contains("hardness") && !option.contains("record"))
+    {
+        assert!(again.contains(option), "{option} is not in {again}");
+    }
+    assert!(again.starts_with("asperity path --resume with.npz --max-"), "{again}");
+    printed(&folder.0, again.strip_prefix("asperity ").ok_or("no program")?)?;
+    printed(&folder.0, &format!("path {given} {options} --out whole"))?;
+    for file in ["interface.csv", "unloading.csv", "pressure.npy"] {
+        assert!(folder.join("out").join(file).is_file(), "{file}");
+    }
+    let headers = ["out/path.csv", "whole/path.csv"].map(|file| {
+        fs::read_to_string(folder.join(file)).map(|text| text.lines().next().map(str::to_string))
+    });
+    let [resumed, whole] = headers;
+    assert_eq!(resumed?, whole?);
     // What a batch system sends does the same.
     let done = signalled(&folder.0, &format!("{LONG} --record term.npz"), &["-TERM"])?;
     assert_eq!(done.status.code(), Some(130), "{}", said(&done));
@@ -299,8 +324,6 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ("path --nodes 32 --record folder", &["folder"]),
         ("path --nodes 32 --fill", &["--fill", "generated"]),
         ("path --nodes 32 --level plane", &["--level"]),
-        ("path --resume r.npz --height-unit nm", &["--height-unit", "record"]),
-        ("path --resume r.npz --channel Height", &["--channel"]),
         ("path --resume cut.npz", &["cut.npz", "no complete zip archive", "cut off"]),
         ("path --resume text.npz", &["text.npz", "no complete zip archive"]),
         ("patches cut.npz", &["cut.npz", "cut off"]),
@@ -318,6 +341,9 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
     }
     for (line, word) in [
         ("path --resume r.npz --seed 2", "--seed"),
+        ("path --resume r.npz --height-unit nm", "--height-unit"),
+        ("path --resume r.npz --channel Height", "--channel"),
+        ("path --resume r.npz --fill", "--fill"),
         ("path --resume r.npz --short-cutoff 1e-3", "--short-cutoff"),
         ("path --resume r.npz --seeds 1..2", "--seeds"),
         ("path --resume r.npz --periodic love", "--periodic"),

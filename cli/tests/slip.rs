@@ -57,6 +57,8 @@ fn answers_and_tables_agree() -> Done {
     let folder = &folder.0;
     let rubber = "slip path.npz --friction 0.5 --material rubber --json";
     let default = object(folder, rubber)?;
+    // The record knows its bodies.
+    assert_eq!(object(folder, "slip path.npz --friction 0.5 --json")?, default);
     let (load, force) = (number(&default, "load"), number(&default, "tangential_load"));
     assert!((force / (0.25 * load) - 1.0).abs() < 1e-12);
     assert!((number(&default, "compliance_ratio") - 1.5).abs() < 1e-15);
@@ -129,7 +131,8 @@ fn what_cannot_be_sheared_is_refused() -> Done {
         assert!(words.iter().all(|word| told.contains(word)), "{line}: {told}");
         Ok(())
     };
-    refused("slip path.npz --friction 0.3", &["--compliance-ratio", "--material"])?;
+    run(folder, "path --nodes 32 --max-area-fraction 0.2 --e-star 1e9 --record modulus.npz")?;
+    refused("slip modulus.npz --friction 0.3", &["--compliance-ratio", "--material"])?;
     refused("slip path.npz --friction 0 --material rubber", &["positive"])?;
     refused(
         "slip path.npz --friction 0.3 --material rubber --load 1e9",

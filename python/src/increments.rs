@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{Failure, Fallible};
 use crate::history::History;
+use crate::materials::Body;
 use crate::path::{Engine, LoadingPath};
 
 /// The states of a path, and the path itself where fields are to be had.
@@ -44,6 +45,14 @@ impl Increments {
     /// E* of the path, if it is known.
     pub(crate) fn e_star(&self, py: Python<'_>) -> Option<f64> {
         self.path.as_ref().and_then(|path| path.bind(py).get().modulus())
+    }
+
+    /// Both bodies of the path, if its record knows them.
+    pub(crate) fn bodies(&self, py: Python<'_>) -> Option<(Body, Body)> {
+        let known = self.path.as_ref()?.bind(py).get().elastic_bodies(py);
+        let (first, rest) = known.split_first()?;
+        let second = rest.first().map_or(Body::Named("rigid".to_string()), |b| Body::Numbers(*b));
+        Some((Body::Numbers(*first), second))
     }
 
     /// What the engine of the path computes.

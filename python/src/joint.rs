@@ -132,7 +132,7 @@ pub(crate) struct InterfaceTable {
 /// friction : float, optional
 ///     Coefficient of friction, for tangential stiffness and slip limit; with bodies or their ratio of compliances.
 /// bodies : (body, body), optional
-///     Both bodies, as of `shear`: they have the ratio of compliances.
+///     Both bodies, as of `shear`: they have the ratio of compliances; those of the record of the path if it knows them.
 /// compliance_ratio : float, optional
 ///     In place of bodies: tangential over normal compliance, E*/G*.
 /// tolerance : float
@@ -162,7 +162,9 @@ fn interface_table(
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
         builder = builder.conduction(made);
     }
-    match (friction, bodies, compliance_ratio) {
+    let known =
+        || increments.bodies(py).filter(|_| friction.is_some() && compliance_ratio.is_none());
+    match (friction, bodies.or_else(known), compliance_ratio) {
         (Some(friction), None, Some(ratio)) => builder = builder.friction(friction, ratio),
         (Some(friction), Some(bodies), None) => {
             let friction = materials::friction(friction, &bodies)?;

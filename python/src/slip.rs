@@ -42,7 +42,8 @@ pub(crate) struct PartialSlip {
 /// load : float, optional
 ///     Load that presses the joint [N]; that of the last state unless it is given.
 /// bodies : (body, body), optional
-///     Both bodies, each (E [Pa], nu), the name of one of `materials`, or ``"rigid"`` for the second.
+///     Both bodies, each (E [Pa], nu), the name of one of `materials`, or ``"rigid"`` for the second; those of the record of the path
+///     if it knows them.
 /// compliance_ratio : float, optional
 ///     In place of bodies: tangential over normal compliance E*/G*, (2 - nu) / (2 (1 - nu)) of one material.
 /// check : bool
@@ -72,10 +73,16 @@ fn shear(
     check: bool,
 ) -> Fallible<PartialSlip> {
     let increments = Increments::of(path)?;
+    let known = || increments.bodies(py).filter(|_| compliance_ratio.is_none());
+    let bodies = bodies.or_else(known);
     let law = match (&bodies, compliance_ratio) {
         (Some(bodies), None) => materials::friction(friction, bodies)?,
         (None, Some(ratio)) => Friction::new(friction, ratio)?,
-        _ => return Err(Failure::arguments("give one of bodies and compliance_ratio")),
+        _ => {
+            return Err(Failure::arguments(
+                "give one of bodies and compliance_ratio, unless the record of the path knows its bodies",
+            ));
+        }
     };
     if check {
         for warning in warnings(py, &increments, bodies.as_ref(), &law)? {

@@ -13,6 +13,11 @@ pub(super) struct Growth<'a> {
     load: Hereditary,
 }
 
+/// What rounding may make of W′, relative to it: compliances are divided by what is left of the modulus, which multiplies their rounding
+/// of some 10⁻¹⁶, so that this is enough down to a thousandth of the modulus. What is closer to the last knot is that knot: a path to the
+/// load `W / (1 − Σ g)` is enough for a load W that is held for ever.
+const ROUNDING: f64 = 1e-12;
+
 /// A stretch of time in which contact grows between two knots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stretch {
@@ -87,7 +92,11 @@ impl<'a> Growth<'a> {
 
     /// W′ just after a time: 0 before the first corner.
     pub(super) fn at(&self, time: f64) -> f64 {
-        self.load.place(time).map_or(0.0, |place| self.load.response(place).0)
+        let load = self.load.place(time).map_or(0.0, |place| self.load.response(place).0);
+        match self.knots.last() {
+            Some(&last) if load > last && load <= last * (1.0 + ROUNDING) => last,
+            _ => load,
+        }
     }
 
     /// When each knot is reached, up to a time, while W′ does not fall.

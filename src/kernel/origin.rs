@@ -47,3 +47,20 @@ pub enum KernelOrigin {
     /// A kernel that is not of this crate, or a table of coefficients.
     Other,
 }
+
+impl KernelOrigin {
+    /// E\* \[Pa\]: `None` of layers, which have none, and of kernels that are not of this crate.
+    #[must_use]
+    pub fn composite_modulus(&self) -> Option<f64> {
+        match *self {
+            Self::Boussinesq { e_star }
+            | Self::PeriodicBoussinesq { e_star }
+            | Self::SemiPeriodicBoussinesq { e_star, .. }
+            | Self::Spectral { e_star } => Some(e_star),
+            Self::Layered { .. }
+            | Self::PeriodicLayered { .. }
+            | Self::SpectralLayered { .. }
+            | Self::Other => None,
+        }
+    }
+}

@@ -2,12 +2,18 @@
 
 use super::tuning::{FACTOR, HANDOVER, ITERATIONS, SAVED, STEP, WINDOW};
 
-/// Seconds that an event with so many nodes in contact takes on a grid of `nodes`, on a machine with
-/// two cores: for telling how long a path will take.
+/// Seconds that an event with a factor of so many nodes takes on a machine with two cores: for telling how long a path will take.
 #[doc(hidden)]
 #[must_use]
-pub fn event_seconds(nodes: usize, contact: usize) -> f64 {
-    Rest::of_one(nodes, contact).seconds_with_factor().min(iteration_seconds(nodes, contact as f64))
+pub fn factor_seconds(contact: usize) -> f64 {
+    FACTOR * (contact as f64).powi(2)
+}
+
+/// The same by iterations, with so many nodes in contact on a grid of `nodes`.
+#[doc(hidden)]
+#[must_use]
+pub fn iteration_seconds(nodes: usize, contact: usize) -> f64 {
+    WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact as f64
 }
 
 /// Nodes in contact at which a factor costs as much as iterations on a grid of `nodes`: it is not given up before, if memory
@@ -19,9 +25,7 @@ pub fn last_factor(nodes: usize) -> usize {
     let (mut low, mut high) = (0, nodes);
     while low < high {
         let middle = low.midpoint(high);
-        if Rest::of_one(nodes, middle).seconds_with_factor()
-            > iteration_seconds(nodes, middle as f64)
-        {
+        if factor_seconds(middle) > iteration_seconds(nodes, middle) {
             high = middle;
         } else {
             low = middle + 1;
@@ -44,7 +48,7 @@ pub(super) struct Rest {
     /// Nodes of the grid.
     nodes: usize,
     /// Nodes that a factor holds now, and at the end.
-    factor: [f64; 2],
+    factor: [usize; 2],
     events: f64,
     /// Whether each event has a solution of its own with a factor.
     stepwise: bool,
@@ -53,19 +57,13 @@ pub(super) struct Rest {
 impl Rest {
     /// Each event is a node more in the factor.
     pub(super) fn growing(nodes: usize, from: usize, to: usize) -> Self {
-        let factor = [from as f64, to.max(from) as f64];
-        Self { nodes, factor, events: factor[1] - factor[0], stepwise: false }
+        let to = to.max(from);
+        Self { nodes, factor: [from, to], events: (to - from) as f64, stepwise: false }
     }
 
     /// The factor stays about as large as it is.
     pub(super) fn steady(nodes: usize, contact: usize, events: usize) -> Self {
-        let factor = [contact as f64; 2];
-        Self { nodes, factor, events: events as f64, stepwise: false }
-    }
-
-    /// A single event.
-    fn of_one(nodes: usize, contact: usize) -> Self {
-        Self::steady(nodes, contact, 1)
+        Self { nodes, factor: [contact; 2], events: events as f64, stepwise: false }
     }
 
     /// The same where a factor has no windows.
@@ -80,14 +78,14 @@ impl Rest {
         let next = Self { factor: [now; 2], events: 1.0, ..self };
         let with_factor = self.seconds_with_factor();
         let [node, contact_node] = HANDOVER;
-        let handover = node * self.nodes as f64 + contact_node * now;
+        let handover = node * self.nodes as f64 + contact_node * now as f64;
         next.seconds_with_factor() > next.seconds_without()
             && handover + self.seconds_without() < (1.0 - SAVED) * with_factor
     }
 
     /// n² per event, on average over a factor that grows evenly.
     fn seconds_with_factor(self) -> f64 {
-        let [from, to] = self.factor;
+        let [from, to] = self.factor.map(|nodes| nodes as f64);
         let square = (from * from + from * to + to * to) / 3.0;
         let event = if self.stepwise {
             STEP[0] * square + STEP[1] * self.nodes as f64
@@ -99,12 +97,11 @@ impl Rest {
 
     fn seconds_without(self) -> f64 {
         let [from, to] = self.factor;
-        self.events * iteration_seconds(self.nodes, 0.5 * (from + to))
+        // Linear in the contact: the mean is that of its middle.
+        self.events
+            * 0.5
+            * (iteration_seconds(self.nodes, from) + iteration_seconds(self.nodes, to))
     }
-}
-
-fn iteration_seconds(nodes: usize, contact: f64) -> f64 {
-    WINDOW + ITERATIONS[0] * nodes as f64 + ITERATIONS[1] * contact
 }
 
 #[cfg(test)]
@@ -114,15 +111,13 @@ mod tests {
     /// 10 ps · n², and 0.3 ms, 1.2 ns a node and 4 ns a node in contact.
     #[test]
     fn costs_of_an_event() {
-        for (nodes, contact, cost) in [
-            (0, 1000, 1e-5),
-            (1_000_000, 10_000, 1e-3),
-            (10_000, 10_000, 3e-4 + 1.2e-5 + 4e-5),
-            (1_000_000, 100_000, 3e-4 + 1.2e-3 + 4e-4),
-        ] {
-            let found = event_seconds(nodes, contact);
-            assert!((found / cost - 1.0).abs() < 1e-14, "{nodes} {contact}: {found:e}");
-        }
+        let is_near = |found: f64, cost: f64| {
+            assert!((found / cost - 1.0).abs() < 1e-14, "{found:e} {cost:e}")
+        };
+        is_near(factor_seconds(1000), 1e-5);
+        is_near(factor_seconds(10_000), 1e-3);
+        is_near(iteration_seconds(10_000, 10_000), 3e-4 + 1.2e-5 + 4e-5);
+        is_near(iteration_seconds(1_000_000, 100_000), 3e-4 + 1.2e-3 + 4e-4);
     }
 
     /// The root of `10⁻¹¹ n² = 3·10⁻⁴ + 1.2·10⁻⁹ N + 4·10⁻⁹ n`, rounded up; all nodes if there is none among them.

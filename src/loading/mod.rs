@@ -104,9 +104,11 @@ mod window_end;
 mod windowed;
 mod yielding;
 
+#[doc(hidden)] // for the programs of this repository
+pub use crate::memory::default_budget;
 pub use builder::LoadingBuilder;
 #[doc(hidden)] // for the program and the tests of this repository
-pub use event_cost::{event_seconds, greatest_factor, last_factor};
+pub use event_cost::{factor_seconds, greatest_factor, iteration_seconds, last_factor};
 #[cfg(feature = "io")]
 pub(crate) use factor_log::FactorLog;
 pub use history::History;

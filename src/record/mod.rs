@@ -48,7 +48,7 @@ use crate::loading::{
 };
 use crate::surface::HeightMap;
 use crate::updater::{ConjugateGradient, LinearUpdater};
-use crate::{ContactTarget, Error, Grid, LoadingSolver};
+use crate::{ContactTarget, Error, Grid, LoadingSolver, composite_modulus, plane_strain_modulus};
 
 /// A path as a record. See the [module](self).
 #[derive(Debug, Clone)]
@@ -65,7 +65,12 @@ pub struct LoadingRecord {
     settings: Settings,
     history: History,
     end: Option<LoadingEnd>,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body.
+    bodies: Vec<(f64, f64)>,
 }
+
+/// How far E* of the bodies may be from that of the kernel, relative to it: the rounding of a few operations.
+const SAME_MODULUS: f64 = 1e-12;
 
 /// The settings of a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,7 +171,37 @@ impl LoadingRecord {
                 return Err(Error::NotFinite { step: state.step });
             }
         }
-        Ok(Self { grid, heights, kernel, settings, history, end })
+        Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
+    }
+
+    /// The same with the bodies, each its Young's modulus \[Pa\] and Poisson's ratio, whose composite modulus the kernel has: of one body
+    /// if the other is rigid, none if only E* is known. The path does not depend on them; what is tangential does.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`plane_strain_modulus`] and [`composite_modulus`]; [`Error::LengthMismatch`] for more than two, and [`Error::OutOfRange`]
+    /// if their composite modulus is not that of the kernel, or if that is of layers.
+    pub fn with_bodies(mut self, bodies: &[(f64, f64)]) -> Result<Self, Error> {
+        let e_star = match *bodies {
+            [] => None,
+            [(young, poisson)] => Some(plane_strain_modulus(young, poisson)?),
+            [first, second] => Some(composite_modulus(first, second)?),
+            _ => return Err(Error::LengthMismatch { expected: 2, found: bodies.len() }),
+        };
+        if let Some(e_star) = e_star {
+            let own = self.kernel.origin.composite_modulus().unwrap_or(f64::NAN);
+            let is_same = (e_star / own - 1.0).abs() <= SAME_MODULUS;
+            let expected = "that of the kernel of the path";
+            Error::require("composite modulus of the bodies", e_star, is_same, expected)?;
+        }
+        self.bodies = bodies.to_vec();
+        Ok(self)
+    }
+
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known: of one if the other is rigid.
+    #[must_use]
+    pub fn bodies(&self) -> &[(f64, f64)] {
+        &self.bodies
     }
 
     /// The grid.

@@ -38,6 +38,9 @@ struct Parameters {
     kernel: KernelRecord,
     settings: Settings,
     end: Option<LoadingEnd>,
+    /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if they are known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    bodies: Vec<(f64, f64)>,
     /// What the next window begins with, if that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     window: Option<window_end::Numbers>,
@@ -208,6 +211,7 @@ impl LoadingRecord {
             kernel: self.kernel.clone(),
             settings: self.settings.clone(),
             end: self.end,
+            bodies: self.bodies.clone(),
             window: self.history.window_end().map(window_end::Numbers::of),
             units: "SI: m, N, m², N/m, J; stiffness NaN where there is none; event 0 touch, 1 release, 2 limit, 3 yield"
                 .to_string(),
@@ -297,7 +301,8 @@ impl LoadingRecord {
             parameters.settings,
             history,
             parameters.end,
-        )
+        )?
+        .with_bodies(&parameters.bodies)
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Parts {
     settings: Settings,
     states: Vec<LoadingState>,
     end: Option<LoadingEnd>,
+    #[serde(default)]
+    bodies: Vec<(f64, f64)>,
 }
 
 impl From<LoadingRecord> for Parts {
@@ -29,6 +31,7 @@ impl From<LoadingRecord> for Parts {
             settings: record.settings,
             states: record.history.states().to_vec(),
             end: record.end,
+            bodies: record.bodies,
         }
     }
 }
@@ -50,6 +53,7 @@ impl TryFrom<Parts> for LoadingRecord {
             state.contact.restore_infinity();
         }
         let history = states.into_iter().collect();
-        Self::from_parts(grid, heights, parts.kernel, parts.settings, history, parts.end)
+        Self::from_parts(grid, heights, parts.kernel, parts.settings, history, parts.end)?
+            .with_bodies(&parts.bodies)
     }
 }

@@ -69,6 +69,40 @@ fn what_is_written_is_read_back() {
     }
 }
 
+/// Bodies are kept whatever the way, and must have the modulus of the path; a record of an earlier version knows none.
+#[test]
+fn bodies_are_kept() {
+    let file = Scratch::new("bodies");
+    let two = [(70e9, 0.33), (210e9, 0.3)];
+    let e_star = asperity::composite_modulus(two[0], two[1]).unwrap();
+    let made = |e_star: f64| {
+        let kernel = Boussinesq::new(grid(), e_star).unwrap();
+        let mut path = LoadingSolver::builder(&rough(&grid(), 7), &kernel).build().unwrap();
+        let history: History = path.by_ref().take(20).collect::<Result<_, _>>().unwrap();
+        LoadingRecord::new(&path, history).unwrap()
+    };
+    let plain = made(e_star);
+    assert!(plain.bodies().is_empty());
+    let without = serde_json::to_value(&plain).unwrap();
+    let record = plain.with_bodies(&two).unwrap();
+    record.write_npz(&file.0, &[]).unwrap();
+    let read = LoadingRecord::read_npz(&file.0).unwrap();
+    assert_eq!(read.bodies(), two);
+    let mut text = serde_json::to_value(&record).unwrap();
+    assert_eq!(serde_json::from_value::<LoadingRecord>(text.clone()).unwrap().bodies(), two);
+    let mut older = without;
+    older.as_object_mut().unwrap().remove("bodies").unwrap();
+    assert!(serde_json::from_value::<LoadingRecord>(older).unwrap().bodies().is_empty());
+    // Others are refused, given or read.
+    text["bodies"][0][0] = serde_json::json!(71e9);
+    assert!(serde_json::from_value::<LoadingRecord>(text).is_err());
+    let one = [(e_star * 0.75, 0.5)];
+    assert_eq!(made(e_star).with_bodies(&one).unwrap().bodies(), one);
+    for bad in [&[(70e9, 0.33)][..], &[two[0], two[1], two[0]], &[(-1.0, 0.3)], &[(e_star, 0.7)]] {
+        assert!(made(e_star).with_bodies(bad).is_err(), "{bad:?}");
+    }
+}
+
 #[test]
 fn a_periodic_path_has_no_contact_stiffness() {
     let file = Scratch::new("periodic");

@@ -7,7 +7,7 @@ use asperity::creep::{Course, Creep, CreepState, Relaxation, ViscoelasticBed};
 use asperity::patches::{Connectivity, contact_sequence};
 use asperity::record::LoadingRecord;
 use asperity::{BedError, ContactEvent, CreepError, Error};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{at_least, quantity};
 use asperity_cli::outcome::Failure;
 
 use super::course::Task;
@@ -153,11 +153,11 @@ impl<'a> Followed<'a> {
         let file = record.display();
         let further = match (&self.solution, &task.course) {
             (Solution::Creep(creep), _) => {
-                format!("--max-load {:.4e}", creep.effective_load(task.end))
+                format!("--max-load {}", at_least(creep.effective_load(task.end), 5))
             }
             (_, Course::Approach(approach)) => {
                 let values = approach.corners().iter().map(|corner| corner.1);
-                format!("--max-approach {:.4e}", values.fold(0.0, f64::max))
+                format!("--max-approach {}", at_least(values.fold(0.0, f64::max), 5))
             }
             // To full contact, behind which all is linear.
             (_, Course::Load(_)) => "--max-area-fraction 1".to_string(),

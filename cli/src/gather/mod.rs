@@ -6,6 +6,7 @@ mod table;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use asperity_cli::number::counted;
 use asperity_cli::outcome::{self, Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
@@ -57,7 +58,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let ratio = (last / first).powf(1.0 / steps as f64);
     let loads = (0..=steps).map(|k| (first * ratio.powi(k as i32)).min(last));
     let rows: Vec<Row> = loads.map(|load| Row::at(load, &tables)).collect();
-    say!("{} paths, from {first:.4e} N to {last:.4e} N", tables.len());
+    say!("{}, from {first:.4e} N to {last:.4e} N", counted(tables.len(), "path"));
     if options.json {
         answer!("{}", object(&rows, tables.len()));
     }

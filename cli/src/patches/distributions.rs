@@ -9,7 +9,7 @@ use asperity::reference::AreaLoadLaw;
 use asperity::{Boundary, Error};
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, ORANGE, Series, Style};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 
 use super::moment::Moment;
@@ -127,7 +127,7 @@ fn areas(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, Error
     let counts = found.counts().iter().map(|&count| (count as f64).max(foot));
     let points = outline(&edges, counts, foot);
     Ok(Some(Chart {
-        title: format!("{} patches", moment.patches.len()),
+        title: counted(moment.patches.len(), "patch"),
         x: Axis::logarithmic("area of a patch", "m²", least, greatest),
         y: Axis::plain_logarithmic("patches in a quarter of a decade", foot, 1.5 * most as f64),
         series: vec![Series::new("", BLUE, Style::Line, points)],

@@ -7,7 +7,7 @@ use asperity::patches::{Connectivity, constriction};
 use asperity::record::LoadingRecord;
 use asperity::surface::{Axis, Topography};
 use asperity::{Boundary, Error, LoadingState, Warning};
-use asperity_cli::number::{area, quantity};
+use asperity_cli::number::{area, counted, quantity};
 use asperity_cli::say;
 
 use crate::elasticity::Bodies;
@@ -29,7 +29,7 @@ pub(super) fn print_record(record: &LoadingRecord, connectivity: Connectivity) {
         Connectivity::Four => "a side",
         Connectivity::Eight => "a side or a corner",
     };
-    say!("{} states on {nx} x {ny} nodes, {boundary} boundary", record.states().len());
+    say!("{} on {nx} x {ny} nodes, {boundary} boundary", counted(record.states().len(), "state"));
     say!(
         "patches: nodes in contact that share {joined}; channels pass through sides, as a leak does"
     );
@@ -94,7 +94,7 @@ pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<
     let mut warnings =
         Warning::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
     warnings.extend(resolution.warning());
-    if let Ok((_, Bodies { e_star, .. })) = Bodies::of_record(&record.kernel().origin) {
+    if let Ok((_, Bodies { e_star, .. })) = Bodies::of_record(record) {
         warnings.extend(Warning::of_modulus(e_star));
         warnings.extend(Warning::of_pressure(moment.pressure.max(), e_star));
     }
@@ -113,13 +113,10 @@ pub(super) fn print_moment(moment: &Moment) {
         return;
     };
     let percent = |part: f64, whole: f64| 100.0 * part / whole;
-    let count = match moment.patches.len() {
-        1 => "1 patch".to_string(),
-        count => format!("{count} patches"),
-    };
     say!(
-        "{count}; the largest has {} nodes, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean pressure of {}",
-        patch.nodes,
+        "{}; the largest has {}, {}, {:.2} % of the contact, and carries {} ({:.2} %) at a mean pressure of {}",
+        counted(moment.patches.len(), "patch"),
+        counted(patch.nodes, "node"),
         area(patch.area, 4),
         percent(patch.area, state.contact.contact_area),
         quantity(carried.load, "N", 4),

@@ -10,7 +10,7 @@ use super::job::Job;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
 use asperity_cli::half_space::is_of_mean_planes;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{self, Failure};
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
 
@@ -45,8 +45,8 @@ fn panels<DB: DrawingBackend>(area: &Area<DB>, job: &Job, states: &[LoadingState
     area.fill(&WHITE)?;
     let (nx, ny) = job.grid().shape();
     let title = format!(
-        "Loading path of {} states: {nx} × {ny} nodes{}, E* = {}, Sq = {}",
-        states.len(),
+        "Loading path of {}: {nx} × {ny} nodes{}, E* = {}, Sq = {}",
+        counted(states.len(), "state"),
         match job.periodic() {
             None => String::new(),
             Some(kernel) => format!(", {}", kernel.in_words()),

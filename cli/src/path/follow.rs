@@ -14,7 +14,6 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::interrupt::Interrupt;
 use super::job::Job;
 use super::joint::Named;
-use super::progress::Progress;
 use super::{Solver, save};
 use asperity_cli::number::scientific;
 use asperity_cli::outcome::Failure;
@@ -52,9 +51,9 @@ impl Followed {
     /// Runs the path to its end, or until it is asked to stop, writing each state as it comes.
     pub(super) fn follow(
         &mut self,
+        job: &Job,
         solver: &mut Solver,
         interrupt: &Interrupt,
-        progress: impl Fn(&LoadingState) -> Progress,
     ) -> Result<(), Failure> {
         let bar = ProgressBar::new(100);
         let start = Instant::now();
@@ -76,7 +75,7 @@ impl Followed {
             ended = state.map_err(|error| Failure::new("the path broke off", error)).and_then(
                 |state| {
                     if state.step.is_multiple_of(STRIDE) {
-                        let progress = progress(&state);
+                        let progress = job.progress(&state);
                         bar.set_position((100.0 * progress.done) as u64);
                         let load = scientific(state.contact.load, 3);
                         let left = progress.left(start.elapsed());
@@ -85,7 +84,7 @@ impl Followed {
                             state.contact.contact_nodes
                         ));
                     }
-                    self.add(state, solver)
+                    self.add(state, job, solver)
                 },
             );
         }
@@ -93,12 +92,12 @@ impl Followed {
         ended
     }
 
-    fn add(&mut self, state: LoadingState, solver: &Solver) -> Result<(), Failure> {
+    fn add(&mut self, state: LoadingState, job: &Job, solver: &Solver) -> Result<(), Failure> {
         self.states.push(state);
         self.file.write(&state)?;
         match &self.saves {
             Some((name, every)) if self.states.len().is_multiple_of(*every) => {
-                save(name, solver, &self.states, &[]).map(|_| ())
+                save(name, job, solver, &self.states, &[]).map(|_| ())
             }
             _ => Ok(()),
         }

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
-use asperity::reference::AreaLoadLaw;
 use asperity::surface::{HeightMap, Topography};
 use asperity::{
-    Boundary, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    Warning,
+    Boundary, ContactRule, ContactTarget, Error, Grid, InfluenceKernel, LoadingSolver,
+    LoadingState, Warning,
 };
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -17,18 +16,14 @@ use serde_json::{Value, json};
 use super::Solver;
 use super::options::{AREA_FRACTION, Options, Updater, no_room};
 use super::parts::Parts;
-use super::progress::{Progress, total};
+use super::progress::Progress;
 use super::source::{Generated, fingerprint, generate, read, source_of};
 use crate::elasticity::Bodies;
-use crate::ensemble::Expected;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
-
-/// Memory of a path besides its factor, for each node of the grid: 256 MB on 512 × 512 nodes.
-const BYTES_A_NODE: f64 = 1000.0;
 
 /// A surface on its grid and what is asked of it.
 pub(super) struct Job {
@@ -101,9 +96,8 @@ impl Job {
     fn resumed(file: &Path, options: &Options) -> Result<Self, Failure> {
         let failed = |error| Failure::new(format!("cannot resume {}", file.display()), error);
         let record = LoadingRecord::read_npz(file).map_err(failed)?;
-        let (periodic, bodies) = Bodies::of_record(&record.kernel().origin).map_err(failed)?;
+        let (periodic, bodies) = Bodies::of_record(&record).map_err(failed)?;
         let heights = record.heights().matrix().clone();
-        options.reading.only_sides("the surface of a record")?;
         let surface =
             Topography::new(record.grid(), heights).map_err(|error| failed(error.into()))?;
         let grid = *surface.grid();
@@ -142,7 +136,7 @@ impl Job {
             targets: &targets,
         };
         Ok(Self {
-            name: format!("{}, {} states", file.display(), record.states().len()),
+            name: format!("{}, {}", file.display(), counted(record.states().len(), "state")),
             rms_gradient: rms_gradient(&surface)?,
             settings: parts.settings(&grid, source)?,
             periodic,
@@ -211,8 +205,34 @@ impl Job {
         self.surface.map()
     }
 
+    pub(super) fn rms_gradient(&self) -> f64 {
+        self.rms_gradient
+    }
+
+    pub(super) fn targets(&self) -> &[ContactTarget] {
+        &self.targets
+    }
+
+    pub(super) fn updater(&self) -> Updater {
+        self.updater
+    }
+
+    pub(super) fn memory_budget(&self) -> Option<usize> {
+        self.memory_budget
+    }
+
     pub(super) fn e_star(&self) -> f64 {
         self.bodies.e_star
+    }
+
+    /// The record of its path so far.
+    pub(super) fn record_of(
+        &self,
+        solver: &Solver,
+        states: &[LoadingState],
+    ) -> Result<LoadingRecord, Error> {
+        let bodies: Vec<_> = self.bodies.elastic.iter().map(|&[e, nu]| (e, nu)).collect();
+        LoadingRecord::new(solver, states.iter().copied().collect())?.with_bodies(&bodies)
     }
 
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
@@ -242,7 +262,7 @@ impl Job {
         let share = shares.fold(state.contact.contact_area_fraction, f64::max).min(1.0);
         let nodes = self.grid().nodes();
         Progress::new(state.contact.contact_nodes, share, |contact| {
-            self.updater.event_cost(nodes, contact)
+            self.updater.event_seconds(nodes, contact)
         })
     }
 
@@ -262,37 +282,8 @@ impl Job {
                     quantity(state.contact.approach, "m", 4)
                 ))
             }
-            ContactTarget::Approach(approach) if state.contact.approach < approach => {
-                Some(format!(
-                    "the approach asked for, {}, at {}",
-                    quantity(approach, "m", 4),
-                    quantity(state.contact.approach, "m", 4)
-                ))
-            }
             _ => None,
         })
-    }
-
-    /// What the path will take, by the load that Persson's theory gives an area.
-    pub(super) fn expected(&self) -> Expected {
-        let grid = self.grid();
-        let nodes = grid.nodes() as f64;
-        let pressure = |load: f64| load / grid.nominal_area();
-        let share = |target: &ContactTarget| match *target {
-            ContactTarget::AreaFraction(fraction) => fraction,
-            ContactTarget::Load(load) => AreaLoadLaw::new(self.rms_gradient, self.e_star())
-                .map_or(1.0, |law| law.persson(pressure(load))),
-            // Not more than all.
-            _ => 1.0,
-        };
-        let share = self.targets.iter().map(share).fold(1.0, f64::min);
-        let contact = share * nodes;
-        let factor = self.updater.factor_nodes(grid.nodes(), contact as usize) as f64;
-        Expected {
-            nodes: contact,
-            seconds: total(contact, |event| asperity::loading::event_seconds(grid.nodes(), event)),
-            bytes: BYTES_A_NODE * nodes + 4.0 * factor * factor,
-        }
     }
 
     pub(super) fn periodic(&self) -> Option<Periodic> {
@@ -302,6 +293,11 @@ impl Job {
     /// Whether nodes yield.
     pub(super) fn has_hardness(&self) -> bool {
         self.hardness.is_some()
+    }
+
+    /// The hardness of each node \[Pa\].
+    pub(super) fn hardness_map(&self) -> Option<&DMatrix<f64>> {
+        self.hardness.as_ref()
     }
 
     pub(super) fn kernel(&self) -> Result<Box<dyn InfluenceKernel>, Failure> {

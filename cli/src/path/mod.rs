@@ -5,7 +5,9 @@
 //! an error, everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and
 //! `path.csv` are written, and the exit code is 130.
 
+mod again;
 mod curves;
+mod expected;
 pub(crate) mod fields;
 mod follow;
 mod interrupt;
@@ -24,32 +26,37 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use asperity::patches::ContactEdge;
-use asperity::record::LoadingRecord;
 use asperity::updater::LinearUpdater;
 use asperity::{LoadingSolver, LoadingState};
+use asperity_cli::number::counted;
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_cli::{note, panel, say, speech};
-use clap::ValueEnum;
+use asperity_cli::{answer, note, panel, say, speech};
+use clap::ArgMatches;
 use nalgebra::DMatrix;
 
 use crate::ensemble::Member;
 use crate::settings::Settings;
+use expected::Expected;
 use follow::{Followed, PathFile};
 use interrupt::Interrupt;
 use job::Job;
+use joint::Named;
 pub(crate) use options::Options;
 
 /// The path, whatever updater it has.
 type Solver = LoadingSolver<Box<dyn LinearUpdater>>;
 
-/// Follows one path, or that of each seed.
-pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+/// Follows one path, or that of each seed, with the options that were given.
+pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
     let interrupt = Interrupt::listen()?;
     if options.ensemble.seeds.is_none() {
-        return follow_one(options, &interrupt)?.finish();
+        if options.dry_run {
+            return estimate(options, "");
+        }
+        return follow_one(options, given, &interrupt)?.finish();
     }
     let there = options.ensemble.there(&options.out)?;
     // What is there must be what would be computed now.
@@ -63,18 +70,16 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             .map_err(|failure| failure.with_advice("give another --out, or remove that folder"))?;
     }
     let missing = options.ensemble.count() - there.len() as u128;
-    say!("{missing} paths to follow, {} finished", there.len());
+    let missing = counted(missing, "path");
+    say!("{missing} to follow, {} finished", there.len());
     let seeds = options.ensemble.seeds_of_task();
     let mut members =
         seeds.filter(|seed| !there.contains(seed)).map(|seed| Member::new(seed, &options.out));
-    if options.ensemble.dry_run {
-        if let Some(first) = members.next() {
-            say!("{}", Job::new(&options.of(&first))?.expected());
-        }
-        return Ok(());
+    if options.dry_run {
+        return members.next().map_or(Ok(()), |first| estimate(&options.of(&first), " for each"));
     }
     members.try_for_each(|member| {
-        match follow_one(&options.of(&member), &interrupt) {
+        match follow_one(&options.of(&member), given, &interrupt) {
             Err(failure) if failure.code() == interrupt::EXIT_CODE => {
                 member.abandon()?;
                 let seed = member.seed;
@@ -92,8 +97,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     })
 }
 
-/// Does one job and writes its files.
-fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+/// The job, and the conductances that it is asked for, with what looks wrong.
+fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
     let job = Job::new(options)?;
     if options.unload && !job.has_hardness() {
         return Err(Failure::request(
@@ -105,6 +110,27 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
     let conductions = options.joint.check(&job)?;
+    Ok((job, conductions))
+}
+
+/// Prints what a path will take.
+fn estimate(options: &Options, of: &str) -> Result<(), Failure> {
+    let (job, _) = prepare(options)?;
+    let expected = Expected::of(&job, options.unload)?;
+    match options.json {
+        true => answer!("{}", expected.object()),
+        false => answer!("{expected}{of}"),
+    }
+    Ok(())
+}
+
+/// Does one job and writes its files.
+fn follow_one(
+    options: &Options,
+    given: &ArgMatches,
+    interrupt: &Interrupt,
+) -> Result<Outcome, Failure> {
+    let (job, conductions) = prepare(options)?;
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
@@ -119,7 +145,7 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
-    let ended = followed.follow(&mut solver, interrupt, |state| job.progress(state));
+    let ended = followed.follow(&job, &mut solver, interrupt);
     let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
     let (states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
@@ -131,19 +157,19 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
     if is_interrupted {
         let place = options.out.join("interrupted.npz");
         let name = job.record().unwrap_or(&place);
-        outcome.written(save(name, &solver, &states, &[]));
+        outcome.written(save(name, &job, &solver, &states, &[]));
         outcome.written(file.finish());
         outcome.finish()?;
-        return Err(interrupted(options, name, states.len()));
+        return Err(interrupted(given, name, states.len()));
     }
     // First without the fields, which take time and memory.
     let record = job.record();
-    let mut kept = record.map(|name| save(name, &solver, &states, &[]));
+    let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
     outcome.written(file.finish());
     match fields::of(&mut solver) {
         Ok(fields) => {
             if let (Some(name), Some(Ok(_))) = (record, &kept) {
-                kept = Some(save(name, &solver, &states, &fields));
+                kept = Some(save(name, &job, &solver, &states, &fields));
             }
             if let Some(format) = options.fields {
                 let written = fields::write(&fields, &job.grid(), format, &options.out);
@@ -169,17 +195,11 @@ fn follow_one(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failu
 }
 
 /// How to go on with a path that was interrupted.
-fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
-    let updater = match options.updater.to_possible_value() {
-        Some(value) if value.get_name() != "auto" => format!(" --updater {}", value.get_name()),
-        _ => String::new(),
-    };
-    let record = record.display();
+fn interrupted(given: &ArgMatches, record: &Path, states: usize) -> Failure {
+    let again = again::command(record, given);
+    let states = counted(states, "state");
     Failure::with_code(
-        format!(
-            "interrupted: {states} states in {record}; continue with `asperity path --resume {record}{updater} --out {}`",
-            options.out.display()
-        ),
+        format!("interrupted: {states} in {}; continue with `{again}`", record.display()),
         interrupt::EXIT_CODE,
     )
 }
@@ -187,13 +207,14 @@ fn interrupted(options: &Options, record: &Path, states: usize) -> Failure {
 /// Writes the record of the path so far, and fields of its last state.
 fn save(
     name: &Path,
+    job: &Job,
     solver: &Solver,
     states: &[LoadingState],
     fields: &[(&str, DMatrix<f64>)],
 ) -> Result<PathBuf, Failure> {
     let fields = fields.iter().map(|(name, field)| (*name, field));
     let fields: Vec<_> = fields.collect();
-    LoadingRecord::new(solver, states.iter().copied().collect())
+    job.record_of(solver, states)
         .and_then(|record| record.write_npz(name, &fields))
         .map(|()| name.to_path_buf())
         .map_err(|error| Failure::writing(name, error))

@@ -97,7 +97,7 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
@@ -109,6 +109,10 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
+
+    /// Print about how much time and memory the path takes, or each path of --seeds, and stop; no file is written
+    #[arg(long)]
+    pub(super) dry_run: bool,
 
     /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure and
     /// warnings (SI units; null where there is no number); one line for each seed
@@ -244,23 +248,6 @@ pub(super) enum Updater {
 }
 
 impl Updater {
-    /// What an event costs with so many nodes in contact on a grid, in some unit of time.
-    pub(super) fn event_cost(self, nodes: usize, contact: usize) -> f64 {
-        match self {
-            Self::Cholesky => (contact as f64).powi(2),
-            Self::Auto | Self::Iterative => asperity::loading::event_seconds(nodes, contact),
-        }
-    }
-
-    /// Nodes that a factor has at most on the way to so many in contact.
-    pub(super) fn factor_nodes(self, nodes: usize, contact: usize) -> usize {
-        match self {
-            Self::Cholesky => contact,
-            Self::Iterative => 0,
-            Self::Auto => asperity::loading::greatest_factor(nodes, contact),
-        }
-    }
-
     pub(super) fn make(self) -> Box<dyn LinearUpdater> {
         match self {
             Self::Auto => Box::new(Handover::new()),

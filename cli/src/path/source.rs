@@ -57,7 +57,7 @@ pub(super) struct Generated {
 impl Generated {
     /// Its shortest wave has so many cells that the grid resolves it, unless another one is asked for.
     pub(super) fn new(options: &Options) -> Result<Self, Failure> {
-        options.reading.only_sides("a generated surface: use it with --surface FILE")?;
+        options.reading.only_sides()?;
         let nodes = options.nodes.unwrap_or(NODES);
         let seed = options.seed.unwrap_or(SEED);
         let side = options.reading.side.unwrap_or(SIDE);

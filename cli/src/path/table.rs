@@ -9,7 +9,7 @@ use super::job::Job;
 use crate::columns::{Column, print as print_columns};
 use crate::resolution::Resolution;
 use asperity_cli::half_space::is_of_mean_planes;
-use asperity_cli::number::{quantity, scientific};
+use asperity_cli::number::{counted, quantity, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::{say, speech};
 
@@ -26,7 +26,7 @@ pub(super) fn print(
     let Some(last) = states.last().filter(|_| !speech::is_quiet()) else {
         return Ok(());
     };
-    say!("{} states in {seconds:.2} s", states.len());
+    say!("{} in {seconds:.2} s", counted(states.len(), "state"));
     if let Some(end) = solver.end() {
         say!("ended by: {}", reason(end));
     }

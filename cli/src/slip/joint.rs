@@ -1,7 +1,6 @@
 //! The joint that a command line asks for, and its curves.
 
 use asperity::bed::Bed;
-use asperity::kernel::KernelOrigin;
 use asperity::record::LoadingRecord;
 use asperity::slip::{Friction, PartialSlip, SlipCycle, SlipState};
 use asperity::{Boundary, Error, SlipError};
@@ -45,7 +44,7 @@ impl<'a> Joint<'a> {
         options: &Options,
     ) -> Result<Self, Failure> {
         let failed = |error| Failure::new("cannot shear the joint", error);
-        let (friction, bodies) = friction(options)?;
+        let (friction, bodies) = friction(options, record)?;
         let load = options.load.unwrap_or(bed.last_load());
         if load == 0.0 {
             return Err(Failure::request("the path carries no load: there is nothing to shear"));
@@ -74,7 +73,11 @@ impl<'a> Joint<'a> {
     }
 }
 
-fn friction(options: &Options) -> Result<(Friction, Option<Bodies>), Failure> {
+/// Of the bodies given, or else of those of the record.
+fn friction(
+    options: &Options,
+    record: &LoadingRecord,
+) -> Result<(Friction, Option<Bodies>), Failure> {
     let failed = |error| Failure::new("invalid friction", error);
     match (options.compliance_ratio, options.material) {
         (None, Some(first)) => {
@@ -84,10 +87,17 @@ fn friction(options: &Options) -> Result<(Friction, Option<Bodies>), Failure> {
                 Friction::between(options.friction, first.elastic(), second).map_err(failed)?;
             Ok((friction, Some(bodies)))
         }
-        (ratio, _) => {
-            // One of the two is required.
-            let ratio = ratio.unwrap_or(1.0);
-            Ok((Friction::new(options.friction, ratio).map_err(failed)?, None))
+        (Some(ratio), _) => Ok((Friction::new(options.friction, ratio).map_err(failed)?, None)),
+        (None, None) => {
+            let [first, rest @ ..] = record.bodies() else {
+                return Err(Failure::request(
+                    "the record does not know its bodies: give --material and --against, or --compliance-ratio",
+                ));
+            };
+            let second = rest.first().copied();
+            let friction = Friction::between(options.friction, *first, second).map_err(failed)?;
+            let (_, bodies) = Bodies::of_record(record).map_err(failed)?;
+            Ok((friction, Some(bodies)))
         }
     }
 }
@@ -148,7 +158,7 @@ fn warnings(slip: &PartialSlip, cycle: &SlipCycle) -> Vec<String> {
 
 /// That the path is of other bodies.
 fn of_modulus(record: &LoadingRecord, bodies: &Bodies) -> Option<String> {
-    let e_star = modulus(record)?;
+    let e_star = record.kernel().origin.composite_modulus()?;
     let is_same = (bodies.e_star / e_star - 1.0).abs() < SAME_MODULUS;
     (!is_same).then(|| {
         format!(
@@ -157,14 +167,4 @@ fn of_modulus(record: &LoadingRecord, bodies: &Bodies) -> Option<String> {
             quantity(bodies.e_star, "Pa", 4)
         )
     })
-}
-
-fn modulus(record: &LoadingRecord) -> Option<f64> {
-    match record.kernel().origin {
-        KernelOrigin::Boussinesq { e_star }
-        | KernelOrigin::PeriodicBoussinesq { e_star }
-        | KernelOrigin::SemiPeriodicBoussinesq { e_star, .. }
-        | KernelOrigin::Spectral { e_star } => Some(e_star),
-        _ => None,
-    }
 }

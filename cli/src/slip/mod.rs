@@ -35,7 +35,7 @@ use joint::Joint;
 /// The theory is exact for bodies of one material, or of Poisson's ratio 1/2 against a rigid one, but for some per cent of the
 /// stiffness; see docs/joints_that_slip.md. The dissipation is that of a cycle, and not of the first loading.
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("compliance").required(true).args(["compliance_ratio", "material"])))]
+#[command(group(ArgGroup::new("compliance").args(["compliance_ratio", "material"])))]
 pub(crate) struct Options {
     /// File that `asperity path --record` has written
     #[arg(value_name = "FILE.npz")]
@@ -57,7 +57,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, value_parser = positive)]
     compliance_ratio: Option<f64>,
 
-    /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3)
+    /// One body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3) [default: both bodies of the
+    /// record, if it knows them]
     #[arg(long, value_name = "NAME|E,NU")]
     material: Option<Material>,
 

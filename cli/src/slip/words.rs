@@ -1,7 +1,7 @@
 //! What is printed.
 
 use asperity::kernel::KernelOrigin;
-use asperity_cli::number::{area, quantity};
+use asperity_cli::number::{area, counted, quantity};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
@@ -45,7 +45,10 @@ pub(super) fn print(joint: &Joint, sheared: Option<&Sheared>) {
     } else {
         ""
     };
-    say!("path          {} states on {nx} x {ny} nodes{periodic}", joint.record.states().len());
+    say!(
+        "path          {} on {nx} x {ny} nodes{periodic}",
+        counted(joint.record.states().len(), "state")
+    );
     say!("bodies        {}", joint.bodies);
     let beta = match friction.dundurs_beta() {
         Some(beta) => format!(", Dundurs' β {beta:.3}"),
@@ -75,8 +78,16 @@ pub(super) fn print(joint: &Joint, sheared: Option<&Sheared>) {
         quantity(state.interfacial_displacement, "m", 4)
     );
     say!("  tangent stiffness    {}", quantity(state.tangential_stiffness, "N/m", 4));
-    say!("  sticks               {} nodes, {}", state.stick_nodes, area(state.stick_area, 4));
-    say!("  slips                {} nodes, {}", state.slipping_nodes, area(state.slip_area, 4));
+    say!(
+        "  sticks               {}, {}",
+        counted(state.stick_nodes, "node"),
+        area(state.stick_area, 4)
+    );
+    say!(
+        "  slips                {}, {}",
+        counted(state.slipping_nodes, "node"),
+        area(state.slip_area, 4)
+    );
     say!("in a steady cycle between -T and T:");
     say!("  dissipation          {} a cycle", quantity(cycle.dissipation, "J", 4));
     say!("  secant stiffness     {}", quantity(cycle.secant_stiffness, "N/m", 4));

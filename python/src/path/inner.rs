@@ -56,17 +56,21 @@ enum Source {
 pub(super) struct Inner {
     source: Source,
     pub(super) history: Arc<loading::History>,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that a record knows.
+    pub(super) bodies: Vec<(f64, f64)>,
 }
 
 impl Inner {
     pub(super) fn live(engine: impl Engine + 'static) -> Self {
-        Self { source: Source::Live(Box::new(engine)), history: Arc::default() }
+        Self { source: Source::Live(Box::new(engine)), history: Arc::default(), bodies: Vec::new() }
     }
 
     pub(super) fn of_record(record: LoadingRecord, resume: Resume) -> Result<Self, Error> {
         let replay = Box::new(record.replay_on(&*resume.kernel)?);
         let history = Arc::new(record.history().clone());
-        Ok(Self { source: Source::Record { record: Box::new(record), replay, resume }, history })
+        let bodies = record.bodies().to_vec();
+        let source = Source::Record { record: Box::new(record), replay, resume };
+        Ok(Self { source, history, bodies })
     }
 
     /// What computes fields.
@@ -174,7 +178,9 @@ impl Inner {
     /// The record of the states so far.
     pub(super) fn record(&self) -> Result<LoadingRecord, Error> {
         match &self.source {
-            Source::Live(engine) => engine.record((*self.history).clone()),
+            Source::Live(engine) => {
+                engine.record((*self.history).clone())?.with_bodies(&self.bodies)
+            }
             Source::Record { record, .. } => Ok((**record).clone()),
         }
     }

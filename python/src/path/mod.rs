@@ -97,6 +97,11 @@ impl LoadingPath {
         }
     }
 
+    /// Those that the record of the path knows.
+    pub(crate) fn elastic_bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
+        self.lock(py).bodies.clone()
+    }
+
     /// Composite modulus, if it is known.
     pub(crate) fn modulus(&self) -> Option<f64> {
         self.e_star
@@ -314,6 +319,12 @@ impl LoadingPath {
     #[getter]
     fn e_star(&self) -> Option<f64> {
         self.e_star
+    }
+
+    /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if the record of the path knows them: of one if the other is rigid.
+    #[getter]
+    fn bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
+        self.elastic_bodies(py)
     }
 
     /// Whether the half-space repeats with the sides of the surface.
