@@ -13,6 +13,17 @@ pub enum Carrier {
     Heat,
 }
 
+impl Carrier {
+    /// The name of its conductance in tables: `thermal_conductance` or `electrical_conductance`.
+    #[must_use]
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Heat => "thermal_conductance",
+            Self::Current => "electrical_conductance",
+        }
+    }
+}
+
 /// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally the gap in parallel.
 ///
 /// See [`contact_conductance`] for what the formula assumes, and which stiffness K it takes: the contact stiffness on a free

@@ -256,13 +256,11 @@ fn what_is_not_known_is_refused() {
     assert_eq!(states, before);
 }
 
+/// A column of a table.
+type Column = fn(&InterfaceRow) -> f64;
+
 /// Linear interpolation as a finite element program does it.
-fn between(
-    rows: &[InterfaceRow],
-    x: fn(&InterfaceRow) -> f64,
-    y: fn(&InterfaceRow) -> f64,
-    at: f64,
-) -> f64 {
+fn between(rows: &[InterfaceRow], x: Column, y: Column, at: f64) -> f64 {
     let after = rows.partition_point(|row| x(row) < at).clamp(1, rows.len() - 1);
     let (a, b) = (&rows[after - 1], &rows[after]);
     y(a) + (y(b) - y(a)) * ((at - x(a)) / (x(b) - x(a)))
@@ -305,7 +303,7 @@ fn tables_reproduce_paths_that_yield() {
                 let error = (found - pressure).abs() / pressure.max(1e-3 * greatest);
                 assert!(error <= tolerance * (1.0 + 1e-6), "state {}: {error}", state.step);
                 let expected = heat().of_interface(&state.contact).unwrap().unwrap() / area;
-                let columns: [(fn(&InterfaceRow) -> f64, f64); 2] = [
+                let columns: [(Column, f64); 2] = [
                     (|row| row.conductance.unwrap(), expected),
                     (
                         |row| row.tangential_stiffness.unwrap(),
