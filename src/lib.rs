@@ -125,7 +125,7 @@ pub use asperity_surfaces::{
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{BedError, CreepError, Error, KernelError, SlipError, UpdaterError};
+pub use error::{BedError, CreepError, Error, JointError, KernelError, SlipError, UpdaterError};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,

@@ -36,7 +36,8 @@ use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
 use crate::{
-    BedError, Error, FileError, Grid, KernelError, Problem, SlipError, UpdaterError, Warning,
+    BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError, UpdaterError,
+    Warning,
 };
 
 /// Compiles for types that can be sent and shared.
@@ -47,7 +48,7 @@ macro_rules! send_and_sync {
 }
 
 send_and_sync!(Grid, Problem, Warning);
-send_and_sync!(Error, FileError, BedError, KernelError, SlipError, UpdaterError);
+send_and_sync!(Error, FileError, BedError, JointError, KernelError, SlipError, UpdaterError);
 send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
 send_and_sync!(
     FixedLoadSolution,

@@ -37,6 +37,44 @@ fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
 }
 
+/// The contact conducts as where unloading begins, in path.csv and in the table; the files of a record that goes on have the same columns.
+#[test]
+fn what_yields_conducts_as_well() -> Done {
+    let folder = Scratch::new("hardness_conducts")?;
+    let joint = "--conductivity 50,50 --fe-table csv --friction 0.2 --compliance-ratio 1.2";
+    let line = format!(
+        "path --nodes 32 --mean-pressure 5e8 --hardness 2e9 --unload --record path.npz {joint}"
+    );
+    finished(&folder.0, &line)?;
+    let found = numbers(&folder.join("out/path.csv"), "thermal_conductance")?;
+    assert!(found.windows(2).all(|pair| pair[0] > 0.0 && pair[0] <= pair[1]));
+    // Steel against a rigid body.
+    let e_star = 210e9 / (1.0 - 0.3 * 0.3);
+    let last = |file: &str, name: &str| -> Result<f64, Box<dyn Error>> {
+        Ok(*numbers(&folder.join(file), name)?.last().ok_or("no line")?)
+    };
+    let first = |name: &str| -> Result<f64, Box<dyn Error>> {
+        Ok(numbers(&folder.join("out/unloading.csv"), name)?[0])
+    };
+    // Two factors of condition numbers of 10³.
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-10;
+    let e_star_times_rho = e_star * 0.04;
+    let expected = 2.0 * first("contact_stiffness")? / e_star_times_rho;
+    assert!(near(found[found.len() - 1], expected), "{} {expected}", found[found.len() - 1]);
+    let interfacial = first("interfacial_stiffness")? / 1e-4;
+    let table = "out/interface.csv";
+    assert!(near(last(table, "thermal_conductance")?, 2.0 * interfacial / e_star_times_rho));
+    assert!(near(last(table, "tangential_stiffness")?, interfacial / 1.2));
+    finished(&folder.0, &format!("path --resume path.npz {joint} --out again"))?;
+    for file in ["path.csv", "interface.csv"] {
+        let [a, b] = ["out", "again"].map(|name| fs::read(folder.join(&format!("{name}/{file}"))));
+        assert_eq!(a?, b?, "{file}");
+    }
+    let line = "path --nodes 32 --hardness 2e9 --conductivity 50 --unresolved-roughness 1e-8";
+    is_refused(&run(&folder.0, line)?, &["residual_surface.npy"]);
+    Ok(())
+}
+
 /// Events of both kinds; the way back begins at the last state, and its surface is one to be read again: pressed by the same load it
 /// is in contact with as many nodes.
 #[test]

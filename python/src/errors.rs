@@ -5,7 +5,8 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use asperity::{
-    BedError, CreepError, Error, FileError, KernelError, SlipError, SurfaceError, UpdaterError,
+    BedError, CreepError, Error, FileError, JointError, KernelError, SlipError, SurfaceError,
+    UpdaterError,
 };
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -251,6 +252,7 @@ fn describe(error: &Error) -> Described {
         Error::Bed(error) => of_bed(error),
         Error::Creep(error) => of_creep(error),
         Error::Slip(error) => of_slip(error),
+        Error::Joint(error) => of_joint(error),
         Error::Surface(error) => of_surface(error),
         Error::File(error) => of_file(error),
         // Those that come to be later have their words.
@@ -351,6 +353,19 @@ fn of_slip(error: &SlipError) -> Described {
             (VALUE, "WithinPathError", numbers![change, approach_error])
         }
         _ => (VALUE, "Slip", Vec::new()),
+    }
+}
+
+fn of_joint(error: &JointError) -> Described {
+    match error {
+        JointError::NoUnloadingStiffness { yielded_nodes, contact_nodes } => {
+            (VALUE, "NoUnloadingStiffness", numbers![yielded_nodes, contact_nodes])
+        }
+        JointError::BoundsWithYielding { step } => (VALUE, "BoundsWithYielding", numbers![step]),
+        JointError::NoFunction { step, quantity, value, interpolated, tolerance } => {
+            (VALUE, "NoFunction", numbers![step, quantity, value, interpolated, tolerance])
+        }
+        _ => (VALUE, "Joint", Vec::new()),
     }
 }
 

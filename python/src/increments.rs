@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use asperity::Error;
 use asperity::bed::Bed;
-use asperity::loading;
+use asperity::{Error, LoadingState, loading};
 use pyo3::prelude::*;
 
 use crate::errors::{Failure, Fallible};
@@ -40,6 +39,25 @@ impl Increments {
     /// The bed of the path.
     pub(crate) fn bed(&self) -> Result<Bed<'_>, Error> {
         Bed::new(&self.history)
+    }
+
+    /// Its states with the stiffness on unloading, if it is a path on which nodes may yield.
+    pub(crate) fn with_unloading_stiffness(
+        &self,
+        py: Python<'_>,
+    ) -> Fallible<Arc<loading::History>> {
+        let has_hardness = |state: &LoadingState| state.contact.plastic.is_some();
+        match &self.path {
+            Some(path) if self.history.states().iter().any(has_hardness) => {
+                let mut states = self.history.states().to_vec();
+                let states = path.bind(py).get().computed(py, |engine| {
+                    engine.add_unloading_stiffness(&mut states)?;
+                    Ok(states)
+                })?;
+                Ok(Arc::new(states.into_iter().collect()))
+            }
+            _ => Ok(Arc::clone(&self.history)),
+        }
     }
 
     /// E* of the path, if it is known.

@@ -1,5 +1,7 @@
 //! Conductance of joints, and their laws as tables for finite elements.
 
+use std::sync::Arc;
+
 use asperity::joint::{self, Carrier, Conduction, FeProgram, InterfaceRow};
 use asperity::{ContactState, Error};
 use numpy::PyArray1;
@@ -39,6 +41,9 @@ fn conduction(
 
 /// Conductance at each state of a path [W/K or S], by Barber's relation to the stiffness, ``1/R = 2 K / (rho E*)``.
 ///
+/// Nodes that have yielded conduct as well: with a hardness K is the stiffness on unloading, of all nodes in contact, which costs a factor
+/// of the largest contact at each call. It needs the path.
+///
 /// Parameters
 /// ----------
 /// path : LoadingPath or History
@@ -73,12 +78,15 @@ fn conductance<'py>(
     let of = |contact: &ContactState| {
         if interface { conduction.of_interface(contact) } else { conduction.of(contact) }
     };
-    let states = increments.history.states().iter();
+    let history = increments.with_unloading_stiffness(py)?;
+    let states = history.states().iter();
     let values = states.map(|state| Ok(of(&state.contact)?.unwrap_or(f64::NAN)));
     Ok(column(py, values.collect::<Result<_, Error>>()?))
 }
 
 /// Barber's bounds of the conductance at each state, for a surface with more roughness than the grid resolves.
+///
+/// Paths on which nodes yield are refused: ``load_path(path.residual_surface(), ...)`` is elastic, and has bounds.
 ///
 /// Parameters
 /// ----------
@@ -157,7 +165,11 @@ fn interface_table(
     tolerance: f64,
 ) -> Fallible<InterfaceTable> {
     let increments = Increments::of(path)?;
-    let mut builder = joint::InterfaceTable::builder(&increments.history).tolerance(tolerance);
+    let history = match (resistivity, friction) {
+        (None, None) => Arc::clone(&increments.history),
+        _ => increments.with_unloading_stiffness(py)?,
+    };
+    let mut builder = joint::InterfaceTable::builder(&history).tolerance(tolerance);
     if let Some(resistivity) = resistivity {
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
         builder = builder.conduction(made);
@@ -187,8 +199,8 @@ impl InterfaceTable {
     /// Returns
     /// -------
     /// dict of str to ndarray
-    ///     ``pressure`` [Pa], ``overclosure`` [m]; if asked for ``conductance`` [W/(m² K) or S/m²], ``tangential_stiffness``
-    ///     [Pa/m] and ``slip_limit`` [Pa].
+    ///     ``pressure`` [Pa], ``overclosure`` [m]; if asked for ``thermal_conductance`` [W/(m² K)] or
+    ///     ``electrical_conductance`` [S/m²], ``tangential_stiffness`` [Pa/m] and ``slip_limit`` [Pa].
     fn columns<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyDict>> {
         let all = self.table.rows();
         let columns = PyDict::new(py);
@@ -198,7 +210,9 @@ impl InterfaceTable {
         };
         put("pressure", |row| Some(row.pressure))?;
         put("overclosure", |row| Some(row.overclosure))?;
-        put("conductance", |row| row.conductance)?;
+        if let Some(carrier) = self.table.carrier() {
+            put(carrier.column(), |row| row.conductance)?;
+        }
         put("tangential_stiffness", |row| row.tangential_stiffness)?;
         put("slip_limit", |row| row.slip_limit)?;
         Ok(columns)

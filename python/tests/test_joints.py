@@ -54,7 +54,7 @@ def test_tables(path: asp.LoadingPath) -> None:
     history = path.history
     table = asp.interface_table(path, resistivity=0.05, friction=0.3, compliance_ratio=1.2, tolerance=0.01)
     columns = table.columns()
-    assert list(columns) == ["pressure", "overclosure", "conductance", "tangential_stiffness", "slip_limit"]
+    assert list(columns) == ["pressure", "overclosure", "thermal_conductance", "tangential_stiffness", "slip_limit"]
     assert len(table) == len(columns["pressure"]) < len(history) // 4
     np.testing.assert_allclose(columns["slip_limit"], 0.3 * columns["pressure"], rtol=1e-12)
     # Linear interpolation is as near as was asked for.
@@ -62,7 +62,7 @@ def test_tables(path: asp.LoadingPath) -> None:
     whole = asp.conductance(path, 0.05, interface=True) / area
     pressure = history.load / area
     inside = (pressure > columns["pressure"][1]) & np.isfinite(whole)
-    between = np.interp(pressure[inside], columns["pressure"], columns["conductance"])
+    between = np.interp(pressure[inside], columns["pressure"], columns["thermal_conductance"])
     np.testing.assert_allclose(between, whole[inside], rtol=0.0101)
     assert list(asp.interface_table(history).columns()) == ["pressure", "overclosure"]
     # Every row is in every text: the last overclosure, with the twelve digits or so that they have.
@@ -132,3 +132,34 @@ def test_the_joints_of_the_program(periodic: bool, program: Callable[..., str], 
     for kind, file in FILES.items():
         program("path", *options, *laws, "--fe-table", kind, "--out", tmp_path / kind)
         assert made.text(kind) == (tmp_path / kind / file).read_text(encoding="utf-8"), kind  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_joints_that_yield(periodic: bool, program: Callable[..., str], tmp_path: Path) -> None:
+    """All nodes in contact conduct, as where unloading begins; the same numbers as in the files of the program, bit for bit."""
+    options = ["--nodes", 32, "--mean-pressure", 5e8, "--hardness", 2e9, *(["--periodic", "love"] if periodic else [])]
+    e_star = asp.composite_modulus("steel")
+    steel = asp.HalfSpace(e_star, boundary="love" if periodic else "free")
+    path = asp.load_path(asp.example_surface(nodes=32), steel, mean_pressure=5e8, hardness=2e9)
+    history = path.run(check=False)
+    assert history.yielded_nodes[-1] > 100
+    found = asp.conductance(path, 0.04)
+    back = path.unload().columns()
+    stiffness = back["interfacial_stiffness" if periodic else "contact_stiffness"][0]
+    # Two factors of condition numbers of 1e3.
+    assert found[-1] == pytest.approx(2.0 * stiffness / (0.04 * e_star), rel=1e-10)
+    assert (np.diff(found) >= 0.0).all() and found[0] > 0.0
+    program("path", *options, "--conductivity", "50,50", "--out", tmp_path)
+    np.testing.assert_array_equal(found, csv(tmp_path / "path.csv")["thermal_conductance"])
+    laws = ["--conductivity", "50,50", "--friction", "0.2", "--compliance-ratio", "1.21"]
+    made = asp.interface_table(path, resistivity=0.04, friction=0.2, compliance_ratio=1.21)
+    program("path", *options, *laws, "--fe-table", "csv", "--out", tmp_path)
+    assert made.text("csv") == (tmp_path / "interface.csv").read_text(encoding="utf-8")
+    columns = made.columns()
+    whole = asp.conductance(path, 0.04, interface=True) / np.prod(path.size)
+    assert columns["thermal_conductance"][-1] == pytest.approx(whole[-1], rel=1e-12)
+    # A history has no influence matrix to take it from.
+    with pytest.raises(errors.AsperityError, match="add_unloading_stiffness"):
+        asp.conductance(history, 0.04, e_star=e_star)
+    with pytest.raises(errors.AsperityError, match="residual"):
+        asp.conductance_bounds(path, 0.04, 1e-8)

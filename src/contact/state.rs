@@ -60,6 +60,12 @@ pub struct PlasticState {
     pub volume_per_load: f64,
     /// The same of the work \[m\].
     pub work_per_load: f64,
+    /// Normal stiffness dW/dδ on *unloading* \[N/m\]: of all nodes in contact, also those that have yielded. It is what conducts. `None` on a
+    /// periodic half-space, and unless it was asked for:
+    /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness).
+    pub contact_unloading_stiffness: Option<f64>,
+    /// The same for the interfacial stiffness −dW/dḡ \[N/m\]: infinite in full contact. `None` unless it was asked for.
+    pub interfacial_unloading_stiffness: Option<f64>,
 }
 
 impl ContactState {

@@ -2,6 +2,7 @@
 
 mod bed;
 mod creep;
+mod joint;
 mod kernel;
 mod slip;
 mod updater;
@@ -11,6 +12,7 @@ use thiserror::Error;
 
 pub use bed::BedError;
 pub use creep::CreepError;
+pub use joint::JointError;
 pub use kernel::KernelError;
 pub use slip::SlipError;
 pub use updater::UpdaterError;
@@ -289,6 +291,10 @@ pub enum Error {
     /// A tangential load that friction does not bear.
     #[error(transparent)]
     Slip(#[from] SlipError),
+
+    /// A joint without a conductance, a stiffness or a table.
+    #[error(transparent)]
+    Joint(#[from] JointError),
 
     /// A surface, a grid or a map that is not what it should be.
     #[error(transparent)]

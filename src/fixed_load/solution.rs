@@ -71,8 +71,7 @@ impl Plastic {
             yielded_area_fraction: self.yielded_nodes() as f64 / grid.nodes() as f64,
             volume: self.volume,
             work: self.work,
-            volume_per_load: 0.0,
-            work_per_load: 0.0,
+            ..PlasticState::default()
         }
     }
 

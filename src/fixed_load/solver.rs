@@ -140,6 +140,23 @@ impl FixedLoadSolver {
         Tangent::default().complete(finest, &self.settings, solution)
     }
 
+    /// Adds the stiffnesses on unloading to a solution of this solver in which nodes have yielded:
+    /// [`contact_unloading_stiffness`](crate::contact::PlasticState::contact_unloading_stiffness) and
+    /// [`interfacial_unloading_stiffness`](crate::contact::PlasticState::interfacial_unloading_stiffness). Others unload as they load.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::add_stiffness`].
+    pub fn add_unloading_stiffness(
+        &mut self,
+        solution: &mut FixedLoadSolution,
+    ) -> Result<(), Error> {
+        self.grid().check_shape(solution.contact_map.shape())?;
+        self.hierarchy.take_convolutions();
+        let finest = &mut self.hierarchy.finest;
+        Tangent::default().add_unloading(finest, &self.settings, solution)
+    }
+
     fn stepper(&mut self) -> Stepper<'_> {
         Stepper::new(&self.settings, &mut self.hierarchy, self.hardness.as_ref())
     }

@@ -77,10 +77,7 @@ impl Tangent {
         let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
         let nodes = level.grid.nodes();
         let displacement = &self.displacement;
-        // Nodes in contact are left out: then full contact is exact.
-        let closing =
-            sum_over(nodes, |node| if in_contact[node] { 0.0 } else { 1.0 - displacement[node] });
-        let stiffness = level.grid.cell_area() * solved.unit_unit;
+        let [stiffness, interfacial] = self.stiffnesses(level, &solved, in_contact);
         let (nx, ny) = level.grid.shape();
         let rates = self.rate.iter().map(|rate| rate / stiffness);
         solution.pressure_rate = DMatrix::from_iterator(nx, ny, rates);
@@ -88,7 +85,7 @@ impl Tangent {
             None => Some(stiffness),
             Some(_) => None,
         };
-        solution.state.interfacial_stiffness = Some(stiffness / (closing / nodes as f64));
+        solution.state.interfacial_stiffness = Some(interfacial);
         if let (Some(state), Some(plastic)) = (&mut solution.state.plastic, &solution.plastic) {
             let yielded = plastic.yielded_map.as_slice();
             let sinks = |node: usize| if yielded[node] { 1.0 - displacement[node] } else { 0.0 };
@@ -100,6 +97,43 @@ impl Tangent {
         solution.effort.stiffness_iterations = solved.iterations;
         solution.effort.convolutions += level.operator.take_convolutions();
         Ok(())
+    }
+
+    /// Adds the stiffnesses of all nodes in contact, on unloading, to a solution with a hardness.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::complete`].
+    pub(super) fn add_unloading(
+        &mut self,
+        level: &mut Level,
+        settings: &Settings,
+        solution: &mut FixedLoadSolution,
+    ) -> Result<(), Error> {
+        let in_contact = solution.contact_map.as_slice();
+        let count = in_contact.iter().filter(|is_in| **is_in).count();
+        Error::require_positive("number of nodes in contact", count as f64)?;
+        let Some(plastic) = &mut solution.state.plastic else {
+            return Ok(());
+        };
+        level.choose_contact(|node, _, _| in_contact[node])?;
+        let solved = inside(|| level.in_gauge(|level| self.solve(level, settings)))?;
+        let [stiffness, interfacial] = self.stiffnesses(level, &solved, in_contact);
+        plastic.contact_unloading_stiffness = level.gauge.is_none().then_some(stiffness);
+        plastic.interfacial_unloading_stiffness = Some(interfacial);
+        solution.effort.stiffness_iterations += solved.iterations;
+        solution.effort.convolutions += level.operator.take_convolutions();
+        Ok(())
+    }
+
+    /// dW/dδ in the gauge of the level, and −dW/dḡ.
+    fn stiffnesses(&self, level: &Level, solved: &Solved, in_contact: &[bool]) -> [f64; 2] {
+        let (nodes, displacement) = (level.grid.nodes(), &self.displacement);
+        // Nodes in contact are left out: then full contact is exact.
+        let closing =
+            sum_over(nodes, |node| if in_contact[node] { 0.0 } else { 1.0 - displacement[node] });
+        let stiffness = level.grid.cell_area() * solved.unit_unit;
+        [stiffness, stiffness / (closing / nodes as f64)]
     }
 
     /// Solves `C_II y₂ = e` on the contact set, from the tangent of another one if it is known.

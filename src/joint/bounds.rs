@@ -2,7 +2,7 @@
 
 use super::Conduction;
 use crate::loading::History;
-use crate::{Error, LoadingState};
+use crate::{Error, JointError, LoadingState};
 
 /// Between what the conductance of a rougher surface lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +32,9 @@ impl Conduction {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or NaN.
+    /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or NaN;
+    /// [`JointError::BoundsWithYielding`](crate::JointError) for a path on which nodes yield: its approach is not that of one elastic shape. The contact
+    /// that is left conducts as the elastic one of the residual surface, whose path has bounds.
     pub fn bounds(
         &self,
         history: &History,
@@ -41,6 +43,12 @@ impl Conduction {
         let is_one = (0.0..f64::INFINITY).contains(&unresolved);
         Error::require("unresolved roughness", unresolved, is_one, "finite and not negative")?;
         let states = history.states();
+        let has_yielded = |state: &LoadingState| {
+            state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)
+        };
+        if let Some(state) = states.iter().find(|state| has_yielded(state)) {
+            return Err(JointError::BoundsWithYielding { step: state.step }.into());
+        }
         let points: Vec<(f64, f64)> = states.iter().map(compression).collect();
         let stiffness = |slope: f64| if slope > 0.0 { 1.0 / slope } else { f64::INFINITY };
         let bounds = states.iter().enumerate().map(|(k, state)| {

@@ -1,7 +1,7 @@
 //! The conductance of a contact, and of the gap beside it.
 
 use crate::reference::contact_conductance;
-use crate::{ContactState, Error};
+use crate::{ContactState, Error, JointError};
 
 /// What is conducted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -11,6 +11,17 @@ pub enum Carrier {
     Current,
     /// Heat: resistivities in m K/W, conductances in W/K.
     Heat,
+}
+
+impl Carrier {
+    /// The name of its conductance in tables: `thermal_conductance` or `electrical_conductance`.
+    #[must_use]
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Heat => "thermal_conductance",
+            Self::Current => "electrical_conductance",
+        }
+    }
 }
 
 /// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally the gap in parallel.
@@ -97,11 +108,17 @@ impl Conduction {
     /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which adds nothing to the bodies, it is
     /// infinite.
     ///
+    /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in contact, which
+    /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness) and
+    /// [`FixedLoadSolver::add_unloading_stiffness`](crate::FixedLoadSolver::add_unloading_stiffness) add to states.
+    ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a stiffness that is negative or NaN.
+    /// [`Error::OutOfRange`] for a stiffness that is negative or NaN; [`JointError::NoUnloadingStiffness`](crate::JointError) if nodes have
+    /// yielded and that stiffness is missing.
     pub fn of(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
-        match contact.contact_stiffness.or(contact.interfacial_stiffness) {
+        let [of_contact, interfacial] = stiffnesses(contact)?;
+        match of_contact.or(interfacial) {
             Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
             None => Ok(None),
         }
@@ -114,7 +131,8 @@ impl Conduction {
     ///
     /// Those of [`Self::of`].
     pub fn of_interface(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
-        match contact.interfacial_stiffness {
+        let [_, interfacial] = stiffnesses(contact)?;
+        match interfacial {
             Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
             None => Ok(None),
         }
@@ -140,5 +158,20 @@ impl Conduction {
             }
             _ => 0.0,
         }
+    }
+}
+
+/// Stiffnesses of the nodes in contact: that of a distant point, if there is one, and the interfacial one. Those of a path are of the
+/// elastic nodes, which are all unless some have yielded.
+pub(super) fn stiffnesses(contact: &ContactState) -> Result<[Option<f64>; 2], Error> {
+    match &contact.plastic {
+        Some(plastic) if plastic.interfacial_unloading_stiffness.is_some() => {
+            Ok([plastic.contact_unloading_stiffness, plastic.interfacial_unloading_stiffness])
+        }
+        Some(plastic) if plastic.yielded_nodes > 0 => {
+            let (yielded_nodes, contact_nodes) = (plastic.yielded_nodes, contact.contact_nodes);
+            Err(JointError::NoUnloadingStiffness { yielded_nodes, contact_nodes }.into())
+        }
+        _ => Ok([contact.contact_stiffness, contact.interfacial_stiffness]),
     }
 }

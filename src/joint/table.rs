@@ -1,12 +1,15 @@
 //! The laws of an interface as a short table.
 
-use super::text::number;
+use super::conduction::stiffnesses;
 use super::{Carrier, Conduction};
 use crate::loading::History;
-use crate::{Error, LoadingState};
+use crate::{Error, JointError, LoadingState};
 
 /// Below this part of the greatest pressure errors are absolute.
 const SMALL: f64 = 1e-3;
+
+/// By which part of itself a number of a table rises at least from row to row: it prints as another one in thirteen digits.
+const RISE: f64 = 1e-11;
 
 /// An interface under one pressure, per nominal area.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,9 +47,12 @@ struct Friction {
 /// It is the interface alone, for a finite element model whose bodies are flat there: what the mean gap closes, and the interfacial
 /// stiffness $`K_i`$ on either half-space. Bulk deformation, and the constriction into the nominal area, are the model's own.
 ///
-/// Rows are states of the path, in strictly rising order of pressure and overclosure; conductance and stiffness never fall. Of all states so many
-/// are left out that linear interpolation between the rows is wrong by no more than the tolerance at any of them: relative to the value, and for
-/// pressures below a thousandth of the greatest one relative to that. In full contact, where the interface is rigid, the table ends.
+/// Rows are states of the path, in strictly rising order of pressure and overclosure: where one of them stays, as the pressure on a plateau of nodes
+/// that have all yielded, it is raised by 10⁻¹¹ of itself. Of all states so many are left out that linear interpolation between the rows is wrong by no
+/// more than the tolerance at any of them: relative to the value, and for pressures below a thousandth of the greatest one relative to that. In full
+/// contact, where the interface is rigid, the table ends.
+///
+/// Conductance and tangential stiffness are those of all nodes in contact, also of those that have yielded: see [`Conduction::of`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterfaceTable {
     rows: Vec<InterfaceRow>,
@@ -90,7 +96,9 @@ impl<'a> InterfaceTableBuilder<'a> {
     /// # Errors
     ///
     /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1 and more, for a path
-    /// with fewer than two rows, and for stiffnesses that are negative or NaN.
+    /// with fewer than two rows, and for stiffnesses that are negative or NaN; [`JointError::NoFunction`] where the mean gap opens so much
+    /// under a greater load that the law is no function of the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and
+    /// conductances or tangential stiffnesses are asked for without the stiffness of [`Conduction::of`].
     pub fn build(self) -> Result<InterfaceTable, Error> {
         let tolerance = Error::require_positive("tolerance of the table", self.tolerance)?;
         Error::require("tolerance of the table", tolerance, tolerance < 1.0, "below 1")?;
@@ -98,8 +106,8 @@ impl<'a> InterfaceTableBuilder<'a> {
             Error::require_positive("coefficient of friction", friction.coefficient)?;
             Error::require_positive("compliance ratio", friction.compliance_ratio)?;
         }
-        let all = self.all()?;
-        let count = all.len();
+        let Points { rising, others, .. } = self.points()?;
+        let count = rising.len();
         let is_one = count > 1;
         Error::require(
             "number of states with their own pressure",
@@ -107,12 +115,8 @@ impl<'a> InterfaceTableBuilder<'a> {
             is_one,
             "two or more",
         )?;
-        let mut rows = thinned(&all, tolerance);
-        // They rise in print too.
-        rows.dedup_by(|row, before| {
-            number(row.pressure) == number(before.pressure)
-                || number(row.overclosure) == number(before.overclosure)
-        });
+        let rows = thinned(&rising, tolerance);
+        others.iter().try_for_each(|(step, row)| check_between(&rows, *step, row, tolerance))?;
         Ok(InterfaceTable {
             rows,
             tolerance,
@@ -121,61 +125,85 @@ impl<'a> InterfaceTableBuilder<'a> {
         })
     }
 
-    /// A row for each state, without those that do not rise.
-    fn all(&self) -> Result<Vec<InterfaceRow>, Error> {
+    /// The states of the path as rows.
+    fn points(&self) -> Result<Points, Error> {
         let states = self.history.states();
         let unloaded = states.first().map_or(0.0, |state| state.contact.mean_gap);
-        let mut rows: Vec<InterfaceRow> = Vec::new();
+        let mut points = Points::default();
         for state in states {
-            let Some(row) = self.row(state, unloaded)? else {
-                continue;
-            };
-            if let Some(last) = rows.last() {
-                let falls = |before: Option<f64>, now: Option<f64>| now < before;
-                if row.overclosure <= last.overclosure && row.pressure <= last.pressure {
-                    // Nodes that touch at once: the last of them has the stiffness of all.
-                    let is_same =
-                        row.overclosure == last.overclosure && row.pressure == last.pressure;
-                    if is_same
-                        && row.tangential_stiffness >= last.tangential_stiffness
-                        && row.conductance >= last.conductance
-                    {
-                        rows.pop();
-                    } else {
-                        continue;
-                    }
-                } else if row.overclosure <= last.overclosure
-                    || row.pressure <= last.pressure
-                    || falls(last.conductance, row.conductance)
-                    || falls(last.tangential_stiffness, row.tangential_stiffness)
-                {
-                    continue;
-                }
+            if let Some(row) = self.row(state, unloaded)? {
+                points.add(state.step, row);
             }
-            rows.push(row);
         }
-        Ok(rows)
+        Ok(points)
     }
 
     /// The row of a state, `None` where it has no finite stiffness.
     fn row(&self, state: &LoadingState, unloaded: f64) -> Result<Option<InterfaceRow>, Error> {
         let contact = &state.contact;
-        let Some(stiffness) = contact.interfacial_stiffness.filter(|k| k.is_finite()) else {
+        if !contact.interfacial_stiffness.is_some_and(f64::is_finite) {
             return Ok(None);
-        };
+        }
         let area = contact.contact_area / contact.contact_area_fraction;
         let pressure = contact.mean_pressure();
         let conductance = match &self.conduction {
             Some(conduction) => conduction.of_interface(contact)?.map(|whole| whole / area),
             None => None,
         };
+        let tangential_stiffness = match self.friction {
+            Some(friction) => {
+                let [_, stiffness] = stiffnesses(contact)?;
+                stiffness.map(|stiffness| stiffness / friction.compliance_ratio / area)
+            }
+            None => None,
+        };
         Ok(Some(InterfaceRow {
             pressure,
             overclosure: unloaded - contact.mean_gap,
             conductance,
-            tangential_stiffness: self.friction.map(|f| stiffness / f.compliance_ratio / area),
+            tangential_stiffness,
             slip_limit: self.friction.map(|f| f.coefficient * pressure),
         }))
+    }
+}
+
+/// The states of a path as rows of a table.
+#[derive(Debug, Default)]
+struct Points {
+    /// In strictly rising order of overclosure and pressure, also in print.
+    rising: Vec<InterfaceRow>,
+    /// What the last one of them had before it was raised.
+    last: [f64; 2],
+    /// Those at which overclosure or pressure falls, with the numbers of their events.
+    others: Vec<(usize, InterfaceRow)>,
+}
+
+impl Points {
+    /// Adds the row of a state.
+    fn add(&mut self, step: usize, row: InterfaceRow) {
+        let place = [row.overclosure, row.pressure];
+        let Some(last) = self.rising.last_mut() else {
+            (self.rising, self.last) = (vec![row], place);
+            return;
+        };
+        if place == self.last {
+            // Nodes that touch at once: the last of them has the stiffness of all.
+            *last = InterfaceRow { overclosure: last.overclosure, pressure: last.pressure, ..row };
+            return;
+        }
+        // On a plateau of nodes that have all yielded the pressure stays what it is. What falls by so little is rounding.
+        let risen = |raised: f64, before: f64, now: f64| {
+            let value = now.max(raised * (1.0 + RISE));
+            (now >= before * (1.0 - RISE) && value > raised).then_some(value)
+        };
+        let overclosure = risen(last.overclosure, self.last[0], row.overclosure);
+        match (overclosure, risen(last.pressure, self.last[1], row.pressure)) {
+            (Some(overclosure), Some(pressure)) => {
+                self.rising.push(InterfaceRow { overclosure, pressure, ..row });
+                self.last = place;
+            }
+            _ => self.others.push((step, row)),
+        }
     }
 }
 
@@ -234,6 +262,35 @@ fn error(
         (found - y).abs() / (tolerance * scale)
     });
     errors.fold(0.0, f64::max)
+}
+
+/// The error of a table at a state that is no row of it, and may lie anywhere between two.
+fn check_between(
+    rows: &[InterfaceRow],
+    step: usize,
+    row: &InterfaceRow,
+    tolerance: f64,
+) -> Result<(), Error> {
+    let greatest = rows.last().map_or(0.0, |row| row.pressure);
+    for (k, quantity) in ["pressure", "conductance", "tangential stiffness"].into_iter().enumerate()
+    {
+        let x = |row: &InterfaceRow| if k == 0 { row.overclosure } else { row.pressure };
+        let after = rows.partition_point(|other| x(other) < x(row)).clamp(1, rows.len() - 1);
+        let ends = [&rows[after - 1], &rows[after]].map(|end| (x(end), end.values()[k]));
+        let ([(x0, Some(y0)), (x1, Some(y1))], Some(value)) = (ends, row.values()[k]) else {
+            continue;
+        };
+        let interpolated = on_line((x0, y0), (x1, y1), x(row));
+        let scale = if k == 0 { value.max(SMALL * greatest) } else { value };
+        // NaN as well.
+        let is_near = (interpolated - value).abs() <= tolerance * scale;
+        if !is_near {
+            return Err(
+                JointError::NoFunction { step, quantity, value, interpolated, tolerance }.into()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// The rows that interpolation needs: the two ends, and always the one between two others at which the error is greatest, until none is too

@@ -143,10 +143,7 @@ impl InterfaceTable {
     fn columns(&self) -> String {
         let mut names = vec!["pressure", "overclosure"];
         if let Some(carrier) = self.carrier() {
-            names.push(match carrier {
-                Carrier::Heat => "thermal_conductance",
-                Carrier::Current => "electrical_conductance",
-            });
+            names.push(carrier.column());
         }
         if self.friction().is_some() {
             names.extend(["tangential_stiffness", "slip_limit"]);

@@ -122,7 +122,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(HeightMap::new(DMatrix::from_iterator(nx, ny, heights))?)
     }
 
-    fn check_reached(&self, state: &LoadingState) -> Result<(), Error> {
+    pub(super) fn check_reached(&self, state: &LoadingState) -> Result<(), Error> {
         let (step, present) = (state.step, self.state.map_or(0, |state| state.step));
         if step > present {
             return Err(Error::StateNotReached { step, present });

@@ -99,6 +99,7 @@ mod sum;
 mod test_chain;
 mod tolerances;
 mod tuning;
+mod unloading;
 mod window;
 mod window_end;
 mod windowed;

@@ -276,6 +276,7 @@ impl PathScalars {
             work: area * plastic.work,
             volume_per_load,
             work_per_load,
+            ..PlasticState::default()
         }
     }
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod conductance;
+mod hardness;
 mod tables;
 
 use asperity::loading::History;

@@ -160,6 +160,18 @@ impl PathFile {
         Ok(Self { edge, conductions, name, part, output, lines, waiting: 0 })
     }
 
+    /// The whole file at once, in place of the one that is there.
+    pub(super) fn write_whole(
+        directory: &Path,
+        edge: ContactEdge,
+        conductions: Vec<Named>,
+        states: &[LoadingState],
+    ) -> Result<(), Failure> {
+        let mut file = Self::create(directory, edge, conductions)?;
+        states.iter().try_for_each(|state| file.write(state))?;
+        file.finish().map(drop)
+    }
+
     /// Adds a state. `{:e}` prints the shortest digits that read back as the same number.
     fn write(&mut self, state: &LoadingState) -> Result<(), Failure> {
         let (ix, iy) = state.node;

@@ -100,7 +100,7 @@ impl Joint {
         if !self.resistivity.is_empty() {
             let sum = self.resistivity.iter().sum();
             let current = Conduction::electrical(e_star, sum).map_err(failed)?;
-            all.push(("electrical_conductance", current));
+            all.push((current.carrier().column(), current));
         }
         if !self.conductivity.is_empty() {
             let sum = self.conductivity.iter().map(|conductivity| 1.0 / conductivity).sum();
@@ -108,7 +108,7 @@ impl Joint {
             if let Some(gap) = self.gap_conductivity {
                 heat = heat.with_gap(gap, self.jump_distance.unwrap_or(0.0)).map_err(failed)?;
             }
-            all.push(("thermal_conductance", heat));
+            all.push((heat.carrier().column(), heat));
         }
         if self.unresolved_roughness.is_some() && all.is_empty() {
             return Err(Failure::request(
@@ -121,6 +121,11 @@ impl Joint {
             ));
         }
         Ok(all)
+    }
+
+    /// Whether anything is asked for that follows from the stiffness of the contact.
+    pub(super) fn needs_stiffness(&self, conductions: &[Named]) -> bool {
+        !conductions.is_empty() || self.friction.is_some()
     }
 
     /// E*/G* of the bodies: `1/G* = Σ (2 − ν) / (4 G)`.
@@ -141,6 +146,12 @@ impl Joint {
     pub(super) fn check(&self, job: &Job) -> Result<Vec<Named>, Failure> {
         if self.friction.is_some() {
             self.compliance_ratio(job.e_star(), job.elastic())?;
+        }
+        if self.unresolved_roughness.is_some() && job.has_hardness() {
+            return Err(Failure::request(
+                "--unresolved-roughness needs an elastic path: the approach of a contact that yields is not that of one shape. What is left of it \
+                 has bounds: give --unload, and follow residual_surface.npy without a hardness to a load beyond the one of interest",
+            ));
         }
         self.conductions(job.e_star())
     }

@@ -141,13 +141,16 @@ fn follow_one(
     panel::register_font()?;
     let settings = job.settings().write(&options.out)?;
     let edge = ContactEdge::new(job.grid(), job.boundary());
-    let file = PathFile::create(&options.out, edge, conductions)?;
+    // The stiffness on unloading, by which a contact conducts that yields, is computed at the end for all states at once.
+    let conducts_at_end = job.has_hardness() && options.joint.needs_stiffness(&conductions);
+    let columns = if conducts_at_end { Vec::new() } else { conductions.clone() };
+    let file = PathFile::create(&options.out, edge, columns)?;
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
     let ended = followed.follow(&job, &mut solver, interrupt);
     let is_interrupted = interrupt.wait_no_longer() && solver.end().is_none();
-    let (states, file) = followed.end();
+    let (mut states, file) = followed.end();
     let seconds = start.elapsed().as_secs_f64();
 
     // Each of these is tried whatever became of the others: nothing computed is lost.
@@ -166,6 +169,15 @@ fn follow_one(
     let record = job.record();
     let mut kept = record.map(|name| save(name, &job, &solver, &states, &[]));
     outcome.written(file.finish());
+    if conducts_at_end {
+        let edge = ContactEdge::new(job.grid(), job.boundary());
+        outcome.note(
+            solver
+                .add_unloading_stiffness(&mut states)
+                .map_err(|error| Failure::new("cannot compute the stiffness on unloading", error))
+                .and_then(|()| PathFile::write_whole(&options.out, edge, conductions, &states)),
+        );
+    }
     match fields::of(&mut solver) {
         Ok(fields) => {
             if let (Some(name), Some(Ok(_))) = (record, &kept) {

@@ -31,6 +31,7 @@ pub(crate) trait Engine: Send + Sync {
     fn contact_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error>;
     fn yielded_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error>;
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
+    fn add_unloading_stiffness(&self, states: &mut [LoadingState]) -> Result<(), Error>;
     fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error>;
     fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
     fn superposed_pressure(&mut self, of: &Superposition, bed: &Bed)
@@ -128,6 +129,10 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
 
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         Self::plastic_depth_at(self, state)
+    }
+
+    fn add_unloading_stiffness(&self, states: &mut [LoadingState]) -> Result<(), Error> {
+        Self::add_unloading_stiffness(self, states)
     }
 
     fn residual_surface_at(&mut self, state: &LoadingState) -> Result<HeightMap, Error> {

@@ -66,6 +66,11 @@ impl RecursiveCholesky {
         updater.saturating_add(WindowFactor::bytes(JOINED))
     }
 
+    /// L⁻¹B, row by row: sums of products of its first n rows are those of the first n nodes.
+    pub(crate) fn border(&self) -> &[[f64; Problem::RHS]] {
+        &self.border
+    }
+
     /// Where the time went so far.
     #[doc(hidden)]
     #[must_use]
