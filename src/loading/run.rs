@@ -407,13 +407,22 @@ impl LoadingRun {
         }
     }
 
-    /// The first node in contact whose pressure at an approach is not a number, or below zero by more than rounding and
+    /// The first of so many nodes in contact whose pressure at an approach is not a number, or below zero by more than rounding and
     /// what goes with an overlap that the solution may leave.
-    pub(super) fn negative_pressure(&self, approach: f64, overlap: f64) -> Option<(usize, f64)> {
-        let mut pressures = self.field.pressures(&self.contact, approach);
-        let greatest = pressures.clone().map(|(_, p)| p).fold(0.0, f64::max);
+    pub(super) fn negative_pressure(
+        &self,
+        count: usize,
+        (approach, overlap): (f64, f64),
+    ) -> Option<(usize, f64)> {
+        let greatest = self.greatest_pressure(approach);
         let most = TOLERANCE * greatest + overlap / self.problem.table().self_influence();
+        let mut pressures = self.field.pressures(&self.contact, approach).take(count);
         pressures.find(|(_, p)| p.is_nan() || *p < -most)
+    }
+
+    pub(super) fn greatest_pressure(&self, approach: f64) -> f64 {
+        let pressures = self.field.pressures(&self.contact, approach);
+        pressures.map(|(_, pressure)| pressure).fold(0.0, f64::max)
     }
 
     /// The greatest y₂.

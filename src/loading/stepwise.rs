@@ -127,7 +127,7 @@ impl Stepwise {
         let approach = run.scalars.approach();
         phase.renew_field(run, approach)?;
         let overlap = WindowTolerances::of(run, phase.tolerance()).overlap(approach);
-        if let Some((node, value)) = run.negative_pressure(approach, overlap) {
+        if let Some((node, value)) = run.negative_pressure(run.contact.len(), (approach, overlap)) {
             return Err(run.not_monotone("pressure", node, value));
         }
         run.scalars.renew_stiffness(run.field.solution());

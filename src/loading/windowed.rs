@@ -1,6 +1,6 @@
 //! Events in windows, of kernels whose contact only grows, with an updater.
 
-use super::tuning::{MULTIPLE, OF_RESIDUAL};
+use super::tuning::{MULTIPLE, OF_RESIDUAL, RECOGNISED, TOLERANCE};
 use std::time::Instant;
 
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
@@ -65,11 +65,16 @@ impl Windowed {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
+        let mark = run.mark();
         run.join(updater, &self.window)?;
         let joined = self.window.events().iter().map(|event| event.position);
         let joined: Vec<usize> = joined.collect();
         if self.growth == ContactGrowth::Monotone {
             self.verify(run, updater)?;
+        }
+        if let Some(error) = self.pulled(run, updater)? {
+            run.roll_back(&mark, |problem, contact| updater.truncate(problem, contact))?;
+            return Err(error);
         }
         self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
         if self.window.events().len() < played {
@@ -189,6 +194,25 @@ impl Windowed {
         Ok(())
     }
 
+    /// The error of a window whose end pulls at a node: contact does not grow as the kernel promises. The next window needs the same solution.
+    fn pulled<U: LinearUpdater>(
+        &self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+    ) -> Result<Option<Error>, Error> {
+        let Some(last) = self.window.events().last() else {
+            return Ok(None);
+        };
+        let end = run.scalars.approach() + last.time;
+        run.renew_field(updater, end)?;
+        let rounding = TOLERANCE * (run.problem.greatest_gap() + end);
+        let most = RECOGNISED * run.greatest_pressure(end)
+            + rounding / run.problem.table().self_influence();
+        let mut pressures = run.field.pressures(&run.contact, end);
+        let pulled = pressures.find(|(_, pressure)| *pressure < -most);
+        Ok(pulled.map(|(node, pressure)| run.not_monotone("pressure", node, pressure)))
+    }
+
     /// Turns the events of the window, which began with `count` nodes in contact, into states.
     fn enqueue(&self, run: &mut LoadingRun, count: usize) -> Result<(), Error> {
         let start = run.scalars.approach();
@@ -215,7 +239,7 @@ impl Windowed {
 /// Whether a pressure or a gap at an approach is negative, beyond rounding. Returns the approach until which none was, as far as the
 /// rates tell.
 fn contradiction(run: &LoadingRun, approach: f64) -> Option<f64> {
-    if run.negative_pressure(approach, 0.0).is_some() {
+    if run.negative_pressure(run.contact.len(), (approach, 0.0)).is_some() {
         return Some(f64::NEG_INFINITY);
     }
     let left = run.contact.order().iter();

@@ -30,6 +30,7 @@ mod semi_periodic;
 mod small_without_factor;
 mod stiff_coats;
 mod strips;
+mod thick_stiff_coats;
 mod ties;
 mod undisturbed;
 mod without_factor;

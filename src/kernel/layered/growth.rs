@@ -1,5 +1,7 @@
 //! What layers let be promised of the growth of contact.
 
+use nalgebra::DMatrix;
+
 use super::body::LayeredBody;
 use crate::Grid;
 use crate::kernel::periodic::Even;
@@ -45,4 +47,31 @@ pub(super) fn greatest_off_diagonal(symbol: &Even) -> f64 {
     let inverse = inverse.inverse_transform();
     let others = inverse.values()[1..].iter().copied();
     others.fold(f64::NEG_INFINITY, f64::max) / inverse.values()[0]
+}
+
+/// What positive elements off the diagonal of an inverse may come to in a row, over the sum of the row. Up to a half is enough for contact to
+/// grow; half of that, since the inverse may be one on a coarse grid.
+const OUTWEIGHED: f64 = 0.25;
+
+/// Whether contact grows by the inverse A of a free kernel on nx × ny nodes, given its coefficients at offsets that are not negative, x
+/// fastest.
+///
+/// With J the nodes out of a contact I, gaps close at the rates w = A_JJ⁻¹ s_J and pressures grow at s_I − A_IJ w, where s are the row
+/// sums of A. Let P be the positive part of A off the diagonal, p its row sums, and p ≤ φ s. Then A − P is an M-matrix with row sums
+/// of (1 − φ) s at least, so that w = (A − P)_JJ⁻¹ (s − P w)_J maps the box 0 ≤ w ≤ W = 1 / (1 − φ) into itself if W p ≤ s, for φ ≤ ½;
+/// and s_I − A_IJ w ≥ s − W p ≥ 0.
+pub(super) fn inverse_keeps_signs((nx, ny): (usize, usize), coefficients: &[f64]) -> bool {
+    let nodes = nx * ny;
+    let along = |a: usize, b: usize| (a % nx).abs_diff(b % nx) + nx * (a / nx).abs_diff(b / nx);
+    let matrix = DMatrix::from_fn(nodes, nodes, |a, b| coefficients[along(a, b)]);
+    let Some(factor) = matrix.cholesky() else {
+        return false;
+    };
+    let inverse = factor.inverse();
+    (0..nodes).all(|node| {
+        let column = inverse.column(node);
+        let others = column.iter().enumerate().filter(|(other, _)| *other != node);
+        let positive: f64 = others.map(|(_, value)| value.max(0.0)).sum();
+        positive <= OUTWEIGHED * column.sum()
+    })
 }

@@ -51,9 +51,11 @@ use crate::{Error, Grid};
 ///
 /// A coat that is stiffer than what it lies on bends over a support, and rises beside it. Contact may then lose nodes as the approach
 /// grows. [`ContactGrowth::Monotone`] is promised where nothing of the kind can happen on the waves of the grid: where the compliance
-/// falls no faster than 1/q and rises no faster than q² (soft coats, layers on a rigid base), and where the inverse of the periodic
-/// kernel has no positive element off the diagonal. With the latter and a periodic boundary gaps are [convex](ContactGrowth::Convex) as well,
-/// unless waves ring. Of other bodies [nothing is promised](ContactGrowth::Unknown): each event is found by itself, releases included.
+/// falls no faster than 1/q and rises no faster than q² (soft coats, layers on a rigid base), and where the inverse of the kernel has no
+/// positive element off the diagonal, or such that its row sums outweigh. With a periodic boundary and none at all gaps are
+/// [convex](ContactGrowth::Convex) as well, unless waves ring. With a free boundary waves longer than the grid count too, which feel what
+/// lies below a coat as thick as the grid is long: its kernel is inverted, on a coarse grid if it has many nodes. Of other bodies
+/// [nothing is promised](ContactGrowth::Unknown): nodes that leave are found as well.
 ///
 /// # Example
 ///
@@ -95,8 +97,14 @@ enum Pressure {
     Waves,
 }
 
-/// Nodes a side of a grid on which the inverse of a kernel is looked at.
+/// Nodes a side of a grid on which the inverse of a periodic kernel is looked at, or so many thicknesses if these are longer: its waves must
+/// feel what lies below.
 const LOOKED_AT: usize = 256;
+const THICKNESSES: f64 = 10.0;
+/// Nodes a side of a grid on which a free kernel is inverted: 20 ms.
+const INVERTED: usize = 16;
+/// In cells of that grid, the thickness from which on the longest waves of the periodic kernel do not tell what longer ones see.
+const THICK: f64 = 1.5;
 
 impl Layered {
     /// With a free boundary.
@@ -107,11 +115,8 @@ impl Layered {
     pub fn free(grid: Grid, body: LayeredBody) -> Result<Self, Error> {
         check_scales(&grid, &body)?;
         let values = free::coefficients(&grid, &body)?;
-        let growth = if growth::is_soft(&grid, &body) || is_inverse_m_matrix(&grid, &body)? {
-            ContactGrowth::Monotone
-        } else {
-            ContactGrowth::Unknown
-        };
+        let grows = growth::is_soft(&grid, &body) || free_contact_grows(&grid, &body, &values)?;
+        let growth = if grows { ContactGrowth::Monotone } else { ContactGrowth::Unknown };
         let coefficients = Coefficients::Free(values);
         Ok(Self { grid, body, growth, mean: MeanDisplacement::default(), coefficients })
     }
@@ -182,10 +187,33 @@ impl Layered {
     }
 }
 
+/// Whether contact grows with a free boundary: by the inverse of the kernel itself on a small grid. On a larger one short waves are looked
+/// at with a periodic boundary, and the long ones on a coarse grid of the same sides, unless layers are so thin that the former tell all.
+fn free_contact_grows(grid: &Grid, body: &LayeredBody, values: &[f64]) -> Result<bool, Error> {
+    let (nx, ny) = grid.shape();
+    let shape = (nx.min(INVERTED), ny.min(INVERTED));
+    if shape == (nx, ny) {
+        return Ok(growth::inverse_keeps_signs(shape, values));
+    }
+    if !is_inverse_m_matrix(grid, body)? {
+        return Ok(false);
+    }
+    let (lx, ly) = grid.sides();
+    let coarse = Grid::new(shape.0, shape.1, lx / shape.0 as f64, ly / shape.1 as f64)?;
+    if body.thickness() < THICK * coarse.dx().max(coarse.dy()) {
+        return Ok(true);
+    }
+    Ok(growth::inverse_keeps_signs(shape, &free::coefficients(&coarse, body)?))
+}
+
 /// Whether the inverse of the periodic kernel on cells of this size is that of an M-matrix, in a gauge that is great enough.
 fn is_inverse_m_matrix(grid: &Grid, body: &LayeredBody) -> Result<bool, Error> {
     let (nx, ny) = grid.shape();
-    let looked_at = Grid::new(nx.min(LOOKED_AT), ny.min(LOOKED_AT), grid.dx(), grid.dy())?;
+    let along = |n: usize, cell: f64| {
+        n.min(LOOKED_AT.max((THICKNESSES * body.thickness() / cell).ceil() as usize))
+    };
+    let (nx, ny) = (along(nx, grid.dx()), along(ny, grid.dy()));
+    let looked_at = Grid::new(nx, ny, grid.dx(), grid.dy())?;
     if grid.cell_aspect() > super::PeriodicBoussinesq::MAX_ASPECT {
         return Ok(false);
     }

@@ -451,10 +451,13 @@ impl Refined {
         run.advance_field(iterations, approach, self.rate_span)?;
         run.scalars.place_at(approach);
         self.survey(run)?;
+        let first = run.contact.len() - joined.len();
+        if !self.may_leave {
+            keeps_growing(run, first, tolerances)?;
+        }
         let overlap = -tolerances.overlap(approach);
         let mut found = Contradictions::default();
         let pressures = run.field.pressures(&run.contact, approach);
-        let first = run.contact.len() - joined.len();
         for (&position, (_, pressure)) in joined.iter().zip(pressures.skip(first)) {
             if pressure * window.schur().entry(position, position) < overlap {
                 found.tension.push(position);
@@ -462,11 +465,8 @@ impl Refined {
         }
         for &(time, node) in &self.ranking {
             // A gap that has closed may open again, where nodes may leave.
-            let may_overlap = time < 0.0 || self.may_leave && time == f64::INFINITY;
-            if !may_overlap {
-                continue;
-            }
-            if run.line(node).gap < overlap {
+            let may_overlap = time < 0.0 || time == f64::INFINITY;
+            if may_overlap && run.line(node).gap < overlap {
                 match window.position(node) {
                     Some(position) if !joined.contains(&position) => found.overlap.push(position),
                     Some(_) => {}
@@ -495,6 +495,19 @@ impl Refined {
         run.rearrange(mark.count, &order)?;
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         states::enqueue(run, window, settled, (mark, time), tolerances)
+    }
+}
+
+/// `Ok` if none of the first `count` nodes in contact is pulled at the present solution: where contact grows they keep what they carry.
+fn keeps_growing(
+    run: &LoadingRun,
+    count: usize,
+    tolerances: &WindowTolerances,
+) -> Result<(), Error> {
+    let approach = run.scalars.approach();
+    match run.negative_pressure(count, (approach, tolerances.overlap(approach))) {
+        Some((node, value)) => Err(run.not_monotone("pressure", node, value)),
+        None => Ok(()),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Nodes that touch together, too many to be watched: a flat punch, a plateau.
 
-use super::Refined;
+use super::{Refined, keeps_growing};
 use crate::Error;
 use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
@@ -43,6 +43,10 @@ impl Refined {
         let mut start = mark.scalars;
         start.advance(approach);
         run.scalars.place_at(approach);
+        if let Err(error) = keeps_growing(run, run.contact.len(), tolerances) {
+            let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
+            return Err(error);
+        }
         self.survey(run)?;
         let [stiffness, closing] = start.missing(&run.scalars);
         let error = start.reported_error(error, start.load_of(stiffness, error));
