@@ -83,6 +83,7 @@ mod gap_field;
 mod history;
 mod limits;
 mod phase;
+mod plastic;
 mod ranking;
 mod refined;
 mod releases;

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::gap_field::{GapField, GapLine};
+use super::plastic::Plastic;
 use super::releases::Releases;
 use super::scalars::PathScalars;
 use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
-use super::yielding::Plastic;
 use crate::contact::{ContactSequence, ContactState};
 use crate::updater::{Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};

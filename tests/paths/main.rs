@@ -19,6 +19,7 @@ mod patches_of_tamaas;
 mod path_properties;
 mod periodic_paths;
 mod physical_mean;
+mod pinned;
 mod problems;
 mod records;
 #[cfg(feature = "io")]

@@ -13,7 +13,6 @@
 
 mod exchange;
 mod pinned;
-mod plastic;
 mod refined;
 mod settled;
 #[cfg(test)]
@@ -23,6 +22,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
+use super::plastic::{Displaced, Plastic};
 use super::run::LoadingRun;
 use super::scalars::{PlasticScalars, Rates};
 use super::state::ContactEvent;
@@ -32,8 +32,6 @@ use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
 use crate::{Error, Problem};
 use exchange::{Exchange, NodeState, SUMS, Watched};
-use plastic::Displaced;
-pub(super) use plastic::Plastic;
 pub(super) use refined::RefinedYielding;
 
 /// Finds events of both kinds in windows.

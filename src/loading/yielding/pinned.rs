@@ -1,9 +1,10 @@
 //! States of a window, pinned to the exact ones at both ends.
 
+use super::Carried;
 use super::exchange::Exchange;
 use super::settled::Settled;
-use super::{Carried, Plastic};
 use crate::Error;
+use crate::loading::plastic::Plastic;
 use crate::loading::run::LoadingRun;
 use crate::loading::scalars::{PathScalars, Rates};
 use crate::loading::state::ContactEvent;

@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
+use super::Trial;
 use super::exchange::{Event, Exchange};
-use super::{Plastic, Trial};
+use crate::loading::plastic::Plastic;
 use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;

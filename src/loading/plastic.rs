@@ -10,7 +10,7 @@ use crate::{Boundary, Error, Grid, Problem};
 ///
 /// They carry their hardness, and are a load on the others: whose contact is elastic, with the initial gap g + C H of that load.
 #[derive(Debug)]
-pub(in crate::loading) struct Plastic {
+pub(super) struct Plastic {
     hardness: Arc<Hardness>,
     /// The problem of the surface, on which nothing has yielded.
     surface: Arc<Problem>,
@@ -40,7 +40,7 @@ impl Displaced {
 
 impl Plastic {
     /// None yet. Returns the problem of the elastic nodes as well.
-    pub(in crate::loading) fn new(hardness: Hardness, problem: Problem) -> (Self, Problem) {
+    pub(super) fn new(hardness: Hardness, problem: Problem) -> (Self, Problem) {
         let nodes = problem.grid().nodes();
         let nothing = vec![0.0; nodes];
         let elastic = problem.under_load(&nothing, &nothing);
@@ -57,22 +57,22 @@ impl Plastic {
     }
 
     /// Bytes on a grid.
-    pub(in crate::loading) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
+    pub(super) fn bytes_on(grid: &Grid, boundary: Boundary) -> usize {
         let fields = 9 * size_of::<f64>() + size_of::<bool>();
         grid.nodes() * fields + Convolution::bytes_on(grid, boundary)
     }
 
-    pub(in crate::loading) fn hardness(&self) -> &Hardness {
+    pub(super) fn hardness(&self) -> &Hardness {
         &self.hardness
     }
 
     /// The problem of the surface, on which nothing has yielded.
-    pub(in crate::loading) fn surface(&self) -> &Problem {
+    pub(super) fn surface(&self) -> &Problem {
         &self.surface
     }
 
     /// Number of nodes that have yielded.
-    pub(in crate::loading) fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.count
     }
 
@@ -81,7 +81,7 @@ impl Plastic {
         self.sum
     }
 
-    pub(in crate::loading) fn has_yielded(&self, node: usize) -> bool {
+    pub(super) fn has_yielded(&self, node: usize) -> bool {
         self.has_yielded[node]
     }
 
@@ -149,7 +149,7 @@ impl Plastic {
     }
 
     /// The same when these nodes and no others have yielded, and the problem of the elastic ones.
-    pub(in crate::loading) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
+    pub(super) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
         let displaced = self.displaced(yielded)?;
         let nothing = vec![0.0; self.has_yielded.len()];
         let none = Self {
