@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use asperity::kernel::{LayeredBody, Layering};
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::reference::AreaLoadLaw;
@@ -213,6 +214,11 @@ impl Job {
 
     pub(super) fn e_star(&self) -> f64 {
         self.bodies.e_star
+    }
+
+    /// What they are made of.
+    pub(super) fn layering(&self) -> Layering {
+        self.bodies.layered.as_ref().map_or(Layering::HalfSpace, LayeredBody::layering)
     }
 
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
