@@ -229,3 +229,29 @@ fn all_commands_seal_at_one_state() -> Result<(), Box<dyn Error>> {
     }
     Ok(())
 }
+
+/// Conductance, tangential stiffness, slip and creep hold on half-spaces alone, and say so; pressure over overclosure is what the path says.
+#[test]
+fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("joints-of-layers")?;
+    let line = "path --nodes 32 --max-area-fraction 0.1 --layer gold,1e-3 --base steel";
+    let path: Vec<&str> = line.split(' ').collect();
+    for (options, word) in [
+        (&["--conductivity", "50"][..], "conductance"),
+        (&["--resistivity", "1e-7"], "conductance"),
+        (&["--fe-table", "csv", "--friction", "0.2", "--compliance-ratio", "1.2"], "tangential"),
+    ] {
+        let refused = run(&folder, &[&path[..], options].concat())?;
+        is_refused(&refused, &[word, "layers", "Right"]);
+        assert!(!folder.join("out").exists(), "refused before any work");
+    }
+    let done = run(&folder, &[&path[..], &["--fe-table", "csv", "--record", "p.npz"]].concat())?;
+    assert!(done.status.success());
+    let table = fs::read_to_string(folder.join("out/interface.csv"))?;
+    assert!(table.starts_with("pressure,overclosure\n"), "{table}");
+    let slip = ["slip", "p.npz", "--friction", "0.3", "--material", "steel"];
+    is_refused(&run(&folder, &slip)?, &["slip", "layers", "Right"]);
+    let creep = ["creep", "p.npz", "--prony", "1,0.5", "--time", "10", "--load", "1"];
+    is_refused(&run(&folder, &creep)?, &["creep", "layers", "Right"]);
+    Ok(())
+}

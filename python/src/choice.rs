@@ -1,6 +1,7 @@
 //! Arguments that are one word of a few.
 
 use asperity::Boundary;
+use asperity::kernel::Layering;
 use asperity::patches::Connectivity;
 use asperity::surface::{Axis, Filter, Interpolation, Trend};
 use pyo3::FromPyObject;
@@ -26,6 +27,13 @@ pub(crate) const BOUNDARIES: [(&str, Boundary); 4] = [
     ("periodic", Boundary::Periodic),
     ("x", Boundary::PeriodicX),
     ("y", Boundary::PeriodicY),
+];
+
+pub(crate) const LAYERINGS: [(&str, Layering); 4] = [
+    ("unknown", Layering::Unknown),
+    ("half-space", Layering::HalfSpace),
+    ("one material", Layering::OneMaterial),
+    ("several", Layering::Several),
 ];
 
 /// Whether a map repeats with its sides, or the side along which it does.

@@ -253,6 +253,9 @@ fn describe(error: &Error) -> Described {
         Error::Creep(error) => of_creep(error),
         Error::Slip(error) => of_slip(error),
         Error::Joint(error) => of_joint(error),
+        Error::NotHomogeneous { asked, reason } => {
+            (VALUE, "NotHomogeneous", numbers![asked, reason])
+        }
         Error::Surface(error) => of_surface(error),
         Error::File(error) => of_file(error),
         // Those that come to be later have their words.

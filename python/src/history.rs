@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PySliceMethods, PyTuple};
 
 use crate::arrays::{column, shape};
-use crate::choice::{BOUNDARIES, choose, word};
+use crate::choice::{BOUNDARIES, LAYERINGS, choose, word};
 use crate::errors::{Failure, Fallible};
 use crate::state::{self, EVENTS, State};
 use crate::targets::Targets;
@@ -404,7 +404,8 @@ impl History {
                 }
                 let places = (found.start..found.stop).step_by(found.step as usize);
                 let kept = places.filter_map(|place| states.get(place as usize)).copied();
-                let history = Arc::new(kept.collect());
+                let layering = self.history.layering();
+                let history = Arc::new(kept.collect::<loading::History>().on(layering));
                 Ok(Bound::new(py, Self { history, setting: self.setting })?.into_any())
             }
         }
@@ -416,7 +417,8 @@ impl History {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {
         let restore = py.import("asperity._asperity")?.getattr("_restore_history")?;
-        let state = (table(py, self.states())?, self.setting.pickled());
+        let layering = word(&LAYERINGS, &self.history.layering());
+        let state = (table(py, self.states())?, self.setting.pickled(), layering);
         Ok((restore, state).into_pyobject(py)?)
     }
 
@@ -508,10 +510,15 @@ fn _restore_states(table: &Bound<'_, PyDict>, is_one: bool) -> Fallible<State> {
 
 /// A history that was pickled.
 #[pyfunction]
-fn _restore_history(table: &Bound<'_, PyDict>, setting: PickledSetting) -> Fallible<History> {
+fn _restore_history(
+    table: &Bound<'_, PyDict>,
+    setting: PickledSetting,
+    layering: &str,
+) -> Fallible<History> {
     let setting = Setting::restored(setting)?;
-    let history = Arc::new(states(table)?.into_iter().collect());
-    Ok(History { history, setting })
+    let layering = choose("layering", layering, &LAYERINGS)?;
+    let history = states(table)?.into_iter().collect::<loading::History>().on(layering);
+    Ok(History { history: Arc::new(history), setting })
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

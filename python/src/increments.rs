@@ -54,7 +54,8 @@ impl Increments {
                     engine.add_unloading_stiffness(&mut states)?;
                     Ok(states)
                 })?;
-                Ok(Arc::new(states.into_iter().collect()))
+                let history: loading::History = states.into_iter().collect();
+                Ok(Arc::new(history.on(self.history.layering())))
             }
             _ => Ok(Arc::clone(&self.history)),
         }

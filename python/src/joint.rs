@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use asperity::joint::{self, Carrier, Conduction, FeProgram, InterfaceRow};
+use asperity::kernel::Theory;
 use asperity::{ContactState, Error};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -75,6 +76,7 @@ fn conductance<'py>(
 ) -> Fallible<Bound<'py, PyArray1<f64>>> {
     let increments = Increments::of(path)?;
     let conduction = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
+    increments.history.layering().check(Theory::Conductance)?;
     let of = |contact: &ContactState| {
         if interface { conduction.of_interface(contact) } else { conduction.of(contact) }
     };

@@ -6,6 +6,7 @@ use super::hereditary::{Hereditary, Place};
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
+use crate::kernel::Theory;
 use crate::loading::LoadingState;
 use crate::{CreepError, Error};
 
@@ -70,8 +71,9 @@ impl<'a> Creep<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a negative load.
+    /// [`Error::OutOfRange`] for a negative load; [`Error::NotHomogeneous`] for a path on layers of several materials.
     pub fn new(bed: &'a Bed<'a>, prony: &Prony, load: &Corners) -> Result<Self, Error> {
+        bed.history().layering().check(Theory::Creep)?;
         for &(_, load) in load.corners() {
             Error::require("load at a corner", load, load >= 0.0, "at least 0")?;
         }

@@ -8,6 +8,7 @@ use super::hereditary::Hereditary;
 use super::prony::Prony;
 use super::state::{CreepState, in_pieces};
 use crate::bed::{Bed, Superposition};
+use crate::kernel::Theory;
 use crate::loading::LoadingState;
 use crate::updater::LinearUpdater;
 use crate::{BedError, CreepError, Error, LoadingSolver};
@@ -56,8 +57,10 @@ impl<'a> Relaxation<'a> {
     ///
     /// # Errors
     ///
-    /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before.
+    /// [`BedError`] if the elastic path has no state at an approach, other than that it ends before; [`Error::NotHomogeneous`] for a path
+    /// on layers of several materials.
     pub fn new(bed: &'a Bed<'a>, prony: &Prony, approach: &Corners) -> Result<Self, Error> {
+        bed.history().layering().check(Theory::Creep)?;
         let Elastic { knots, recedes, ends } = Elastic::along(bed, approach)?;
         let elastic = Hereditary::creep(&Prony::elastic(1.0)?, &knots);
         Ok(Self {

@@ -6,6 +6,7 @@ use super::prony::Prony;
 use super::state::{CreepState, area_from, in_pieces};
 use super::weights::Weights;
 use crate::bed::{Bed, Superposition};
+use crate::kernel::Theory;
 use crate::updater::LinearUpdater;
 use crate::{CreepError, Error, LoadingSolver};
 
@@ -110,8 +111,9 @@ impl<'a> ViscoelasticBed<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Bed::at_load`].
+    /// Those of [`Bed::at_load`]; [`Error::NotHomogeneous`] for a path on layers of several materials.
     pub fn new(bed: &'a Bed<'a>, prony: &Prony) -> Result<Self, Error> {
+        bed.history().layering().check(Theory::Creep)?;
         let touched = bed.at_load(0.0)?;
         Ok(Self {
             bed,

@@ -292,6 +292,15 @@ pub enum Error {
     #[error(transparent)]
     Slip(#[from] SlipError),
 
+    /// A theory of homogeneous half-spaces on a body with layers.
+    #[error("{asked} is asked for of a body with layers, and {reason}")]
+    NotHomogeneous {
+        /// What was asked for.
+        asked: &'static str,
+        /// Why it is none there, and what would be right.
+        reason: &'static str,
+    },
+
     /// A joint without a conductance, a stiffness or a table.
     #[error(transparent)]
     Joint(#[from] JointError),

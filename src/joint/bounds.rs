@@ -1,6 +1,7 @@
 //! Bounds of the conductance when the surface has more roughness than the grid.
 
 use super::Conduction;
+use crate::kernel::Theory;
 use crate::loading::History;
 use crate::{Error, JointError, LoadingState};
 
@@ -34,7 +35,7 @@ impl Conduction {
     ///
     /// [`Error::OutOfRange`] for a roughness that is negative or not finite, and for stiffnesses that are negative or NaN;
     /// [`JointError::BoundsWithYielding`](crate::JointError) for a path on which nodes yield: its approach is not that of one elastic shape. The contact
-    /// that is left conducts as the elastic one of the residual surface, whose path has bounds.
+    /// that is left conducts as the elastic one of the residual surface, whose path has bounds. [`Error::NotHomogeneous`] for a path on layers.
     pub fn bounds(
         &self,
         history: &History,
@@ -42,6 +43,7 @@ impl Conduction {
     ) -> Result<Vec<ConductanceBounds>, Error> {
         let is_one = (0.0..f64::INFINITY).contains(&unresolved);
         Error::require("unresolved roughness", unresolved, is_one, "finite and not negative")?;
+        history.layering().check(Theory::Conductance)?;
         let states = history.states();
         let has_yielded = |state: &LoadingState| {
             state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)

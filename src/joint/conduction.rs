@@ -108,6 +108,9 @@ impl Conduction {
     /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which adds nothing to the bodies, it is
     /// infinite.
     ///
+    /// It holds on a homogeneous half-space: [`History::layering`](crate::loading::History::layering) and
+    /// [`KernelOrigin::layering`](crate::kernel::KernelOrigin::layering) say whether a body is one.
+    ///
     /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in contact, which
     /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness) and
     /// [`FixedLoadSolver::add_unloading_stiffness`](crate::FixedLoadSolver::add_unloading_stiffness) add to states.

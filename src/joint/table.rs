@@ -2,6 +2,7 @@
 
 use super::conduction::stiffnesses;
 use super::{Carrier, Conduction};
+use crate::kernel::Theory;
 use crate::loading::History;
 use crate::{Error, JointError, LoadingState};
 
@@ -98,13 +99,20 @@ impl<'a> InterfaceTableBuilder<'a> {
     /// [`Error::NotPositive`] for tolerance, friction and compliance ratio; [`Error::OutOfRange`] for a tolerance of 1 and more, for a path
     /// with fewer than two rows, and for stiffnesses that are negative or NaN; [`JointError::NoFunction`] where the mean gap opens so much
     /// under a greater load that the law is no function of the overclosure; [`JointError::NoUnloadingStiffness`] if nodes have yielded, and
-    /// conductances or tangential stiffnesses are asked for without the stiffness of [`Conduction::of`].
+    /// conductances or tangential stiffnesses are asked for without the stiffness of [`Conduction::of`]; [`Error::NotHomogeneous`] for these on
+    /// layers.
     pub fn build(self) -> Result<InterfaceTable, Error> {
         let tolerance = Error::require_positive("tolerance of the table", self.tolerance)?;
         Error::require("tolerance of the table", tolerance, tolerance < 1.0, "below 1")?;
         if let Some(friction) = self.friction {
             Error::require_positive("coefficient of friction", friction.coefficient)?;
             Error::require_positive("compliance ratio", friction.compliance_ratio)?;
+        }
+        if self.conduction.is_some() {
+            self.history.layering().check(Theory::Conductance)?;
+        }
+        if self.friction.is_some() {
+            self.history.layering().check(Theory::TangentialStiffness)?;
         }
         let Points { rising, others, .. } = self.points()?;
         let count = rising.len();

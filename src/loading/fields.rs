@@ -137,13 +137,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of the updater; [`Error::NotOnPath`] for more tension than that.
     pub fn pressure(&mut self) -> Result<DMatrix<f64>, Error> {
-        match self.state {
-            Some(state) => {
-                let snapshot = Snapshot::of(&self.run, &mut self.phase, &state)?;
-                snapshot.into_pressure(&self.run, &self.phase, &state)
-            }
-            None => Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny())),
-        }
+        Ok(self.solved()?.map(without_tension))
     }
 
     /// Pressure \[Pa\] at any state of this path up to the present one, or at a state between two events
@@ -160,10 +154,24 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// a state of this path; those of the updater; before the last node that left,
     /// [`Error::MemoryBudget`] and [`Error::FactorizationFailed`].
     pub fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
+        Ok(self.solved_at(state)?.map(without_tension))
+    }
+
+    /// The pressure of the present state as it was solved for: gaps in contact are closed under it, and not where tension is left out.
+    fn solved(&mut self) -> Result<DMatrix<f64>, Error> {
+        let Some(state) = self.state else {
+            return Ok(DMatrix::zeros(self.grid().nx(), self.grid().ny()));
+        };
+        let snapshot = Snapshot::of(&self.run, &mut self.phase, &state)?;
+        snapshot.check_tension(&self.run, self.phase.tolerance(), &state)?;
+        Ok(snapshot.pressure)
+    }
+
+    fn solved_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         self.check_reached(state)?;
         let snapshot = Snapshot::of(&self.run, &mut self.phase, state)?;
         snapshot.recognise(&mut self.run, &self.phase, state)?;
-        snapshot.into_pressure(&self.run, &self.phase, state)
+        Ok(snapshot.pressure)
     }
 
     /// Displacement of the half-space \[m\] at the present state, positive into it; about its mean if the
@@ -173,7 +181,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn displacement(&mut self) -> Result<DMatrix<f64>, Error> {
-        let pressure = self.pressure()?;
+        let pressure = self.solved()?;
         let load = self.state.map_or(0.0, |state| state.contact.load);
         self.displacement_under(&pressure, load)
     }
@@ -184,7 +192,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure_at`].
     pub fn displacement_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
-        let pressure = self.pressure_at(state)?;
+        let pressure = self.solved_at(state)?;
         self.displacement_under(&pressure, state.contact.load)
     }
 
@@ -251,7 +259,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure`].
     pub fn certificate(&mut self) -> Result<Certificate, Error> {
-        let pressure = self.pressure()?;
+        let pressure = self.solved()?;
         self.certify(&pressure, self.state)
     }
 
@@ -261,7 +269,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     ///
     /// Those of [`Self::pressure_at`].
     pub fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
-        let pressure = self.pressure_at(state)?;
+        let pressure = self.solved_at(state)?;
         self.certify(&pressure, Some(*state))
     }
 
@@ -319,6 +327,12 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         snapshot.recognise(&mut self.run, &self.phase, &state)?;
         snapshot.check_gaps(&self.run, &state, &certificate)
     }
+}
+
+/// A pressure, if tension within the error of a state is none.
+fn without_tension(pressure: f64) -> f64 {
+    // NaN stays.
+    if pressure <= 0.0 { 0.0 } else { pressure }
 }
 
 /// The plastic depth of a node.

@@ -6,6 +6,7 @@ use super::limits::{Limits, LoadingEnd};
 use super::window_end::WindowEnd;
 use super::{ContactEvent, LoadingState};
 use crate::contact::{ContactState, ContactTarget};
+use crate::kernel::Layering;
 use crate::{Error, Grid};
 
 /// The states of a path in the order of loading, to be read at any instant between them.
@@ -39,6 +40,8 @@ pub struct History {
     states: Vec<LoadingState>,
     /// What the path goes on with behind the last state, if it is of a record that knows.
     window_end: Option<Arc<WindowEnd>>,
+    /// What the body is made of, if the states tell.
+    layering: Layering,
 }
 
 /// Of the same states.
@@ -50,7 +53,7 @@ impl PartialEq for History {
 
 impl FromIterator<LoadingState> for History {
     fn from_iter<I: IntoIterator<Item = LoadingState>>(states: I) -> Self {
-        Self { states: states.into_iter().collect(), window_end: None }
+        Self { states: states.into_iter().collect(), ..Self::default() }
     }
 }
 
@@ -66,6 +69,20 @@ impl History {
     #[must_use]
     pub fn states(&self) -> &[LoadingState] {
         &self.states
+    }
+
+    /// The same states, of a body of which this is known. That of a record knows it. Conductance, slip and creep are refused where it
+    /// has layers of which their theories do not hold; of states alone, of which nothing is known, they are as on a half-space.
+    #[must_use]
+    pub fn on(mut self, layering: Layering) -> Self {
+        self.layering = layering;
+        self
+    }
+
+    /// What the body is made of, as far as it is known.
+    #[must_use]
+    pub fn layering(&self) -> Layering {
+        self.layering
     }
 
     /// The same states, behind which the path goes on from the end of a window.
@@ -108,7 +125,7 @@ impl History {
         for (k, next) in self.states.iter().enumerate().skip(1) {
             if let Some((end, at_limit)) = limits.between(Some(self.states[k - 1]), next) {
                 let states = self.states[..k].iter().copied().chain(at_limit);
-                return Ok((states.collect(), Some(end)));
+                return Ok((states.collect::<Self>().on(self.layering), Some(end)));
             }
         }
         Ok((self.clone(), None))

@@ -171,6 +171,7 @@ impl LoadingRecord {
                 return Err(Error::NotFinite { step: state.step });
             }
         }
+        let history = history.on(kernel.origin.layering());
         Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
     }
 

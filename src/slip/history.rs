@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::Friction;
 use super::state::{SlipState, borne};
 use crate::bed::{Bed, BedState, Superposition};
+use crate::kernel::Theory;
 use crate::updater::LinearUpdater;
 use crate::{Error, LoadingSolver, SlipError};
 
@@ -103,8 +104,10 @@ impl<'a> SlipHistory<'a> {
     ///
     /// [`Error::OutOfRange`] for what is not finite, and for a negative load; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore)
     /// for a load that the path has not reached; [`SlipError::JointSlides`] for |T| > μP, and [`SlipError::StaysAtLimit`] if |T| = μP
-    /// all along the step while P changes: the displacement is unknown then. The history is as before after an error.
+    /// all along the step while P changes: the displacement is unknown then; [`Error::NotHomogeneous`] for a path on layers. The history is as
+    /// before after an error.
     pub fn to(&mut self, load: f64, tangential_load: f64) -> Result<SlipState, Error> {
+        self.bed.history().layering().check(Theory::Slip)?;
         let target = self.bed.at_load(load)?;
         let force = borne(&self.friction, load, tangential_load)?;
         let before = self.load.load;

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 use super::Friction;
 use super::state::{SlipState, borne};
 use crate::bed::{Bed, BedState};
+use crate::kernel::Theory;
 use crate::updater::LinearUpdater;
 use crate::{Error, LoadingSolver, SlipError};
 
@@ -97,8 +98,9 @@ impl<'a> PartialSlip<'a> {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPositive`] for a load that is not; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore).
+    /// [`Error::NotPositive`] for a load that is not; [`Error::NotHomogeneous`] for a path on layers; [`BedError::PathEndsBefore`](crate::BedError::PathEndsBefore).
     pub fn new(bed: &'a Bed<'a>, load: f64, friction: Friction) -> Result<Self, Error> {
+        bed.history().layering().check(Theory::Slip)?;
         let preload = bed.at_load(Error::require_positive("load", load)?)?;
         let mut lens = vec![0.0; preload.interval + 1];
         // A fan of triangles from the preload: W(δ) is convex, so that none of them is negative.

@@ -3,6 +3,7 @@
 
 mod conductance;
 mod hardness;
+mod layers;
 mod tables;
 
 use asperity::loading::History;

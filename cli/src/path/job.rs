@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use asperity::kernel::{LayeredBody, Layering};
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::surface::{HeightMap, Topography};
@@ -233,6 +234,11 @@ impl Job {
     ) -> Result<LoadingRecord, Error> {
         let bodies: Vec<_> = self.bodies.elastic.iter().map(|&[e, nu]| (e, nu)).collect();
         LoadingRecord::new(solver, states.iter().copied().collect())?.with_bodies(&bodies)
+    }
+
+    /// What they are made of.
+    pub(super) fn layering(&self) -> Layering {
+        self.bodies.layered.as_ref().map_or(Layering::HalfSpace, LayeredBody::layering)
     }
 
     /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.

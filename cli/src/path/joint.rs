@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
 use asperity::joint::{Conduction, FeProgram, InterfaceTable};
+use asperity::kernel::Theory;
 use asperity::loading::History;
 use asperity_cli::outcome::{self, Failure};
 use clap::{Args, ValueEnum};
@@ -153,7 +154,16 @@ impl Joint {
                  has bounds: give --unload, and follow residual_surface.npy without a hardness to a load beyond the one of interest",
             ));
         }
-        self.conductions(job.e_star())
+        let conductions = self.conductions(job.e_star())?;
+        let layering = job.layering();
+        let failed = |error| Failure::new("cannot compute what follows from the stiffness", error);
+        if !conductions.is_empty() {
+            layering.check(Theory::Conductance).map_err(failed)?;
+        }
+        if self.friction.is_some() {
+            layering.check(Theory::TangentialStiffness).map_err(failed)?;
+        }
+        Ok(conductions)
     }
 
     /// Writes the files that were asked for.

@@ -62,7 +62,9 @@ pub(super) struct Inner {
 
 impl Inner {
     pub(super) fn live(engine: impl Engine + 'static) -> Self {
-        Self { source: Source::Live(Box::new(engine)), history: Arc::default(), bodies: Vec::new() }
+        let layering = engine.problem().table().origin().layering();
+        let history = Arc::new(loading::History::default().on(layering));
+        Self { source: Source::Live(Box::new(engine)), history, bodies: Vec::new() }
     }
 
     pub(super) fn of_record(record: LoadingRecord, resume: Resume) -> Result<Self, Error> {
@@ -157,7 +159,7 @@ impl Inner {
         // A limit is no event: the path goes on from the one before, and may come to the same limit again.
         if history.states().last().is_some_and(|last| last.event == ContactEvent::Limit) {
             let events = history.events().iter().copied();
-            *history = events.collect();
+            *history = events.collect::<loading::History>().on(history.layering());
         }
         history.extend([state]);
     }

@@ -1,0 +1,153 @@
+//! What theories of homogeneous half-spaces ask of a body.
+
+use super::{Base, KernelOrigin, LayeredBody};
+use crate::Error;
+
+/// What a body is made of, as far as theories of homogeneous half-spaces depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Layering {
+    /// A kernel of the user's own, or states of which nothing else is known.
+    #[default]
+    Unknown,
+    /// Homogeneous half-spaces.
+    HalfSpace,
+    /// Layers of one material on a rigid base, against a rigid body: every displacement goes with 1/E of that material.
+    OneMaterial,
+    /// Layers of several materials, with an elastic base or body against them among these.
+    Several,
+}
+
+/// A theory by which a path is read, and which holds for some bodies alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Theory {
+    /// Barber's relation of conductance and stiffness.
+    Conductance,
+    /// Tangential over normal stiffness, κ.
+    TangentialStiffness,
+    /// Partial slip after Ciavarella and Jäger.
+    Slip,
+    /// One creep function for the whole body.
+    Creep,
+}
+
+impl Layering {
+    /// `Ok` unless the body is known to be none of the theory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotHomogeneous`].
+    pub fn check(self, theory: Theory) -> Result<(), Error> {
+        let (asked, reason) = match theory {
+            Theory::Conductance => (
+                "a conductance",
+                "current and displacement solve the same problem on a half-space alone. Right is the current through the same contact into a \
+                 conductor with these layers, which is not computed here",
+            ),
+            Theory::TangentialStiffness => (
+                "a tangential stiffness",
+                "tangential over normal compliance is one number on a half-space alone, and in layers another one for each wavelength. Right is the \
+                 stiffness by the tangential influence coefficients of the layers, which are not computed here",
+            ),
+            Theory::Slip => (
+                "partial slip",
+                "it takes tangential influence coefficients in proportion to normal ones, and those of layers are not. Right is a solution with both, \
+                 which is not computed here",
+            ),
+            Theory::Creep => (
+                "creep",
+                "one relaxation function would let all materials creep alike, also an elastic base. Right is one for each material; here layers of one \
+                 material on a rigid base, against a rigid body, may creep",
+            ),
+        };
+        let holds = match self {
+            Self::Unknown | Self::HalfSpace => true,
+            Self::OneMaterial => theory == Theory::Creep,
+            Self::Several => false,
+        };
+        if holds { Ok(()) } else { Err(Error::NotHomogeneous { asked, reason }) }
+    }
+}
+
+impl LayeredBody {
+    /// What the body is made of.
+    #[must_use]
+    pub fn layering(&self) -> Layering {
+        let mut layers = self.layers().iter().map(|layer| (layer.young, layer.poisson));
+        let Some(first) = layers.next() else {
+            return Layering::Unknown;
+        };
+        let is_one = layers.all(|other| other == first);
+        match self.base() {
+            Base::HalfSpace { young, poisson } if is_one && (young, poisson) == first => {
+                Layering::HalfSpace
+            }
+            Base::Rigid if is_one && self.counterpart().is_none() => Layering::OneMaterial,
+            _ => Layering::Several,
+        }
+    }
+}
+
+impl KernelOrigin {
+    /// What the body is made of.
+    #[must_use]
+    pub fn layering(&self) -> Layering {
+        match self {
+            Self::Boussinesq { .. }
+            | Self::PeriodicBoussinesq { .. }
+            | Self::SemiPeriodicBoussinesq { .. }
+            | Self::Spectral { .. } => Layering::HalfSpace,
+            Self::Layered { body }
+            | Self::PeriodicLayered { body }
+            | Self::SpectralLayered { body } => body.layering(),
+            Self::Other => Layering::Unknown,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Layer;
+
+    #[test]
+    fn bodies_are_told_by_their_materials() -> Result<(), Error> {
+        let layer = |young, thickness| Layer { young, poisson: 0.3, thickness };
+        let half_space = |young| Base::HalfSpace { young, poisson: 0.3 };
+        let coat = [layer(2.0, 1.0)];
+        let two = [layer(2.0, 1.0), layer(2.0, 3.0)];
+        let graded = [layer(2.0, 1.0), layer(3.0, 1.0)];
+        for (layers, base, counterpart, expected) in [
+            (&coat[..], Base::Rigid, None, Layering::OneMaterial),
+            (&two, Base::Rigid, None, Layering::OneMaterial),
+            (&graded, Base::Rigid, None, Layering::Several),
+            (&coat, Base::Rigid, Some(5.0), Layering::Several),
+            (&two, half_space(2.0), None, Layering::HalfSpace),
+            (&two, half_space(2.0), Some(5.0), Layering::HalfSpace),
+            (&coat, half_space(5.0), None, Layering::Several),
+            (&graded, half_space(3.0), None, Layering::Several),
+        ] {
+            let mut body = LayeredBody::new(layers, base)?;
+            if let Some(e_star) = counterpart {
+                body = body.against(e_star)?;
+            }
+            assert_eq!(KernelOrigin::Layered { body }.layering(), expected);
+        }
+        assert_eq!(KernelOrigin::Other.layering(), Layering::Unknown);
+        assert_eq!(KernelOrigin::Spectral { e_star: 1.0 }.layering(), Layering::HalfSpace);
+        Ok(())
+    }
+
+    #[test]
+    fn theories_hold_for_their_bodies() {
+        use Theory::{Conductance, Creep, Slip, TangentialStiffness};
+        for theory in [Conductance, TangentialStiffness, Slip, Creep] {
+            assert!(Layering::Unknown.check(theory).is_ok());
+            assert!(Layering::HalfSpace.check(theory).is_ok());
+            assert_eq!(Layering::OneMaterial.check(theory).is_ok(), theory == Creep);
+            let refused = Layering::Several.check(theory).err().map(|error| error.to_string());
+            assert!(refused.is_some_and(|told| told.contains("layers") && told.contains("Right")));
+        }
+    }
+}
