@@ -37,6 +37,25 @@ fn numbers(file: &Path, name: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     Ok(column(file, name)?.iter().map(|cell| cell.parse()).collect::<Result<_, _>>()?)
 }
 
+/// A load under which all cells in contact have yielded, half of them: the state of the path, which ends where that load is reached.
+#[test]
+fn loads_of_plateaus_are_those_of_the_path() -> Done {
+    let folder = Scratch::new("hardness_plateau")?;
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/hardness/plateaus_16.npy");
+    let of = format!("--surface {file} --side 1e-3 --e-star 100e9 --hardness 8e6");
+    for periodic in ["", "--periodic love"] {
+        finished(&folder.0, &format!("path {of} {periodic} --mean-pressure 4e6"))?;
+        finished(&folder.0, &format!("load {of} {periodic} --mean-pressure 4e6 --out load"))?;
+        let [path, load] = ["out/path.csv", "load/load.csv"].map(|name| folder.join(name));
+        for name in ["approach", "load", "mean_gap", "contact_area", "yielded_area_fraction"] {
+            let (path, load) = (numbers(&path, name)?, numbers(&load, name)?);
+            let (path, load) = (path[path.len() - 1], load[0]);
+            assert!((load / path - 1.0).abs() < 1e-10, "{name}: {load} {path}");
+        }
+    }
+    Ok(())
+}
+
 /// The contact conducts as where unloading begins, in path.csv and in the table; the files of a record that goes on have the same columns.
 #[test]
 fn what_yields_conducts_as_well() -> Done {

@@ -123,3 +123,25 @@ def test_yielding(rough: asp.Surface, body: asp.HalfSpace) -> None:
     with pytest.raises(asp.AsperityError) as over:
         asp.solve(rough, body, load=2.6e9 * rough.area, hardness=2.5e9, check=False)
     assert over.value.kind == "OutOfRange"
+
+
+@pytest.mark.parametrize("boundary", ["free", "love"])
+def test_plateaus(boundary: str) -> None:
+    """Where all nodes in contact have yielded: loads, approaches and mean gaps have the states of the path."""
+    surface = asp.Surface(np.load(DATA / "hardness" / "plateaus_16.npy").T, size=(1e-3, 1e-3))
+    body = asp.HalfSpace(100e9, boundary=boundary)
+    history = asp.load_path(surface, body, hardness=8e6, check=False).run(check=False)
+    plateau = (history.yielded_nodes == history.contact_nodes)[:-1] & (np.diff(history.approach) > 1e-9 * history.approach[-1])
+    places = np.flatnonzero(plateau & (history.mean_gap[1:] > 0.0))
+    assert len(places) > 50
+    for place in places[:: len(places) // 8]:
+        first = history[int(place)]
+        exact = asp.solve(surface, body, load=first.load, hardness=8e6, check=False)
+        assert exact.approach == pytest.approx(first.approach, rel=1e-10) and exact.yielded_nodes == first.yielded_nodes
+        for name in ("approach", "mean_gap"):
+            column = getattr(history, name)
+            target = {name: 0.3 * column[place] + 0.7 * column[place + 1]}
+            found, expected = asp.solve(surface, body, hardness=8e6, check=False, **target), history.at(**target)
+            assert found.load == pytest.approx(expected.load, rel=1e-12)
+            assert found.plastic_work == pytest.approx(expected.plastic_work, rel=1e-9)
+            assert found.mean_gap == pytest.approx(expected.mean_gap, rel=1e-9)

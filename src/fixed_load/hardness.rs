@@ -1,7 +1,8 @@
 //! Pressures that end at a hardness: nodes yield, round after round.
 
 use super::level::{Level, Prescribed};
-use super::tuning::MOST_RECOVERIES;
+use super::plateau::ends;
+use super::tuning::{MOST_RECOVERIES, NO_REST};
 use crate::Error;
 use crate::hardness::Hardness;
 use crate::krylov::sum;
@@ -69,14 +70,39 @@ impl<'a> Yielded<'a> {
         Ok(yielded)
     }
 
-    /// Sum of the pressures of nodes that have yielded \[Pa\].
-    pub(super) fn sum(&self) -> f64 {
-        self.sum
+    /// Lets all nodes of the level's iterate yield that carry anything, if with their hardness they carry the sum `sum`: no pressure
+    /// exceeds it. Returns whether it does.
+    pub(super) fn exhaust(&mut self, level: &mut Level, sum: f64) -> Result<bool, Error> {
+        let pressures = level.iterate.pressure.iter().zip(self.hardness.values());
+        let carrying = pressures.filter(|(pressure, _)| **pressure > 0.0).map(|(_, h)| h);
+        let rest = sum - self.sum - carrying.sum::<f64>();
+        // Also where one of them never yields.
+        let is_all = rest.abs() <= NO_REST * sum;
+        if !is_all {
+            return Ok(false);
+        }
+        for pressure in level.iterate.pressure.iter_mut().filter(|pressure| **pressure > 0.0) {
+            *pressure = f64::INFINITY;
+        }
+        self.revise(level, f64::INFINITY)?;
+        Ok(true)
     }
 
-    /// Whether all have.
-    pub(super) fn is_everywhere(&self) -> bool {
-        !self.map.contains(&false)
+    /// What nodes that have not yielded carry of the sum `sum`; nothing on a plateau.
+    pub(super) fn rest(&self, sum: f64) -> Option<f64> {
+        let rest = sum - self.sum;
+        (rest > NO_REST * sum).then_some(rest)
+    }
+
+    /// Makes the iterate of the level, on which no node carries anything, that of the beginning of a plateau: where the last node yields.
+    /// Returns by how much others overlap there.
+    pub(super) fn begin_plateau(&self, level: &mut Level) -> f64 {
+        let [last, next] = ends(&self.gap, &self.map);
+        let iterate = &mut level.iterate;
+        iterate.pressure.fill(0.0);
+        iterate.total_gap.copy_from_slice(&level.gap);
+        iterate.approach = last.min(next);
+        last - next
     }
 
     /// Lets the nodes of the level's iterate yield whose pressure exceeds their hardness, and those be elastic again that have a gap

@@ -79,6 +79,7 @@ mod hardness;
 mod hierarchy;
 mod iterate;
 mod level;
+mod plateau;
 mod release;
 mod search;
 mod settings;

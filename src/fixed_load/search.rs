@@ -1,6 +1,7 @@
 //! The load of a state of which something else is known.
 
 use super::level::Level;
+use super::plateau::Plateau;
 use super::solution::FixedLoadSolution;
 use super::stepper::Stepper;
 use super::tuning::{LONGEST, MOST_STEPS, NARROWEST, ROUNDING, TYPICAL};
@@ -86,6 +87,15 @@ impl Sought {
         }
     }
 
+    /// The approach at which a plateau has what is sought, or would have it; `None` for nodes, whose number stays.
+    fn approach_on(self, plateau: &Plateau) -> Option<f64> {
+        match self {
+            Self::Nodes(_) => None,
+            Self::MeanGap { target, .. } => Some(plateau.approach_at(target)),
+            Self::Approach { target, .. } => Some(target),
+        }
+    }
+
     /// Slope of [`Self::beyond`] at a state, and whether it is exact.
     fn slope(self, state: &ContactState) -> (f64, bool) {
         match self {
@@ -160,6 +170,20 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         }
         let side = if beyond > 0.0 { &mut high } else { &mut low };
         *side = Some(x);
+        // On a plateau the load is one, and tells nothing of the rest.
+        for plateau in stepper.plateaus_of(&solution)? {
+            let Some(approach) = sought.approach_on(&plateau) else {
+                continue;
+            };
+            let x = stepper.load_of(&plateau).ln();
+            if approach < plateau.ends[0] {
+                high = Some(high.map_or(x, |high| high.min(x)));
+            } else if approach > plateau.ends[1] {
+                low = Some(low.map_or(x, |low| low.max(x)));
+            } else {
+                return stepper.rest_on(plateau, approach);
+            }
+        }
         let (slope, is_exact) = sought.slope(state);
         let mut change = step(beyond, slope);
         if let Some((earlier, then)) = previous
@@ -178,7 +202,8 @@ fn search(stepper: &mut Stepper<'_>, sought: Sought) -> Result<FixedLoadSolution
         if nearest.as_ref().is_none_or(|(best, _)| rank < *best) {
             nearest = Some((rank, solution));
         }
-        let mut next = x + change;
+        let nearest_bound = if beyond > 0.0 { high } else { low };
+        let mut next = nearest_bound.unwrap_or(x) + change;
         if let (Some(low), Some(high)) = (low, high) {
             // NaN as well.
             if !(next > low && next < high) {

@@ -93,8 +93,7 @@ impl FixedLoadSolver {
 
     /// Contact at the approach `approach` \[m\] from first touch; of the mean planes if the
     /// half-space is periodic and its mean displacement arbitrary, where it determines the load only
-    /// below the mean initial gap. With a hardness the load is found there by solving for several; an approach at which all nodes
-    /// in contact have yielded goes with no load of its own, and is an [`Error::NoConvergence`].
+    /// below the mean initial gap. With a hardness the load is found there by solving for several.
     ///
     /// # Errors
     ///

@@ -6,6 +6,7 @@ use super::hardness::{Round, Yielded};
 use super::hierarchy::{Hierarchy, scale};
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
+use super::plateau::Plateau;
 use super::settings::Settings;
 use super::solution::{FixedLoadSolution, SolverEffort};
 use super::tangent::Tangent;
@@ -13,9 +14,6 @@ use crate::contact::ContactState;
 use crate::hardness::Hardness;
 use crate::parallel::inside;
 use crate::{Error, Grid};
-
-/// The part of a load that is rounding: where elastic nodes carry no more, the load is that of a plateau.
-const NO_REST: f64 = 1e-12;
 
 /// Solves for one state after the other: from the last one if it is near, else from coarser grids.
 #[derive(Debug)]
@@ -245,14 +243,7 @@ impl<'a> Stepper<'a> {
         }
         self.continuation.predict(&mut self.hierarchy.finest, sum);
         let finest = &mut self.hierarchy.finest;
-        let yielded = Yielded::resume(hardness, finest, prescribed, &earlier)?;
-        if let Prescribed::Sum(sum) = prescribed
-            && sum - yielded.sum() <= NO_REST * sum
-        {
-            yielded.abandon(finest);
-            return Ok(None);
-        }
-        Ok(Some(yielded))
+        Yielded::resume(hardness, finest, prescribed, &earlier).map(Some)
     }
 
     /// Elastic solutions of the nodes that have not yielded, until no more does, behind the first one if that took so many iterations.
@@ -265,28 +256,39 @@ impl<'a> Stepper<'a> {
         let mut iterations = first.unwrap_or_default();
         let mut is_solved = first.is_some();
         loop {
+            let criteria = self.criteria(prescribed);
+            let finest = &mut self.hierarchy.finest;
+            let undecided = |residual| Error::NoConvergence {
+                residual,
+                tolerance: criteria.tolerance,
+                iterations,
+            };
             if is_solved {
-                let criteria = self.criteria(prescribed);
-                let finest = &mut self.hierarchy.finest;
                 let allowed = criteria.gap_error(finest.iterate.approach);
                 match yielded.revise(finest, allowed)? {
-                    Round::Settled => return Ok(iterations),
+                    Round::Settled => match prescribed {
+                        Prescribed::Sum(sum) if yielded.exhaust(finest, sum)? => {}
+                        _ => return Ok(iterations),
+                    },
                     Round::Changed => {}
-                    Round::Undecided => {
-                        return Err(Error::NoConvergence {
-                            residual: f64::INFINITY,
-                            tolerance: criteria.tolerance,
-                            iterations,
-                        });
-                    }
+                    Round::Undecided => return Err(undecided(f64::INFINITY)),
                 }
             }
             let rest = match prescribed {
-                Prescribed::Sum(_) if yielded.is_everywhere() => return Ok(iterations),
-                Prescribed::Sum(sum) => Prescribed::Sum(sum - yielded.sum()),
+                Prescribed::Sum(sum) => match yielded.rest(sum) {
+                    Some(rest) => Prescribed::Sum(rest),
+                    None => {
+                        let overlap = yielded.begin_plateau(finest);
+                        let approach = finest.iterate.approach;
+                        return if overlap <= criteria.gap_error(approach) {
+                            Ok(iterations)
+                        } else {
+                            Err(undecided(overlap / approach))
+                        };
+                    }
+                },
                 approach @ Prescribed::Approach(_) => approach,
             };
-            let finest = &mut self.hierarchy.finest;
             is_solved = true;
             if let Prescribed::Approach(approach) = rest
                 && finest.gap.iter().all(|gap| *gap >= approach)
@@ -300,6 +302,42 @@ impl<'a> Stepper<'a> {
             scale(&mut finest.iterate.pressure, rest);
             iterations += self.solve(rest, false)?;
         }
+    }
+
+    /// The plateaus on which the nodes in contact of a solution, or those of them that have yielded, carry their hardness and no other anything.
+    pub(super) fn plateaus_of(
+        &mut self,
+        solution: &FixedLoadSolution,
+    ) -> Result<Vec<Plateau>, Error> {
+        let (Some(hardness), Some(plastic)) = (self.hardness, &solution.plastic) else {
+            return Ok(Vec::new());
+        };
+        let finest = &mut self.hierarchy.finest;
+        let mut all = Vec::new();
+        for set in [&plastic.yielded_map, &solution.contact_map] {
+            all.extend(Plateau::of(hardness, finest, set.as_slice().to_vec())?);
+        }
+        Ok(all)
+    }
+
+    /// The load of a plateau \[N\].
+    pub(super) fn load_of(&self, plateau: &Plateau) -> f64 {
+        plateau.sum * self.finest().grid.cell_area()
+    }
+
+    /// Contact at an approach on a plateau.
+    pub(super) fn rest_on(
+        &mut self,
+        plateau: Plateau,
+        approach: f64,
+    ) -> Result<FixedLoadSolution, Error> {
+        let load = self.load_of(&plateau);
+        let finest = &mut self.hierarchy.finest;
+        finest.iterate.pressure = plateau.pressure;
+        finest.iterate.approach = approach;
+        finest.refresh()?;
+        self.yielded = plateau.yielded;
+        self.solution(Some(load), 0)
     }
 
     /// The solution that the finest grid holds, after so many iterations.

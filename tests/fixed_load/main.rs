@@ -11,6 +11,7 @@ mod as_data;
 mod closed_forms;
 mod extremes;
 mod hardness;
+mod plateaus;
 mod problems;
 mod references;
 mod refusals;

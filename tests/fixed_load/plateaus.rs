@@ -1,0 +1,151 @@
+//! Single loads where all nodes in contact have yielded, against the path: the approach grows there, and the load stays.
+
+use std::path::Path;
+
+use asperity::io::read_npy;
+use asperity::loading::History;
+use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::{
+    Boussinesq, ContactState, ContactTarget, Error, FixedLoadSolution, FixedLoadSolver, Grid,
+    InfluenceKernel, LoadingSolver, PeriodicBoussinesq, Spectral, Surface,
+};
+
+const E_STAR: f64 = 100e9;
+
+/// A rough surface of 16 × 16 nodes on which 20 plateaus or so lie between the first touch and the last yield.
+fn small() -> HeightMap {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hardness/plateaus_16.npy");
+    HeightMap::new(read_npy(file).unwrap()).unwrap()
+}
+
+fn kernels(grid: Grid) -> [Box<dyn InfluenceKernel>; 3] {
+    [
+        Box::new(Boussinesq::new(grid, E_STAR).unwrap()),
+        Box::new(PeriodicBoussinesq::new(grid, E_STAR).unwrap()),
+        Box::new(Spectral::new(grid, E_STAR).unwrap()),
+    ]
+}
+
+fn path(surface: &dyn Surface, kernel: &dyn InfluenceKernel, hardness: f64) -> History {
+    let builder = LoadingSolver::builder(surface, kernel).hardness(hardness);
+    builder.build().unwrap().collect::<Result<_, Error>>().unwrap()
+}
+
+/// Both ends of each plateau between the first touch and full contact that is longer than rounding.
+fn plateaus(history: &History) -> Vec<[ContactState; 2]> {
+    let pairs = history.states().windows(2).map(|pair| [pair[0].contact, pair[1].contact]);
+    pairs
+        .filter(|[near, far]| {
+            let has_yielded = near.plastic.is_some_and(|p| p.yielded_nodes == near.contact_nodes);
+            has_yielded && far.mean_gap > 0.0 && far.approach > near.approach * (1.0 + 1e-9)
+        })
+        .collect()
+}
+
+/// Pressures are known on a plateau, so that all else is right to rounding of lengths, which the path has too: 1e-12 of the longest.
+fn compare(found: &FixedLoadSolution, expected: &ContactState, length: f64, context: &str) {
+    let (state, plastic) = (&found.state, found.state.plastic.unwrap());
+    let of_path = expected.plastic.unwrap();
+    assert_eq!(state.contact_nodes, expected.contact_nodes, "{context}");
+    assert_eq!(plastic.yielded_nodes, of_path.yielded_nodes, "{context}");
+    assert!((state.load / expected.load - 1.0).abs() < 1e-12, "{context}");
+    let area = expected.contact_area / expected.contact_area_fraction;
+    for (name, found, expected, scale) in [
+        ("approach", state.approach, expected.approach, length),
+        ("mean gap", state.mean_gap, expected.mean_gap, length),
+        ("plastic volume", plastic.volume, of_path.volume, length * area),
+        ("plastic work", plastic.work, of_path.work, length * expected.load),
+    ] {
+        let error = (found - expected).abs() / scale;
+        assert!(error < 1e-11, "{context}: {name} {found:e} for {expected:e}: {error:e}");
+    }
+    assert_eq!(state.interfacial_stiffness, Some(0.0), "{context}");
+}
+
+/// At most so many plateaus of a path: its load goes with its beginning, and approaches and mean gaps along it with states in between.
+fn all_along(
+    surface: &dyn Surface,
+    kernel: &dyn InfluenceKernel,
+    hardness: f64,
+    most: usize,
+) -> usize {
+    let history = path(surface, kernel, hardness);
+    let mut solver = FixedLoadSolver::builder(surface, kernel).hardness(hardness).build().unwrap();
+    let length = history.states().last().unwrap().contact.approach;
+    let mut targets = 0;
+    let plateaus = plateaus(&history);
+    for [near, far] in plateaus.iter().step_by(plateaus.len().div_ceil(most)) {
+        let context = format!("{hardness:e} Pa, {} nodes in contact", near.contact_nodes);
+        let found = solver.solve(near.load).unwrap();
+        compare(&found, near, length, &context);
+        for part in [0.03, 0.5, 0.96] {
+            let between = |a: f64, b: f64| a + part * (b - a);
+            let approach = between(near.approach, far.approach);
+            let mean_gap = between(near.mean_gap, far.mean_gap);
+            for target in [ContactTarget::Approach(approach), ContactTarget::MeanGap(mean_gap)] {
+                let found = solver.solve_target(target).unwrap_or_else(|error| {
+                    panic!("{context}, {target:?}: {error}");
+                });
+                let expected = history.at(target).unwrap().contact;
+                compare(&found, &expected, length, &format!("{context}, {target:?}"));
+                targets += 1;
+            }
+        }
+    }
+    targets
+}
+
+#[test]
+fn a_small_surface_has_the_states_of_its_path() {
+    let surface = small();
+    let grid = Grid::square(16, 1e-3).unwrap();
+    for kernel in kernels(grid) {
+        let targets = all_along(&surface, &*kernel, 8e6, 100);
+        assert!(targets >= 60, "{targets}");
+    }
+}
+
+/// Soft metals, of which most of a path is plateaus, and a harder one with some.
+#[test]
+fn rough_surfaces_have_the_states_of_their_paths() {
+    let grid = Grid::square(24, 1e-3).unwrap();
+    let surface = SelfAffine::new(0.8, 0.5e-3, 0.1e-3, Amplitude::RmsGradient(0.1), 5).unwrap();
+    for kernel in kernels(grid) {
+        for hardness in [1e5, 1e7, 3e8] {
+            let targets = all_along(&surface, &*kernel, hardness, 3);
+            assert!(targets >= 6, "{hardness:e}: {targets}");
+        }
+    }
+}
+
+/// Loads a little below a plateau and a little above lie on either side of it; in a sweep up through it as well.
+#[test]
+fn sweeps_pass_plateaus() {
+    let surface = small();
+    let grid = Grid::square(16, 1e-3).unwrap();
+    for kernel in kernels(grid) {
+        let history = path(&surface, &*kernel, 8e6);
+        let length = history.states().last().unwrap().contact.approach;
+        let builder = FixedLoadSolver::builder(&surface, &*kernel).hardness(8e6);
+        let mut solver = builder.tolerance(1e-11).build().unwrap();
+        let loads = plateaus(&history);
+        let loads: Vec<f64> = loads
+            .iter()
+            .flat_map(|[near, _]| [1.0 - 1e-4, 1.0, 1.0 + 1e-4].map(|part| part * near.load))
+            .collect();
+        for (solution, load) in
+            solver.sweep(loads.iter().copied().map(ContactTarget::Load)).zip(&loads)
+        {
+            let state = solution.unwrap().state;
+            let expected = history.at_load(*load).unwrap().contact;
+            let error = (state.approach - expected.approach).abs() / length;
+            assert!(error < 1e-8, "{load}: {error:e}");
+        }
+        // And down.
+        for load in loads.iter().rev() {
+            let state = solver.solve(*load).unwrap().state;
+            let expected = history.at_load(*load).unwrap().contact;
+            assert!((state.approach - expected.approach).abs() < 1e-8 * length, "{load}");
+        }
+    }
+}
