@@ -228,7 +228,7 @@ def test_the_creep_of_the_program(program: Callable[..., str], record: Path, tmp
     greatest = rubber.creep_at([np.inf])[0] * (load + 0.2 * load)
     within = int(np.searchsorted(path.history.load, greatest, side="right")) + 1
     assert within <= 1500
-    settings = {"mean_load": load, "amplitude": 0.2 * load, "steps": 64, "tolerance": 1e-4, "most": 40}
+    settings = {"mean_load": load, "amplitude": 0.2 * load, "steps": 64, "tolerance": 1e-4, "most": 1000}
     cycles = asp.steady_cycles(path.history[:within], rubber, periods=periods, **settings)  # type: ignore[arg-type]
     table = csv(tmp_path / "cycles.csv")
     np.testing.assert_array_equal([1.0 / cycle.period for cycle in reversed(cycles)], table.pop("frequency"))
