@@ -30,8 +30,9 @@ pub enum JointError {
 
     /// The pressure is no function of the overclosure.
     #[error(
-        "at state {step} the {quantity} is {value}, and the table has {interpolated}: the overclosure falls there by more than the \
-         tolerance of {tolerance} allows, so that the law of the interface is no function of it"
+        "at state {step} the {quantity} is {value}, and the table has {interpolated}: the overclosure falls there, under a greater load, by \
+         more than the tolerance of {tolerance} allows, so that the law of the interface is no function of it. A path that ends before may have a \
+         table"
     )]
     NoFunction {
         /// Number of events up to the state.

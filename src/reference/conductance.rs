@@ -17,7 +17,8 @@ use crate::Error;
 /// # Which stiffness
 ///
 /// The incremental one: the derivative on further loading of the nodes in contact, which every state of a path
-/// has. The secant W/δ has no such meaning.
+/// has. The secant W/δ has no such meaning. Where nodes have yielded it is the one on *unloading*, of all nodes in contact:
+/// [`Conduction`](crate::joint::Conduction) takes it.
 ///
 /// * *Free half-space* ([`Boussinesq`](crate::Boussinesq)): `contact_stiffness`, dW/dδ for the approach of distant
 ///   points. The resistance is that between points far off in both bodies, with the constriction of the current into
