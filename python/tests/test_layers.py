@@ -133,34 +133,6 @@ def test_what_holds_on_half_spaces_is_refused_on_layers() -> None:
         history = path.run(check=False)
         load = float(history.load[-1])
         for states in (path, history, history[::2], pickle.loads(pickle.dumps(history))):
-            for ask in (
-                lambda: asp.conductance(states, 0.04, e_star=1e11),
-                lambda: asp.conductance_bounds(states, 0.04, 1e-8, e_star=1e11),
-                lambda: asp.interface_table(states, resistivity=0.04, e_star=1e11),
-                lambda: asp.interface_table(states, friction=0.3, compliance_ratio=1.2),
-                lambda: asp.shear(states, friction=0.3, compliance_ratio=1.2, check=False),
-            ):
-                with pytest.raises(errors.AsperityError, match="layers"):
-                    ask()
-            assert len(asp.interface_table(states)) > 5
-            ask = lambda: asp.creep(states, rubber, load=0.1 * load).at(1.0)  # noqa: E731
-            if creeps:
-                ask()
-            else:
-                with pytest.raises(errors.AsperityError, match="layers"):
-                    ask()
-
-
-def test_what_holds_on_half_spaces_is_refused_on_layers() -> None:
-    """Paths, histories, parts of them and pickled ones know their body; of one material on a rigid base creep is right."""
-    coated = asp.HalfSpace.layered([("gold", 1e-3)], "steel", "free")
-    alone = asp.HalfSpace.layered([(3e6, 0.3, 1e-3)], "rigid", "free")
-    rubber = asp.Prony.shares([(1.0, 0.5)])
-    for body, creeps in ((coated, False), (alone, True)):
-        path = asp.load_path(asp.example_surface(nodes=32), body, area_fraction=0.1, check=False)
-        history = path.run(check=False)
-        load = float(history.load[-1])
-        for states in (path, history, history[::2], pickle.loads(pickle.dumps(history))):
             for refused in (
                 lambda states: asp.conductance(states, 0.04, e_star=1e11),
                 lambda states: asp.conductance_bounds(states, 0.04, 1e-8, e_star=1e11),

@@ -63,8 +63,7 @@ impl Tangent {
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
         let in_contact = solution.contact_map.as_slice();
-        let count = in_contact.iter().filter(|is_in| **is_in).count();
-        Error::require_positive("number of nodes in contact", count as f64)?;
+        require_contact(in_contact)?;
         level.choose_contact(|node, _, _| solution.is_elastic(node))?;
         if level.iterate.contact.len() == 0 {
             // All that is in contact yields: the load stays what it is.
@@ -111,8 +110,7 @@ impl Tangent {
         solution: &mut FixedLoadSolution,
     ) -> Result<(), Error> {
         let in_contact = solution.contact_map.as_slice();
-        let count = in_contact.iter().filter(|is_in| **is_in).count();
-        Error::require_positive("number of nodes in contact", count as f64)?;
+        require_contact(in_contact)?;
         let Some(plastic) = &mut solution.state.plastic else {
             return Ok(());
         };
@@ -180,4 +178,11 @@ impl Tangent {
         self.displacement = solved.displacement;
         Ok(Solved { iterations, unit_unit })
     }
+}
+
+/// `Ok` if a node is in contact.
+fn require_contact(in_contact: &[bool]) -> Result<(), Error> {
+    let count = in_contact.iter().filter(|is_in| **is_in).count();
+    Error::require_positive("number of nodes in contact", count as f64)?;
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
-use super::event_cost::{Rest, last_factor};
+use super::event_cost::{Rest, greatest_factor};
 use super::factor_log::FactorLog;
 use super::gap_field;
 use super::refined::resumed::RefinedEnd;
@@ -88,16 +88,9 @@ impl<U: LinearUpdater> Phase<U> {
     /// `end` of them, if it is.
     pub(super) fn stop(&self, run: &LoadingRun, end: usize) -> usize {
         let nodes = run.problem.grid().nodes();
-        let last = last_factor(nodes);
+        let last = greatest_factor(nodes, end);
         let may_stop = matches!(self, Self::Factor { may_end: true, .. });
-        if may_stop
-            && run.contact.len() < last
-            && Rest::growing(nodes, last, end).is_cheaper_without()
-        {
-            last
-        } else {
-            nodes
-        }
+        if may_stop && last < end && run.contact.len() < last { last } else { nodes }
     }
 
     /// Makes the gap field of a path that of its contact at an approach.
@@ -310,6 +303,7 @@ fn rest(run: &LoadingRun, count: usize, end: usize) -> Rest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loading::event_cost::last_factor;
     use crate::loading::run::Memory;
     use crate::loading::test_chain::{self, Altered};
     use crate::loading::{LoadingSolver, LoadingState};
