@@ -398,8 +398,10 @@ impl LoadingRun {
     ) -> Result<usize, Error> {
         let count = self.contact.len();
         loop {
+            // Where nodes may yield, a row for each of their pressures as well.
+            let rows = if self.plastic.is_some() { 2 * size } else { size };
             let needed =
-                updater.bytes(count + size, size).saturating_add(WindowFactor::bytes(size));
+                updater.bytes(count + size, size).saturating_add(WindowFactor::bytes(rows));
             match self.memory.check(needed, count) {
                 Err(_) if size > 1 => size /= 2,
                 checked => return checked.map(|()| size),

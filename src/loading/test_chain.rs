@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::gap_field::GapLine;
 use super::run::LoadingRun;
 use super::solver::LoadingSolver;
+use super::state::ContactEvent;
 use super::tolerances::WindowTolerances;
 use super::window::{Course, Window, WindowEvent};
 use crate::updater::Dense;
@@ -85,7 +86,10 @@ pub(super) fn course([c0, c1, c2, c3]: [f64; 4]) -> Course {
 
 /// Events from (position, time).
 pub(super) fn events(pairs: &[(usize, f64)]) -> Vec<WindowEvent> {
-    let event = |&(position, time): &(usize, f64)| WindowEvent { position, time };
+    let event = |&(position, time): &(usize, f64)| {
+        let kind = ContactEvent::Touch;
+        WindowEvent { position, kind, time, closing: 1.0 }
+    };
     pairs.iter().map(event).collect()
 }
 

@@ -220,7 +220,7 @@ impl Windowed {
         for (k, (event, increments)) in events.zip(self.window.increments()).enumerate() {
             let contact_nodes = count + k + 1;
             run.scalars.advance(start + event.time);
-            run.scalars.touch(*increments, contact_nodes);
+            run.scalars.touch(increments, contact_nodes);
             run.scalars.clamp_mean_gap();
             let step = run.releases.steps(contact_nodes);
             let node = self.window.node(event.position);

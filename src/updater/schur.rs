@@ -68,6 +68,21 @@ impl Schur {
         self.matrix[i.max(j) + self.size * i.min(j)]
     }
 
+    /// The same with more rows and columns, each of which has one entry: 1 in the column of a watched node.
+    pub(crate) fn bordered(&self, borders: impl ExactSizeIterator<Item = usize>) -> Self {
+        let (inner, size) = (self.size, self.size + borders.len());
+        let mut matrix = vec![0.0; size * size];
+        for (column, target) in
+            self.matrix.chunks_exact(inner.max(1)).zip(matrix.chunks_exact_mut(size))
+        {
+            target[..inner].copy_from_slice(column);
+        }
+        for (row, column) in (inner..).zip(borders) {
+            matrix[row + size * column] = 1.0;
+        }
+        Self { size, matrix, row_sums: vec![0.0; size] }
+    }
+
     /// The columns of S as stored.
     pub(crate) fn as_mut_slice(&mut self) -> &mut [f64] {
         &mut self.matrix

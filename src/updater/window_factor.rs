@@ -17,6 +17,8 @@ use crate::parallel::vectorized;
 pub struct WindowFactor {
     watched: usize,
     positions: Vec<usize>,
+    /// The signs D of the pivots: `S = R D Rᵀ`. All are positive where nodes only touch.
+    signs: Vec<f64>,
     /// R, `watched` rows, one column for each event.
     factor: Vec<f64>,
     /// Events that are subtracted from the Schur complement already.
@@ -37,7 +39,7 @@ impl WindowFactor {
             if position >= schur.size() || touched.has_touched(position) {
                 return Err(Error::LengthMismatch { expected: schur.size(), found: position });
             }
-            let pushed = touched.push(&mut schur, position);
+            let pushed = touched.push(&mut schur, position, 1.0);
             pushed.map_err(|_| Error::FactorizationFailed { nodes: positions.len() })?;
         }
         Ok(touched)
@@ -93,6 +95,7 @@ impl WindowFactor {
     pub(crate) fn reset(&mut self, watched: usize, events: usize) {
         self.watched = watched;
         self.positions.clear();
+        self.signs.clear();
         self.factor.clear();
         self.subtracted = 0;
         // So that no event ever allocates.
@@ -100,12 +103,17 @@ impl WindowFactor {
         self.factor.reserve(events * watched);
     }
 
-    /// Eliminates the node at `position`, and returns its column of R.
+    /// Eliminates the node at `position`, whose pivot has a sign, 1 or −1, and returns its column of R.
     ///
     /// # Errors
     ///
-    /// The pivot, if it is not positive; then nothing has changed.
-    pub(crate) fn push(&mut self, schur: &mut Schur, position: usize) -> Result<&[f64], f64> {
+    /// The pivot times that sign, if it is not positive; then nothing has changed.
+    pub(crate) fn push(
+        &mut self,
+        schur: &mut Schur,
+        position: usize,
+        sign: f64,
+    ) -> Result<&[f64], f64> {
         let k = self.watched;
         let start = self.factor.len();
         self.factor.resize(start + k, 0.0);
@@ -113,9 +121,16 @@ impl WindowFactor {
         schur.copy_column(position, column);
         vectorized(
             #[inline(always)]
-            || subtract_products(&earlier[self.subtracted * k..], column, position),
+            || {
+                subtract_products(
+                    &earlier[self.subtracted * k..],
+                    &self.signs[self.subtracted..],
+                    column,
+                    position,
+                )
+            },
         );
-        let pivot = column[position];
+        let pivot = sign * column[position];
         if pivot.is_nan() || pivot <= 0.0 {
             self.factor.truncate(start);
             return Err(pivot);
@@ -124,11 +139,11 @@ impl WindowFactor {
         for value in &mut *column {
             *value /= root;
         }
-        column[position] = root;
+        column[position] = sign * root;
         self.positions.push(position);
+        self.signs.push(sign);
         if self.len() - self.subtracted == BLOCK {
-            schur.add_gram(-1.0, &self.factor[self.subtracted * k..]);
-            self.subtracted = self.len();
+            self.finish(schur);
         }
         Ok(&self.factor[start..])
     }
@@ -136,6 +151,7 @@ impl WindowFactor {
     /// Forgets all but the first events. The Schur complement may be that of more.
     pub(crate) fn truncate(&mut self, events: usize) {
         self.positions.truncate(events);
+        self.signs.truncate(events);
         self.factor.truncate(events * self.watched);
     }
 
@@ -154,9 +170,17 @@ impl WindowFactor {
         }
     }
 
-    /// `x ← (R Rᵀ)⁻¹ x` on all events.
+    /// `x ← (R D Rᵀ)⁻¹ x` on all events.
     pub(crate) fn solve_both<const N: usize>(&self, x: &mut [[f64; N]]) {
         self.solve(x);
+        self.solve_back(x);
+    }
+
+    /// `x ← (D Rᵀ)⁻¹ x` on all events.
+    pub(crate) fn solve_back<const N: usize>(&self, x: &mut [[f64; N]]) {
+        for (values, sign) in x.iter_mut().zip(&self.signs) {
+            *values = values.map(|value| value * sign);
+        }
         for t in (0..x.len()).rev() {
             let column = self.column(t);
             let (earlier, later) = x.split_at_mut(t + 1);
@@ -172,7 +196,12 @@ impl WindowFactor {
 
     /// Subtracts the events from the whole Schur complement, from which they have been subtracted in part. No event can follow.
     pub(crate) fn finish(&mut self, schur: &mut Schur) {
-        schur.add_gram(-1.0, &self.factor[self.subtracted * self.watched..]);
+        let mut rest = &self.factor[self.subtracted * self.watched..];
+        for equal in self.signs[self.subtracted..].chunk_by(|a, b| a == b) {
+            let (columns, later) = rest.split_at(equal.len() * self.watched);
+            schur.add_gram(-equal[0], columns);
+            rest = later;
+        }
         self.subtracted = self.len();
     }
 
@@ -182,23 +211,26 @@ impl WindowFactor {
     }
 }
 
-/// column −= Σ_t R_t R[row, t], four events at a time: `column` then passes the cache a quarter as
+/// column −= Σ_t D_t R_t R[row, t], four events at a time: `column` then passes the cache a quarter as
 /// often, and the sum keeps a fixed order.
 #[inline(always)]
-fn subtract_products(events: &[f64], column: &mut [f64], row: usize) {
+fn subtract_products(events: &[f64], signs: &[f64], column: &mut [f64], row: usize) {
     let k = column.len();
-    let mut blocks = events.chunks_exact(4 * k);
-    for block in &mut blocks {
+    let blocks = events.chunks_exact(4 * k);
+    let single = blocks.remainder();
+    let (signs, single_signs) = signs.split_at(signs.len() / 4 * 4);
+    for (block, signs) in blocks.zip(signs.chunks_exact(4)) {
         let (c0, rest) = block.split_at(k);
         let (c1, rest) = rest.split_at(k);
         let (c2, c3) = rest.split_at(k);
-        let (a0, a1, a2, a3) = (c0[row], c1[row], c2[row], c3[row]);
+        let factor = |t: usize, column: &[f64]| signs[t] * column[row];
+        let (a0, a1, a2, a3) = (factor(0, c0), factor(1, c1), factor(2, c2), factor(3, c3));
         for ((((value, x0), x1), x2), x3) in column.iter_mut().zip(c0).zip(c1).zip(c2).zip(c3) {
             *value -= (a0 * x0 + a1 * x1) + (a2 * x2 + a3 * x3);
         }
     }
-    for event in blocks.remainder().chunks_exact(k) {
-        let a = event[row];
+    for (event, sign) in single.chunks_exact(k).zip(single_signs) {
+        let a = sign * event[row];
         for (value, x) in column.iter_mut().zip(event) {
             *value -= a * x;
         }
@@ -313,7 +345,7 @@ mod tests {
             let (mut schur, mut factor) = (schur(), WindowFactor::default());
             factor.reset(WATCHED, WATCHED);
             for &position in done {
-                factor.push(&mut schur, position).unwrap();
+                factor.push(&mut schur, position, 1.0).unwrap();
             }
             let coupling = part(done, open);
             let solved = part(done, done).cholesky().unwrap().solve(&coupling);
@@ -335,14 +367,14 @@ mod tests {
         let mut touched = WindowFactor::default();
         touched.reset(2, 2);
         assert!(touched.is_empty() && !touched.has_touched(1));
-        touched.push(&mut schur, 1).unwrap();
-        touched.push(&mut schur, 0).unwrap();
+        touched.push(&mut schur, 1, 1.0).unwrap();
+        touched.push(&mut schur, 0, 1.0).unwrap();
         assert!(touched.has_touched(0) && touched.has_touched(1));
         touched.truncate(1);
         assert_eq!(touched.positions(), [1]);
         assert!(!touched.has_touched(0));
         assert_eq!([touched.factor(1, 0), touched.factor(0, 1)], [5.0_f64.sqrt(), 0.0]);
-        touched.push(&mut schur, 0).unwrap();
+        touched.push(&mut schur, 0, 1.0).unwrap();
         // 4 − 2²/5.
         assert!((touched.factor(0, 1) - 3.2_f64.sqrt()).abs() < 1e-15);
         touched.reset(3, 3);
@@ -357,8 +389,8 @@ mod tests {
             schur.as_mut_slice()[3] = own;
             let mut touched = WindowFactor::default();
             touched.reset(2, 2);
-            touched.push(&mut schur, 0).unwrap();
-            let refused = touched.push(&mut schur, 1).unwrap_err();
+            touched.push(&mut schur, 0, 1.0).unwrap();
+            let refused = touched.push(&mut schur, 1, 1.0).unwrap_err();
             assert!(refused == pivot || refused.is_nan() && pivot.is_nan(), "{refused}");
             assert_eq!((touched.len(), touched.factor(1, 1)), (1, 0.0));
         }

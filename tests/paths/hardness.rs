@@ -229,11 +229,11 @@ fn states_fulfil_the_conditions() {
 #[test]
 fn two_nodes_by_hand() {
     let two = Grid::new(2, 1, 1.0, 1.0).unwrap();
-    let coefficient = |di: isize, _: isize| if di == 0 { 2.0 } else { 1.0 };
+    let coefficient = |di: isize, _: isize| if di == 0 { 4.0 } else { 2.0 };
     let kernel =
         KernelTable::from_fn(two, Boundary::Free, ContactGrowth::Monotone, coefficient).unwrap();
     let heights = HeightMap::new(DMatrix::from_row_slice(2, 1, &[0.0, -1.0])).unwrap();
-    let builder = || LoadingSolver::builder(&heights, &kernel).hardness(0.75);
+    let builder = || LoadingSolver::builder(&heights, &kernel).hardness(0.375);
     let states = all(builder());
     let found: Vec<_> = states
         .iter()
@@ -242,37 +242,37 @@ fn two_nodes_by_hand() {
     use ContactEvent::{Touch, Yield};
     let expected = [
         (Touch, 0, 0.0, 0.0),
-        (Yield, 0, 1.5, 0.75),
-        (Touch, 1, 1.75, 0.75),
-        (Yield, 1, 3.25, 1.5),
+        (Yield, 0, 1.5, 0.375),
+        (Touch, 1, 1.75, 0.375),
+        (Yield, 1, 3.25, 0.75),
     ];
     for (found, expected) in found.iter().zip(expected) {
         assert_eq!((found.0, found.1), (expected.0, expected.1));
         assert!((found.2 - expected.2).abs() < 1e-14, "{found:?}");
         assert!((found.3 - expected.3).abs() < 1e-14, "{found:?}");
     }
-    // K = 1/2, none on the plateau, and 1/2 again of the second node.
+    // K = 1/4, none on the plateau, and 1/4 again of the second node.
     let stiffness: Vec<f64> = states.iter().map(|s| s.contact.contact_stiffness.unwrap()).collect();
-    assert_eq!(stiffness, [0.5, 0.0, 0.5, 0.0]);
+    assert_eq!(stiffness, [0.25, 0.0, 0.25, 0.0]);
     let history: History = states.into_iter().collect();
     // The plateau begins where its load is reached; along it the approach tells the states apart.
-    assert_eq!(history.at_load(0.75).unwrap().contact.approach, 1.5);
+    assert_eq!(history.at_load(0.375).unwrap().contact.approach, 1.5);
     let along = history.at_approach(1.625).unwrap().contact;
     let plastic = along.plastic.unwrap();
-    assert_eq!((along.load, along.mean_gap, plastic.volume), (0.75, 0.0625, 0.125));
-    assert_eq!(plastic.work, 0.75 * 0.125);
+    assert_eq!((along.load, along.mean_gap, plastic.volume), (0.375, 0.0625, 0.125));
+    assert_eq!(plastic.work, 0.375 * 0.125);
     let mid = history.at_mean_gap(0.0625).unwrap().contact;
-    assert_eq!((mid.approach, mid.load), (1.625, 0.75));
-    // Half a metre behind the second touch: W = 3/4 + 1/4, and the first node has given way by 1/4 + 1/2 (1 - 1/2).
+    assert_eq!((mid.approach, mid.load), (1.625, 0.375));
+    // Half a metre behind the second touch: W = 3/8 + 1/8, and the first node has given way by 1/4 + 1/2 (1 - 1/2).
     let later = history.at_approach(2.25).unwrap().contact;
-    assert!((later.load - 1.0).abs() < 1e-14);
+    assert!((later.load - 0.5).abs() < 1e-14);
     assert!((later.plastic.unwrap().volume - 0.5).abs() < 1e-14);
-    assert!((history.at_load(1.0).unwrap().contact.approach - 2.25).abs() < 1e-14);
+    assert!((history.at_load(0.5).unwrap().contact.approach - 2.25).abs() < 1e-14);
     // Behind the end the approach grows under the last load.
-    assert_eq!(history.at_approach(4.0).unwrap().contact.load, 1.5);
-    assert!(history.at_load(1.6).is_none());
+    assert_eq!(history.at_approach(4.0).unwrap().contact.load, 0.75);
+    assert!(history.at_load(0.8).is_none());
     // Where a limit is the load of a plateau the path ends where it begins.
-    let mut path = builder().max_load(0.75).build().unwrap();
+    let mut path = builder().max_load(0.375).build().unwrap();
     let last = path.by_ref().last().unwrap().unwrap();
     assert_eq!((last.contact.approach, path.end()), (1.5, Some(LoadingEnd::Load)));
 }

@@ -6,9 +6,7 @@
 //! remaining error is settled by one exact solution each.
 
 pub(super) mod candidates;
-pub(super) mod correction;
 pub(super) mod leaving;
-mod near_ties;
 mod plateau;
 pub(super) mod resumed;
 mod states;
@@ -20,7 +18,10 @@ mod wrong_complements;
 use super::gap_field::GapLine;
 use super::ranking::{Ranking, fill};
 use super::run::{LoadingRun, Mark};
+use super::state::ContactEvent;
 use super::tolerances::WindowTolerances;
+use super::window::correction::{self, Correction};
+use super::window::ties::{self, Beginning, Question, Settled};
 use super::window::{Window, WindowEvent};
 use crate::loading::tuning::{
     BEFORE_RELEASE, CERTAIN, FEWEST, LEAST_CONTACT, LEFT_OUT, MOST_CHANGE, MOST_TRIES, REMEMBERED,
@@ -29,9 +30,7 @@ use crate::loading::tuning::{
 use crate::updater::{Iterations, Schur, WindowFactor};
 use crate::{Error, UpdaterError};
 use candidates::{Candidates, cut, with_ties};
-use correction::Correction;
 use leaving::{Attempt, Before, Between};
-use near_ties::Settled;
 
 /// Finds events in windows that are corrected at their end.
 #[derive(Debug)]
@@ -402,9 +401,16 @@ impl Refined {
     ) -> Result<Option<(Correction, Settled)>, Error> {
         let ends = correction::at_end(window, run);
         let correction = correction::correct(window, &ends, time);
-        let settled = near_ties::second_pass(window, &correction, (first, joined, time));
+        let event = |&position: &usize| {
+            let found = first.iter().find(|event| event.position == position);
+            let closing = window.course(position).line.closing;
+            let touch = WindowEvent { position, kind: ContactEvent::Touch, time, closing };
+            found.copied().unwrap_or(touch)
+        };
+        let happened: Vec<WindowEvent> = joined.iter().map(event).collect();
+        let settled = ties::second_pass(&correction, (first, &happened), time);
         self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
-        let change = near_ties::mean_change(first, &settled.events, time);
+        let change = ties::mean_change(first, &settled.events, time);
         let most_change = MOST_CHANGE * time / joined.len() as f64;
         // Half of it, which may be all of it where events tie.
         let half = joined.len() / 2;
@@ -415,9 +421,13 @@ impl Refined {
         let settled = match is_poor {
             true => None,
             false if self.settles => {
-                let beginning = (mark, is_certain);
-                let windows = (window, &correction);
-                near_ties::settle(run, iterations, tolerances, windows, settled, beginning)?
+                let (approach, count) = (mark.scalars.approach(), mark.count);
+                let beginning = Beginning { approach, count, is_certain };
+                let at = (count, approach);
+                let solve = |question: Question<'_>, nodes: &[usize]| {
+                    gaps_before(run, iterations, (window, question, nodes), at)
+                };
+                ties::settle(&correction.window, tolerances, settled, beginning, solve)?
             }
             false => Some(settled),
         };
@@ -496,6 +506,27 @@ impl Refined {
         self.ranked = Some((run.contact.revision(), run.scalars.approach()));
         states::enqueue(run, window, settled, (mark, time), tolerances)
     }
+}
+
+/// Gaps of some nodes at a moment of a window, which began at an approach with so many nodes in contact.
+pub(super) fn gaps_before(
+    run: &mut LoadingRun,
+    iterations: &mut dyn Iterations,
+    (window, question, nodes): (&Window, Question<'_>, &[usize]),
+    (count, approach): (usize, f64),
+) -> Result<Vec<f64>, Error> {
+    run.timings.ties += 1;
+    let order = question.events.iter().map(|event| window.node(event.position));
+    run.rearrange(count, &order.collect::<Vec<usize>>())?;
+    let (count, approach) = (count + question.done, approach + question.time());
+    let (problem, contact) = (&run.problem, &run.contact);
+    let displacement = iterations.probe(problem, contact, count, approach, question.error)?;
+    UpdaterError::check_length("displacements", displacement.len(), problem.grid().nodes())?;
+    if !displacement.iter().copied().all(f64::is_finite) {
+        return Err(run.not_finite());
+    }
+    let gap = |&node: &usize| problem.initial_gap()[node] + displacement[node] - approach;
+    Ok(nodes.iter().map(gap).collect())
 }
 
 /// `Ok` if none of the first `count` nodes in contact is pulled at the present solution: where contact grows they keep what they carry.

@@ -1,11 +1,11 @@
 //! States of a window, pinned to the exact ones at both ends.
 
-use super::near_ties::Settled;
 use crate::Error;
 use crate::loading::run::{LoadingRun, Mark};
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME};
+use crate::loading::window::ties::Settled;
 use crate::loading::window::{Window, WindowEvent};
 
 /// Queues the states of the events of a corrected window, from a mark to the present approach.
@@ -25,15 +25,15 @@ pub(super) fn enqueue(
     let of_gaps: Vec<f64> =
         settled.events.iter().map(|event| tolerances.time_of_gap(closing(event))).collect();
     for event in &settled.events {
-        window.touch(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
+        window.happen(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
     }
-    let steps = window.increments();
+    let steps: Vec<[f64; 2]> = window.increments().collect();
     let missing = start.missing(&run.scalars);
     let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
     let scaled = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { missing[k] / total(k) });
     let mut walked = *start;
     let mut along = Vec::with_capacity(settled.events.len());
-    for (k, (event, step)) in settled.events.iter().zip(steps).enumerate() {
+    for (k, (event, step)) in settled.events.iter().zip(&steps).enumerate() {
         walked.advance(start.approach() + event.time);
         walked.touch([0, 1].map(|k| scaled[k] * step[k]), mark.count + k + 1);
         along.push(walked);

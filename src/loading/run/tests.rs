@@ -273,8 +273,8 @@ fn windows_are_those_of_any_updater() -> Result<(), Error> {
                 let error = (found.time - expected.time).abs();
                 assert!(error < 1e-8 * opened.1, "{error:e}");
             }
-            let increments = found.increments().iter().flatten();
-            for (found, expected) in increments.zip(expected.increments().iter().flatten()) {
+            let increments = found.increments().flatten();
+            for (found, expected) in increments.zip(expected.increments().flatten()) {
                 assert!((found - expected).abs() < 1e-8 * expected.abs(), "{found} {expected}");
             }
         }

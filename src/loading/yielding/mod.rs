@@ -11,10 +11,8 @@
 //!
 //! Without a factor `RefinedYielding` plays such windows of a matrix that is nearly exact, and corrects them at their end.
 
-mod exchange;
 mod pinned;
 mod refined;
-mod settled;
 #[cfg(test)]
 mod wrong_matrices;
 
@@ -22,16 +20,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::cost::{WITH_FACTOR, automatic_window, watched_for};
+use super::gap_field::GapLine;
 use super::plastic::{Displaced, Plastic};
 use super::run::LoadingRun;
 use super::scalars::{PlasticScalars, Rates};
 use super::state::ContactEvent;
 use super::sum::Sum;
 use super::tuning::{OF_RESIDUAL, SQUARE, TOLERANCE};
+use super::window::{SUMS, Watched, Window};
 use crate::contact::ContactSequence;
 use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
 use crate::{Error, Problem};
-use exchange::{Exchange, NodeState, SUMS, Watched};
 pub(super) use refined::RefinedYielding;
 
 /// Finds events of both kinds in windows.
@@ -39,7 +38,7 @@ pub(super) use refined::RefinedYielding;
 pub(super) struct Yielding {
     /// How many nodes to watch, if the user says so.
     size: Option<usize>,
-    window: Exchange,
+    window: Window,
     schur: Schur,
     /// Nodes out of contact that were watched, in the order of the updater.
     watched_before: Vec<usize>,
@@ -169,10 +168,10 @@ impl Yielding {
         let start = Instant::now();
         let horizon = self.choose(run, size);
         run.timings.choice += start.elapsed();
-        self.watch(run, &plastic, updater, rates)?;
+        self.watch(run, &plastic, updater, horizon)?;
 
         let start = Instant::now();
-        let mut bad_pivot = self.window.play(horizon, touches, usize::MAX);
+        let mut bad_pivot = self.window.play_touches(touches);
         run.timings.events += start.elapsed();
         if self.window.events().is_empty() {
             let stopped = || self.growth_stopped(run);
@@ -187,14 +186,13 @@ impl Yielding {
             let kept = events.iter().take_while(|event| event.time <= until).count();
             let kept = kept.clamp(1, events.len() - 1);
             run.timings.taken_back += events.len() - kept;
-            let start = Instant::now();
-            bad_pivot = self.window.play(horizon, touches, kept);
-            run.timings.events += start.elapsed();
+            self.window.truncate(kept);
+            bad_pivot = None;
         };
         let before = Carried::of(run, &plastic);
         let plastic = self.commit(run, &plastic, updater, trial)?;
         let start = Instant::now();
-        let queued = self.enqueue(run, &plastic, before);
+        let queued = self.enqueue(run, &plastic, (before, rates));
         run.timings.events += start.elapsed();
         Ok(queued.err().or_else(|| bad_pivot.map(|bad| run.not_positive_definite(bad))))
     }
@@ -237,7 +235,7 @@ impl Yielding {
         run: &mut LoadingRun,
         plastic: &Plastic,
         updater: &mut U,
-        rates: Rates,
+        horizon: f64,
     ) -> Result<(), Error> {
         let approach = run.scalars.approach();
         let order = run.contact.order();
@@ -283,18 +281,17 @@ impl Yielding {
                 if let Some(q) = k.checked_sub(outside.len()) {
                     let position = positions[q];
                     let [first, second] = solved[position];
-                    let sums = [first, second, last[position][0]];
-                    let value = pressures[position].1;
-                    let rate = run.field.solution().rate[position];
-                    return Watched { node, is_elastic: true, hardness, value, rate, sums };
+                    let sums = of_overlap([first, second, last[position][0]], hardness);
+                    let (gap, closing) =
+                        (pressures[position].1, -run.field.solution().rate[position]);
+                    let line = GapLine { gap, closing };
+                    return Watched { node, is_elastic: true, hardness, line, sums };
                 }
                 let line = run.field.line(&run.problem, node, approach);
-                let sums = outer[k];
-                let (value, rate) = (line.gap, -line.closing);
-                Watched { node, is_elastic: false, hardness, value, rate, sums }
+                Watched { node, is_elastic: false, hardness, line, sums: outer[k] }
             })
             .collect();
-        self.window.begin(approach, &watched, &self.schur, (rates, order.len()));
+        self.window.begin_both((approach, horizon), &watched, &self.schur, order.len());
         self.watched_before.clear();
         self.watched_before.extend(outside);
         run.timings.windows += 1;
@@ -318,12 +315,15 @@ impl Yielding {
         let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
         let mut values = vec![[0.0; 2]; nodes];
         let hardness = plastic.hardness().values();
-        for (node, state, value) in self.window.nodes() {
-            match (state, run.contact.contains(node)) {
-                (NodeState::Elastic, false) => pressed.push((node, value)),
-                (NodeState::Yielded, false) => pressed.push((node, [hardness[node], 0.0])),
-                (NodeState::Yielded, true) => values[node] = value,
-                _ => (),
+        for (event, answer) in self.window.events().iter().zip(self.window.answers(end)) {
+            let node = self.window.node(event.position);
+            if event.kind == ContactEvent::Touch {
+                let yields = self.window.events().iter().any(|other| {
+                    (other.position, other.kind) == (event.position, ContactEvent::Yield)
+                });
+                pressed.push((node, if yields { [hardness[node], 0.0] } else { answer }));
+            } else if run.contact.contains(node) {
+                values[node] = answer.map(|overlap| -overlap);
             }
         }
         let pressed_places: Vec<usize> =
@@ -386,7 +386,7 @@ impl Yielding {
         let old = |node: usize| run.contact.contains(node);
         let followed = if yielded.is_empty() {
             let joined = contact.order()[before.len()..].iter();
-            let place = |node: &usize| self.window.nodes().position(|(other, ..)| other == *node);
+            let place = |node: &usize| self.window.position(*node);
             let positions: Vec<usize> = joined.filter_map(place).collect();
             self.watched_before.retain(|&node| !contact.contains(node));
             WindowFactor::of(self.schur.clone(), &positions)
@@ -413,15 +413,14 @@ impl Yielding {
         &self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        before: Carried,
+        (before, rates): (Carried, Rates),
     ) -> Result<(), Error> {
         let Carried { nodes: [mut elastic, mut yielded], mut sum, mut most } = before;
         let start = run.scalars.approach();
         let mut step = elastic + 2 * yielded;
         let hardness = plastic.hardness().values();
-        let nodes: Vec<usize> = self.window.nodes().map(|(node, ..)| node).collect();
-        for event in self.window.events() {
-            let node = nodes[event.position];
+        for (event, rates) in self.window.events().iter().zip(self.window.rates(rates)) {
+            let node = self.window.node(event.position);
             run.scalars.advance(start + event.time);
             run.scalars.clamp_load([sum, most]);
             run.scalars.clamp_mean_gap();
@@ -433,7 +432,7 @@ impl Yielding {
                 yielded += 1;
                 sum += hardness[node];
             }
-            run.scalars.change_rates(event.rates, [elastic, yielded], sum);
+            run.scalars.change_rates(rates, [elastic, yielded], sum);
             step += 1;
             run.enqueue(step, event.kind, node, elastic + yielded)?;
         }
@@ -528,6 +527,12 @@ fn survey(
     run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
     run.timings.choice += start.elapsed();
     Ok(rates)
+}
+
+/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over all nodes: its own is
+/// the depth of a node that has yielded.
+fn of_overlap(of_gap: [f64; SUMS], hardness: f64) -> [f64; SUMS] {
+    [1.0 - of_gap[0], 1.0 - of_gap[1], hardness - of_gap[2]]
 }
 
 /// The place of each node in an order; of nodes that are not there it means nothing.

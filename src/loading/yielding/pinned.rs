@@ -1,8 +1,6 @@
 //! States of a window, pinned to the exact ones at both ends.
 
 use super::Carried;
-use super::exchange::Exchange;
-use super::settled::Settled;
 use crate::Error;
 use crate::loading::plastic::Plastic;
 use crate::loading::run::LoadingRun;
@@ -10,6 +8,8 @@ use crate::loading::scalars::{PathScalars, Rates};
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME, RATE_ERROR};
+use crate::loading::window::Window;
+use crate::loading::window::ties::Settled;
 
 /// A window that the path has gone through.
 pub(super) struct Passed {
@@ -135,14 +135,13 @@ fn stiffness_of(elastic: usize, found: f64, alone: f64) -> f64 {
 pub(super) fn enqueue(
     run: &mut LoadingRun,
     plastic: &Plastic,
-    (window, settled): (&Exchange, &Settled),
+    (window, settled): (&Window, &Settled),
     passed: Passed,
-    (exact, tolerances): (Rates, &WindowTolerances),
+    ([start_rates, exact], tolerances): ([Rates; 2], &WindowTolerances),
 ) -> Result<(), Error> {
     let Passed { start, before, span } = passed;
     let events = window.events();
-    let found: Vec<Rates> = events.iter().map(|event| event.rates).collect();
-    let mut rates = completed(&window.start_rates(), &found, &exact);
+    let mut rates = completed(&start_rates, &window.rates(start_rates), &exact);
     let mut elastic = before.nodes[0];
     let alone = run.problem.table().self_influence().recip();
     for (event, rates) in events.iter().zip(&mut rates) {
@@ -166,7 +165,7 @@ pub(super) fn enqueue(
     let mut load_error = run.scalars.load_beyond(&walked).abs()
         + RATE_ERROR * run.scalars.load_beyond(&start).abs()
         + run.scalars.load_over(OF_END * spacing);
-    let mut stiffness = window.start_rates().unit_stiffness;
+    let mut stiffness = start_rates.unit_stiffness;
     let mut walk = Walk::new(plastic, before);
     let own = run.scalars;
     for (k, ((mut scalars, so_far), event)) in along.into_iter().zip(events).enumerate() {

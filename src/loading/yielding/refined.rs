@@ -3,18 +3,13 @@
 //! As where nothing yields: the exact solution at a window's end corrects the matrix, the same events are played a second time, and
 //! what is still closer than the remaining error is settled by a solution of its own.
 
-use nalgebra::DMatrixViewMut;
-
-use super::exchange::{Event, Exchange, Watched};
 use super::pinned::{self, Passed};
-use super::settled::{self, Beginning};
-use super::{Carried, Slack, Trial, contradiction, survey};
+use super::{Carried, Slack, Trial, contradiction, of_overlap, survey};
 use crate::Error;
 use crate::contact::ContactSequence;
 use crate::loading::gap_field::GapLine;
 use crate::loading::plastic::Plastic;
 use crate::loading::refined::candidates::{cut, with_ties};
-use crate::loading::refined::correction::{self, AtEnd, Correction};
 use crate::loading::run::LoadingRun;
 use crate::loading::scalars::Rates;
 use crate::loading::state::ContactEvent;
@@ -23,7 +18,9 @@ use crate::loading::tuning::{
     CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART,
     REMEMBERED, SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
-use crate::loading::window::{Course, Window, WindowEvent};
+use crate::loading::window::correction::{self, AtEnd};
+use crate::loading::window::ties::{self, Beginning, Question, Settled};
+use crate::loading::window::{Watched, Window, WindowEvent};
 use crate::updater::{Behind, Beside, Iterations, Proposal, Schur, WindowFactor};
 use crate::{Boundary, Problem, UpdaterError};
 
@@ -54,29 +51,6 @@ struct Candidates {
     horizon: f64,
     /// Set if more nodes have their events at this time than can be watched.
     group: Option<f64>,
-}
-
-/// A window that has begun.
-pub(super) struct Opened {
-    pub(super) window: Exchange,
-    approach: f64,
-    watched: Vec<Watched>,
-    schur: Schur,
-    rates: Rates,
-    /// How many nodes were elastic.
-    elastic: usize,
-    horizon: f64,
-}
-
-impl Opened {
-    /// The window with another matrix, and with bent courses.
-    fn with<'a>(&self, schur: &Schur, courses: impl Iterator<Item = &'a Course>) -> Exchange {
-        let mut window = Exchange::default();
-        window.begin(self.approach, &self.watched, schur, (self.rates, self.elastic));
-        window.bend(courses.map(|course| course.curve));
-        window.tolerate(SLACK_OF_RATE);
-        window
-    }
 }
 
 /// How a window ended.
@@ -125,8 +99,8 @@ impl RefinedYielding {
             if let Some(time) = candidates.group {
                 return self.enter(run, &plastic, iterations, &tolerances, (time, &[]), touches);
             }
-            let opened = self.propose(run, &plastic, iterations, candidates)?;
-            match self.follow(run, &plastic, iterations, &tolerances, &opened, touches)? {
+            let window = self.propose(run, &plastic, iterations, candidates)?;
+            match self.follow(run, &plastic, iterations, &tolerances, &window, touches)? {
                 Outcome::Done => return Ok(()),
                 Outcome::TakenBack => run.timings.taken_back += 1,
             }
@@ -241,7 +215,7 @@ impl RefinedYielding {
         plastic: &Plastic,
         iterations: &mut dyn Iterations,
         candidates: Candidates,
-    ) -> Result<Opened, Error> {
+    ) -> Result<Window, Error> {
         let (approach, count) = (run.scalars.approach(), run.contact.len());
         let (problem, contact) = (&run.problem, &run.contact);
         // One node at least joins.
@@ -272,21 +246,22 @@ impl RefinedYielding {
         let gap = problem.initial_gap();
         let hardness = plastic.hardness().values();
         let watched = nodes.iter().zip(lines.iter().zip(&sums)).enumerate();
-        let watched = watched.map(|(k, (&node, (&[value, rate], &sums)))| {
-            let is_elastic = k >= out;
-            let [value, rate] = match is_elastic {
-                true => [value, rate],
-                false => [gap[node] + value - approach, rate - 1.0],
+        let watched = watched.map(|(k, (&node, (&[value, rate], &of_gap)))| {
+            let (is_elastic, hardness) = (k >= out, hardness[node]);
+            let (line, sums) = if is_elastic {
+                let line = GapLine { gap: value, closing: -rate };
+                (line, of_overlap(of_gap, hardness))
+            } else {
+                (GapLine { gap: gap[node] + value - approach, closing: 1.0 - rate }, of_gap)
             };
-            Watched { node, is_elastic, hardness: hardness[node], value, rate, sums }
+            Watched { node, is_elastic, hardness, line, sums }
         });
         let watched: Vec<Watched> = watched.collect();
-        let mut window = Exchange::default();
-        window.begin(approach, &watched, &schur, (self.rates, count));
-        window.tolerate(SLACK_OF_RATE);
+        let mut window = Window::default();
+        let at = (approach, TRUSTED * candidates.horizon);
+        window.begin_both(at, &watched, &schur, count);
         run.timings.windows += 1;
-        let (rates, horizon) = (self.rates, TRUSTED * candidates.horizon);
-        Ok(Opened { window, approach, watched, schur, rates, elastic: count, horizon })
+        Ok(window)
     }
 
     /// Goes through a window, and queues its states.
@@ -296,33 +271,29 @@ impl RefinedYielding {
         plastic: &Plastic,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
-        opened: &Opened,
+        window: &Window,
         touches: usize,
     ) -> Result<Outcome, Error> {
-        let mut first = opened.window.clone();
-        let bad = first.play(opened.horizon, usize::MAX, usize::MAX);
+        let mut first = window.clone();
+        let bad = first.play(usize::MAX);
         let events = first.events();
         if events.is_empty() {
             return Err(match bad {
                 Some(bad) => run.not_positive_definite(bad),
                 None => {
-                    let node = opened.watched.iter().map(|watched| watched.node).min();
+                    let node = window.nodes().iter().min().copied();
                     run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
                 }
             });
         }
-        let times: Vec<WindowEvent> = events
-            .iter()
-            .map(|&Event { position, time, .. }| WindowEvent { position, time })
-            .collect();
-        let most = with_ties(&times, self.most_events(), tolerances).min(within(events, touches));
-        let (mut kept, mut time) = cut(&times, opened.horizon, most, tolerances);
+        let most = with_ties(events, self.most_events(), tolerances).min(within(events, touches));
+        let (mut kept, mut time) = cut(events, window.horizon(), most, tolerances);
         let start = run.scalars.approach();
         let mut has_moved = false;
         let trial = loop {
             if time <= tolerances.tie {
                 // All of them happen at once. Their courses are better known than those of the ranking.
-                let node = |event: &Event| first.node(event.position);
+                let node = |event: &WindowEvent| window.node(event.position);
                 let known: Vec<usize> = events[..kept].iter().map(node).collect();
                 if has_moved {
                     self.begin(run, plastic, iterations, tolerances)?;
@@ -330,8 +301,7 @@ impl RefinedYielding {
                 self.enter(run, plastic, iterations, tolerances, (time, &known), touches)?;
                 return Ok(Outcome::Done);
             }
-            let event = |event: &Event| (first.node(event.position), event.kind);
-            let trial = Trial::of(run, plastic, events[..kept].iter().map(event))?;
+            let trial = Trial::of(run, plastic, of_nodes(window, &events[..kept]))?;
             self.rate_span = time.max(self.last_span);
             let at = (start + time, self.rate_span);
             self.go_to(run, plastic, iterations, &trial, at)?;
@@ -352,20 +322,20 @@ impl RefinedYielding {
             if kept > 1 {
                 // What joined or yielded without need says nothing of when that was.
                 let fewer = if until.is_finite() {
-                    times.iter().take_while(|event| event.time <= time + until).count()
+                    events.iter().take_while(|event| event.time <= time + until).count()
                 } else {
                     kept / 2
                 };
-                (kept, time) = cut(&times, opened.horizon, fewer.clamp(1, kept - 1), tolerances);
+                (kept, time) = cut(events, window.horizon(), fewer.clamp(1, kept - 1), tolerances);
             } else if !is_shortest {
                 time = own;
             } else {
-                let node = first.node(events[0].position);
+                let node = window.node(events[0].position);
                 return Err(run.not_monotone("gap or pressure", node, 0.0));
             }
         };
         let events = &events[..kept];
-        match self.refine(run, plastic, iterations, tolerances, (opened, &trial), (events, time))? {
+        match self.refine(run, plastic, iterations, tolerances, (window, &trial), (events, time))? {
             Some((window, settled)) => {
                 self.finish(run, plastic, trial, (window, &settled), time, tolerances)?;
                 Ok(Outcome::Done)
@@ -399,52 +369,39 @@ impl RefinedYielding {
         plastic: &Plastic,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
-        (opened, trial): (&Opened, &Trial),
-        (first, time): (&[Event], f64),
-    ) -> Result<Option<(Exchange, settled::Settled)>, Error> {
-        let window = as_window(opened)?;
-        let ends = at_end(run, plastic, opened, (trial, opened.approach + time));
-        let correction = correction::correct_if(&window, &ends, time, |schur| {
-            is_definite(schur, &opened.watched)
-        });
-        let Correction { window, by_courses, is_updated } = &correction;
-        let corrected = opened.with(window.schur(), window.courses());
-        let other = opened.with(by_courses.schur(), by_courses.courses());
-        let passes = (&corrected, &other, *is_updated);
-        let settled = settled::second_pass(passes, (first, time));
-        let part = |i: usize| (window.schur().entry(i, i) / opened.schur.entry(i, i) - 1.0).abs();
-        let left_out = (0..opened.watched.len()).map(part).fold(0.0, f64::max);
-        self.left_out = left_out.max(REMEMBERED * self.left_out);
-        let change = settled::mean_change(first, &settled.events, time);
+        (window, trial): (&Window, &Trial),
+        (first, time): (&[WindowEvent], f64),
+    ) -> Result<Option<(Window, Settled)>, Error> {
+        let start = run.scalars.approach();
+        let ends = at_end(run, plastic, window, (trial, start + time));
+        let correction = correction::correct(window, &ends, time);
+        let settled = ties::second_pass(&correction, (first, first), time);
+        self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
+        let change = ties::mean_change(first, &settled.events, time);
         let most_change = MOST_CHANGE * time / first.len() as f64;
         let half = first.len() / 2;
-        let tied = with_ties(
-            &first
-                .iter()
-                .map(|e| WindowEvent { position: e.position, time: e.time })
-                .collect::<Vec<_>>(),
-            half,
-            tolerances,
-        );
-        let is_certain = first.len() <= CERTAIN || tied >= first.len();
+        let is_certain =
+            first.len() <= CERTAIN || with_ties(first, half, tolerances) >= first.len();
         let is_poor = !is_certain && (change > most_change || first.len() > 2 * self.most_events());
         let settled = match is_poor {
             true => None,
             false if self.settles => {
-                let beginning = Beginning {
-                    plastic,
-                    approach: opened.approach,
-                    count: run.contact.len() + plastic.count(),
-                    is_certain,
+                let count = run.contact.len() + plastic.count();
+                let beginning = Beginning { approach: start, count, is_certain };
+                let solve = |question: Question<'_>, nodes: &[usize]| {
+                    let done = of_nodes(window, &question.events[..question.done]);
+                    let trial = Trial::of(run, plastic, done)?;
+                    let at = (start + question.time(), question.error);
+                    values_at(run, plastic, iterations, (&trial, nodes), at)
                 };
-                settled::settle(run, iterations, tolerances, &corrected, settled, beginning)?
+                ties::settle(&correction.window, tolerances, settled, beginning, solve)?
             }
             false => Some(settled),
         };
         if settled.is_none() {
             self.left_out = self.left_out.max(LEFT_OUT / half.max(1) as f64);
         }
-        Ok(settled.map(|settled| (corrected, settled)))
+        Ok(settled.map(|settled| (correction.window, settled)))
     }
 
     /// How many events a window may have: see the same of windows in which nothing yields.
@@ -458,23 +415,26 @@ impl RefinedYielding {
         run: &mut LoadingRun,
         plastic: &Plastic,
         mut trial: Trial,
-        (mut window, settled): (Exchange, &settled::Settled),
+        (mut window, settled): (Window, &Settled),
         time: f64,
         tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         self.last_span = time;
-        let moments = settled.events.iter().map(|event| (event.position, event.time));
-        window.go_through(moments).map_err(|bad| run.not_positive_definite(bad))?;
-        let events = settled.events.iter().map(|event| (window.node(event.position), event.kind));
-        let played: Vec<(usize, ContactEvent)> = events.collect();
+        for event in &settled.events {
+            let happened = window.happen(event.position, event.time);
+            happened.map_err(|bad| run.not_positive_definite(bad))?;
+        }
+        let played: Vec<(usize, ContactEvent)> = of_nodes(&window, &settled.events).collect();
         trial.reorder(run, &played)?;
         let before = Carried::of(run, plastic);
         let passed = Passed { start: run.scalars, before, span: time };
         let approach = passed.start.approach() + time;
         let plastic = trial.adopt(run, plastic);
         run.scalars.place_at(approach);
+        let start = self.rates;
         self.survey(run, &plastic, tolerances)?;
-        pinned::enqueue(run, &plastic, (&window, settled), passed, (self.rates, tolerances))
+        let rates = [start, self.rates];
+        pinned::enqueue(run, &plastic, (&window, settled), passed, (rates, tolerances))
     }
 
     /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices, up to so many
@@ -581,8 +541,8 @@ fn lateness(
 }
 
 /// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
-fn within(events: &[Event], touches: usize) -> usize {
-    let touching = |(_, event): &(usize, &Event)| event.kind == ContactEvent::Touch;
+fn within(events: &[WindowEvent], touches: usize) -> usize {
+    let touching = |(_, event): &(usize, &WindowEvent)| event.kind == ContactEvent::Touch;
     let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
     last.map_or(events.len(), |(place, _)| place + 1)
 }
@@ -605,35 +565,38 @@ fn closing(run: &LoadingRun, node: usize, place: Option<usize>) -> f64 {
     }
 }
 
-/// A window as those have it in which nothing yields: pressures in the place of gaps.
-fn as_window(opened: &Opened) -> Result<Window, Error> {
-    let mut window = Window::default();
-    let lines = opened
-        .watched
-        .iter()
-        .map(|watched| (watched.node, GapLine { gap: watched.value, closing: -watched.rate }));
-    let (_, schur) = window.open((opened.approach, opened.horizon), lines);
-    schur.clone_from(&opened.schur);
-    window.begin();
-    Ok(window)
+/// The nodes of events, and what happens to them.
+fn of_nodes<'a>(
+    window: &'a Window,
+    events: &'a [WindowEvent],
+) -> impl Iterator<Item = (usize, ContactEvent)> + 'a {
+    events.iter().map(|event| (window.node(event.position), event.kind))
 }
 
-/// Whether every exchange of a matrix has a positive pivot, whatever their order.
-fn is_definite(schur: &Schur, watched: &[Watched]) -> bool {
-    let mut parts = schur.clone();
-    let size = parts.size();
-    let mut matrix: DMatrixViewMut<'_, f64> = parts.matrix_mut();
-    for j in 0..size {
-        for i in j..size {
-            matrix[(i, j)] *= match (watched[i].is_elastic, watched[j].is_elastic) {
-                (false, false) => 1.0,
-                (true, true) => -1.0,
-                _ => 0.0,
-            };
-        }
+/// Gaps of nodes out of contact and pressures of those in it, behind a trial at an approach, to an error.
+fn values_at(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    iterations: &mut dyn Iterations,
+    (trial, nodes): (&Trial, &[usize]),
+    (approach, error): (f64, f64),
+) -> Result<Vec<f64>, Error> {
+    run.timings.ties += 1;
+    let yielded = trial.pressures(plastic);
+    let solved = iterations.probe_behind(&trial.behind(&yielded, approach), error)?;
+    let (pressure, [displacement, _]) = (&solved.solution.pressure, &solved.displacement);
+    UpdaterError::check_length("displacements", displacement.len(), run.problem.grid().nodes())?;
+    UpdaterError::check_length("pressures", pressure.len(), trial.contact.len())?;
+    if !displacement.iter().chain(pressure).copied().all(f64::is_finite) {
+        return Err(run.not_finite());
     }
-    let all: Vec<usize> = (0..size).collect();
-    WindowFactor::of(parts, &all).is_ok()
+    let gap = trial.problem.initial_gap();
+    let value = |&node: &usize| match trial.contact.order().iter().position(|&other| other == node)
+    {
+        Some(place) => pressure[place],
+        None => gap[node] + displacement[node] - approach,
+    };
+    Ok(nodes.iter().map(value).collect())
 }
 
 /// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were elastic; and
@@ -641,7 +604,7 @@ fn is_definite(schur: &Schur, watched: &[Watched]) -> bool {
 fn at_end(
     run: &LoadingRun,
     plastic: &Plastic,
-    opened: &Opened,
+    window: &Window,
     (trial, approach): (&Trial, f64),
 ) -> Vec<AtEnd> {
     let mut places = vec![None; run.problem.grid().nodes()];
@@ -650,12 +613,11 @@ fn at_end(
     }
     let solution = run.field.solution();
     let hardness = plastic.hardness().values();
-    let at = |watched: &Watched| {
-        let node = watched.node;
+    let at = |(position, &node): (usize, &usize)| {
         let line = run.field.line(&trial.problem, node, approach);
         let gap = [line.gap, -line.closing];
         let has_yielded = trial.yielded.contains(&node);
-        match (watched.is_elastic, places[node]) {
+        match (window.is_elastic(position), places[node]) {
             (false, Some(place)) => {
                 AtEnd { pressure: [solution.pressure[place], solution.rate[place]], gap: [0.0; 2] }
             }
@@ -667,7 +629,7 @@ fn at_end(
             (true, None) => AtEnd { pressure: gap.map(|value| -value), gap: [hardness[node], 0.0] },
         }
     };
-    opened.watched.iter().map(at).collect()
+    window.nodes().iter().enumerate().map(at).collect()
 }
 
 impl Trial {
@@ -703,8 +665,7 @@ mod tests {
     #[test]
     fn a_path_ends_with_its_last_touch() {
         use ContactEvent::{Touch, Yield};
-        let rates = Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] };
-        let event = |kind| Event { position: 0, time: 1.0, kind, closing: 1.0, rates };
+        let event = |kind| WindowEvent { position: 0, time: 1.0, kind, closing: 1.0 };
         let events = [Touch, Yield, Yield, Touch, Yield].map(event);
         let found = [1, 2, 3, 9].map(|touches| within(&events, touches));
         assert_eq!(found, [1, 4, 5, 5]);

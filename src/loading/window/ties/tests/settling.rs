@@ -1,6 +1,8 @@
 //! Events that are settled by solutions.
 
 use super::*;
+use crate::loading::refined::gaps_before;
+use crate::loading::run::LoadingRun;
 use crate::loading::test_chain::Altered;
 
 /// Settles what a window says of events of nodes that do not act on each other. From the approach 1 on, with node 0 in
@@ -8,22 +10,17 @@ use crate::loading::test_chain::Altered;
 fn settle_all(
     (gaps, joined): (&[f64], &[usize]),
     window: &Window,
-    correction: &Correction,
     before: Settled,
     (tolerance, is_certain): (f64, bool),
 ) -> Result<(LoadingRun, Option<Settled>), Error> {
     let mut run = test_chain::solved(gaps, joined, 3.5)?;
-    let mut mark = run.mark().without_last(before.events.len());
-    mark.scalars.place_at(1.0);
+    let count = joined.len() - before.events.len();
+    let beginning = Beginning { approach: 1.0, count, is_certain };
     let tolerances = tolerances(1.0, tolerance, 1e-9);
-    let found = settle(
-        &mut run,
-        &mut Altered::inexact(tolerance),
-        &tolerances,
-        (window, correction),
-        before,
-        (&mark, is_certain),
-    )?;
+    let mut iterations = Altered::inexact(tolerances.tolerance);
+    let found = settle(window, &tolerances, before, beginning, |question, nodes| {
+        gaps_before(&mut run, &mut iterations, (window, question, nodes), (count, 1.0))
+    })?;
     Ok((run, found))
 }
 
@@ -32,9 +29,9 @@ fn before(pairs: &[(usize, f64)], errors: &[f64]) -> Settled {
     Settled { events: events(pairs), errors: errors.to_vec() }
 }
 
-/// A correction of pivots of 4.
-fn of_four(window: &Window) -> Correction {
-    correction(window, &(4.0 * test_chain::matrix(window)))
+/// A window corrected to pivots of 4.
+fn of_four(window: &Window) -> Window {
+    correction(window, &(4.0 * test_chain::matrix(window))).window
 }
 
 /// The gap of node 2, or of node 4, closes at the approach 3, and the other one's later. Node 0 is in contact and reaches
@@ -48,7 +45,7 @@ fn settled(
     let window = alone(&[2, 4], &[[9.0, 0.5], [9.0, 1.0]]);
     let before = before(&[(0, times[0]), (1, times[1])], &errors);
     let joined = (&initial[..], &[0, 4, 2][..]);
-    let (run, settled) = settle_all(joined, &window, &of_four(&window), before, (tolerance, true))?;
+    let (run, settled) = settle_all(joined, &of_four(&window), before, (tolerance, true))?;
     let Some(settled) = settled else {
         unreachable!("two events are not contradicted");
     };
@@ -101,13 +98,13 @@ fn what_cannot_be_settled_stays() -> Result<(), Error> {
     let initial = [0.0, 9.0, 3.0, 9.0, 3.0];
     let window = alone(&[2, 4], &[[9.0, 1.0], [8.0, 1.0]]);
     for (closing, own) in [(0.0, 4.0), (1.0, -4.0)] {
-        let mut correction = of_four(&window);
+        let mut window = of_four(&window);
         let courses = [[9.0, 1.0, 0.0, 0.0], [9.0, closing, 0.0, 0.0]].map(course);
-        correction.window.set_courses(courses.into_iter());
-        correction.window.schur_mut().matrix_mut()[(0, 0)] = own;
+        window.set_courses(courses.into_iter());
+        window.schur_mut().matrix_mut()[(0, 0)] = own;
         let before = before(&[(0, 2.0), (1, 2.25)], &[0.25; 2]);
         let joined = (&initial[..], &[0, 2, 4][..]);
-        let (run, found) = settle_all(joined, &window, &correction, before, (1e-3, false))?;
+        let (run, found) = settle_all(joined, &window, before, (1e-3, false))?;
         assert!(found.is_some_and(|found| {
             check_events(&found, &[(0, 2.0), (1, 2.25)]);
             found.errors == [0.25; 2]
@@ -127,7 +124,7 @@ fn three_settled(
     let window = alone(&[2, 4, 6], &lines);
     let pairs = [(0, 2.0), (1, 2.0 + step), (2, 2.0 + 2.0 * step)];
     let (before, joined) = (before(&pairs, &[error; 3]), (&initial[..], &[0, 2, 4, 6][..]));
-    let (run, found) = settle_all(joined, &window, &of_four(&window), before, (1e-2, false))?;
+    let (run, found) = settle_all(joined, &of_four(&window), before, (1e-2, false))?;
     Ok((found, run.timings.ties))
 }
 
@@ -169,13 +166,14 @@ fn nothing_is_asked_of_an_orbit() -> Result<(), Error> {
 fn gaps_are_those_with_all_events_before() -> Result<(), Error> {
     let mut run = test_chain::solved(&[0.0, 2.5, 2.0, 9.0], &[0, 2, 1], 3.5)?;
     let window = alone(&[2, 1], &[[9.0, 1.0]; 2]);
-    let (correction, tolerances) = (of_four(&window), tolerances(1.0, 0.0, 1e-9));
-    let pairs = [(0, 1.0), (1, 2.0)];
-    let ties = ties((&window, &correction), &tolerances, &pairs, &[0.0; 2]);
+    let events = events(&[(0, 1.0), (1, 2.0)]);
     let iterations = &mut Altered::inexact(0.0);
-    close(&[ties.exact_gaps(&mut run, iterations, 1, 0.0)?(1)], &[0.5]);
+    let mut gaps = |done: usize, nodes: &[usize]| {
+        let question = Question { events: &events, done, error: 0.0 };
+        gaps_before(&mut run, iterations, (&window, question, nodes), (1, 1.0))
+    };
+    close(&gaps(1, &[1])?, &[0.5]);
     // At the approach 2 node 0 carries alone.
-    let gaps = ties.exact_gaps(&mut run, iterations, 0, 0.0)?;
-    close(&[gaps(2), gaps(1)], &[0.0, 1.0]);
+    close(&gaps(0, &[2, 1])?, &[0.0, 1.0]);
     Ok(())
 }

@@ -1,11 +1,11 @@
 //! A window played anew with what the exact solution at its end shows.
 
-use crate::loading::tuning::LEAST_DETERMINANT;
 use nalgebra::{Matrix2, Vector2};
 
+use super::{Course, Window};
 use crate::loading::run::LoadingRun;
-use crate::loading::window::{Course, Window};
-use crate::updater::{Schur, WindowFactor};
+use crate::loading::tuning::LEAST_DETERMINANT;
+use crate::updater::Schur;
 
 /// The gap line of a watched node by the solution at a window's end, and its error.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,7 +17,7 @@ pub(in crate::loading) struct AtEnd {
 }
 
 /// The gap lines of the watched nodes by the present solution, at a window's end.
-pub(super) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
+pub(in crate::loading) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
     let solution = run.field.solution();
     let first = run.contact.len().saturating_sub(window.nodes().len());
     let joined = &run.contact.order()[first..];
@@ -46,11 +46,11 @@ pub(in crate::loading) struct Correction {
 }
 
 impl Correction {
-    /// The greatest part of a pivot that was taken off the Schur complement.
-    pub(super) fn left_out(&self) -> f64 {
+    /// The greatest part of a pivot that the correction changed.
+    pub(in crate::loading) fn left_out(&self) -> f64 {
         let size = self.window.nodes().len();
         let left = |i| self.window.schur().entry(i, i) / self.by_courses.schur().entry(i, i);
-        (0..size).fold(0.0, |most, i| f64::max(1.0 - left(i), most))
+        (0..size).fold(0.0, |most, i| f64::max((1.0 - left(i)).abs(), most))
     }
 }
 
@@ -65,28 +65,12 @@ impl Correction {
 /// (Nyström) acts on W as S does. `S̃ − S` is positive semidefinite, so that WᵀV should be positive
 /// definite; where rounding, or too large an error of S̃, spoils that, S̃ stays as it is. Whatever is still
 /// missing at the end is added to each gap as a cubic in time of zero value and slope at the
-/// beginning.
-pub(super) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction {
-    let is_definite = |schur: &Schur| {
-        // Whatever the order of events.
-        let all: Vec<usize> = (0..schur.size()).collect();
-        WindowFactor::of(schur.clone(), &all).is_ok()
-    };
-    correct_if(window, ends, time, is_definite)
-}
-
-/// The same of a matrix that is corrected only if the result `is_sound`. Its nodes in contact have pressures in the place of gaps, and
-/// overlaps in that of pressures.
-pub(in crate::loading) fn correct_if(
-    window: &Window,
-    ends: &[AtEnd],
-    time: f64,
-    is_sound: impl Fn(&Schur) -> bool,
-) -> Correction {
+/// beginning. Nodes in contact, which may yield, have pressures in the place of gaps, and overlaps in that of pressures.
+pub(in crate::loading) fn correct(window: &Window, ends: &[AtEnd], time: f64) -> Correction {
     let mut by_courses = window.clone();
     complete(&mut by_courses, window, ends, time);
     let mut updated = by_courses.clone();
-    let is_updated = update(&mut updated, ends, time) && is_sound(updated.schur());
+    let is_updated = update(&mut updated, ends, time) && updated.is_sound();
     if is_updated {
         complete(&mut updated, window, ends, time);
     } else {
