@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use super::exact::Exact;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
@@ -18,8 +19,7 @@ use super::run::{LoadingRun, LoadingTimings, Memory};
 use super::scalars::PathScalars;
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
-use super::windowed::Windowed;
-use super::yielding::{RefinedYielding, Yielding};
+use super::yielding::RefinedYielding;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
@@ -283,21 +283,26 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
             }
             _ if plastic.is_some() => {
                 let refined = RefinedYielding::new(self.window_size, settles);
-                Procedure::Yielding(Box::new((Yielding::new(self.window_size), refined)))
+                let exact = Exact::new(growth, self.window_size);
+                Procedure::Yielding(Box::new((exact, refined)))
             }
             _ => {
                 let refined = Refined::new(self.window_size, settles);
-                Procedure::Windows(Windowed::new(growth, self.window_size), refined)
+                Procedure::Windows(Exact::new(growth, self.window_size), refined)
             }
         };
         // Before first touch.
         let unloaded = ContactState::new(&grid, 0, 0.0, 0.0, f64::INFINITY);
         let last = (growth != ContactGrowth::Unknown).then_some(unloaded);
+        let mut scalars = PathScalars::new(&problem);
+        if plastic.is_some() {
+            scalars = scalars.with_hardness();
+        }
         let mut run = LoadingRun {
             contact: ContactSequence::new(problem.grid()),
             releases: Releases::default(),
             field: GapField::new(&problem),
-            scalars: PathScalars::new(&problem),
+            scalars,
             problem,
             plastic,
             queue: VecDeque::new(),

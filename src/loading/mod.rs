@@ -11,9 +11,8 @@
 //! * One at a time, nodes that *leave* among them, if nothing is known of the kernel. Without a factor, and with a hundred nodes in contact
 //!   or more, in windows as well: each ends before a node leaves, and is checked at its end and at each event in it.
 //!
-//! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Yielding` then takes the place of `Windowed`: it
-//! watches nodes of both kinds, and checks each window at its end before the updater learns of it. Without a factor it is
-//! `RefinedYielding`.
+//! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds, and checks a
+//! window in which nodes yield at its end before the updater learns of it. Without a factor it is `RefinedYielding`.
 //!
 //! # How a window is made
 //!
@@ -21,18 +20,18 @@
 //! |---|---|---|
 //! | 1 | `Phase` | decides whether the path goes on with its updater, or gives up a factor for iterations |
 //! | 2 | `GapField` | solves on the contact and computes all gaps as lines `a − t b` |
-//! | 3 | `Windowed` | checks them, and chooses the nodes to watch and the horizon |
+//! | 3 | `Exact` | checks them, and chooses the nodes to watch and the horizon |
 //! | 4 | [`LinearUpdater`](crate::updater::LinearUpdater) | gives the Schur complement of the watched nodes |
 //! | 5 | `Window` | plays the events among them |
 //! | 6 | [`ContactSequence`](crate::contact::ContactSequence), the updater | take in the nodes that touched |
-//! | 7 | `Windowed` | where that is needed, checks the contact at the end, and takes the last events back |
+//! | 7 | `Exact` | where that is needed, checks the contact at the end, and takes the last events back |
 //! | 8 | `PathScalars` | turns the events into states, which wait in a queue |
 //! | 9 | [`LoadingSolver`] | yields them up to the limits |
 //!
 //! # Without a factor
 //!
 //! With [`ConjugateGradient`](crate::updater::ConjugateGradient), and once the default updater costs more than iterations, Schur
-//! complements are nearly exact. `Refined` then takes the place of `Windowed`: it plays a `Window` of such a complement, solves at
+//! complements are nearly exact. `Refined` then takes the place of `Exact`: it plays a `Window` of such a complement, solves at
 //! its end, corrects it by that solution, plays the same events a second time, and settles neighbours that are still too close by a
 //! solution of their own (`docs/theory.md`, section 11).
 //!
@@ -72,8 +71,10 @@ mod builder;
 #[cfg(test)]
 #[allow(clippy::panic)]
 mod complementary;
+mod contradiction;
 mod cost;
 mod event_cost;
+mod exact;
 mod factor_log;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -99,11 +100,12 @@ mod sum;
 #[cfg(test)]
 mod test_chain;
 mod tolerances;
+mod trial;
 mod tuning;
 mod unloading;
+mod walk;
 mod window;
 mod window_end;
-mod windowed;
 mod yielding;
 
 #[doc(hidden)] // for the programs of this repository

@@ -1,14 +1,18 @@
-//! Nodes out of contact by the time at which they would touch.
+//! Nodes by the time at which they would touch, or yield.
 
 use std::time::Instant;
 
+use super::contradiction::Slack;
 use super::gap_field::GapLine;
+use super::plastic::Plastic;
 use super::run::LoadingRun;
+use super::scalars::{PlasticScalars, Rates};
+use super::sum::Sum;
 use super::tolerances::ties_from;
 use super::tuning::TOLERANCE;
 use crate::Error;
 
-/// (time, node) of the nodes out of contact, whatever the time is that decides.
+/// (time, node) of the nodes to which something may happen, whatever the time is that decides.
 pub(super) type Ranking = Vec<(f64, usize)>;
 
 /// Ranks the nodes out of contact by the time from which on they tie with one that touches, if no other joined, after
@@ -42,6 +46,89 @@ pub(super) fn fill(
     ranking.clear();
     ranking.reserve(run.problem.grid().nodes());
     run.survey(allowed, |node, line| ranking.push((time(&line), node)))
+}
+
+/// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
+/// rates.
+pub(super) fn survey(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    ranking: &mut Ranking,
+    slack: Slack,
+) -> Result<Rates, Error> {
+    let start = Instant::now();
+    let approach = run.scalars.approach();
+    let hardness = plastic.hardness().values();
+    let gaps = plastic.surface().initial_gap();
+    let least_gap = -slack.gap;
+    let least_rate = -slack.rate * run.greatest_rate();
+    ranking.clear();
+    let [mut load, mut energy, mut mean_gap, mut closing] = [Sum::default(); 4];
+    let [mut depth, mut work, mut depth_rate, mut work_rate] = [Sum::default(); 4];
+    let mut unit_stiffness = Sum::default();
+    let rates = &run.field.solution().rate;
+    for ((node, pressure), &rate) in run.field.pressures(&run.contact, approach).zip(rates) {
+        if rate.is_nan() || rate < least_rate {
+            return Err(run.not_monotone("pressure per unit of approach", node, rate));
+        }
+        load.add(pressure);
+        energy.add(pressure * (approach - gaps[node]));
+        unit_stiffness.add(rate);
+        let left = hardness[node] - pressure;
+        let time = (left / rate).max(0.0);
+        if rate > 0.0 && time < f64::INFINITY {
+            ranking.push((time, node));
+        }
+    }
+    for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
+        if line.gap.is_nan() {
+            return Err(run.not_finite());
+        }
+        let grows = line.closing >= -slack.rate;
+        if plastic.has_yielded(node) {
+            if !grows {
+                let quantity = "rate of the plastic depth";
+                return Err(run.not_monotone(quantity, node, line.closing));
+            }
+            if line.gap > -least_gap {
+                return Err(run.not_monotone("plastic depth", node, -line.gap));
+            }
+            let hardness = hardness[node];
+            load.add(hardness);
+            energy.add(hardness * (approach - gaps[node] + line.gap));
+            depth.add(-line.gap);
+            work.add(-(hardness * line.gap));
+            depth_rate.add(line.closing);
+            work_rate.add(hardness * line.closing);
+        } else {
+            if line.gap < least_gap {
+                return Err(run.not_monotone("gap", node, line.gap));
+            }
+            mean_gap.add(line.gap);
+            closing.add(line.closing);
+            if line.closing > 0.0 {
+                ranking.push((line.touches().max(0.0), node));
+            }
+        }
+    }
+    let rates = Rates {
+        unit_stiffness: unit_stiffness.total(),
+        closing: closing.total(),
+        plastic: [depth_rate.total(), work_rate.total()],
+    };
+    run.scalars.renew_gap(mean_gap, closing);
+    run.scalars.renew_plastic(
+        [load, energy],
+        PlasticScalars {
+            nodes: plastic.count(),
+            depth: depth.total(),
+            work: work.total(),
+            rates: rates.plastic,
+        },
+    );
+    run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
+    run.timings.choice += start.elapsed();
+    Ok(rates)
 }
 
 #[cfg(test)]

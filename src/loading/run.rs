@@ -309,7 +309,8 @@ impl LoadingRun {
         let joined = window
             .touched()
             .try_for_each(|node| self.contact.push(node))
-            .and_then(|()| updater.join(&self.problem, &self.contact, window.factor()));
+            .and_then(|()| window.touched_factor())
+            .and_then(|factor| updater.join(&self.problem, &self.contact, &factor));
         joined.map_err(|error| {
             // The updater may have taken them in: both go back, for the fields of the states up to there. One that cannot
             // says so when it is asked for them.

@@ -170,6 +170,20 @@ impl PathScalars {
         }
     }
 
+    /// The same of a path on which nodes may yield.
+    pub(super) fn with_hardness(self) -> Self {
+        Self { plastic: Some(PlasticScalars::default()), ..self }
+    }
+
+    /// Stiffness, and sums of closing rates and of plastic rates.
+    pub(super) fn rates(&self) -> Rates {
+        Rates {
+            unit_stiffness: self.unit_stiffness,
+            closing: self.closing * self.grid.nodes() as f64,
+            plastic: self.plastic.unwrap_or_default().rates,
+        }
+    }
+
     /// Takes over the rates behind an event, with `elastic` and `yielded` nodes in contact; the sum of the pressures of the latter
     /// is the load on a plateau, where no node is elastic.
     pub(super) fn change_rates(&mut self, rates: Rates, [elastic, yielded]: [usize; 2], sum: f64) {

@@ -4,6 +4,7 @@ use std::iter::FusedIterator;
 
 use nalgebra::DMatrix;
 
+use super::exact::Exact;
 use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
@@ -13,8 +14,7 @@ use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
 use super::stepwise::Stepwise;
-use super::windowed::Windowed;
-use super::yielding::{RefinedYielding, Yielding};
+use super::yielding::RefinedYielding;
 use crate::contact::ContactTarget;
 use crate::updater::{Handover, LinearUpdater};
 use crate::{Error, Grid, Problem};
@@ -66,11 +66,11 @@ pub struct LoadingSolver<U = Handover> {
 #[derive(Debug)]
 pub(super) enum Procedure {
     /// In windows: exact ones while there is a factor, and refined ones with iterations.
-    Windows(Windowed, Refined),
+    Windows(Exact, Refined),
     /// One at a time, and with iterations in windows until a node leaves.
     Stepwise(Stepwise, Refined),
     /// In windows in which nodes yield as well.
-    Yielding(Box<(Yielding, RefinedYielding)>),
+    Yielding(Box<(Exact, RefinedYielding)>),
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {

@@ -165,6 +165,9 @@ pub(super) const TOLERANCE: f64 = 1e-10;
 /// yield, and the condition is some 20 times the ratio of the sides (4 × 8 nodes, 2600 : 1: 5·10⁴, a depth off by 1.1·10⁻¹⁰). On longer cells
 /// the tolerance grows with the ratio.
 pub(super) const SQUARE: f64 = 250.0;
+/// The pressure of a node that touches is watched from the beginning of its window on if it could come to a part of its hardness, one by
+/// this number, on what the node alone feels of the approach. A node that was not watched and comes to it contradicts the window.
+pub(super) const BORDERED: f64 = 4.0;
 /// How far a state of a path may be off, relative to its load, pressures and lengths, to be recognised: an exact path is right to
 /// some 10⁻¹².
 pub(super) const RECOGNISED: f64 = 1e-6;

@@ -277,6 +277,36 @@ fn two_nodes_by_hand() {
     assert_eq!((last.contact.approach, path.end()), (1.5, Some(LoadingEnd::Load)));
 }
 
+/// A hardness that no node comes to leaves every bit of the elastic path as it is.
+#[test]
+fn an_unlimited_hardness_is_none() {
+    let elastic_columns = |state: &LoadingState| {
+        let contact = state.contact;
+        let stiffness = [contact.contact_stiffness, contact.interfacial_stiffness];
+        let numbers = [contact.approach, contact.load, contact.energy, contact.mean_gap];
+        let numbers = numbers.into_iter().chain(stiffness.map(Option::unwrap_or_default));
+        (state.event, state.node, state.step, numbers.map(f64::to_bits).collect::<Vec<_>>())
+    };
+    for (name, kernel) in cases() {
+        let heights = surface(name);
+        let builder =
+            || LoadingSolver::builder(&heights, &*kernel).updater(RecursiveCholesky::new());
+        for window in [None, Some(24)] {
+            let of = |builder: LoadingBuilder<'_, RecursiveCholesky>| {
+                let builder = match window {
+                    Some(size) => builder.window_size(size),
+                    None => builder,
+                };
+                let path = builder.max_area_fraction(1.0).build().unwrap();
+                path.map(|state| elastic_columns(&state.unwrap())).collect::<Vec<_>>()
+            };
+            let elastic = of(builder());
+            assert_eq!(elastic.len(), 192);
+            assert!(of(builder().hardness(1e30)) == elastic, "{name} {window:?}");
+        }
+    }
+}
+
 /// All limits, and targets afterwards.
 #[test]
 fn paths_end_where_they_are_to_end() {

@@ -3,6 +3,8 @@
 pub(super) mod correction;
 pub(super) mod ties;
 
+use std::borrow::Cow;
+
 use super::gap_field::GapLine;
 use super::scalars::Rates;
 use super::state::ContactEvent;
@@ -84,6 +86,12 @@ pub(super) struct Watched {
 }
 
 pub(super) const SUMS: usize = 3;
+
+/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over all nodes: its own
+/// is the depth of a node that has yielded.
+pub(super) fn of_overlap(of_gap: [f64; SUMS], hardness: f64) -> [f64; SUMS] {
+    [1.0 - of_gap[0], 1.0 - of_gap[1], hardness - of_gap[2]]
+}
 
 /// What happens to a watched node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -213,35 +221,30 @@ impl Window {
         self.increments.reserve(size);
     }
 
-    /// Opens a window on nodes that may yield, with the matrix M of
-    /// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), and begins. `elastic` nodes are in contact.
-    pub(super) fn begin_both(
-        &mut self,
-        at: (f64, f64),
-        watched: &[Watched],
-        matrix: &Schur,
-        elastic: usize,
-    ) {
+    /// Opens a window on nodes that may yield, and begins, with the matrix M of
+    /// [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both) as it has been filled. `elastic` nodes are in contact. Of
+    /// nodes out of contact that have a finite hardness pressures are watched as well.
+    pub(super) fn begin_both(&mut self, at: (f64, f64), watched: &[Watched], elastic: usize) {
         let lines = watched.iter().map(|watched| (watched.node, watched.line));
         self.open(at, lines);
-        self.schur.clone_from(matrix);
         let mut pressures = Vec::new();
         for (row, watched) in self.rows.iter_mut().zip(watched) {
             row.sums = watched.sums;
             let yields = Row { kind: ContactEvent::Yield, limit: watched.hardness, ..*row };
             if watched.is_elastic {
                 *row = yields;
-            } else {
+            } else if watched.hardness.is_finite() {
                 let course = GapLine { gap: 0.0, closing: 0.0 }.into();
                 let sums = [1.0, 1.0, watched.hardness];
                 pressures.push(Row { course, sums, is_open: false, ..yields });
             }
         }
-        self.rows.extend(pressures);
         let inside = watched.iter().filter(|watched| watched.is_elastic).count();
+        let is_whole = inside == elastic && inside + pressures.len() == watched.len();
+        self.rows.extend(pressures);
         self.reset();
-        self.stiffnesses = (inside == elastic).then(Vec::new);
-        self.factor.reset(self.rows.len(), 0);
+        self.stiffnesses = is_whole.then(Vec::new);
+        self.factor.reset(self.rows.len(), self.nodes.len());
     }
 
     /// Forgets all events.
@@ -389,14 +392,23 @@ impl Window {
         self.increments.iter().enumerate().map(behind).collect()
     }
 
+    /// Whether nodes only touch in all events.
+    pub(super) fn is_of_touches(&self) -> bool {
+        self.events.iter().all(|event| event.kind == ContactEvent::Touch)
+    }
+
     /// The nodes of the events, in their order.
     pub(super) fn touched(&self) -> impl ExactSizeIterator<Item = usize> {
         self.events.iter().map(|event| self.nodes[event.position])
     }
 
-    /// The factor of the matrix of the events.
-    pub(super) fn factor(&self) -> &WindowFactor {
-        &self.factor
+    /// The factor of the Schur complement of nodes that touched, where all events are touches.
+    pub(super) fn touched_factor(&self) -> Result<Cow<'_, WindowFactor>, crate::Error> {
+        if self.rows.len() == self.nodes.len() {
+            return Ok(Cow::Borrowed(&self.factor));
+        }
+        let positions: Vec<usize> = self.events.iter().map(|event| event.position).collect();
+        WindowFactor::of(self.schur.clone(), &positions).map(Cow::Owned)
     }
 
     /// What the nodes of the events have come to at a time behind them, and how fast that grows: pressures of those that touched, and
@@ -426,7 +438,7 @@ impl Window {
         let touches = |events: &[WindowEvent]| {
             events.iter().filter(|event| event.kind == ContactEvent::Touch).count()
         };
-        self.play_while(|events| touches(events) < most)
+        self.play_while(|events| events.len() < most || touches(events) < most)
     }
 
     fn play_while(&mut self, goes_on: impl Fn(&[WindowEvent]) -> bool) -> Option<BadPivot> {
@@ -467,14 +479,16 @@ impl Window {
         Some((lowest?, earliest))
     }
 
+    /// The row of the pressure of a node that has touched in the window, where that is watched.
+    fn pressure_row(&self, position: usize) -> Option<usize> {
+        let mut pressures = self.nodes.len()..self.rows.len();
+        pressures.find(|&row| self.rows[row].position == position)
+    }
+
     /// The row of what can happen to the node at `position`.
     fn open_row(&self, position: usize) -> usize {
-        let (own, pressures) = self.rows.split_at(self.nodes.len());
-        if own[position].is_open {
-            return position;
-        }
-        let row = pressures.iter().position(|row| row.position == position);
-        row.map_or(position, |row| self.nodes.len() + row)
+        let touched = Some(position).filter(|&position| !self.rows[position].is_open);
+        touched.and_then(|position| self.pressure_row(position)).unwrap_or(position)
     }
 
     /// Lets the node at `position` touch, or yield if it has, at `time`.
@@ -510,8 +524,7 @@ impl Window {
             }
         }
         self.rows[place].is_open = false;
-        if kind == ContactEvent::Touch && has_borders {
-            let pressure = self.open_row(position);
+        if let Some(pressure) = self.pressure_row(position).filter(|&row| row != place) {
             self.rows[pressure].is_open = true;
         }
         let unit = own.line.closing * inverse;
@@ -583,7 +596,8 @@ impl Window {
             Watched { node, is_elastic, hardness, line, sums: row.sums }
         });
         let watched: Vec<Watched> = watched.collect();
-        window.begin_both(at, &watched, &remaining, usize::MAX);
+        window.schur = remaining;
+        window.begin_both(at, &watched, usize::MAX);
         Ok(window)
     }
 
@@ -787,7 +801,7 @@ mod tests {
             assert!(
                 bad.is_some_and(|bad| bad.pivot == pivot || pivot.is_nan() && bad.pivot.is_nan())
             );
-            assert_eq!((window.events().len(), window.factor().len()), (1, 1));
+            assert_eq!((window.events().len(), window.factor.len()), (1, 1));
             assert_eq!(window.untouched().collect::<Vec<_>>(), [8]);
         }
         let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -802,7 +816,7 @@ mod tests {
         let mut window = window(C, [[0.0, 1.0], [1.0, 1.0], [5.0, 1.0]], 100.0);
         window.play(2);
         window.truncate(1);
-        assert_eq!((window.events().len(), window.factor().len()), (1, 1));
+        assert_eq!((window.events().len(), window.factor.len()), (1, 1));
         assert_eq!((window.increments().len(), window.touched().len()), (1, 1));
         assert_eq!(window.untouched().collect::<Vec<_>>(), [9]);
     }
@@ -854,8 +868,8 @@ mod tests {
             line: test_chain::gap_line([k as f64, 1.0]),
             sums: [3.0, 0.0, 0.0],
         });
-        let mut window = Window::default();
-        window.begin_both((0.0, horizon), &watched, &schur, 0);
+        let mut window = Window { schur, ..Window::default() };
+        window.begin_both((0.0, horizon), &watched, 0);
         Ok(window)
     }
 
@@ -943,8 +957,8 @@ mod tests {
             line: test_chain::gap_line([0.5, -1.0 / 3.0]),
             sums: [0.0; SUMS],
         });
-        let mut window = Window::default();
-        window.begin_both((1.0, f64::INFINITY), &watched, &schur, 2);
+        let mut window = Window { schur, ..Window::default() };
+        window.begin_both((1.0, f64::INFINITY), &watched, 2);
         assert_eq!(window.play_touches(0), None);
         assert!(window.events().is_empty());
         assert_eq!(window.play(9), None);

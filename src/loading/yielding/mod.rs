@@ -1,578 +1,657 @@
-//! Events in windows on a path with a hardness: nodes that touch, and elastic nodes that yield.
+//! Events of both kinds in windows, without a factor: with a matrix that is nearly exact.
 //!
-//! A node goes from out of contact to elastic to yielded, and never back, on every body whose contact only grows. Nodes that have
-//! yielded carry their hardness and take no part in the linear system: `ContactSequence` holds the elastic nodes, and
-//! `LoadingRun::problem` is their problem, with the displacement under the yielded ones in its initial gap.
-//!
-//! Rates rise where a node yields, so that the time at which a node would touch or yield if no other did is no bound. So a window is
-//! played, solved at its end, and checked there before the factor learns of it. Gaps only close and pressures only grow: what is right
-//! at the end was right throughout. Where the end contradicts events, fewer are played.
-
-//!
-//! Without a factor `RefinedYielding` plays such windows of a matrix that is nearly exact, and corrects them at their end.
+//! As where nothing yields: the exact solution at a window's end corrects the matrix, the same events are played a second time, and
+//! what is still closer than the remaining error is settled by a solution of its own.
 
 mod pinned;
-mod refined;
 #[cfg(test)]
 mod wrong_matrices;
 
-use std::sync::Arc;
-use std::time::Instant;
-
-use super::cost::{WITH_FACTOR, automatic_window, watched_for};
-use super::gap_field::GapLine;
-use super::plastic::{Displaced, Plastic};
-use super::run::LoadingRun;
-use super::scalars::{PlasticScalars, Rates};
-use super::state::ContactEvent;
-use super::sum::Sum;
-use super::tuning::{OF_RESIDUAL, SQUARE, TOLERANCE};
-use super::window::{SUMS, Watched, Window};
+use crate::Error;
 use crate::contact::ContactSequence;
-use crate::updater::{Left, LinearUpdater, Schur, Solution, WindowFactor, join_all};
-use crate::{Error, Problem};
-pub(super) use refined::RefinedYielding;
+use crate::loading::contradiction::{Slack, contradiction};
+use crate::loading::gap_field::GapLine;
+use crate::loading::plastic::Plastic;
+use crate::loading::ranking::{Ranking, survey};
+use crate::loading::refined::candidates::{cut, with_ties};
+use crate::loading::run::LoadingRun;
+use crate::loading::scalars::Rates;
+use crate::loading::state::ContactEvent;
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::trial::Trial;
+use crate::loading::tuning::{
+    CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART,
+    REMEMBERED, SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
+};
+use crate::loading::walk::Carried;
+use crate::loading::window::correction::{self, AtEnd};
+use crate::loading::window::ties::{self, Beginning, Question, Settled};
+use crate::loading::window::{Watched, Window, WindowEvent, of_overlap};
+use crate::updater::{Beside, Iterations, Proposal, Schur, WindowFactor};
+use crate::{Boundary, Problem, UpdaterError};
+use pinned::Passed;
 
-/// Finds events of both kinds in windows.
-#[derive(Debug, Default)]
-pub(super) struct Yielding {
-    /// How many nodes to watch, if the user says so.
-    size: Option<usize>,
-    window: Window,
-    schur: Schur,
-    /// Nodes out of contact that were watched, in the order of the updater.
-    watched_before: Vec<usize>,
-    /// Nodes by the time of their next event if no other came first.
-    ranking: Vec<(f64, usize)>,
+/// Finds events of both kinds in windows that are corrected at their end.
+#[derive(Debug)]
+pub(super) struct RefinedYielding {
+    size: usize,
+    /// Whether events that are too close to be told apart get a solution of their own.
+    settles: bool,
+    /// Nodes by the time of their next event if no other came first, at the present approach, and the rates there.
+    ranking: Ranking,
+    rates: Rates,
+    /// The contact and approach that these belong to.
+    ranked: Option<(u64, f64)>,
+    /// How far the last window went, and the span that the rates at hand serve.
+    last_span: f64,
+    rate_span: f64,
+    /// The part of a pivot that matrices were off by lately, at worst.
+    left_out: f64,
+    /// By how much pressures at hand may be off, in terms of what they displace.
+    left: f64,
 }
 
-/// A window at its end, before the updater learns of it.
-struct Trial {
-    contact: ContactSequence,
-    problem: Problem,
-    displaced: Displaced,
-    /// Nodes that yielded, in the order in which they did.
-    yielded: Vec<usize>,
-    /// The same with the number of their event in the window, from 1 on, and their places in the contact then.
-    departures: Vec<(usize, Left)>,
+/// The nodes to watch.
+struct Candidates {
+    nodes: Vec<usize>,
+    /// The time at which the next of the others would touch or yield.
+    horizon: f64,
+    /// Set if more nodes have their events at this time than can be watched.
+    group: Option<f64>,
 }
 
-impl Trial {
-    /// Contact and problem behind some events.
-    fn of(
-        run: &LoadingRun,
-        plastic: &Plastic,
-        events: impl Iterator<Item = (usize, ContactEvent)>,
-    ) -> Result<Self, Error> {
-        let (contact, yielded, departures) = contact_behind(run, events)?;
-        let displaced = plastic.displaced(&yielded)?;
-        let problem = plastic.elastic(&run.problem, &displaced);
-        Ok(Self { contact, problem, displaced, yielded, departures })
-    }
-
-    /// Lets the path follow, whatever solves on its contact. Returns what has yielded then.
-    fn adopt(self, run: &mut LoadingRun, plastic: &Plastic) -> Arc<Plastic> {
-        let step = run.steps();
-        let Self { contact, problem, displaced, yielded, departures } = self;
-        let plastic = Arc::new(plastic.grown(&yielded, &displaced));
-        run.plastic = Some(Arc::clone(&plastic));
-        run.problem = problem;
-        run.contact = contact;
-        for (number, left) in departures {
-            run.releases.push_yielded(step + number, left);
-        }
-        plastic
-    }
+/// How a window ended.
+enum Outcome {
+    Done,
+    /// Its end, or a solution in it, contradicted it: the next one has fewer events. Nothing has changed.
+    TakenBack,
 }
 
-/// The contact behind some events, the nodes that yielded, and these with the number of their event and their places then.
-#[allow(clippy::type_complexity)]
-fn contact_behind(
-    run: &LoadingRun,
-    events: impl Iterator<Item = (usize, ContactEvent)>,
-) -> Result<(ContactSequence, Vec<usize>, Vec<(usize, Left)>), Error> {
-    let mut contact = run.contact.clone();
-    let (mut yielded, mut departures) = (Vec::new(), Vec::new());
-    for (number, (node, kind)) in (1..).zip(events) {
-        if kind == ContactEvent::Touch {
-            contact.push(node)?;
-        } else {
-            let position = contact.remove(node)?;
-            yielded.push(node);
-            departures.push((number, Left { node, position }));
-        }
-    }
-    Ok((contact, yielded, departures))
-}
-
-/// By how much a solution may contradict what contact that grows does.
-#[derive(Debug, Clone, Copy)]
-struct Slack {
-    /// Overlap \[m\].
-    gap: f64,
-    /// What a tension, or a pressure beyond the hardness, would displace alone \[m\].
-    pressure: f64,
-    /// Rates of pressures, relative to the greatest, and of plastic depths.
-    rate: f64,
-}
-
-/// Nodes in contact where a window begins.
-#[derive(Debug, Clone, Copy)]
-struct Carried {
-    /// How many are elastic, and how many have yielded.
-    nodes: [usize; 2],
-    /// The sum of pressures of those that have yielded, and what all could carry: a load beyond these is rounding.
-    sum: f64,
-    most: f64,
-}
-
-impl Carried {
-    fn of(run: &LoadingRun, plastic: &Plastic) -> Self {
-        let hardness = plastic.hardness().values();
-        let elastic: f64 = run.contact.order().iter().map(|&node| hardness[node]).sum();
+impl RefinedYielding {
+    pub(super) fn new(size: Option<usize>, settles: bool) -> Self {
+        let watched = if settles { WATCHED } else { WATCHED_UNSETTLED };
         Self {
-            nodes: [run.contact.len(), plastic.count()],
-            sum: plastic.sum(),
-            most: plastic.sum() + elastic,
+            size: size.unwrap_or(watched).max(FEWEST),
+            settles,
+            ranking: Vec::new(),
+            rates: Rates { unit_stiffness: 0.0, closing: 0.0, plastic: [0.0; 2] },
+            ranked: None,
+            last_span: 0.0,
+            rate_span: 0.0,
+            left_out: 0.0,
+            left: 0.0,
         }
     }
-}
 
-impl Yielding {
-    pub(super) fn new(size: Option<usize>) -> Self {
-        Self { size, ..Self::default() }
-    }
-
-    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if no node is left to touch or to yield.
-    /// Returns what went wrong after them.
-    pub(super) fn produce<U: LinearUpdater>(
+    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if no node is left to
+    /// touch or to yield.
+    pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
-        updater: &mut U,
+        iterations: &mut dyn Iterations,
         most_nodes: usize,
-    ) -> Result<Option<Error>, Error> {
+    ) -> Result<(), Error> {
         let Some(plastic) = run.plastic.clone() else {
-            return Ok(None);
+            return Ok(());
         };
-        let approach = run.scalars.approach();
-        run.renew_field(updater, approach)?;
-        let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
-        let gap = tolerance * (run.problem.greatest_gap() + approach);
-        let slack = Slack { gap, pressure: gap, rate: TOLERANCE };
-        let rates = survey(run, &plastic, &mut self.ranking, slack)?;
-        if self.ranking.is_empty() {
-            return Ok(None);
-        }
         let touches = most_nodes - run.contact.len() - plastic.count();
-        let size = run.affordable(updater, self.next_size(run, touches))?;
-        let start = Instant::now();
-        let horizon = self.choose(run, size);
-        run.timings.choice += start.elapsed();
-        self.watch(run, &plastic, updater, horizon)?;
-
-        let start = Instant::now();
-        let mut bad_pivot = self.window.play_touches(touches);
-        run.timings.events += start.elapsed();
-        if self.window.events().is_empty() {
-            let stopped = || self.growth_stopped(run);
-            return Err(bad_pivot.map_or_else(stopped, |bad| run.not_positive_definite(bad)));
-        }
-        let trial = loop {
-            let (trial, until) = self.try_end(run, &plastic, updater)?;
-            let events = self.window.events();
-            let Some(until) = until.filter(|_| events.len() > 1) else {
-                break trial;
-            };
-            let kept = events.iter().take_while(|event| event.time <= until).count();
-            let kept = kept.clamp(1, events.len() - 1);
-            run.timings.taken_back += events.len() - kept;
-            self.window.truncate(kept);
-            bad_pivot = None;
-        };
-        let before = Carried::of(run, &plastic);
-        let plastic = self.commit(run, &plastic, updater, trial)?;
-        let start = Instant::now();
-        let queued = self.enqueue(run, &plastic, (before, rates));
-        run.timings.events += start.elapsed();
-        Ok(queued.err().or_else(|| bad_pivot.map(|bad| run.not_positive_definite(bad))))
-    }
-
-    /// How many nodes to watch.
-    fn next_size(&self, run: &LoadingRun, touches: usize) -> usize {
-        let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
-        let size = self.size.unwrap_or_else(|| {
-            // Nodes that yield are not counted: without any a window has no more touches than are left.
-            automatic_window(count, nodes, WITH_FACTOR).min(watched_for(touches).saturating_mul(2))
-        });
-        size.min(self.ranking.len())
-    }
-
-    /// Keeps the nodes to watch in the ranking, those out of contact first, in the order in which they were watched before; returns
-    /// the time of the next of the others.
-    fn choose(&mut self, run: &LoadingRun, size: usize) -> f64 {
-        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let mut horizon = f64::INFINITY;
-        if size < self.ranking.len() {
-            horizon = self.ranking.select_nth_unstable_by(size, order).1.0;
-            self.ranking.truncate(size);
-        }
-        self.ranking.sort_unstable_by_key(|&(_, node)| (run.contact.contains(node), node));
-        let out = self.ranking.partition_point(|&(_, node)| !run.contact.contains(node));
-        let mut front = 0;
-        for node in self.watched_before.drain(..) {
-            let rest = &mut self.ranking[front..out];
-            if let Ok(found) = rest.binary_search_by_key(&node, |&(_, node)| node) {
-                rest[..=found].rotate_right(1);
-                front += 1;
+        loop {
+            let tolerances = WindowTolerances::of(run, iterations.tolerance());
+            self.begin(run, &plastic, iterations, &tolerances)?;
+            if self.ranking.is_empty() {
+                return Ok(());
+            }
+            let mut candidates = self.choose(run, &tolerances);
+            self.improve_rates(run, &plastic, iterations, &tolerances, &mut candidates)?;
+            if let Some(time) = candidates.group {
+                return self.enter(run, &plastic, iterations, &tolerances, (time, &[]), touches);
+            }
+            let window = self.propose(run, &plastic, iterations, candidates)?;
+            match self.follow(run, &plastic, iterations, &tolerances, &window, touches)? {
+                Outcome::Done => return Ok(()),
+                Outcome::TakenBack => run.timings.taken_back += 1,
             }
         }
-        horizon
     }
 
-    /// Opens the window on the nodes that have been chosen.
-    fn watch<U: LinearUpdater>(
+    /// Makes solution and ranking those of the present approach.
+    fn begin(
         &mut self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        updater: &mut U,
-        horizon: f64,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         let approach = run.scalars.approach();
-        let order = run.contact.order();
-        let places = places(order, run.problem.grid().nodes());
-        let chosen = self.ranking.iter().map(|&(_, node)| node);
-        let (inside, outside): (Vec<_>, Vec<_>) = chosen.partition(|&n| run.contact.contains(n));
-        let mut positions: Vec<usize> = inside.iter().map(|&node| places[node]).collect();
-        positions.sort_unstable();
-        updater.watch_both(&run.problem, &run.contact, &outside, &positions, &mut self.schur)?;
-        let inside = positions.iter().map(|&position| order[position]);
-        let watched: Vec<usize> = outside.iter().copied().chain(inside).collect();
-        run.check_complement(&watched, &self.schur)?;
-
-        // Sums over nodes out of contact and over yielded ones, by reciprocity: what right-hand sides of the same sums answer.
-        let row_sums = run.problem.row_sums();
-        let sums = |node: usize| -> [f64; SUMS] {
-            [row_sums[node], -plastic.unit()[node], -plastic.load()[node]]
-        };
-        let mut solved: Vec<[f64; 2]> =
-            order.iter().map(|&node| [sums(node)[0], sums(node)[1]]).collect();
-        let mut last: Vec<[f64; 2]> = order.iter().map(|&node| [sums(node)[2], 0.0]).collect();
-        updater.solve_for(&run.problem, &run.contact, &mut solved)?;
-        updater.solve_for(&run.problem, &run.contact, &mut last)?;
-        let table = run.problem.table();
-        let places_outside: Vec<usize> = outside.iter().map(|&node| table.place(node)).collect();
-        let mut outer: Vec<[f64; SUMS]> = outside.iter().map(|&node| sums(node)).collect();
-        let mut coefficients = vec![0.0; outside.len()];
-        for ((&node, [first, second]), [third, _]) in order.iter().zip(&solved).zip(&last) {
-            table.fill_column(table.place(node), &places_outside, &mut coefficients);
-            for (sums, coefficient) in outer.iter_mut().zip(&coefficients) {
-                sums[0] -= coefficient * first;
-                sums[1] -= coefficient * second;
-                sums[2] -= coefficient * third;
+        if !run.field.belongs_to(&run.contact, approach) {
+            if self.rate_span == 0.0 {
+                self.rate_span = f64::INFINITY;
             }
+            run.advance_field(iterations, approach, self.rate_span)?;
         }
-        let pressures: Vec<(usize, f64)> = run.field.pressures(&run.contact, approach).collect();
-        let hardness = plastic.hardness().values();
-        let watched: Vec<Watched> = watched
-            .into_iter()
-            .enumerate()
-            .map(|(k, node)| {
-                let hardness = hardness[node];
-                if let Some(q) = k.checked_sub(outside.len()) {
-                    let position = positions[q];
-                    let [first, second] = solved[position];
-                    let sums = of_overlap([first, second, last[position][0]], hardness);
-                    let (gap, closing) =
-                        (pressures[position].1, -run.field.solution().rate[position]);
-                    let line = GapLine { gap, closing };
-                    return Watched { node, is_elastic: true, hardness, line, sums };
-                }
-                let line = run.field.line(&run.problem, node, approach);
-                Watched { node, is_elastic: false, hardness, line, sums: outer[k] }
-            })
-            .collect();
-        self.window.begin_both((approach, horizon), &watched, &self.schur, order.len());
-        self.watched_before.clear();
-        self.watched_before.extend(outside);
-        run.timings.windows += 1;
+        if self.ranked != Some((run.contact.revision(), approach)) {
+            self.survey(run, plastic, tolerances)?;
+        }
         Ok(())
     }
 
-    /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns with it the
-    /// approach of the first contradiction in terms of the time of the window, as far as rates tell.
-    fn try_end<U: LinearUpdater>(
+    /// Takes all scalars from the solution at the present approach, and ranks the nodes.
+    fn survey(
         &mut self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        updater: &mut U,
-    ) -> Result<(Trial, Option<f64>), Error> {
-        let end = self.window.events().last().map_or(0.0, |event| event.time);
-        let approach = run.scalars.approach() + end;
-        let order = run.contact.order();
-        let nodes = run.problem.grid().nodes();
-        let table = run.problem.table();
-        // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
-        let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
-        let mut values = vec![[0.0; 2]; nodes];
-        let hardness = plastic.hardness().values();
-        for (event, answer) in self.window.events().iter().zip(self.window.answers(end)) {
-            let node = self.window.node(event.position);
-            if event.kind == ContactEvent::Touch {
-                let yields = self.window.events().iter().any(|other| {
-                    (other.position, other.kind) == (event.position, ContactEvent::Yield)
-                });
-                pressed.push((node, if yields { [hardness[node], 0.0] } else { answer }));
-            } else if run.contact.contains(node) {
-                values[node] = answer.map(|overlap| -overlap);
-            }
-        }
-        let pressed_places: Vec<usize> =
-            pressed.iter().map(|&(node, _)| table.place(node)).collect();
-        let mut coefficients = vec![0.0; pressed.len()];
-        let gaps = run.problem.initial_gap();
-        let mut solved: Vec<[f64; 2]> = order
-            .iter()
-            .map(|&node| {
-                let [gap, rate] = values[node];
-                let mut rhs = [approach - gaps[node] + gap, 1.0 + rate];
-                table.fill_column(table.place(node), &pressed_places, &mut coefficients);
-                for ((_, [pressure, rate]), coefficient) in pressed.iter().zip(&coefficients) {
-                    rhs[0] -= coefficient * pressure;
-                    rhs[1] -= coefficient * rate;
-                }
-                rhs
-            })
-            .collect();
-        updater.solve_for(&run.problem, &run.contact, &mut solved)?;
-        for (&node, solved) in order.iter().zip(&solved) {
-            values[node] = *solved;
-        }
-        for (node, value) in pressed {
-            values[node] = value;
-        }
-        let events = self.window.events().iter();
-        let events = events.map(|event| (self.window.node(event.position), event.kind));
-        let trial = Trial::of(run, plastic, events)?;
-        let after = trial.contact.order();
-        let solution = Solution {
-            pressure: after.iter().map(|&node| values[node][0]).collect(),
-            rate: after.iter().map(|&node| values[node][1]).collect(),
-        };
-        run.field.place(&trial.contact, solution, approach)?;
-        run.timings.convolution = run.field.time();
-        run.check_closed(&trial.problem, &trial.contact, approach)?;
-        let left = trial.contact.order().iter();
-        let left = left.map(|&node| run.field.left_at(&trial.problem, node)[0].abs());
-        let least = f64::EPSILON * (trial.problem.greatest_gap() + approach);
-        let gap = OF_RESIDUAL * left.fold(least, f64::max);
-        let slack = Slack { gap, pressure: gap, rate: TOLERANCE };
-        let until = contradiction(run, plastic, &trial, (approach, slack));
-        Ok((trial, until.map(|until| end + until)))
+        tolerances: &WindowTolerances,
+    ) -> Result<(), Error> {
+        let approach = run.scalars.approach();
+        let [_, slack] = slacks(run, (&run.problem, &run.contact), tolerances, approach);
+        self.ranked = None;
+        self.left = slack.excess;
+        self.rates = survey(run, plastic, &mut self.ranking, slack)?;
+        self.ranked = Some((run.contact.revision(), approach));
+        Ok(())
     }
 
-    /// Lets the updater follow to the end of the window.
-    fn commit<U: LinearUpdater>(
+    /// Time below which the event of a node may come before or after another one.
+    fn tie_of(
+        run: &LoadingRun,
+        tolerances: &WindowTolerances,
+        (node, place): (usize, Option<usize>),
+    ) -> f64 {
+        tolerances.tie_of(closing(run, node, place))
+    }
+
+    /// Chooses the nodes with the smallest times.
+    fn choose(&mut self, run: &LoadingRun, tolerances: &WindowTolerances) -> Candidates {
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let places = places(run);
+        let wanted = self.most_events().min(run.contact.len() / PART);
+        let size = self.size.min(wanted.max(FEWEST));
+        let ranking = &mut self.ranking;
+        let nodes = |chosen: &[(f64, usize)]| chosen.iter().map(|&(_, node)| node).collect();
+        if ranking.len() <= size {
+            return Candidates { nodes: nodes(ranking), horizon: f64::INFINITY, group: None };
+        }
+        let tie_of = |node: usize| Self::tie_of(run, tolerances, (node, places[node]));
+        let (chosen, &mut next, others) = ranking.select_nth_unstable_by(size, order);
+        let first = chosen.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
+        let limit = next.0 + tie_of(next.1);
+        let mut candidates = Candidates {
+            nodes: nodes(chosen),
+            horizon: next.0,
+            group: (next.0 <= first + tie_of(next.1)).then_some(first),
+        };
+        let tied = others.iter().filter(|(time, _)| *time <= limit);
+        if tied.clone().count() < MOST_TIES * self.size {
+            candidates.nodes.push(next.1);
+            candidates.nodes.extend(tied.map(|&(_, node)| node));
+            let rest = others.iter().map(|(time, _)| *time).filter(|time| *time > limit);
+            candidates.horizon = rest.fold(f64::INFINITY, f64::min);
+        }
+        candidates
+    }
+
+    /// Solves for the rates once more if they have to serve much further than the last window did.
+    fn improve_rates(
         &mut self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        updater: &mut U,
-        trial: Trial,
-    ) -> Result<Arc<Plastic>, Error> {
-        let step = run.steps();
-        let Trial { contact, problem, yielded, .. } = &trial;
-        // Whatever becomes of the updater, also by a panic: the states so far are known without it.
-        let known = run.releases.forget(step);
-        let before = run.contact.order();
-        let old = |node: usize| run.contact.contains(node);
-        let followed = if yielded.is_empty() {
-            let joined = contact.order()[before.len()..].iter();
-            let place = |node: &usize| self.window.position(*node);
-            let positions: Vec<usize> = joined.filter_map(place).collect();
-            self.watched_before.retain(|&node| !contact.contains(node));
-            WindowFactor::of(self.schur.clone(), &positions)
-                .and_then(|factor| updater.join(problem, contact, &factor))
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        candidates: &mut Candidates,
+    ) -> Result<(), Error> {
+        let furthest = if candidates.horizon < f64::INFINITY {
+            candidates.horizon
         } else {
-            self.watched_before.clear();
-            let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
-            let left = before.iter().enumerate().filter(has_left);
-            let left: Vec<Left> = left.map(|(position, &node)| Left { node, position }).collect();
-            let (kept, joined): (Vec<_>, Vec<_>) =
-                contact.order().iter().partition(|&&node| old(node));
-            ContactSequence::with_order(problem.grid(), kept).and_then(|mut kept| {
-                updater.release(problem, &kept, &left)?;
-                join_all(updater, problem, &mut kept, &joined, run.memory.left())
-            })
+            self.ranking.iter().map(|(time, _)| *time).fold(0.0, f64::max)
         };
-        followed.map_err(|error| run.memory.in_all(error))?;
-        run.releases.remember(known);
-        Ok(trial.adopt(run, plastic))
+        if furthest > 0.0
+            && tolerances.rate_tolerance(furthest) < 0.5 * tolerances.rate_tolerance(self.rate_span)
+        {
+            self.rate_span = furthest;
+            run.advance_field(iterations, run.scalars.approach(), furthest)?;
+            self.survey(run, plastic, tolerances)?;
+            *candidates = self.choose(run, tolerances);
+        }
+        Ok(())
     }
 
-    /// Turns the events of the window, which began with these nodes in contact, into states.
-    fn enqueue(
+    /// Opens a window on the candidates, with lines that are better known than those of the gap field.
+    fn propose(
         &self,
         run: &mut LoadingRun,
         plastic: &Plastic,
-        (before, rates): (Carried, Rates),
-    ) -> Result<(), Error> {
-        let Carried { nodes: [mut elastic, mut yielded], mut sum, mut most } = before;
-        let start = run.scalars.approach();
-        let mut step = elastic + 2 * yielded;
-        let hardness = plastic.hardness().values();
-        for (event, rates) in self.window.events().iter().zip(self.window.rates(rates)) {
-            let node = self.window.node(event.position);
-            run.scalars.advance(start + event.time);
-            run.scalars.clamp_load([sum, most]);
-            run.scalars.clamp_mean_gap();
-            if event.kind == ContactEvent::Touch {
-                elastic += 1;
-                most += hardness[node];
-            } else {
-                elastic -= 1;
-                yielded += 1;
-                sum += hardness[node];
-            }
-            run.scalars.change_rates(rates, [elastic, yielded], sum);
-            step += 1;
-            run.enqueue(step, event.kind, node, elastic + yielded)?;
-        }
-        Ok(())
-    }
-
-    /// The path cannot go on although nodes are left.
-    fn growth_stopped(&self, run: &LoadingRun) -> Error {
-        let node = self.ranking.iter().map(|&(_, node)| node).min();
-        run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
-    }
-}
-
-/// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
-/// rates.
-fn survey(
-    run: &mut LoadingRun,
-    plastic: &Plastic,
-    ranking: &mut Vec<(f64, usize)>,
-    slack: Slack,
-) -> Result<Rates, Error> {
-    let start = Instant::now();
-    let approach = run.scalars.approach();
-    let hardness = plastic.hardness().values();
-    let gaps = plastic.surface().initial_gap();
-    let least_gap = -slack.gap;
-    let least_rate = -slack.rate * run.greatest_rate();
-    ranking.clear();
-    let [mut load, mut energy, mut mean_gap, mut closing] = [Sum::default(); 4];
-    let [mut depth, mut work, mut depth_rate, mut work_rate] = [Sum::default(); 4];
-    let mut unit_stiffness = Sum::default();
-    let rates = &run.field.solution().rate;
-    for ((node, pressure), &rate) in run.field.pressures(&run.contact, approach).zip(rates) {
-        if rate.is_nan() || rate < least_rate {
-            return Err(run.not_monotone("pressure per unit of approach", node, rate));
-        }
-        load.add(pressure);
-        energy.add(pressure * (approach - gaps[node]));
-        unit_stiffness.add(rate);
-        let left = hardness[node] - pressure;
-        let time = (left / rate).max(0.0);
-        if rate > 0.0 && time < f64::INFINITY {
-            ranking.push((time, node));
-        }
-    }
-    for (node, line) in run.field.lines(&run.problem, &run.contact, approach) {
-        if line.gap.is_nan() {
+        iterations: &mut dyn Iterations,
+        candidates: Candidates,
+    ) -> Result<Window, Error> {
+        let (approach, count) = (run.scalars.approach(), run.contact.len());
+        let (problem, contact) = (&run.problem, &run.contact);
+        // One node at least joins.
+        let grown = iterations.bytes(problem.grid().nodes(), count + 1);
+        run.memory.check(grown.saturating_add(WindowFactor::bytes(1)), count)?;
+        let mut nodes = candidates.nodes;
+        nodes.sort_unstable_by_key(|&node| (contact.contains(node), node));
+        let out = nodes.partition_point(|&node| !contact.contains(node));
+        let (outside, inside) = nodes.split_at(out);
+        let surface = plastic.surface();
+        let is_periodic = surface.boundary() == Boundary::Periodic;
+        let beside = Beside {
+            unit: plastic.unit(),
+            load: plastic.load(),
+            hardness: plastic.hardness().uniform(),
+            row_sum: surface.row_sums().first().copied().filter(|_| is_periodic),
+        };
+        let mut schur = Schur::default();
+        let Proposal { lines, sums } =
+            iterations.propose_both(problem, contact, [outside, inside], &beside, &mut schur)?;
+        UpdaterError::check_length("watched displacements", lines.len(), nodes.len())?;
+        UpdaterError::check_length("watched sums", sums.len(), nodes.len())?;
+        let numbers = lines.as_flattened().iter().chain(sums.as_flattened());
+        if !numbers.copied().all(f64::is_finite) {
             return Err(run.not_finite());
         }
-        let grows = line.closing >= -slack.rate;
-        if plastic.has_yielded(node) {
-            if !grows {
-                let quantity = "rate of the plastic depth";
-                return Err(run.not_monotone(quantity, node, line.closing));
+        run.check_complement(&nodes, &schur)?;
+        let gap = problem.initial_gap();
+        let hardness = plastic.hardness().values();
+        let watched = nodes.iter().zip(lines.iter().zip(&sums)).enumerate();
+        let watched = watched.map(|(k, (&node, (&[value, rate], &of_gap)))| {
+            let (is_elastic, hardness) = (k >= out, hardness[node]);
+            let (line, sums) = if is_elastic {
+                let line = GapLine { gap: value, closing: -rate };
+                (line, of_overlap(of_gap, hardness))
+            } else {
+                (GapLine { gap: gap[node] + value - approach, closing: 1.0 - rate }, of_gap)
+            };
+            Watched { node, is_elastic, hardness, line, sums }
+        });
+        let watched: Vec<Watched> = watched.collect();
+        let mut window = Window::default();
+        let at = (approach, TRUSTED * candidates.horizon);
+        *window.schur_mut() = schur;
+        window.begin_both(at, &watched, count);
+        run.timings.windows += 1;
+        Ok(window)
+    }
+
+    /// Goes through a window, and queues its states.
+    fn follow(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        window: &Window,
+        touches: usize,
+    ) -> Result<Outcome, Error> {
+        let mut first = window.clone();
+        let bad = first.play(usize::MAX);
+        let events = first.events();
+        if events.is_empty() {
+            return Err(match bad {
+                Some(bad) => run.not_positive_definite(bad),
+                None => {
+                    let node = window.nodes().iter().min().copied();
+                    run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+                }
+            });
+        }
+        let most = with_ties(events, self.most_events(), tolerances).min(within(events, touches));
+        let (mut kept, mut time) = cut(events, window.horizon(), most, tolerances);
+        let start = run.scalars.approach();
+        let mut has_moved = false;
+        let trial = loop {
+            if time <= tolerances.tie {
+                // All of them happen at once. Their courses are better known than those of the ranking.
+                let node = |event: &WindowEvent| window.node(event.position);
+                let known: Vec<usize> = events[..kept].iter().map(node).collect();
+                if has_moved {
+                    self.begin(run, plastic, iterations, tolerances)?;
+                }
+                self.enter(run, plastic, iterations, tolerances, (time, &known), touches)?;
+                return Ok(Outcome::Done);
             }
-            if line.gap > -least_gap {
-                return Err(run.not_monotone("plastic depth", node, -line.gap));
+            let trial = Trial::of(run, plastic, of_nodes(window, &events[..kept]))?;
+            self.rate_span = time.max(self.last_span);
+            let at = (start + time, self.rate_span);
+            self.go_to(run, plastic, iterations, &trial, at)?;
+            has_moved = true;
+            let there = (&trial.problem, &trial.contact);
+            let [least, most] = slacks(run, there, tolerances, start + time);
+            let contradicted = |slack| contradiction(run, trial.set(), (start + time, slack));
+            let Some(until) = contradicted(least) else {
+                break trial;
+            };
+            let own = events[kept - 1].time;
+            let is_shortest = kept == 1 && time <= own;
+            if is_shortest && contradicted(most).is_none() {
+                break trial;
             }
-            let hardness = hardness[node];
-            load.add(hardness);
-            energy.add(hardness * (approach - gaps[node] + line.gap));
-            depth.add(-line.gap);
-            work.add(-(hardness * line.gap));
-            depth_rate.add(line.closing);
-            work_rate.add(hardness * line.closing);
-        } else {
-            if line.gap < least_gap {
-                return Err(run.not_monotone("gap", node, line.gap));
+            iterations.cut(&run.problem, &run.contact)?;
+            run.timings.taken_back += 1;
+            if kept > 1 {
+                // What joined or yielded without need says nothing of when that was.
+                let fewer = if until.is_finite() {
+                    events.iter().take_while(|event| event.time <= time + until).count()
+                } else {
+                    kept / 2
+                };
+                (kept, time) = cut(events, window.horizon(), fewer.clamp(1, kept - 1), tolerances);
+            } else if !is_shortest {
+                time = own;
+            } else {
+                let node = window.node(events[0].position);
+                return Err(run.not_monotone("gap or pressure", node, 0.0));
             }
-            mean_gap.add(line.gap);
-            closing.add(line.closing);
-            if line.closing > 0.0 {
-                ranking.push((line.touches().max(0.0), node));
+        };
+        let events = &events[..kept];
+        match self.refine(run, plastic, iterations, tolerances, (window, &trial), (events, time))? {
+            Some((window, settled)) => {
+                self.finish(run, plastic, trial, (window, &settled), time, tolerances)?;
+                Ok(Outcome::Done)
+            }
+            None => {
+                iterations.cut(&run.problem, &run.contact)?;
+                Ok(Outcome::TakenBack)
             }
         }
     }
-    let rates = Rates {
-        unit_stiffness: unit_stiffness.total(),
-        closing: closing.total(),
-        plastic: [depth_rate.total(), work_rate.total()],
-    };
-    run.scalars.renew_gap(mean_gap, closing);
-    run.scalars.renew_plastic(
-        [load, energy],
-        PlasticScalars {
-            nodes: plastic.count(),
-            depth: depth.total(),
-            work: work.total(),
-            rates: rates.plastic,
-        },
-    );
-    run.scalars.change_rates(rates, [run.contact.len(), plastic.count()], plastic.sum());
-    run.timings.choice += start.elapsed();
-    Ok(rates)
-}
 
-/// What an overlap of a node in contact adds to the sums of [`Watched`], from what a gap of it adds to the same over all nodes: its own is
-/// the depth of a node that has yielded.
-fn of_overlap(of_gap: [f64; SUMS], hardness: f64) -> [f64; SUMS] {
-    [1.0 - of_gap[0], 1.0 - of_gap[1], hardness - of_gap[2]]
-}
-
-/// The place of each node in an order; of nodes that are not there it means nothing.
-fn places(order: &[usize], nodes: usize) -> Vec<usize> {
-    let mut places = vec![0; nodes];
-    for (place, &node) in order.iter().enumerate() {
-        places[node] = place;
+    /// Moves iterations to the state behind a window at an approach, with a rate that serves over a span.
+    fn go_to(
+        &self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        trial: &Trial,
+        (approach, span): (f64, f64),
+    ) -> Result<(), Error> {
+        let yielded = trial.pressures(plastic);
+        let behind = trial.behind(&yielded, approach);
+        run.field.advance_behind(&behind, iterations, span)
     }
-    places
+
+    /// Corrects a window by the solution at its end, and settles the events in it; `None` if the end, or a solution in between,
+    /// contradicts what was expected.
+    fn refine(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (window, trial): (&Window, &Trial),
+        (first, time): (&[WindowEvent], f64),
+    ) -> Result<Option<(Window, Settled)>, Error> {
+        let start = run.scalars.approach();
+        let ends = at_end(run, plastic, window, (trial, start + time));
+        let correction = correction::correct(window, &ends, time);
+        let settled = ties::second_pass(&correction, (first, first), time);
+        self.left_out = correction.left_out().max(REMEMBERED * self.left_out);
+        let change = ties::mean_change(first, &settled.events, time);
+        let most_change = MOST_CHANGE * time / first.len() as f64;
+        let half = first.len() / 2;
+        let is_certain =
+            first.len() <= CERTAIN || with_ties(first, half, tolerances) >= first.len();
+        let is_poor = !is_certain && (change > most_change || first.len() > 2 * self.most_events());
+        let settled = match is_poor {
+            true => None,
+            false if self.settles => {
+                let count = run.contact.len() + plastic.count();
+                let beginning = Beginning { approach: start, count, is_certain };
+                let solve = |question: Question<'_>, nodes: &[usize]| {
+                    let done = of_nodes(window, &question.events[..question.done]);
+                    let trial = Trial::of(run, plastic, done)?;
+                    let at = (start + question.time(), question.error);
+                    values_at(run, plastic, iterations, (&trial, nodes), at)
+                };
+                ties::settle(&correction.window, tolerances, settled, beginning, solve)?
+            }
+            false => Some(settled),
+        };
+        if settled.is_none() {
+            self.left_out = self.left_out.max(LEFT_OUT / half.max(1) as f64);
+        }
+        Ok(settled.map(|settled| (correction.window, settled)))
+    }
+
+    /// How many events a window may have: see the same of windows in which nothing yields.
+    fn most_events(&self) -> usize {
+        ((LEFT_OUT / self.left_out) as usize).max(1)
+    }
+
+    /// Queues the states of a corrected window, at whose end the solution is.
+    fn finish(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        mut trial: Trial,
+        (mut window, settled): (Window, &Settled),
+        time: f64,
+        tolerances: &WindowTolerances,
+    ) -> Result<(), Error> {
+        self.last_span = time;
+        for event in &settled.events {
+            let happened = window.happen(event.position, event.time);
+            happened.map_err(|bad| run.not_positive_definite(bad))?;
+        }
+        let played: Vec<(usize, ContactEvent)> = of_nodes(&window, &settled.events).collect();
+        trial.reorder(run, &played)?;
+        let before = Carried::of(run);
+        let passed = Passed { start: run.scalars, before, span: time };
+        let approach = passed.start.approach() + time;
+        let plastic = trial.adopt(run, plastic);
+        run.scalars.place_at(approach);
+        let start = self.rates;
+        self.survey(run, &plastic, tolerances)?;
+        let rates = [start, self.rates];
+        pinned::enqueue(run, &plastic, (&window, settled), passed, (rates, tolerances))
+    }
+
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices, up to so many
+    /// `touches`. Between them rates change in equal steps.
+    fn enter(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (time, known): (f64, &[usize]),
+        touches: usize,
+    ) -> Result<(), Error> {
+        let places = places(run);
+        let tie_of = |node: usize| Self::tie_of(run, tolerances, (node, places[node]));
+        let together =
+            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
+        let group = self.ranking.iter().filter(together);
+        let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
+        // What their times cannot be told apart by, and what the solution at hand leaves open of them.
+        let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        let open = group.iter().map(|&node| self.left / closing(run, node, places[node]));
+        let most_late = open.fold(error, f64::max);
+        group.sort_unstable();
+        let kind = |node: usize| match run.contact.contains(node) {
+            true => ContactEvent::Yield,
+            false => ContactEvent::Touch,
+        };
+        let mut touched = 0;
+        let within = |&(_, kind): &(usize, ContactEvent)| {
+            let goes_on = touched < touches;
+            touched += usize::from(kind == ContactEvent::Touch);
+            goes_on
+        };
+        let events: Vec<(usize, ContactEvent)> =
+            group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
+        let approach = run.scalars.approach() + time;
+        let trial = Trial::of(run, plastic, events.iter().copied())?;
+        // However little is left open by so many nodes: rates must be exact.
+        self.rate_span = f64::INFINITY;
+        self.go_to(run, plastic, iterations, &trial, (approach, self.rate_span))?;
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
+        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        let [_, most] = slacks(run, (&trial.problem, &trial.contact), tolerances, approach);
+        let late = lateness(run, plastic, &trial, (approach, most));
+        let late = if late <= most_late { late } else { 0.0 };
+        let (time, approach, error) = (time + late, approach + late, error.max(late));
+        if late > 0.0 {
+            let at = [approach, self.rate_span];
+            run.field.advance(&trial.problem, &trial.contact, iterations, at)?;
+        }
+        self.last_span = self.last_span.max(time);
+        let before = Carried::of(run);
+        let passed = Passed { start: run.scalars, before, span: time };
+        let rates = self.rates;
+        let plastic = trial.adopt(run, plastic);
+        run.scalars.place_at(approach);
+        self.survey(run, &plastic, tolerances)?;
+        pinned::enqueue_together(run, &plastic, &events, passed, ([rates, self.rates], error))
+    }
 }
 
-/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
-/// earlier the first was not yet, as far as the rates tell: not after 0.
-fn contradiction(
+/// By how much the solution on a contact at an approach may contradict what contact that grows does: where the window can be shorter,
+/// and at all. What is left of gaps in contact says how far pressures are off, and gaps elsewhere: by less, for they see all of it
+/// from afar.
+fn slacks(
+    run: &LoadingRun,
+    (problem, contact): (&Problem, &ContactSequence),
+    tolerances: &WindowTolerances,
+    approach: f64,
+) -> [Slack; 2] {
+    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
+    let left = left.fold(0.0, f64::max);
+    let of = |left: f64, gap: f64| {
+        let pressure = OF_RESIDUAL * left.max(gap);
+        let gap = gap.max(OF_RESIDUAL_BEYOND * left);
+        Slack { gap, tension: pressure, excess: pressure, rate: SLACK_OF_RATE }
+    };
+    let solved = tolerances.tolerance * tolerances.length.max(approach);
+    [of(left, solved), of(left, tolerances.overlap(approach))]
+}
+
+/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
+/// a solution may be off by.
+fn lateness(
     run: &LoadingRun,
     plastic: &Plastic,
     trial: &Trial,
     (approach, slack): (f64, Slack),
-) -> Option<f64> {
+) -> f64 {
     let Trial { contact, problem, .. } = trial;
-    let length = slack.gap;
-    let pressure = slack.pressure / problem.table().self_influence();
-    let has_yielded = |node: usize| plastic.has_yielded(node) || trial.yielded.contains(&node);
-    let before = |left: f64, rate: f64| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY };
-    let lines = run.field.lines(problem, contact, approach);
-    let outside = lines.filter_map(|(node, line)| {
-        if !has_yielded(node) {
-            return (line.gap < -length).then(|| before(line.gap, line.closing));
-        }
-        // Plastic depth neither is negative nor falls.
-        let recovers = line.gap > length || line.closing < -slack.rate;
-        recovers.then_some(f64::NEG_INFINITY)
+    let mut has_yielded = vec![false; problem.grid().nodes()];
+    trial.yielded.iter().for_each(|&node| has_yielded[node] = true);
+    let depths = run.field.lines(problem, contact, approach).filter_map(|(node, line)| {
+        let is_short = line.gap > slack.gap && (has_yielded[node] || plastic.has_yielded(node));
+        (is_short && line.closing > 0.0).then(|| line.gap / line.closing)
     });
+    let tension = slack.tension / problem.table().self_influence();
+    let pressures = run.field.pressures(contact, approach).zip(&run.field.solution().rate);
+    let pressures = pressures
+        .filter(|&((_, pressure), &rate)| pressure < -tension && rate > 0.0)
+        .map(|((_, pressure), &rate)| -pressure / rate);
+    depths.chain(pressures).fold(0.0, f64::max)
+}
+
+/// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
+fn within(events: &[WindowEvent], touches: usize) -> usize {
+    let touching = |(_, event): &(usize, &WindowEvent)| event.kind == ContactEvent::Touch;
+    let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
+    last.map_or(events.len(), |(place, _)| place + 1)
+}
+
+/// The place of each node in the contact.
+fn places(run: &LoadingRun) -> Vec<Option<usize>> {
+    let mut places = vec![None; run.problem.grid().nodes()];
+    for (place, &node) in run.contact.order().iter().enumerate() {
+        places[node] = Some(place);
+    }
+    places
+}
+
+/// How fast the event of a node comes, relative to the approach: how fast its gap closes, or its pressure rises times what a pressure
+/// displaces.
+fn closing(run: &LoadingRun, node: usize, place: Option<usize>) -> f64 {
+    match place {
+        Some(place) => run.field.solution().rate[place] * run.problem.table().self_influence(),
+        None => run.line(node).closing,
+    }
+}
+
+/// The nodes of events, and what happens to them.
+fn of_nodes<'a>(
+    window: &'a Window,
+    events: &'a [WindowEvent],
+) -> impl Iterator<Item = (usize, ContactEvent)> + 'a {
+    events.iter().map(|event| (window.node(event.position), event.kind))
+}
+
+/// Gaps of nodes out of contact and pressures of those in it, behind a trial at an approach, to an error.
+fn values_at(
+    run: &mut LoadingRun,
+    plastic: &Plastic,
+    iterations: &mut dyn Iterations,
+    (trial, nodes): (&Trial, &[usize]),
+    (approach, error): (f64, f64),
+) -> Result<Vec<f64>, Error> {
+    run.timings.ties += 1;
+    let yielded = trial.pressures(plastic);
+    let solved = iterations.probe_behind(&trial.behind(&yielded, approach), error)?;
+    let (pressure, [displacement, _]) = (&solved.solution.pressure, &solved.displacement);
+    UpdaterError::check_length("displacements", displacement.len(), run.problem.grid().nodes())?;
+    UpdaterError::check_length("pressures", pressure.len(), trial.contact.len())?;
+    if !displacement.iter().chain(pressure).copied().all(f64::is_finite) {
+        return Err(run.not_finite());
+    }
+    let gap = trial.problem.initial_gap();
+    let value = |&node: &usize| match trial.contact.order().iter().position(|&other| other == node)
+    {
+        Some(place) => pressure[place],
+        None => gap[node] + displacement[node] - approach,
+    };
+    Ok(nodes.iter().map(value).collect())
+}
+
+/// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were elastic; and
+/// gaps, or pressures of those.
+fn at_end(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    window: &Window,
+    (trial, approach): (&Trial, f64),
+) -> Vec<AtEnd> {
+    let mut places = vec![None; run.problem.grid().nodes()];
+    for (place, &node) in trial.contact.order().iter().enumerate() {
+        places[node] = Some(place);
+    }
+    let solution = run.field.solution();
     let hardness = plastic.hardness().values();
-    let rates = &run.field.solution().rate;
-    let pressures = run.field.pressures(contact, approach).zip(rates);
-    let inside = pressures.filter_map(|((node, value), &rate)| {
-        let left = hardness[node] - value;
-        let pulls = (value < -pressure).then_some(f64::NEG_INFINITY);
-        pulls.or_else(|| (left < -pressure).then(|| before(left, rate)))
-    });
-    outside.chain(inside).reduce(f64::min)
+    let at = |(position, &node): (usize, &usize)| {
+        let line = run.field.line(&trial.problem, node, approach);
+        let gap = [line.gap, -line.closing];
+        let has_yielded = trial.yielded.contains(&node);
+        match (window.is_elastic(position), places[node]) {
+            (false, Some(place)) => {
+                AtEnd { pressure: [solution.pressure[place], solution.rate[place]], gap: [0.0; 2] }
+            }
+            (false, None) if has_yielded => AtEnd { pressure: [hardness[node], 0.0], gap },
+            (false, None) => AtEnd { pressure: [0.0; 2], gap },
+            (true, Some(place)) => {
+                AtEnd { pressure: [0.0; 2], gap: [solution.pressure[place], solution.rate[place]] }
+            }
+            (true, None) => AtEnd { pressure: gap.map(|value| -value), gap: [hardness[node], 0.0] },
+        }
+    };
+    window.nodes().iter().enumerate().map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Touches and yields that alternate: what comes up to a number of touches.
+    #[test]
+    fn a_path_ends_with_its_last_touch() {
+        use ContactEvent::{Touch, Yield};
+        let event = |kind| WindowEvent { position: 0, time: 1.0, kind, closing: 1.0 };
+        let events = [Touch, Yield, Yield, Touch, Yield].map(event);
+        let found = [1, 2, 3, 9].map(|touches| within(&events, touches));
+        assert_eq!(found, [1, 4, 5, 5]);
+        assert_eq!(within(&events[1..3], 1), 2);
+    }
 }

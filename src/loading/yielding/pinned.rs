@@ -1,6 +1,5 @@
 //! States of a window, pinned to the exact ones at both ends.
 
-use super::Carried;
 use crate::Error;
 use crate::loading::plastic::Plastic;
 use crate::loading::run::LoadingRun;
@@ -8,6 +7,7 @@ use crate::loading::scalars::{PathScalars, Rates};
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME, RATE_ERROR};
+use crate::loading::walk::{Carried, Walk};
 use crate::loading::window::Window;
 use crate::loading::window::ties::Settled;
 
@@ -18,46 +18,6 @@ pub(super) struct Passed {
     pub(super) before: Carried,
     /// How far it went.
     pub(super) span: f64,
-}
-
-/// Nodes in contact and what they carry, along the events of a window.
-struct Walk<'a> {
-    hardness: &'a [f64],
-    carried: Carried,
-    step: usize,
-}
-
-impl<'a> Walk<'a> {
-    fn new(plastic: &'a Plastic, carried: Carried) -> Self {
-        let [elastic, yielded] = carried.nodes;
-        Self { hardness: plastic.hardness().values(), step: elastic + 2 * yielded, carried }
-    }
-
-    /// Lets a node touch or yield. Returns the bounds of the load there.
-    fn pass(&mut self, node: usize, kind: ContactEvent) -> [f64; 2] {
-        let Carried { nodes: [elastic, yielded], sum, most } = &mut self.carried;
-        let bounds = [*sum, *most];
-        if kind == ContactEvent::Touch {
-            *elastic += 1;
-            *most += self.hardness[node];
-        } else {
-            *elastic -= 1;
-            *yielded += 1;
-            *sum += self.hardness[node];
-        }
-        self.step += 1;
-        bounds
-    }
-
-    /// Takes over the rates behind the last event.
-    fn take(&self, scalars: &mut PathScalars, rates: Rates) {
-        scalars.change_rates(rates, self.carried.nodes, self.carried.sum);
-    }
-
-    fn contact_nodes(&self) -> usize {
-        let [elastic, yielded] = self.carried.nodes;
-        elastic + yielded
-    }
 }
 
 /// What has changed along a window while nodes were elastic: the approach, and both plastic sums. On plateaus, where none is, all rates
@@ -148,7 +108,7 @@ pub(super) fn enqueue(
         elastic = if event.kind == ContactEvent::Touch { elastic + 1 } else { elastic - 1 };
         rates.unit_stiffness = stiffness_of(elastic, rates.unit_stiffness, alone);
     }
-    let mut walk = Walk::new(plastic, before);
+    let mut walk = Walk::new(Some(plastic), before);
     let mut walked = start;
     let mut open = Open::default();
     let mut along = Vec::with_capacity(events.len());
@@ -166,7 +126,7 @@ pub(super) fn enqueue(
         + RATE_ERROR * run.scalars.load_beyond(&start).abs()
         + run.scalars.load_over(OF_END * spacing);
     let mut stiffness = start_rates.unit_stiffness;
-    let mut walk = Walk::new(plastic, before);
+    let mut walk = Walk::new(Some(plastic), before);
     let own = run.scalars;
     for (k, ((mut scalars, so_far), event)) in along.into_iter().zip(events).enumerate() {
         let node = window.node(event.position);
@@ -201,7 +161,7 @@ pub(super) fn enqueue_together(
     scalars.advance(run.scalars.approach());
     let stiffness = (last[0] - first[0]).abs();
     let error = scalars.reported_error(error, scalars.load_of(stiffness, error));
-    let mut walk = Walk::new(plastic, passed.before);
+    let mut walk = Walk::new(Some(plastic), passed.before);
     for (k, &(node, kind)) in events.iter().enumerate() {
         let part = (k + 1) as f64 / events.len() as f64;
         let rates = std::array::from_fn(|k| first[k] + part * (last[k] - first[k]));

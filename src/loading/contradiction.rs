@@ -1,0 +1,52 @@
+//! Whether the end of a window contradicts its events.
+
+use super::run::LoadingRun;
+use crate::Problem;
+use crate::contact::ContactSequence;
+
+/// By how much a solution may contradict what contact that grows does.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slack {
+    /// Overlap \[m\].
+    pub(super) gap: f64,
+    /// What a tension, and a pressure beyond the hardness, would displace alone \[m\].
+    pub(super) tension: f64,
+    pub(super) excess: f64,
+    /// Rates of pressures, relative to the greatest, and of plastic depths.
+    pub(super) rate: f64,
+}
+
+/// Whether a gap at the end of a window is negative, or a pressure greater than the hardness, beyond rounding. Returns how much
+/// earlier the first was not yet, as far as the rates tell: not after 0.
+pub(super) fn contradiction(
+    run: &LoadingRun,
+    (problem, contact, yielded): (&Problem, &ContactSequence, &[usize]),
+    (approach, slack): (f64, Slack),
+) -> Option<f64> {
+    let length = slack.gap;
+    let [tension, excess] =
+        [slack.tension, slack.excess].map(|u| u / problem.table().self_influence());
+    let plastic = run.plastic.as_deref();
+    let has_yielded = |node: usize| {
+        plastic.is_some_and(|plastic| plastic.has_yielded(node)) || yielded.contains(&node)
+    };
+    let before = |left: f64, rate: f64| if rate > 0.0 { left / rate } else { f64::NEG_INFINITY };
+    let lines = run.field.lines(problem, contact, approach);
+    let outside = lines.filter_map(|(node, line)| {
+        if !has_yielded(node) {
+            return (line.gap < -length).then(|| before(line.gap, line.closing));
+        }
+        // Plastic depth neither is negative nor falls.
+        let recovers = line.gap > length || line.closing < -slack.rate;
+        recovers.then_some(f64::NEG_INFINITY)
+    });
+    let hardness = |node: usize| plastic.map_or(f64::INFINITY, |p| p.hardness().values()[node]);
+    let rates = &run.field.solution().rate;
+    let pressures = run.field.pressures(contact, approach).zip(rates);
+    let inside = pressures.filter_map(|((node, value), &rate)| {
+        let left = hardness(node) - value;
+        let pulls = (value.is_nan() || value < -tension).then_some(f64::NEG_INFINITY);
+        pulls.or_else(|| (left < -excess).then(|| before(left, rate)))
+    });
+    outside.chain(inside).reduce(f64::min)
+}

@@ -1,0 +1,543 @@
+//! Events in windows with a factor, on bodies whose contact only grows: nodes that touch, and with a hardness elastic nodes that yield.
+
+use std::time::Instant;
+
+use super::contradiction::{Slack, contradiction};
+use super::cost::{WITH_FACTOR, automatic_window, watched_for};
+use super::factor_log::FactorLog;
+use super::gap_field::GapLine;
+use super::plastic::Plastic;
+use super::ranking::{Ranking, rank, survey};
+use super::run::LoadingRun;
+use super::scalars::Rates;
+use super::state::ContactEvent;
+use super::tolerances::ties_until;
+use super::trial::Trial;
+use super::tuning::{BORDERED, MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE, TOLERANCE};
+use super::walk::{Carried, Walk};
+use super::window::{SUMS, Watched, Window, of_overlap};
+use crate::contact::ContactSequence;
+use crate::updater::{Left, LinearUpdater, Solution, join_all};
+use crate::{ContactGrowth, Error, Problem};
+
+/// Finds events in windows: what may happen before the *horizon*, the time of the next event of any node that is not watched.
+///
+/// Where contact only grows and nobody yields, that time is a lower bound if the kernel is convex. Otherwise a window is solved at its end
+/// and checked there: gaps only close and pressures only grow, so that what is right at the end was right throughout. Where the end
+/// contradicts events, fewer are played. Nodes that yield leave the factor, which cannot be undone: a window with such events is solved with
+/// the factor as it was.
+#[derive(Debug)]
+pub(super) struct Exact {
+    growth: ContactGrowth,
+    /// How many nodes to watch, if the user says so.
+    size: Option<usize>,
+    window: Window,
+    /// The nodes that may touch or yield, by the time at which they would.
+    ranking: Ranking,
+    /// All windows so far.
+    log: FactorLog,
+}
+
+/// What is known when a window begins.
+struct Survey {
+    /// When the first node would touch or yield.
+    first: f64,
+    /// From when on nodes would yield that are not ranked: all others would have touched before.
+    beyond: f64,
+    rates: Rates,
+}
+
+impl Exact {
+    pub(super) fn new(growth: ContactGrowth, size: Option<usize>) -> Self {
+        Self {
+            growth,
+            size,
+            window: Window::default(),
+            ranking: Ranking::new(),
+            log: FactorLog::default(),
+        }
+    }
+
+    /// Computes a window of states, with no more than `most_nodes` in contact, which is more than there are; none if nothing can happen to
+    /// any node. Returns what went wrong after them.
+    pub(super) fn produce<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+        most_nodes: usize,
+    ) -> Result<Option<Error>, Error> {
+        let (touches, approach) = (most_nodes - run.contact_nodes(), run.scalars.approach());
+        let size = run.affordable(updater, self.next_size(run, touches))?;
+        run.renew_field(updater, approach)?;
+        let Survey { first, beyond, rates } = self.survey(run)?;
+        if self.ranking.is_empty() && run.plastic.is_some() {
+            return Ok(None);
+        }
+        let start = Instant::now();
+        let size = size.min(self.ranking.len());
+        let (size, horizon) = self.choose(size, self.multiple(), [approach, first]);
+        run.timings.choice += start.elapsed();
+        let before = Carried::of(run);
+        self.watch(run, updater, size, horizon.min(beyond))?;
+
+        let start = Instant::now();
+        let bad_pivot = self.window.play_touches(touches);
+        run.timings.events += start.elapsed();
+        let mut failure = bad_pivot.map(|bad| run.not_positive_definite(bad));
+        let played = self.window.events().len();
+        if played == 0 {
+            return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
+        }
+        let joined: Vec<usize> = self.window.events().iter().map(|event| event.position).collect();
+        self.follow(run, updater)?;
+        if self.window.events().len() < played {
+            failure = None;
+        }
+        if run.plastic.is_none() {
+            self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
+        }
+        let start = Instant::now();
+        let queued = self.enqueue(run, before, rates);
+        run.timings.events += start.elapsed();
+        if !self.window.is_of_touches() {
+            // The updater keeps nothing of what was watched.
+            self.window = Window::default();
+        }
+        Ok(queued.err().or(failure))
+    }
+
+    /// All windows so far.
+    pub(super) fn log(&self) -> &FactorLog {
+        &self.log
+    }
+
+    /// Goes on behind these windows. The nodes that the last one left are watched in the same order.
+    pub(super) fn follow_on(&mut self, log: FactorLog) {
+        self.window = Window::ended_with(log.untouched());
+        self.log = log;
+    }
+
+    /// How many nodes to watch.
+    fn next_size(&self, run: &LoadingRun, touches: usize) -> usize {
+        let (count, nodes) = (run.contact.len(), run.problem.grid().nodes());
+        let may_yield = run.may_yield();
+        let size = self.size.unwrap_or_else(|| {
+            let wanted = watched_for(touches);
+            let wanted = if may_yield { wanted.saturating_mul(2) } else { wanted };
+            automatic_window(count, nodes, WITH_FACTOR).min(wanted)
+        });
+        size.min(if may_yield { nodes } else { nodes - run.contact_nodes() })
+    }
+
+    /// Checks that contact grows, and ranks what may happen next.
+    fn survey(&mut self, run: &mut LoadingRun) -> Result<Survey, Error> {
+        if let Some(plastic) = run.plastic.clone().filter(|plastic| plastic.count() > 0) {
+            let tolerance = TOLERANCE * (run.problem.grid().cell_aspect() / SQUARE).max(1.0);
+            let gap = tolerance * (run.problem.greatest_gap() + run.scalars.approach());
+            let slack = Slack { gap, tension: gap, excess: gap, rate: TOLERANCE };
+            let rates = survey(run, &plastic, &mut self.ranking, slack)?;
+            let times = self.ranking.iter().map(|&(time, _)| time);
+            let first = times.fold(f64::INFINITY, f64::min);
+            return Ok(Survey { first, beyond: f64::INFINITY, rates });
+        }
+        let mut first = rank(run, &mut self.ranking)?;
+        let mut beyond = f64::INFINITY;
+        if let Some(plastic) = &run.plastic {
+            let times = self.ranking.iter().map(|&(time, _)| time);
+            let last = times.filter(|time| time.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+            let hardness = plastic.hardness().values();
+            let pressures = run.field.pressures(&run.contact, run.scalars.approach());
+            for ((node, pressure), rate) in pressures.zip(&run.field.solution().rate) {
+                let time = ((hardness[node] - pressure) / rate).max(0.0);
+                if *rate > 0.0 && time < f64::INFINITY {
+                    if time <= last || last == f64::NEG_INFINITY {
+                        self.ranking.push((time, node));
+                        first = first.min(time);
+                    } else {
+                        beyond = beyond.min(time);
+                    }
+                }
+            }
+        }
+        Ok(Survey { first, beyond, rates: run.scalars.rates() })
+    }
+
+    /// Nodes that were not watched before come in multiples of this.
+    fn multiple(&self) -> usize {
+        if self.size.is_some() { 1 } else { MULTIPLE }
+    }
+
+    /// Moves the nodes to watch to the front of the ranking, those watched before first; returns their
+    /// number, `size` or a little less, and the horizon: until then none of the others ties with one that is watched. The first
+    /// node touches at `first` after an approach.
+    fn choose(
+        &mut self,
+        mut size: usize,
+        multiple: usize,
+        [approach, first]: [f64; 2],
+    ) -> (usize, f64) {
+        // So that of more nodes that touch at once than can be watched those of the lowest indices are.
+        for (time, _) in &mut self.ranking {
+            if *time <= first {
+                *time = first;
+            }
+        }
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut horizon = f64::INFINITY;
+        let mut among = self.ranking.len();
+        loop {
+            if size < among {
+                let ranking = &mut self.ranking[..among];
+                horizon = ranking.select_nth_unstable_by(size, order).1.0;
+            }
+            let chosen = &mut self.ranking[..size];
+            chosen.sort_unstable_by_key(|&(_, node)| node);
+            let again = |node: &usize| chosen.binary_search_by_key(node, |&(_, node)| node).is_ok();
+            let new = size - self.window.untouched().filter(again).count();
+            if new <= multiple || new.is_multiple_of(multiple) {
+                break;
+            }
+            among = size;
+            size -= new % multiple;
+        }
+        let chosen = &mut self.ranking[..size];
+        let mut front = 0;
+        // Nodes watched before keep their order, so that the updater knows them again.
+        for node in self.window.untouched() {
+            if let Ok(found) = chosen[front..].binary_search_by_key(&node, |&(_, node)| node) {
+                chosen[front..=front + found].rotate_right(1);
+                front += 1;
+            }
+        }
+        if horizon <= first {
+            // The others have higher indices; those that are watched touch here, but for what rounds.
+            horizon = ties_until(approach + first) - approach;
+        }
+        (size, horizon)
+    }
+
+    /// Opens the window on the first `size` nodes of the ranking.
+    fn watch<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+        size: usize,
+        horizon: f64,
+    ) -> Result<(), Error> {
+        let (approach, order) = (run.scalars.approach(), run.contact.order());
+        let places = places(order, run.problem.grid().nodes());
+        let chosen = self.ranking[..size].iter().map(|&(_, node)| node);
+        let (inside, outside): (Vec<_>, Vec<_>) = chosen.partition(|&n| run.contact.contains(n));
+        let mut positions: Vec<usize> = inside.iter().map(|&node| places[node]).collect();
+        positions.sort_unstable();
+        let schur = self.window.schur_mut();
+        if positions.is_empty() {
+            updater.watch(&run.problem, &run.contact, &outside, schur)?;
+        } else {
+            updater.watch_both(&run.problem, &run.contact, &outside, &positions, schur)?;
+        }
+        let inside = positions.iter().map(|&position| order[position]);
+        let nodes: Vec<usize> = outside.iter().copied().chain(inside).collect();
+        run.check_complement(&nodes, schur)?;
+        let plastic = run.plastic.as_deref();
+        let has_yielded = plastic.is_some_and(|plastic| plastic.count() > 0);
+        let sums = match plastic {
+            Some(plastic) if has_yielded || !positions.is_empty() => {
+                plastic_sums(run, plastic, updater, (&outside, &positions))?
+            }
+            _ => schur.row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect(),
+        };
+        let hardness = |node: usize| plastic.map_or(f64::INFINITY, |p| p.hardness().values()[node]);
+        let mut watched: Vec<Watched> = Vec::with_capacity(nodes.len());
+        for (&node, sums) in outside.iter().zip(&sums) {
+            let (line, hardness) = (run.line(node), hardness(node));
+            watched.push(Watched { node, is_elastic: false, hardness, line, sums: *sums });
+        }
+        let Solution { pressure, rate } = run.field.solution();
+        for (&place, &of_gap) in positions.iter().zip(&sums[outside.len()..]) {
+            let (node, hardness) = (order[place], hardness(order[place]));
+            let line = GapLine { gap: pressure[place], closing: -rate[place] };
+            let sums = of_overlap(of_gap, hardness);
+            watched.push(Watched { node, is_elastic: true, hardness, line, sums });
+        }
+        if positions.is_empty() && !has_yielded {
+            // A pressure is watched only if the node could come to its hardness in the window.
+            let touches = watched.iter().map(|watched| watched.line.touches());
+            let last = touches.filter(|time| time.is_finite()).fold(0.0, f64::max);
+            let end = if horizon < f64::INFINITY { horizon } else { last };
+            for (position, watched) in watched.iter_mut().enumerate() {
+                let GapLine { gap, closing } = watched.line;
+                let most = BORDERED * (end * closing - gap) / schur.entry(position, position);
+                if most < watched.hardness {
+                    watched.hardness = f64::INFINITY;
+                }
+            }
+        }
+        self.window.begin_both((approach, horizon), &watched, order.len());
+        run.timings.windows += 1;
+        Ok(())
+    }
+
+    /// Lets path and updater follow to the end of the window, after taking back its last events as long as that contradicts them. The
+    /// first event follows from a solution, and needs no check.
+    fn follow<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+    ) -> Result<(), Error> {
+        // When the first contradiction was is an estimate, which must not make the search long if it keeps
+        // failing.
+        let mut fewest = 1;
+        while let Some(plastic) = run.plastic.clone().filter(|_| !self.window.is_of_touches()) {
+            let (trial, until) = self.try_end(run, &plastic, updater)?;
+            if self.take_back(run, until, &mut fewest) == 0 {
+                return self.commit(run, updater, (&plastic, trial));
+            }
+        }
+        let begun = run.mark();
+        run.join(updater, &self.window)?;
+        let may_fail = self.growth == ContactGrowth::Monotone || run.plastic.is_some();
+        while may_fail && self.window.events().len() > 1 {
+            // The next window needs the same solution and the same displacements, and finds them.
+            let end = run.scalars.approach() + self.end();
+            run.renew_field(updater, end)?;
+            let there = (&run.problem, &run.contact, &[][..]);
+            let until = contradiction(run, there, (end, slack_at(run, there, end)));
+            let dropped = self.take_back(run, until, &mut fewest);
+            if dropped == 0 {
+                break;
+            }
+            let mark = run.mark().without_last(dropped);
+            run.roll_back(&mark, |problem, contact| updater.truncate(problem, contact))?;
+        }
+        if let Some(error) = self.pulled(run, updater)? {
+            run.roll_back(&begun, |problem, contact| updater.truncate(problem, contact))?;
+            return Err(error);
+        }
+        Ok(())
+    }
+
+    /// The time of the last event.
+    fn end(&self) -> f64 {
+        self.window.events().last().map_or(0.0, |event| event.time)
+    }
+
+    /// Takes back events that a contradiction at the end of the window says were none, `until` before the end; returns how many.
+    fn take_back(&mut self, run: &mut LoadingRun, until: Option<f64>, fewest: &mut usize) -> usize {
+        let events = self.window.events();
+        let Some(until) = until.filter(|_| events.len() > 1) else {
+            return 0;
+        };
+        let until = self.end() + until;
+        let later = events.iter().rev().take_while(|event| event.time > until).count();
+        let dropped = later.max(*fewest).min(events.len() - 1);
+        *fewest *= 2;
+        self.window.truncate(events.len() - dropped);
+        run.timings.taken_back += dropped;
+        dropped
+    }
+
+    /// Solves at the end of the window, with the contact as the updater has it, and computes all gaps there. Returns with it how
+    /// much before the end the first contradiction was, as far as rates tell.
+    fn try_end<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        plastic: &Plastic,
+        updater: &mut U,
+    ) -> Result<(Trial, Option<f64>), Error> {
+        let end = self.end();
+        let approach = run.scalars.approach() + end;
+        let order = run.contact.order();
+        let nodes = run.problem.grid().nodes();
+        let table = run.problem.table();
+        // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
+        let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
+        let mut values = vec![[0.0; 2]; nodes];
+        let hardness = plastic.hardness().values();
+        for (event, answer) in self.window.events().iter().zip(self.window.answers(end)) {
+            let node = self.window.node(event.position);
+            if event.kind == ContactEvent::Touch {
+                let yields = self.window.events().iter().any(|other| {
+                    (other.position, other.kind) == (event.position, ContactEvent::Yield)
+                });
+                pressed.push((node, if yields { [hardness[node], 0.0] } else { answer }));
+            } else if run.contact.contains(node) {
+                values[node] = answer.map(|overlap| -overlap);
+            }
+        }
+        let pressed_places: Vec<usize> =
+            pressed.iter().map(|&(node, _)| table.place(node)).collect();
+        let mut coefficients = vec![0.0; pressed.len()];
+        let gaps = run.problem.initial_gap();
+        let mut solved: Vec<[f64; 2]> = order
+            .iter()
+            .map(|&node| {
+                let [gap, rate] = values[node];
+                let mut rhs = [approach - gaps[node] + gap, 1.0 + rate];
+                table.fill_column(table.place(node), &pressed_places, &mut coefficients);
+                for ((_, [pressure, rate]), coefficient) in pressed.iter().zip(&coefficients) {
+                    rhs[0] -= coefficient * pressure;
+                    rhs[1] -= coefficient * rate;
+                }
+                rhs
+            })
+            .collect();
+        updater.solve_for(&run.problem, &run.contact, &mut solved)?;
+        for (&node, solved) in order.iter().zip(&solved) {
+            values[node] = *solved;
+        }
+        for (node, value) in pressed {
+            values[node] = value;
+        }
+        let events = self.window.events().iter();
+        let events = events.map(|event| (self.window.node(event.position), event.kind));
+        let trial = Trial::of(run, plastic, events)?;
+        let after = trial.contact.order();
+        let solution = Solution {
+            pressure: after.iter().map(|&node| values[node][0]).collect(),
+            rate: after.iter().map(|&node| values[node][1]).collect(),
+        };
+        run.field.place(&trial.contact, solution, approach)?;
+        run.timings.convolution = run.field.time();
+        run.check_closed(&trial.problem, &trial.contact, approach)?;
+        let slack = slack_at(run, trial.set(), approach);
+        let until = contradiction(run, trial.set(), (approach, slack));
+        Ok((trial, until))
+    }
+
+    /// Lets path and updater follow to the end of a window in which nodes have yielded.
+    fn commit<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+        (plastic, trial): (&Plastic, Trial),
+    ) -> Result<(), Error> {
+        let step = run.steps();
+        let (problem, contact, _) = trial.set();
+        // Whatever becomes of the updater, also by a panic: the states so far are known without it.
+        let known = run.releases.forget(step);
+        let before = run.contact.order();
+        let has_left = |&(_, &node): &(usize, &usize)| !contact.contains(node);
+        let left = before.iter().enumerate().filter(has_left);
+        let left: Vec<Left> = left.map(|(position, &node)| Left { node, position }).collect();
+        let (kept, joined): (Vec<_>, Vec<_>) =
+            contact.order().iter().partition(|&&node| run.contact.contains(node));
+        let kept = ContactSequence::with_order(problem.grid(), kept);
+        let followed = kept.and_then(|mut kept| {
+            updater.release(problem, &kept, &left)?;
+            join_all(updater, problem, &mut kept, &joined, run.memory.left())
+        });
+        followed.map_err(|error| run.memory.in_all(error))?;
+        run.releases.remember(known);
+        trial.adopt(run, plastic);
+        Ok(())
+    }
+
+    /// The error of a window whose end pulls at a node: contact does not grow as the kernel promises. The next window needs the same solution.
+    fn pulled<U: LinearUpdater>(
+        &self,
+        run: &mut LoadingRun,
+        updater: &mut U,
+    ) -> Result<Option<Error>, Error> {
+        let end = run.scalars.approach() + self.end();
+        run.renew_field(updater, end)?;
+        let rounding = TOLERANCE * (run.problem.greatest_gap() + end);
+        let most = RECOGNISED * run.greatest_pressure(end)
+            + rounding / run.problem.table().self_influence();
+        let mut pressures = run.field.pressures(&run.contact, end);
+        let pulled = pressures.find(|(_, pressure)| *pressure < -most);
+        Ok(pulled.map(|(node, pressure)| run.not_monotone("pressure", node, pressure)))
+    }
+
+    /// Turns the events of the window, which began with these nodes in contact and these rates, into states.
+    fn enqueue(&self, run: &mut LoadingRun, before: Carried, rates: Rates) -> Result<(), Error> {
+        let start = run.scalars.approach();
+        let only_touches = before.nodes[1] == 0 && self.window.is_of_touches();
+        let plastic = run.plastic.clone();
+        let mut walk = Walk::new(plastic.as_deref(), before);
+        let behind = self.window.increments().zip(self.window.rates(rates));
+        for (event, (increments, rates)) in self.window.events().iter().zip(behind) {
+            let node = self.window.node(event.position);
+            run.scalars.advance(start + event.time);
+            let bounds = walk.pass(node, event.kind);
+            if only_touches {
+                run.scalars.touch(increments, walk.contact_nodes());
+            } else {
+                run.scalars.clamp_load(bounds);
+            }
+            run.scalars.clamp_mean_gap();
+            if !only_touches {
+                walk.take(&mut run.scalars, rates);
+            }
+            run.enqueue(walk.step, event.kind, node, walk.contact_nodes())?;
+        }
+        Ok(())
+    }
+
+    /// The path cannot go on although nodes are left: none of their gaps closes.
+    pub(super) fn growth_stopped(&self, run: &LoadingRun) -> Error {
+        let node = self.ranking.iter().map(|&(_, node)| node).min();
+        run.not_monotone("closing rate of the gap", node.unwrap_or_default(), 0.0)
+    }
+}
+
+/// By how much a solution on a contact at an approach may contradict what contact that grows does.
+fn slack_at(
+    run: &LoadingRun,
+    (problem, contact, _): (&Problem, &ContactSequence, &[usize]),
+    approach: f64,
+) -> Slack {
+    let left = contact.order().iter().map(|&node| run.field.left_at(problem, node)[0].abs());
+    let least = f64::EPSILON * (problem.greatest_gap() + approach);
+    let gap = OF_RESIDUAL * left.fold(least, f64::max);
+    let pressures = run.field.pressures(contact, approach).map(|(_, pressure)| pressure);
+    let greatest = pressures.fold(0.0, f64::max) * problem.table().self_influence();
+    Slack { gap, tension: gap.max(TOLERANCE * greatest), excess: gap, rate: TOLERANCE }
+}
+
+/// What a pressure on nodes out of contact, and a gap of nodes in it at some positions, adds to sums over all nodes: of gaps, of plastic
+/// depths, and of these times the hardness. By reciprocity it is what right-hand sides of the same sums answer.
+fn plastic_sums<U: LinearUpdater>(
+    run: &LoadingRun,
+    plastic: &Plastic,
+    updater: &mut U,
+    (outside, positions): (&[usize], &[usize]),
+) -> Result<Vec<[f64; SUMS]>, Error> {
+    let (order, table) = (run.contact.order(), run.problem.table());
+    let row_sums = run.problem.row_sums();
+    let sums = |node: usize| -> [f64; SUMS] {
+        [row_sums[node], -plastic.unit()[node], -plastic.load()[node]]
+    };
+    let mut solved: Vec<[f64; 2]> =
+        order.iter().map(|&node| [sums(node)[0], sums(node)[1]]).collect();
+    let mut last: Vec<[f64; 2]> = order.iter().map(|&node| [sums(node)[2], 0.0]).collect();
+    updater.solve_for(&run.problem, &run.contact, &mut solved)?;
+    updater.solve_for(&run.problem, &run.contact, &mut last)?;
+    let places: Vec<usize> = outside.iter().map(|&node| table.place(node)).collect();
+    let mut answered: Vec<[f64; SUMS]> = outside.iter().map(|&node| sums(node)).collect();
+    let mut coefficients = vec![0.0; outside.len()];
+    for ((&node, [first, second]), [third, _]) in order.iter().zip(&solved).zip(&last) {
+        table.fill_column(table.place(node), &places, &mut coefficients);
+        for (sums, coefficient) in answered.iter_mut().zip(&coefficients) {
+            sums[0] -= coefficient * first;
+            sums[1] -= coefficient * second;
+            sums[2] -= coefficient * third;
+        }
+    }
+    answered.extend(
+        positions.iter().map(|&place| [solved[place][0], solved[place][1], last[place][0]]),
+    );
+    Ok(answered)
+}
+
+/// The place of each node in an order; of nodes that are not there it means nothing.
+fn places(order: &[usize], nodes: usize) -> Vec<usize> {
+    let mut places = vec![0; nodes];
+    for (place, &node) in order.iter().enumerate() {
+        places[node] = place;
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests;
