@@ -186,6 +186,28 @@ mod tests {
         Ok(())
     }
 
+    /// Node 4, the second of the two windows' nodes, left behind the second window, and node 8 came after that.
+    #[test]
+    fn nodes_leave_where_they_left() -> Result<(), Error> {
+        let mut log = log();
+        log.push_left(1);
+        log.push(&[8], std::iter::once(0), 1);
+        let order = [0, 2, 6, 8];
+        let found = replayed(&log, &order, usize::MAX)?.unwrap_or_default();
+        let blocks = replayed(&FactorLog::of_blocks(&order), &order, usize::MAX)?;
+        let expected = blocks.unwrap_or_default();
+        assert_eq!((found.len(), expected.len()), (4, 4));
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+        for changed in [[2, 0], [2, 4], [1, 0], [9, 1]] {
+            let mut other = log.clone();
+            other.left[0] = changed;
+            assert!(replayed(&other, &order, usize::MAX).is_err(), "{changed:?}");
+        }
+        Ok(())
+    }
+
     /// To the byte: the window that needs most is the second one, with two nodes in contact and three watched.
     #[test]
     fn a_factor_is_made_again_where_it_fits() -> Result<(), Error> {
