@@ -1,10 +1,10 @@
 //! How a factor grew, for making it again.
 
 use crate::contact::ContactSequence;
-use crate::updater::{JOINED, LinearUpdater, Schur, WindowFactor};
+use crate::updater::{JOINED, Left, LinearUpdater, Schur, WindowFactor};
 use crate::{Error, Problem, UpdaterError};
 
-/// The windows in which a factor grew. Made again by the same steps it has the same numbers, bit for bit; in other blocks it
+/// The windows in which a factor grew, and the nodes that left it. Made again by the same steps it has the same numbers, bit for bit; in other blocks it
 /// would round otherwise.
 ///
 /// It takes a few whole numbers for each node in contact.
@@ -16,6 +16,8 @@ pub(crate) struct FactorLog {
     pub(crate) joined: Vec<usize>,
     /// For each window how many were watched, how many of them joined, and how many of these stayed.
     pub(crate) windows: Vec<[usize; 3]>,
+    /// For each node that left how many windows came before, and its place in the order of contact.
+    pub(crate) left: Vec<[usize; 2]>,
 }
 
 /// One window of a log.
@@ -45,6 +47,18 @@ impl FactorLog {
         self.windows.push([watched.len(), joined.len(), stayed]);
         self.watched.extend_from_slice(watched);
         self.joined.extend(joined);
+    }
+
+    /// Notes a node that left from a place in the order of contact.
+    pub(super) fn push_left(&mut self, position: usize) {
+        self.left.push([self.windows.len(), position]);
+    }
+
+    /// The places from which nodes left behind so many windows.
+    fn left_behind(&self, windows: usize) -> impl Iterator<Item = usize> {
+        let first = self.left.partition_point(|[behind, _]| *behind < windows);
+        let left = self.left[first..].iter().take_while(move |[behind, _]| *behind == windows);
+        left.map(|[_, position]| *position)
     }
 
     fn windows(&self) -> impl Iterator<Item = LoggedWindow<'_>> {
@@ -81,19 +95,20 @@ impl FactorLog {
         budget: usize,
     ) -> Result<bool, Error> {
         let mut count = 0_usize;
-        for LoggedWindow { watched, stayed, .. } in self.windows() {
+        for (behind, LoggedWindow { watched, stayed, .. }) in (1..).zip(self.windows()) {
             let width = watched.len();
             let needed = updater.bytes(count.saturating_add(width), width);
             if needed.saturating_add(WindowFactor::bytes(width)) > budget {
                 return Ok(false);
             }
-            count = count.saturating_add(stayed);
+            let left = self.left_behind(behind).count();
+            count = count.saturating_add(stayed).saturating_sub(left);
         }
         let length = UpdaterError::check_length;
         length("nodes of the windows of a factor", count, contact.len())?;
         problem.check_nodes(&self.watched)?;
         let mut grown = ContactSequence::new(problem.grid());
-        for LoggedWindow { watched, joined, stayed } in self.windows() {
+        for (behind, LoggedWindow { watched, joined, stayed }) in (1..).zip(self.windows()) {
             let count = grown.len();
             if let Some(&node) = watched.iter().find(|&&node| grown.contains(node)) {
                 let (ix, iy) = problem.grid().coordinates(node);
@@ -109,6 +124,11 @@ impl FactorLog {
             if stayed < joined.len() {
                 grown.truncate(count + stayed);
                 updater.truncate(problem, &grown)?;
+            }
+            for position in self.left_behind(behind) {
+                let node = grown.order().get(position).copied().unwrap_or(usize::MAX);
+                grown.remove(node)?;
+                updater.release(problem, &grown, &[Left { node, position }])?;
             }
         }
         let pairs = grown.order().iter().zip(contact.order());
@@ -163,6 +183,28 @@ mod tests {
         let mut log = log();
         log.push(&[7, 1, 3], [1].into_iter(), 1);
         assert_eq!(log.untouched(), [7, 3]);
+        Ok(())
+    }
+
+    /// Node 4, the second of the two windows' nodes, left behind the second window, and node 8 came after that.
+    #[test]
+    fn nodes_leave_where_they_left() -> Result<(), Error> {
+        let mut log = log();
+        log.push_left(1);
+        log.push(&[8], std::iter::once(0), 1);
+        let order = [0, 2, 6, 8];
+        let found = replayed(&log, &order, usize::MAX)?.unwrap_or_default();
+        let blocks = replayed(&FactorLog::of_blocks(&order), &order, usize::MAX)?;
+        let expected = blocks.unwrap_or_default();
+        assert_eq!((found.len(), expected.len()), (4, 4));
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+        for changed in [[2, 0], [2, 4], [1, 0], [9, 1]] {
+            let mut other = log.clone();
+            other.left[0] = changed;
+            assert!(replayed(&other, &order, usize::MAX).is_err(), "{changed:?}");
+        }
         Ok(())
     }
 

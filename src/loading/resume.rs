@@ -47,8 +47,9 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         if phase.restore(run, &order, end)? {
             self.handed_over_at = Some(order.len());
         }
-        if let Procedure::Windows(windowed, _) = &mut self.procedure {
-            windowed.follow_on(FactorLog::of_blocks(&order));
+        self.procedure.follow_on(FactorLog::of_blocks(&order));
+        if let Procedure::Stepwise(stepwise, _) = &mut self.procedure {
+            stepwise.inherit(last.approach_error);
         }
         phase.renew_field(run, run.scalars.approach())?;
         run.scalars.renew_load(&run.problem, &run.contact, &run.field);

@@ -73,6 +73,17 @@ pub(super) enum Procedure {
     Yielding(Box<(Exact, RefinedYielding)>),
 }
 
+impl Procedure {
+    /// Goes on with a factor that grew so; with none if there is nothing in the log.
+    pub(super) fn follow_on(&mut self, log: FactorLog) {
+        match self {
+            Self::Windows(windowed, _) => windowed.follow_on(log),
+            Self::Stepwise(stepwise, _) => stepwise.follow_on(log),
+            Self::Yielding(_) => {}
+        }
+    }
+}
+
 impl<U: LinearUpdater> LoadingSolver<U> {
     /// Goes on to a target beyond a limit that ended the path, or would have: all limits set before are
     /// forgotten.
@@ -148,22 +159,21 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         };
         if !is_enough && phase.hand_over(run, end)? {
             self.handed_over_at = Some(run.contact.len());
-            if let Procedure::Windows(windowed, _) = &mut self.procedure {
-                // How the factor grew is of no use any more.
-                windowed.follow_on(FactorLog::default());
-            }
+            // How the factor grew is of no use any more.
+            self.procedure.follow_on(FactorLog::default());
         }
         let stop = phase.stop(run, end);
         match (&mut self.procedure, phase) {
             (Procedure::Stepwise(stepwise, refined), phase) => {
-                if let Phase::Iterations(iterations) = phase
-                    && !is_enough
-                {
+                // Whatever the limit, so that a path that goes on behind it is the same.
+                if let Phase::Iterations(iterations) = phase {
                     let attempt = refined.attempt(run, &mut **iterations)?;
                     if attempt != Attempt::NotBegun {
                         stepwise.forget();
                     }
                     if attempt == Attempt::Made {
+                        // Its end has been checked.
+                        stepwise.inherit(0.0);
                         return Ok(());
                     }
                     if !stepwise.has_begun() {

@@ -1,8 +1,9 @@
 //! One event at a time: nodes that touch and nodes that leave, for kernels of which nothing is known.
 
-use super::tuning::{LEAST_RATE, TIED_EVENTS};
+use super::tuning::{ESTIMATED, LEAST_RATE, TIED_EVENTS, TOLERANCE};
 use std::time::Instant;
 
+use super::factor_log::FactorLog;
 use super::phase::Phase;
 use super::run::LoadingRun;
 use super::state::ContactEvent;
@@ -32,6 +33,11 @@ pub(super) struct Stepwise {
     tied: usize,
     /// Whether the next event has been looked for.
     has_begun: bool,
+    /// All events of the factor so far.
+    log: FactorLog,
+    /// The error of the state that the path goes on from, if that is an estimate and no solution has been without tension and overlap
+    /// since.
+    inherited: f64,
 }
 
 impl Stepwise {
@@ -45,6 +51,34 @@ impl Stepwise {
         self.has_begun = false;
     }
 
+    /// All events of the factor so far.
+    pub(super) fn log(&self) -> &FactorLog {
+        &self.log
+    }
+
+    /// Goes on with a factor that grew so.
+    pub(super) fn follow_on(&mut self, log: FactorLog) {
+        self.log = log;
+    }
+
+    /// Goes on from a state of which the approach may be off by `error`.
+    pub(super) fn inherit(&mut self, error: f64) {
+        self.inherited = error;
+    }
+
+    /// Finds the next event, if that has not been done.
+    pub(super) fn begin<U: LinearUpdater>(
+        &mut self,
+        run: &mut LoadingRun,
+        phase: &mut Phase<U>,
+    ) -> Result<(), Error> {
+        if !self.has_begun {
+            self.survey(run, phase)?;
+            self.has_begun = true;
+        }
+        Ok(())
+    }
+
     /// Computes one state, unless there is none with at most `most_nodes` in contact.
     pub(super) fn produce<U: LinearUpdater>(
         &mut self,
@@ -52,10 +86,7 @@ impl Stepwise {
         phase: &mut Phase<U>,
         most_nodes: usize,
     ) -> Result<(), Error> {
-        if !self.has_begun {
-            self.survey(run, phase)?;
-            self.has_begun = true;
-        }
+        self.begin(run, phase)?;
         let enough = run.contact.len() >= most_nodes;
         let within = |next: &Upcoming| next.event == ContactEvent::Release || !enough;
         let Some(next) = self.upcoming.filter(within) else {
@@ -69,15 +100,22 @@ impl Stepwise {
         if next.event == ContactEvent::Touch {
             let time = next.approach - run.scalars.approach();
             phase.admit(run, &mut self.window, (next.node, time))?;
+            if let Phase::Factor { .. } = phase {
+                self.log.push(&[next.node], std::iter::once(0), 1);
+            }
         } else {
-            Self::release(run, phase, step, next.node)?;
+            let position = Self::release(run, phase, step, next.node)?;
+            if let Phase::Factor { .. } = phase {
+                self.log.push_left(position);
+            }
         }
+        let inherited = self.inherited;
         run.scalars.advance(next.approach);
         let contact_nodes = run.contact.len();
         let event = (step, next.event, next.node);
         let checked = self.survey(run, phase).and_then(|()| {
             let scalars = run.scalars;
-            let error = scalars.reported_error(next.error, 0.0);
+            let error = scalars.reported_error(next.error, 0.0).max(inherited);
             run.enqueue_at(&scalars, event, contact_nodes, error)
         });
         // The order of contact must be that of the states before; the updater stays without the node. One
@@ -100,13 +138,13 @@ impl Stepwise {
         Ok(())
     }
 
-    /// Takes a node out of the contact.
+    /// Takes a node out of the contact; returns its place there.
     fn release<U: LinearUpdater>(
         run: &mut LoadingRun,
         phase: &mut Phase<U>,
         step: usize,
         node: usize,
-    ) -> Result<(), Error> {
+    ) -> Result<usize, Error> {
         let position = run.contact.remove(node)?;
         // First, so that earlier contacts are known even if the updater panics.
         run.releases.push(step, Left { node, position });
@@ -114,7 +152,7 @@ impl Stepwise {
         if released.is_err() {
             run.take_back_release()?;
         }
-        released
+        released.map(|()| position)
     }
 
     /// Solves at the present approach, checks the conditions of contact there, and finds the next event.
@@ -127,14 +165,20 @@ impl Stepwise {
         let approach = run.scalars.approach();
         phase.renew_field(run, approach)?;
         let overlap = WindowTolerances::of(run, phase.tolerance()).overlap(approach);
-        if let Some((node, value)) = run.negative_pressure(run.contact.len(), (approach, overlap)) {
+        let length = run.problem.greatest_gap() + approach.abs();
+        let count = run.contact.len();
+        let is_pulled = |overlap| run.negative_pressure(count, (approach, overlap));
+        let allowed = if self.inherited > 0.0 { overlap.max(ESTIMATED * length) } else { overlap };
+        if let Some((node, value)) = is_pulled(allowed) {
             return Err(run.not_monotone("pressure", node, value));
         }
+        let mut is_sound = is_pulled(overlap).is_none();
         run.scalars.renew_stiffness(run.field.solution());
         let start = Instant::now();
         self.touches.clear();
         self.touches.reserve(run.problem.grid().nodes());
-        run.survey(Some(overlap), |node, line| {
+        run.survey(Some(allowed), |node, line| {
+            is_sound &= line.gap >= -overlap.max(TOLERANCE * length);
             if line.closing > LEAST_RATE {
                 self.touches.push(Upcoming {
                     approach: approach + line.gap / line.closing,
@@ -144,6 +188,9 @@ impl Stepwise {
                 });
             }
         })?;
+        if is_sound {
+            self.inherited = 0.0;
+        }
         self.upcoming = self.first_event(run, overlap);
         run.timings.choice += start.elapsed();
         Ok(())

@@ -10,7 +10,7 @@ use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use super::tuning::RECOGNISED;
 use crate::Error;
-use crate::updater::LinearUpdater;
+use crate::updater::{Left, LinearUpdater};
 
 /// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
 ///
@@ -20,7 +20,7 @@ use crate::updater::LinearUpdater;
 /// |---|---|---|
 /// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
 /// | `handed_over_at` | | when the factor was given up, which memory may have decided |
-/// | `next` | [`FactorLog`], the windows so far: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
+/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
 ///
 /// Nothing else is remembered from window to window. Timings are not kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,23 +47,28 @@ pub(crate) struct FactorEnd {
 
 impl<U: LinearUpdater> LoadingSolver<U> {
     /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, behind an error,
-    /// and for paths of which it is not known: nodes that leave or yield.
+    /// and for paths on which nodes yield, of which it is not known.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
         use LoadingEnd::{Failed, FullContact, Memory};
         let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
         if self.state.is_none() || self.failure.is_some() || is_over {
             return None;
         }
-        let Procedure::Windows(windowed, refined) = &self.procedure else {
-            return None;
+        let (log, refined, is_single) = match &self.procedure {
+            Procedure::Windows(windowed, refined) => (windowed.log(), refined, false),
+            Procedure::Stepwise(stepwise, refined) => {
+                (stepwise.log(), refined, stepwise.has_begun())
+            }
+            Procedure::Yielding(_) => return None,
         };
         let next = match &self.phase {
             Phase::Factor { .. } => {
-                let (log, scalars) = (windowed.log().clone(), self.run.scalars.numbers());
+                let (log, scalars) = (log.clone(), self.run.scalars.numbers());
                 NextWindow::Factor(Box::new(FactorEnd { log, scalars }))
             }
             Phase::Iterations(iterations) => {
-                NextWindow::Iterations(Box::new(refined.end(&self.run, &**iterations)?))
+                let end = refined.end(&self.run, &**iterations, is_single)?;
+                NextWindow::Iterations(Box::new(end))
             }
         };
         let ahead = self.run.queue.iter().copied().collect();
@@ -73,17 +78,31 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     /// Goes on at the end of a window behind the last of the states that were restored. Returns false, and nothing has changed, if
     /// this path does not go on so: with another updater or rule, or with too little memory for it.
     pub(super) fn follow_on(&mut self, end: &WindowEnd) -> Result<bool, Error> {
-        let (Some(last), Procedure::Windows(windowed, refined)) = (self.state, &mut self.procedure)
-        else {
+        let Some(last) = self.state else {
             return Ok(false);
         };
         let (run, phase) = (&mut self.run, &mut self.phase);
+        let (refined, may_leave) = match &mut self.procedure {
+            Procedure::Windows(_, refined) => (refined, false),
+            Procedure::Stepwise(_, refined) => (refined, true),
+            Procedure::Yielding(_) => return Ok(false),
+        };
         let mut contact = run.contact.clone();
+        let mut left = Vec::new();
         for (state, step) in end.ahead.iter().zip(last.step + 1..) {
-            let nodes = contact.len() + 1;
-            let is_next = state.step == step
-                && state.event == ContactEvent::Touch
-                && state.contact.contact_nodes == nodes;
+            let (ix, iy) = state.node;
+            let node = run.problem.grid().node(ix, iy).unwrap_or(usize::MAX);
+            let is_event = match state.event {
+                ContactEvent::Touch => contact.push(node).map(|()| true)?,
+                ContactEvent::Release if may_leave => {
+                    let position = contact.remove(node)?;
+                    left.push((step, Left { node, position }));
+                    true
+                }
+                _ => false,
+            };
+            let is_next =
+                is_event && state.step == step && state.contact.contact_nodes == contact.len();
             if !is_next || !state.contact.is_finite() || state.approach_error.is_nan() {
                 let number = state.step as f64;
                 return Err(not_on_path(
@@ -93,8 +112,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                     "one more than before",
                 ));
             }
-            let (ix, iy) = state.node;
-            contact.push(run.problem.grid().node(ix, iy).unwrap_or(usize::MAX))?;
         }
         let restored = match &end.next {
             NextWindow::Factor(end) => phase.restore_factor(run, &contact, &end.log)?,
@@ -107,29 +124,43 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             return Ok(false);
         }
         run.contact = contact;
-        let snapshot = Snapshot::of(run, phase, &last)?;
-        snapshot.recognise(run, phase, &last)?;
+        left.into_iter().for_each(|(step, left)| run.releases.push(step, left));
         let front = end.ahead.last().unwrap_or(&last);
-        match (&end.next, phase) {
-            (NextWindow::Factor(end), _) => {
-                windowed.follow_on(end.log.clone());
-                run.scalars.take_over(end.scalars);
-                let own = run.scalars.state(run.contact.len());
-                let pairs = [
-                    (own.approach, front.contact.approach),
-                    (own.load, front.contact.load),
-                    (own.energy, front.contact.energy),
-                ];
-                // They are those of the last state, but for a load that must not fall by rounding.
-                let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
-                if !is_front || !run.scalars.is_sound(&own) {
-                    return Err(not_on_path(front, "load", own.load, "the load of the state"));
-                }
-            }
+        // The contact of the last one is solved anew if a node has left since.
+        let known = if run.releases.is_prefix(last.step) { &last } else { front };
+        let snapshot = Snapshot::of(run, phase, known)?;
+        snapshot.recognise(run, phase, known)?;
+        let scalars = match (&end.next, &mut *phase) {
             (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
                 refined.follow_on(run, &mut **iterations, end)?;
+                end.scalars
             }
-            _ => {}
+            (NextWindow::Factor(end), _) => Some(end.scalars),
+            _ => None,
+        };
+        if let Some(scalars) = scalars {
+            run.scalars.take_over(scalars);
+            let own = run.scalars.state(run.contact.len());
+            let pairs = [
+                (own.approach, front.contact.approach),
+                (own.load, front.contact.load),
+                (own.energy, front.contact.energy),
+            ];
+            // They are those of the last state, but for a load that must not fall by rounding.
+            let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
+            if !is_front || !run.scalars.is_sound(&own) {
+                return Err(not_on_path(front, "load", own.load, "the load of the state"));
+            }
+        }
+        let log = match &end.next {
+            NextWindow::Factor(end) => end.log.clone(),
+            NextWindow::Iterations(_) => FactorLog::default(),
+        };
+        self.procedure.follow_on(log);
+        if let Procedure::Stepwise(stepwise, _) = &mut self.procedure
+            && scalars.is_some()
+        {
+            stepwise.begin(run, phase)?;
         }
         run.last = run.last.map(|_| front.contact);
         run.queue = end.ahead.iter().copied().collect();

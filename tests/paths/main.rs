@@ -27,6 +27,7 @@ mod records_on_disk;
 mod reference_paths;
 mod releases;
 mod resumed;
+mod resumed_coats;
 mod semi_periodic;
 mod small_without_factor;
 mod stiff_coats;

@@ -22,13 +22,13 @@ fn half_spaces(grid: Grid) -> [(&'static str, Box<dyn InfluenceKernel>); 3] {
     ]
 }
 
-fn whole<U: LinearUpdater>(builder: LoadingBuilder<'_, U>) -> Vec<LoadingState> {
+pub(crate) fn whole<U: LinearUpdater>(builder: LoadingBuilder<'_, U>) -> Vec<LoadingState> {
     builder.build().unwrap().map(Result::unwrap).collect()
 }
 
 /// What a record of a path holds that is written and read again.
 #[cfg(feature = "io")]
-fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
+pub(crate) fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
     use std::sync::atomic::{AtomicUsize, Ordering};
     static NEXT: AtomicUsize = AtomicUsize::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -41,15 +41,15 @@ fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
 }
 
 #[cfg(not(feature = "io"))]
-fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
+pub(crate) fn through_a_file(record: &LoadingRecord) -> LoadingRecord {
     record.clone()
 }
 
 /// What compares the states of two paths behind an interruption, from the first on.
-type Same<'a> = &'a dyn Fn(usize, &[LoadingState], &[LoadingState]);
+pub(crate) type Same<'a> = &'a dyn Fn(usize, &[LoadingState], &[LoadingState]);
 
 /// Every bit, and none is NaN.
-fn identical(at: usize, found: &[LoadingState], expected: &[LoadingState]) {
+pub(crate) fn identical(at: usize, found: &[LoadingState], expected: &[LoadingState]) {
     assert_eq!(found.len(), expected.len(), "{at}");
     for (found, expected) in found.iter().zip(expected) {
         assert!(found == expected, "{at}: {found:?} {expected:?}");
@@ -58,7 +58,7 @@ fn identical(at: usize, found: &[LoadingState], expected: &[LoadingState]) {
 
 /// Interrupts a path behind so many states, and the one that goes on from its record behind the next number of them, and so on. What
 /// follows is compared with the path that was not interrupted.
-fn interrupt<U: LinearUpdater + Clone>(
+pub(crate) fn interrupt<U: LinearUpdater + Clone>(
     builder: &LoadingBuilder<'_, U>,
     all: &[LoadingState],
     at: &[usize],
@@ -83,7 +83,7 @@ fn interrupt<U: LinearUpdater + Clone>(
 }
 
 /// Some numbers of states, in order.
-fn steps(seed: u64, count: usize, range: std::ops::Range<usize>) -> Vec<usize> {
+pub(crate) fn steps(seed: u64, count: usize, range: std::ops::Range<usize>) -> Vec<usize> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut steps: Vec<usize> = (0..count).map(|_| random.random_range(range.clone())).collect();
     steps.sort_unstable();

@@ -2,7 +2,8 @@
 //! where several nodes touch at once.
 
 use crate::without_factor::{half_spaces, states};
-use asperity::surface::{Amplitude, HeightMap, SelfAffine};
+use asperity::kernel::{Base, Layer, Layered, LayeredBody, SemiPeriodicBoussinesq};
+use asperity::surface::{Amplitude, Axis, HeightMap, SelfAffine};
 use asperity::updater::{ConjugateGradient, Handover, RecursiveCholesky};
 use asperity::{Grid, InfluenceKernel, LoadingSolver, LoadingState, Surface};
 use nalgebra::DMatrix;
@@ -75,6 +76,45 @@ fn strips_have_the_events_of_the_factor() {
     let seam = path.handed_over_at();
     assert!(seam.is_some_and(|seam| (100..700).contains(&seam)), "{seam:?}");
     assert!(found.iter().zip(&exact).all(|(a, b)| a.node == b.node));
+}
+
+/// On half-spaces that repeat along a few rows, and on layers that keep their volume, what local solutions leave out is a part of what the
+/// end of a window shows. One state in twenty was beyond its estimate, by up to eleven times.
+#[test]
+fn what_windows_leave_out_is_part_of_the_estimate() {
+    let mut problems: Vec<(String, HeightMap, Box<dyn InfluenceKernel>)> = Vec::new();
+    for (nx, ny, seed) in [(128, 4, 1), (128, 4, 3), (96, 8, 3), (96, 8, 5)] {
+        let grid = Grid::new(nx, ny, 1.0, 1.0).unwrap();
+        let kernel = SemiPeriodicBoussinesq::new(grid, 1.0, Axis::Y).unwrap();
+        problems.push((format!("{nx} {ny} {seed}"), strip(&grid, seed), Box::new(kernel)));
+    }
+    let grid = Grid::square(24, 24.0).unwrap();
+    for (thickness, seed) in [(0.8, 1), (1.5, 1), (1.5, 3)] {
+        let layer = Layer { young: 1.0, poisson: 0.5, thickness };
+        let body = LayeredBody::new(&[layer], Base::Rigid).unwrap();
+        let kernel = Layered::periodic(grid, body).unwrap();
+        problems.push((format!("{thickness} {seed}"), strip(&grid, seed), Box::new(kernel)));
+    }
+    let (mut all, mut exceeded, mut worst) = (0, 0, 0.0_f64);
+    for (name, surface, kernel) in &problems {
+        let exact = states(surface, &**kernel, RecursiveCholesky::new(), None);
+        let found = states(surface, &**kernel, ConjugateGradient::new(), None);
+        let place: HashMap<_, _> = exact.iter().map(|s| (s.node, s.contact.approach)).collect();
+        let before = exceeded;
+        for state in &found {
+            let expected = place[&state.node];
+            let error = (state.contact.approach - expected).abs();
+            // Ties are closer than 1e-9 of the approach.
+            let allowed = state.approach_error + 1e-9 * expected;
+            exceeded += usize::from(error > allowed);
+            worst = worst.max(error / allowed.max(f64::MIN_POSITIVE));
+        }
+        println!("{name}: {} of {} beyond", exceeded - before, found.len());
+        all += found.len();
+    }
+    println!("{exceeded} of {all} beyond, {worst} at worst");
+    // Estimates and no bounds.
+    assert!(500 * exceeded <= all && worst <= 2.0, "{exceeded} of {all}, {worst}");
 }
 
 /// Two by two copies of a rough tile of n × n nodes, and their grid.

@@ -224,3 +224,52 @@ fn no_window_ends_in_tension() {
         }
     }
 }
+
+/// Three nodes in a row that press the one in the middle out, slowly: with 1, 3/4 and 1/2 − 3/20000 their rates are 2/3, −4·10⁻⁴ and 2/3 of
+/// what one would have alone. No other node feels another one.
+struct Row(Grid);
+
+impl InfluenceKernel for Row {
+    fn grid(&self) -> Grid {
+        self.0
+    }
+    fn boundary(&self) -> asperity::Boundary {
+        asperity::Boundary::Free
+    }
+    fn coefficient(&self, di: isize, dj: isize) -> f64 {
+        match (di.abs(), dj) {
+            (0, 0) => 1.0,
+            (1, 0) => 0.75,
+            (2, 0) => 0.49985,
+            _ => 0.0,
+        }
+    }
+    fn contact_growth(&self) -> ContactGrowth {
+        ContactGrowth::Convex
+    }
+}
+
+/// Where more nodes touch together than can be watched, the end is looked at as that of a window is. On the way there the rate of the middle
+/// one is within what rates may be off, and its tension is not.
+#[test]
+fn no_plateau_ends_in_tension() {
+    let grid = Grid::new(32, 40, 1.0, 1.0).unwrap();
+    let heights = nalgebra::DMatrix::from_fn(32, 40, |ix, iy| match (ix, iy) {
+        (0..=2, 0) => 0.0,
+        (10.., 1..) if ix % 3 == 1 => -1.0,
+        _ => -1e3,
+    });
+    let heights = HeightMap::new(heights).unwrap();
+    let kernel = Row(grid);
+    let builder = LoadingSolver::builder(&heights, &kernel).updater(ConjugateGradient::new());
+    let mut path = builder.hardness(10.0).max_nodes(200).build().unwrap();
+    let states: Vec<_> = path.by_ref().take(3).map(Result::unwrap).collect();
+    assert_eq!(states[2].contact.approach, 0.0);
+    let error = path.next().unwrap().unwrap_err();
+    assert!(
+        matches!(error, asperity::Error::NotMonotone { quantity: "pressure", ix: 1, iy: 0, value, .. }
+            if (value + 4e-4).abs() < 1e-5),
+        "{error}"
+    );
+    assert!(path.next().is_none());
+}

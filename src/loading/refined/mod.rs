@@ -434,7 +434,11 @@ impl Refined {
         if settled.is_none() {
             self.left_out = self.left_out.max(LEFT_OUT / half as f64);
         }
-        Ok(settled.map(|settled| (correction, settled)))
+        Ok(settled.map(|mut settled| {
+            let times = settled.events.iter().map(|event| event.time);
+            correction::widen(&mut settled.errors, times, (self.left_out, time));
+            (correction, settled)
+        }))
     }
 
     /// How many events a window may have. Their times are off by what Schur complements leave out of pivots, which grows with

@@ -19,6 +19,8 @@ pub(crate) struct RefinedEnd {
     pub(crate) rate_span: f64,
     /// What windows are shortened by.
     pub(crate) left_out: f64,
+    /// Behind an event with a solution of its own, which no window ends with: the scalars, sums over all events.
+    pub(crate) scalars: Option<[f64; 6]>,
     /// The solution, and what iterations go on from besides.
     pub(crate) kept: Kept,
 }
@@ -44,21 +46,23 @@ impl RefinedEnd {
 }
 
 impl Refined {
-    /// What the next window depends on; `None` if the iterations cannot tell.
+    /// What the next window depends on, behind a window or an event with a solution of its own; `None` if the iterations cannot tell.
     pub(in crate::loading) fn end(
         &self,
         run: &LoadingRun,
         iterations: &dyn Iterations,
+        is_single: bool,
     ) -> Option<RefinedEnd> {
         // Nothing has moved since the last window ended.
         let approach = run.scalars.approach();
-        if self.ranked != Some((run.contact.revision(), approach)) {
+        if !is_single && self.ranked != Some((run.contact.revision(), approach)) {
             return None;
         }
         let kept = iterations.keep(&run.problem, &run.contact)?;
         (kept.approach == approach).then(|| RefinedEnd {
             settles: self.settles,
-            joined: self.joined.clone(),
+            joined: if is_single { Vec::new() } else { self.joined.clone() },
+            scalars: is_single.then(|| run.scalars.numbers()),
             last_span: self.last_span,
             rate_span: self.rate_span,
             left_out: self.left_out,
@@ -87,11 +91,14 @@ impl Refined {
             Error::require(quantity, span, span >= 0.0, "not negative")?;
         }
         [self.last_span, self.rate_span, self.left_out] = spans;
+        let approach = end.kept.approach;
+        if end.scalars.is_some() {
+            return run.advance_field(iterations, approach, f64::INFINITY);
+        }
         self.joined.clone_from(&end.joined);
         let order = run.contact.order().to_vec();
         run.contact = end.contact(&run.contact)?;
         let count = order.len() - end.joined.len();
-        let approach = end.kept.approach;
         run.advance_field(iterations, approach, self.rate_span)?;
         run.scalars.place_at(approach);
         self.survey(run)?;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{Course, Window};
 use crate::loading::run::LoadingRun;
-use crate::loading::tuning::LEAST_DETERMINANT;
+use crate::loading::tuning::{CERTAIN, LEAST_DETERMINANT, OF_LEFT_OUT};
 use crate::updater::Schur;
 
 /// The gap line of a watched node by the solution at a window's end, and its error.
@@ -51,6 +51,22 @@ impl Correction {
         let size = self.window.nodes().len();
         let left = |i| self.window.schur().entry(i, i) / self.by_courses.schur().entry(i, i);
         (0..size).fold(0.0, |most, i| f64::max((1.0 - left(i)).abs(), most))
+    }
+}
+
+/// What the `times` of events in a window that ends after `span` may be off by besides their `errors`, if Schur complements leave out a part
+/// of a pivot. Both ends are solutions; in between the correction, of rank two, does not see all of what is left out.
+pub(in crate::loading) fn widen(
+    errors: &mut [f64],
+    times: impl Iterator<Item = f64>,
+    (left_out, span): (f64, f64),
+) {
+    if errors.len() < CERTAIN {
+        return;
+    }
+    for (error, time) in errors.iter_mut().zip(times) {
+        let way = (time / span).clamp(0.0, 1.0);
+        *error += OF_LEFT_OUT * left_out * span * 4.0 * way * (1.0 - way);
     }
 }
 
@@ -286,6 +302,21 @@ mod tests {
             assert_eq!(inverse_of(a, 0.5, c), None, "{a} {c}");
             assert_eq!(inverse_of(a, 0.0, c), None, "{a} {c}");
         }
+    }
+
+    /// A fifth of a tenth of the span of 2 in the middle, three quarters of that at a quarter of the way, and nothing at the ends.
+    #[test]
+    fn times_are_most_uncertain_between_the_ends() {
+        let times = [0.0, 0.5, 1.0, 2.0, 2.1];
+        let mut errors = [1.0; 5];
+        widen(&mut errors, times.into_iter(), (0.1, 2.0));
+        for (found, expected) in errors.into_iter().zip([1.0, 1.03, 1.04, 1.0, 1.0]) {
+            assert!((found - expected).abs() < 1e-15, "{found}");
+        }
+        // The end determines a single one.
+        let mut errors = [1.0];
+        widen(&mut errors, times.into_iter().skip(1), (0.1, 2.0));
+        assert_eq!(errors, [1.0]);
     }
 
     /// The pivots of nodes alone are 4, 4 and 17/4, of which the error is 1, 1 and 5/4.

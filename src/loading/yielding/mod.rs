@@ -494,6 +494,10 @@ impl RefinedYielding {
             let at = [approach, self.rate_span];
             run.field.advance(&trial.problem, &trial.contact, iterations, at)?;
         }
+        if let Some((node, pressure)) = pulled(run, &trial, tolerances, approach) {
+            iterations.cut(&run.problem, &run.contact)?;
+            return Err(run.not_monotone("pressure", node, pressure));
+        }
         self.last_span = self.last_span.max(time);
         let before = Carried::of(run);
         let passed = Passed { start: run.scalars, before, span: time };
@@ -523,6 +527,19 @@ fn slacks(
     };
     let solved = tolerances.tolerance * tolerances.length.max(approach);
     [of(left, solved), of(left, tolerances.overlap(approach))]
+}
+
+/// The first node in contact that is pulled at an approach by more than a solution may leave, and its pressure.
+fn pulled(
+    run: &LoadingRun,
+    trial: &Trial,
+    tolerances: &WindowTolerances,
+    approach: f64,
+) -> Option<(usize, f64)> {
+    let Trial { contact, problem, .. } = trial;
+    let [_, slack] = slacks(run, (problem, contact), tolerances, approach);
+    let tension = slack.tension / problem.table().self_influence();
+    run.field.pressures(contact, approach).find(|(_, pressure)| *pressure < -tension)
 }
 
 /// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what

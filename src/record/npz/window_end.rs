@@ -19,6 +19,9 @@ const WHOLE: usize = 5;
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Numbers {
     handed_over_at: Option<usize>,
+    /// With a factor: the nodes that have left it.
+    #[serde(default)]
+    left: usize,
     /// Without a factor.
     iterations: Option<IterationNumbers>,
 }
@@ -26,6 +29,9 @@ pub(super) struct Numbers {
 #[derive(Debug, Serialize, Deserialize)]
 struct IterationNumbers {
     settles: bool,
+    /// Whether the path is behind a single event.
+    #[serde(default)]
+    is_single: bool,
     proposed_beside: usize,
     sums_of: usize,
     directions: usize,
@@ -34,17 +40,22 @@ struct IterationNumbers {
 
 impl Numbers {
     pub(super) fn of(end: &WindowEnd) -> Self {
+        let left = match &end.next {
+            NextWindow::Factor(end) => end.log.left.len(),
+            NextWindow::Iterations(_) => 0,
+        };
         let iterations = match &end.next {
             NextWindow::Factor(_) => None,
             NextWindow::Iterations(end) => Some(IterationNumbers {
                 settles: end.settles,
+                is_single: end.scalars.is_some(),
                 proposed_beside: end.kept.proposed_beside,
                 sums_of: end.kept.sums_of,
                 directions: end.kept.directions.len(),
                 marks: end.kept.marks,
             }),
         };
-        Self { handed_over_at: end.handed_over_at, iterations }
+        Self { handed_over_at: end.handed_over_at, left, iterations }
     }
 }
 
@@ -71,6 +82,9 @@ pub(super) fn write(
             nodes("window_watched", &log.watched)?;
             nodes("window_places", &log.joined)?;
             nodes("window_sizes", log.windows.as_flattened())?;
+            if !log.left.is_empty() {
+                nodes("window_left", log.left.as_flattened())?;
+            }
             return archive.numbers("window_scalars", scalars.len(), scalars.iter().copied());
         }
         NextWindow::Iterations(end) => end,
@@ -79,6 +93,9 @@ pub(super) fn write(
     nodes("window_joined", &end.joined)?;
     nodes("window_proposed", &kept.proposed)?;
     nodes("window_coarse", &kept.coarse)?;
+    if let Some(scalars) = &end.scalars {
+        archive.numbers("window_scalars", scalars.len(), scalars.iter().copied())?;
+    }
     let numbers = [
         end.last_span,
         end.rate_span,
@@ -138,15 +155,26 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         Ok(vector(name)?.into_iter().map(whole).collect())
     };
     let handed_over_at = numbers.handed_over_at;
+    let scalars = || -> Result<[f64; 6], Error> {
+        let mut scalars = [0.0; 6];
+        scalars.copy_from_slice(&archive.vector("window_scalars", Some(6))?);
+        Ok(scalars)
+    };
     let Some(iterations) = numbers.iterations else {
+        let left = match numbers.left {
+            0 => Vec::new(),
+            count => {
+                let left = archive.vector("window_left", count.checked_mul(2))?;
+                left.into_iter().map(whole).collect()
+            }
+        };
         let log = FactorLog {
             watched: nodes("window_watched")?,
             joined: nodes("window_places")?,
             windows: nodes("window_sizes")?.as_chunks().0.to_vec(),
+            left: left.as_chunks().0.to_vec(),
         };
-        let mut scalars = [0.0; 6];
-        scalars.copy_from_slice(&archive.vector("window_scalars", Some(6))?);
-        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars }));
+        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars: scalars()? }));
         return Ok(WindowEnd { ahead, handed_over_at, next });
     };
     let values = archive.vector("window_numbers", Some(9))?;
@@ -182,6 +210,7 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         last_span: values[0],
         rate_span: values[1],
         left_out: values[2],
+        scalars: if iterations.is_single { Some(scalars()?) } else { None },
         kept,
     }));
     Ok(WindowEnd { ahead, handed_over_at, next })
