@@ -66,7 +66,7 @@ impl Increments {
         self.path.as_ref().and_then(|path| path.bind(py).get().modulus())
     }
 
-    /// Both bodies of the path, if its record knows them.
+    /// Both bodies of the path, if it knows them.
     pub(crate) fn bodies(&self, py: Python<'_>) -> Option<(Body, Body)> {
         let known = self.path.as_ref()?.bind(py).get().elastic_bodies(py);
         let (first, rest) = known.split_first()?;
