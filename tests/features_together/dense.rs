@@ -66,6 +66,7 @@ impl Dense {
         let pressure = DVector::from_column_slice(pressure);
         let mut u = &self.matrix * &pressure;
         let nodes = u.len() as f64;
+        let greatest = u.amax();
         if self.about_mean {
             u.add_scalar_mut(-u.mean());
         }
@@ -74,7 +75,7 @@ impl Dense {
         let elastic: Vec<usize> = (0..u.len()).filter(|&node| is_elastic(node)).collect();
         let mean = elastic.iter().map(|&node| total[node]).sum::<f64>() / elastic.len() as f64;
         let level = if elastic.is_empty() { approach } else { mean };
-        let scale = tolerance * (u.amax() + level.abs());
+        let scale = tolerance * (greatest + level.abs());
         let (mut gap, mut depth) = (DVector::zeros(u.len()), DVector::zeros(u.len()));
         for node in 0..u.len() {
             let (p, most, open) = (pressure[node], self.hardness[node], total[node] - level);
