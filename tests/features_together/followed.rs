@@ -1,18 +1,18 @@
 //! What follows from a path: patches, leaks, slip, creep, conductances and tables.
 
 use asperity::bed::Bed;
-use asperity::creep::{Corners, Creep, Prony};
+use asperity::creep::{Corners, Creep, Prony, Relaxation};
 use asperity::joint::{Conduction, InterfaceRow, InterfaceTable};
 use asperity::kernel::Theory;
 use asperity::leak::Seal;
 use asperity::patches::{Connectivity, PatchHistory, Patches, Percolation, contact_sequence};
 use asperity::slip::{Friction, PartialSlip, SlipZone};
 use asperity::surface::Axis;
-use asperity::{ContactEvent, Error, Grid, JointError, LoadingState};
+use asperity::{ContactEvent, Error, Grid, JointError, LoadingSolver, LoadingState};
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::{Dense, near};
-use super::rows::{E_STAR, Pressed};
+use super::rows::{Any, E_STAR, Pressed, Row};
 
 /// Neighbours of a node through the sides of its cell, and around borders that repeat; not around that between the ends of `cut`.
 fn neighbours(
@@ -347,6 +347,35 @@ pub(super) fn creep(pressed: &mut Pressed<'_>) -> Result<(), Error> {
                 let modulus = if time == 0.0 { 1.0 } else { left };
                 near(*p, modulus * elastic[node], tolerance * scale, &context);
             }
+        }
+    }
+    relaxation(pressed.row, &mut pressed.path, &bed, &prony)
+}
+
+/// An approach that is held: the contact is the elastic one there, and its pressure relaxes with the modulus.
+fn relaxation(
+    row: &Row,
+    path: &mut LoadingSolver<Any>,
+    bed: &Bed<'_>,
+    prony: &Prony,
+) -> Result<(), Error> {
+    let name = row.name;
+    let load = 0.6 * bed.last_load();
+    let there = bed.path_state(load)?;
+    let held = Relaxation::new(bed, prony, &Corners::step(there.contact.approach)?)?;
+    let elastic = path.pressure_at(&there)?;
+    let tolerance = row.tolerance();
+    Dense::of(row).scalars(elastic.as_slice(), there.contact.approach, tolerance, name);
+    for time in [0.0, 0.7, 5.0, 1e9] {
+        let modulus = 1.0 - SHARE + SHARE * f64::exp(-time / TIME);
+        near(held.at(time)?.load, modulus * load, tolerance * load, name);
+        let pressure = held.pressure(time, 10_000)?.pressure(bed, path)?;
+        for (found, elastic_pressure) in pressure.iter().zip(&elastic) {
+            near(*found, modulus * elastic_pressure, tolerance * elastic.max(), name);
+        }
+        let gap = held.gap(time, path)?;
+        for (found, elastic_gap) in gap.iter().zip(&path.gap_at(&there)?) {
+            near(*found, *elastic_gap, tolerance * there.contact.approach, name);
         }
     }
     Ok(())

@@ -15,7 +15,9 @@ mod solved;
 use std::path::Path;
 
 use asperity::kernel::Layering;
-use asperity::{BedError, Boundary, ContactEvent, Error};
+use asperity::{
+    BedError, Boundary, ContactEvent, Error, FixedLoadSolver, KernelError, LoadingSolver,
+};
 use asperity_testing::page::tables;
 
 use rows::{Pressed, Row};
@@ -138,6 +140,33 @@ fn conductance() {
 #[test]
 fn fe_table() {
     column("FE table");
+}
+
+/// A hardness asks for contact that is known to grow: the one pair of rows that there is not.
+#[test]
+fn a_hardness_on_a_stiff_layer_is_refused() {
+    let row = rows::all().iter().find(|row| row.name == "stiff layer").unwrap();
+    let path = LoadingSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
+    let single = FixedLoadSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
+    for refused in [path.err(), single.err()] {
+        assert!(
+            matches!(refused, Some(Error::Kernel(KernelError::GrowthUnknown { .. }))),
+            "{refused:?}"
+        );
+    }
+    assert!(page().contains("GrowthUnknown"));
+}
+
+/// What a path on a stiff layer has before its first release.
+#[test]
+fn patches_are_followed_up_to_the_first_release() {
+    let row = rows::all().iter().find(|row| row.name == "stiff layer").unwrap();
+    let Pressed { history, .. } = row.press();
+    let mut states = history.states().iter();
+    let before = states.position(|state| state.event == ContactEvent::Release).unwrap();
+    assert!(before > 10, "{before}");
+    let (path, history) = row.follow(before);
+    followed::patches(&mut Pressed { row, path, history }).unwrap();
 }
 
 /// A row has what its name says, so that its entries test it.
