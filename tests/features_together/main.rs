@@ -149,10 +149,7 @@ fn a_hardness_on_a_stiff_layer_is_refused() {
     let path = LoadingSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
     let single = FixedLoadSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
     for refused in [path.err(), single.err()] {
-        assert!(
-            matches!(refused, Some(Error::Kernel(KernelError::GrowthUnknown { .. }))),
-            "{refused:?}"
-        );
+        assert!(matches!(refused, Some(Error::Kernel(KernelError::GrowthUnknown))), "{refused:?}");
     }
     assert!(page().contains("GrowthUnknown"));
 }
