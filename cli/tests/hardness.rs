@@ -189,3 +189,26 @@ fn single_loads_have_a_hardness_too() -> Done {
     }
     Ok(())
 }
+
+/// Surfaces of which all is in contact before the load is that of the path: unloading begins at the last state all the same.
+#[test]
+fn unloading_begins_at_the_last_state() -> Done {
+    let folder = Scratch::new("hardness_unloading_from_full_contact")?;
+    for line in [
+        "--mean-pressure 4e8 --hardness 5e8",
+        "--periodic love --mean-pressure 4.999e8 --hardness 5e8",
+        "--mean-pressure 4.9999e8 --hardness 5e8",
+    ] {
+        finished(&folder.0, &format!("path --nodes 16 {line} --unload"))?;
+        let [path, back] = ["path.csv", "unloading.csv"].map(|name| folder.join("out").join(name));
+        for name in ["load", "approach", "contact_area"] {
+            let (path, back) = (numbers(&path, name)?, numbers(&back, name)?);
+            let (path, back) = (path[path.len() - 1], back[0]);
+            // Two solutions of a condition number of 10³.
+            assert!((back / path - 1.0).abs() < 1e-10, "{line}, {name}: {back} {path}");
+        }
+        let load = numbers(&back, "load")?;
+        assert!(load.windows(2).all(|pair| pair[0] >= pair[1]), "{line}");
+    }
+    Ok(())
+}

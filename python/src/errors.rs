@@ -314,8 +314,8 @@ fn of_bed(error: &BedError) -> Described {
         BedError::NotFromFirstTouch { load, approach } => {
             (VALUE, "NotFromFirstTouch", numbers![load, approach])
         }
-        BedError::NotElasticGrowth { event, ix, iy, happens } => {
-            (VALUE, "NotElasticGrowth", numbers![event, ix, iy, happens])
+        BedError::NotElasticGrowth { event, ix, iy, happens, instead } => {
+            (VALUE, "NotElasticGrowth", numbers![event, ix, iy, happens, instead])
         }
         BedError::NotMonotone { step, quantity, value, before, expected } => {
             (VALUE, "PathNotMonotone", numbers![step, quantity, value, before, expected])

@@ -52,6 +52,8 @@ use crate::surface::Surface;
 pub(crate) struct HalfSpace {
     body: Body,
     e_star: Option<f64>,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body of a half-space, if they are known.
+    bodies: Vec<(f64, f64)>,
 }
 
 /// What answers.
@@ -116,12 +118,16 @@ const GROWTHS: [(&str, ContactGrowth); 3] = [
 ];
 
 impl HalfSpace {
+    fn of(body: Body, e_star: Option<f64>) -> Self {
+        Self { body, e_star, bodies: Vec::new() }
+    }
+
     /// A half-space of the engine.
     pub(crate) fn of_origin(origin: &kernel::KernelOrigin) -> Option<Self> {
         use kernel::KernelOrigin as Origin;
         let layered = |body: &LayeredBody, around| {
             let e_star = Some(body.surface_modulus());
-            Some(Self { body: Body::Layers { body: body.clone(), around }, e_star })
+            Some(Self::of(Body::Layers { body: body.clone(), around }, e_star))
         };
         let (surroundings, e_star) = match origin {
             Origin::Layered { body } => return layered(body, Around::Free),
@@ -136,7 +142,7 @@ impl HalfSpace {
             }
             _ => return None,
         };
-        Some(Self { body: Body::HalfSpace(surroundings), e_star: Some(e_star) })
+        Some(Self::of(Body::HalfSpace(surroundings), Some(e_star)))
     }
 
     /// The influence coefficients on a grid.
@@ -199,6 +205,11 @@ impl HalfSpace {
         self.e_star
     }
 
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known.
+    pub(crate) fn elastic_bodies(&self) -> &[(f64, f64)] {
+        &self.bodies
+    }
+
     /// What looks wrong with the modulus.
     pub(crate) fn warnings(&self) -> Option<Warning> {
         self.e_star.and_then(Warning::of_modulus)
@@ -214,7 +225,37 @@ impl HalfSpace {
             return Err(Error::NotPositive { quantity: "composite modulus", value: e_star }.into());
         }
         let surroundings = choose("boundary", boundary, &SURROUNDINGS)?;
-        Ok(Self { body: Body::HalfSpace(surroundings), e_star: Some(e_star) })
+        Ok(Self::of(Body::HalfSpace(surroundings), Some(e_star)))
+    }
+
+    /// Two bodies, of which a path and its record know more than E*: `shear` and `interface_table` then take their ratio of compliances.
+    ///
+    /// Parameters
+    /// ----------
+    /// bodies : (body, body)
+    ///     Each (E [Pa], nu), the name of one of `materials`, or ``"rigid"`` for the second.
+    /// boundary : {"free", "love", "spectral", "x", "y"}
+    ///     As of `HalfSpace`.
+    ///
+    /// Returns
+    /// -------
+    /// HalfSpace
+    ///
+    /// Examples
+    /// --------
+    /// >>> import asperity as asp
+    /// >>> asp.HalfSpace.of_bodies(("steel", (70e9, 0.33)), boundary="free").bodies
+    /// [(210000000000.0, 0.3), (70000000000.0, 0.33)]
+    #[staticmethod]
+    #[pyo3(signature = (bodies, boundary))]
+    fn of_bodies(bodies: (materials::Body, materials::Body), boundary: &str) -> Fallible<Self> {
+        let made = Self::new(materials::modulus(&bodies)?, boundary)?;
+        let (first, second) = &bodies;
+        let mut known = vec![first.numbers()?];
+        if !second.is("rigid") {
+            known.push(second.numbers()?);
+        }
+        Ok(Self { bodies: known, ..made })
     }
 
     /// A coated, thin or graded body: elastic layers, bonded to each other and to a base.
@@ -274,7 +315,7 @@ impl HalfSpace {
             body = body.against(asperity::plane_strain_modulus(young, poisson)?)?;
         }
         let e_star = Some(body.surface_modulus());
-        Ok(Self { body: Body::Layers { body, around }, e_star })
+        Ok(Self::of(Body::Layers { body, around }, e_star))
     }
 
     /// A periodic body from its symbol: anisotropic bodies, foundations, laws of your own.
@@ -306,7 +347,7 @@ impl HalfSpace {
         let mean = choose("mean_displacement", mean_displacement, &MEANS)?;
         let growth = choose("growth", growth, &GROWTHS)?;
         let symbol = callable(symbol, "symbol")?;
-        Ok(Self { body: Body::Symbol { symbol, mean, growth }, e_star })
+        Ok(Self::of(Body::Symbol { symbol, mean, growth }, e_star))
     }
 
     /// A body from its influence coefficients.
@@ -343,7 +384,13 @@ impl HalfSpace {
             growth: choose("growth", growth, &GROWTHS)?,
             function: callable(coefficients, "coefficients")?,
         });
-        Ok(Self { body, e_star })
+        Ok(Self::of(body, e_star))
+    }
+
+    /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if they are known: of one if the other is rigid.
+    #[getter]
+    fn bodies(&self) -> Vec<(f64, f64)> {
+        self.bodies.clone()
     }
 
     /// Composite modulus [Pa]; None if it was not given.
@@ -442,7 +489,8 @@ impl HalfSpace {
             ),
             _ => (None, ["", "", ""]),
         };
-        let state = (this.boundary(), this.e_star, function, words.map(str::to_string));
+        let words = words.map(str::to_string);
+        let state = (this.boundary(), this.e_star, function, words, this.bodies.clone());
         Ok((restore, state).into_pyobject(py)?)
     }
 
@@ -484,6 +532,7 @@ fn _restore_half_space(
     e_star: Option<f64>,
     function: Option<Bound<'_, PyAny>>,
     words: [String; 3],
+    bodies: Vec<(f64, f64)>,
 ) -> Fallible<HalfSpace> {
     let [surroundings, mean, growth] = &words;
     match (boundary, function) {
@@ -491,7 +540,7 @@ fn _restore_half_space(
         ("coefficients", Some(function)) => {
             HalfSpace::from_coefficients(function, surroundings, mean, growth, e_star)
         }
-        _ => HalfSpace::new(e_star.unwrap_or(f64::NAN), boundary),
+        _ => Ok(HalfSpace { bodies, ..HalfSpace::new(e_star.unwrap_or(f64::NAN), boundary)? }),
     }
 }
 
@@ -502,7 +551,7 @@ fn _restore_layers(data: &str, boundary: &str) -> Fallible<HalfSpace> {
         serde_json::from_str(data).map_err(|error| Failure::arguments(error.to_string()))?;
     let around = choose("boundary", boundary, &AROUND)?;
     let e_star = Some(body.surface_modulus());
-    Ok(HalfSpace { body: Body::Layers { body, around }, e_star })
+    Ok(HalfSpace::of(Body::Layers { body, around }, e_star))
 }
 
 /// Test what a body promises, for those who bring their own.

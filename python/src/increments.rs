@@ -57,6 +57,10 @@ impl Increments {
                 let history: loading::History = states.into_iter().collect();
                 Ok(Arc::new(history.on(self.history.layering())))
             }
+            None if self.history.states().iter().any(lacks_stiffness) => Err(Failure::arguments(
+                "nodes have yielded, and the stiffness on unloading, of all nodes in contact, needs the path: a History has the states of \
+                 it alone",
+            )),
             _ => Ok(Arc::clone(&self.history)),
         }
     }
@@ -66,7 +70,7 @@ impl Increments {
         self.path.as_ref().and_then(|path| path.bind(py).get().modulus())
     }
 
-    /// Both bodies of the path, if its record knows them.
+    /// Both bodies of the path, if it knows them.
     pub(crate) fn bodies(&self, py: Python<'_>) -> Option<(Body, Body)> {
         let known = self.path.as_ref()?.bind(py).get().elastic_bodies(py);
         let (first, rest) = known.split_first()?;
@@ -88,4 +92,10 @@ impl Increments {
         let bed = self.bed()?;
         path.bind(py).get().computed(py, |engine| compute(engine, &bed))
     }
+}
+
+/// Whether nodes have yielded at a state without the stiffness of all that are in contact.
+fn lacks_stiffness(state: &LoadingState) -> bool {
+    let plastic = state.contact.plastic.as_ref();
+    plastic.is_some_and(|p| p.yielded_nodes > 0 && p.interfacial_unloading_stiffness.is_none())
 }

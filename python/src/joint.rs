@@ -142,7 +142,7 @@ pub(crate) struct InterfaceTable {
 /// friction : float, optional
 ///     Coefficient of friction, for tangential stiffness and slip limit; with bodies or their ratio of compliances.
 /// bodies : (body, body), optional
-///     Both bodies, as of `shear`: they have the ratio of compliances; those of the record of the path if it knows them.
+///     Both bodies, as of `shear`: they have the ratio of compliances; those of the path if it knows them.
 /// compliance_ratio : float, optional
 ///     In place of bodies: tangential over normal compliance, E*/G*.
 /// tolerance : float

@@ -42,7 +42,7 @@ pub(crate) struct PartialSlip {
 /// load : float, optional
 ///     Load that presses the joint [N]; that of the last state unless it is given.
 /// bodies : (body, body), optional
-///     Both bodies, each (E [Pa], nu), the name of one of `materials`, or ``"rigid"`` for the second; those of the record of the path
+///     Both bodies, each (E [Pa], nu), the name of one of `materials`, or ``"rigid"`` for the second; those of the path
 ///     if it knows them.
 /// compliance_ratio : float, optional
 ///     In place of bodies: tangential over normal compliance E*/G*, (2 - nu) / (2 (1 - nu)) of one material.
@@ -80,7 +80,7 @@ fn shear(
         (None, Some(ratio)) => Friction::new(friction, ratio)?,
         _ => {
             return Err(Failure::arguments(
-                "give one of bodies and compliance_ratio, unless the record of the path knows its bodies",
+                "give one of bodies and compliance_ratio, unless the path knows its bodies",
             ));
         }
     };

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -134,6 +135,62 @@ def test_the_joints_of_the_program(periodic: bool, program: Callable[..., str], 
         assert made.text(kind) == (tmp_path / kind / file).read_text(encoding="utf-8"), kind  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("against", ["rigid", "glass", (3e9, 0.45)])
+def test_paths_that_know_their_bodies(against: str | tuple[float, float], program: Callable[..., str], tmp_path: Path) -> None:
+    """A path of bodies, its record and that of the program have the same, and what is tangential takes them."""
+    bodies = ("steel", against)
+    half_space = asp.HalfSpace.of_bodies(bodies, boundary="free")  # type: ignore[arg-type]
+    numbers = [(210e9, 0.3), *([] if against == "rigid" else [(70e9, 0.22) if against == "glass" else against])]
+    assert half_space.bodies == numbers
+    assert pickle.loads(pickle.dumps(half_space)).bodies == numbers
+    path = asp.load_path(asp.example_surface(nodes=32), half_space, area_fraction=0.2, check=False)
+    path.run(check=False)
+    path.save(tmp_path / "python.npz")
+    name = against if isinstance(against, str) else ",".join(map(repr, against))
+    other = [] if against == "rigid" else ["--against", name]
+    options = ["--nodes", 32, "--material", "steel", *other, "--max-area-fraction", 0.2]
+    fe = ["--fe-table", "csv", "--friction", 0.25]
+    program("path", *options, *fe, "--record", tmp_path / "program.npz", "--out", tmp_path / "out")
+    told = (tmp_path / "out" / "interface.csv").read_text(encoding="utf-8")
+    # kappa = E*/G*, 1/G* = sum (2 - nu) / (4 G), G = E / (2 (1 + nu)).
+    compliance = sum((2.0 - nu) * (1.0 + nu) / (2.0 * e) for e, nu in numbers)
+    ratio = half_space.e_star * compliance
+    for known in (path, asp.open(tmp_path / "python.npz"), asp.open(tmp_path / "program.npz")):
+        assert known.bodies == numbers and known.e_star == half_space.e_star
+        joint = asp.shear(known, friction=0.25, check=False)
+        assert joint.compliance_ratio == pytest.approx(ratio, rel=1e-14)
+        given = asp.shear(known, friction=0.25, bodies=bodies, check=False)  # type: ignore[arg-type]
+        assert joint.monotone(0.5 * joint.sliding_load) == given.monotone(0.5 * joint.sliding_load)
+        assert asp.interface_table(known, friction=0.25).text("csv") == told
+        # Others may be given in their place.
+        assert asp.shear(known, friction=0.25, compliance_ratio=1.5).compliance_ratio == 1.5
+        assert asp.interface_table(known, friction=0.25, compliance_ratio=1.5).text("csv") != told
+        with pytest.warns(errors.AsperityWarning, match="these bodies have"):
+            asp.shear(known, friction=0.25, bodies=("copper", "copper"))
+        # A history knows its states alone.
+        with pytest.raises(errors.AsperityError, match="bodies"):
+            asp.shear(known.history, friction=0.25)
+        with pytest.raises(ValueError, match="together"):
+            asp.interface_table(known.history, friction=0.25)
+    # A record of Python tells the program.
+    program("slip", tmp_path / "python.npz", "--friction", 0.25, "--out", tmp_path / "slip")
+    on = asp.open(tmp_path / "python.npz")
+    on.continue_to(area_fraction=0.3)
+    on.run(check=False)
+    on.save(tmp_path / "python.npz")
+    assert asp.open(tmp_path / "python.npz").bodies == numbers
+
+
+def test_bodies_that_are_none() -> None:
+    assert asp.HalfSpace(1e9, boundary="free").bodies == []
+    assert asp.HalfSpace.layered([("gold", 1e-6)], "steel", "free").bodies == []
+    for bodies in (("rigid", "steel"), ("unobtainium", "rigid"), ((-1.0, 0.3), "rigid"), ((1e9, 0.6), "rigid"), ("steel",), "steel"):
+        with pytest.raises((errors.AsperityError, TypeError, ValueError)):
+            asp.HalfSpace.of_bodies(bodies, boundary="free")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="boundary"):
+        asp.HalfSpace.of_bodies(("steel", "rigid"), boundary="periodic")  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("periodic", [False, True])
 def test_joints_that_yield(periodic: bool, program: Callable[..., str], tmp_path: Path) -> None:
     """All nodes in contact conduct, as where unloading begins; the same numbers as in the files of the program, bit for bit."""
@@ -159,7 +216,7 @@ def test_joints_that_yield(periodic: bool, program: Callable[..., str], tmp_path
     whole = asp.conductance(path, 0.04, interface=True) / np.prod(path.size)
     assert columns["thermal_conductance"][-1] == pytest.approx(whole[-1], rel=1e-12)
     # A history has no influence matrix to take it from.
-    with pytest.raises(errors.AsperityError, match="add_unloading_stiffness"):
+    with pytest.raises(errors.AsperityError, match="needs the path"):
         asp.conductance(history, 0.04, e_star=e_star)
     with pytest.raises(errors.AsperityError, match="residual"):
         asp.conductance_bounds(path, 0.04, 1e-8)

@@ -342,13 +342,18 @@ fn stiffness(state: &LoadingState) -> Result<f64, Error> {
 }
 
 fn check_event(state: &LoadingState) -> Result<(), Error> {
-    let happens = match state.event {
+    let (happens, instead) = match state.event {
         ContactEvent::Touch | ContactEvent::Limit => return Ok(()),
-        ContactEvent::Release => "leaves the contact",
-        ContactEvent::Yield => "yields",
+        ContactEvent::Release => {
+            ("leaves the contact", "A path that ends before this event has them")
+        }
+        ContactEvent::Yield => (
+            "yields",
+            "Unload, and follow the elastic path of the residual surface: up to the load before unloading it is that of this contact",
+        ),
     };
     let (ix, iy) = state.node;
-    Err(BedError::NotElasticGrowth { event: state.step, ix, iy, happens }.into())
+    Err(BedError::NotElasticGrowth { event: state.step, ix, iy, happens, instead }.into())
 }
 
 fn check_growth(before: &LoadingState, state: &LoadingState) -> Result<(), Error> {

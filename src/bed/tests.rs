@@ -161,7 +161,7 @@ fn what_is_no_bed_is_refused() -> Result<(), Error> {
         states[2].event = event;
         let error = refused(&states);
         assert!(
-            matches!(&error, Some(BedError::NotElasticGrowth { event: 3, ix: 2, iy: 0, happens }) if happens.contains(word)),
+            matches!(&error, Some(BedError::NotElasticGrowth { event: 3, ix: 2, iy: 0, happens, .. }) if happens.contains(word)),
             "{error:?}"
         );
     }

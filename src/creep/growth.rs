@@ -60,7 +60,7 @@ impl Kernel {
     /// nearly equal ones.
     fn over(&self, rate: &ExponentialSum, (from, to): (f64, f64), left: f64) -> f64 {
         let length = to - from;
-        let mean = |z: f64| Weights::of(z).mean();
+        let mean = |z: f64| Weights::of(z).mean;
         let constant = rate.constant + rate.linear * from;
         let decaying = |(c, time): &(f64, f64)| (c * (-from / time).exp(), *time);
         let terms = || rate.terms.iter().map(decaying);
@@ -74,7 +74,7 @@ impl Kernel {
                 let difference = (length / time - length / term.time).abs();
                 c * (-length / slower).exp() * mean(difference)
             });
-            let sum = constant * w.mean() + rate.linear * term.time * w.now + mixed.sum::<f64>();
+            let sum = constant * w.mean + rate.linear * term.time * w.now + mixed.sum::<f64>();
             term.amount * (-left / term.time).exp() * sum
         };
         length * (self.constant * plain + self.terms.iter().map(own).sum::<f64>())

@@ -70,7 +70,7 @@ impl Hereditary {
                 let (strain, lag) = if duration > 0.0 {
                     let w = Weights::of(duration / term.time);
                     let strain = w.keep * strain + w.old * old + w.now * new;
-                    (strain, w.keep * lag + w.mean() * change)
+                    (strain, w.keep * lag + w.mean * change)
                 } else {
                     (strain, lag + change)
                 };
@@ -146,7 +146,7 @@ impl Hereditary {
         for (m, term) in self.terms.iter().enumerate() {
             let w = Weights::of(since / term.time);
             value += term.amount * (w.keep * self.strains[at + m] + w.old * old + w.now * new);
-            let lag = w.keep * self.lags[at + m] + w.mean() * (new - old);
+            let lag = w.keep * self.lags[at + m] + w.mean * (new - old);
             rate += term.amount / term.time * lag;
         }
         if self.fluidity > 0.0 {
@@ -165,7 +165,7 @@ impl Hereditary {
         let at = place.corner * self.terms.len();
         let terms = self.terms.iter().zip(&self.lags[at..]).map(|(term, lag)| {
             let w = Weights::of(place.since / term.time);
-            term.amount * (w.keep * lag + w.mean() * (new - old))
+            term.amount * (w.keep * lag + w.mean * (new - old))
         });
         self.instantaneous * new + terms.sum::<f64>()
     }

@@ -9,6 +9,8 @@ pub(super) struct Weights {
     pub(super) old: f64,
     /// `1 − (1 − e⁻ᶻ)/z`.
     pub(super) now: f64,
+    /// `(1 − e⁻ᶻ)/z`: the mean of `e⁻ˣ` up to z. Of a long time it is small, and 1 less the weight above loses its digits.
+    pub(super) mean: f64,
 }
 
 impl Weights {
@@ -22,16 +24,11 @@ impl Weights {
                 now += power;
                 old += power * k;
             }
-            return Self { keep: (-z).exp(), old, now };
+            return Self { keep: (-z).exp(), old, now, mean: 1.0 - now };
         }
         let keep = (-z).exp();
         let mean = (1.0 - keep) / z;
-        Self { keep, old: mean - keep, now: 1.0 - mean }
-    }
-
-    /// `(1 − e⁻ᶻ)/z`: the mean of `e⁻ˣ` up to z.
-    pub(super) fn mean(self) -> f64 {
-        1.0 - self.now
+        Self { keep, old: mean - keep, now: 1.0 - mean, mean }
     }
 }
 
@@ -49,7 +46,7 @@ mod tests {
     fn weights_are_those_of_a_linear_load() {
         for z in [0.0, 1e-300, 1e-12, 1e-3, 0.3, 0.499_999, 0.5, 0.7, 3.0, 50.0, 1e9, f64::INFINITY]
         {
-            let Weights { keep, old, now } = Weights::of(z);
+            let Weights { keep, old, now, .. } = Weights::of(z);
             // Roundings of three numbers up to 1, and of their sums.
             assert!((keep + old + now - 1.0).abs() < 5e-16, "{z}");
             assert!(old >= 0.0 && now >= 0.0 && keep >= 0.0, "{z}");
@@ -58,6 +55,11 @@ mod tests {
         // Differences of numbers around 1 over the weight, 0.2, and 10⁻¹⁵ of z.
         assert!((below.now / above.now - 1.0).abs() < 4e-15, "{below:?} {above:?}");
         assert!((below.old / above.old - 1.0).abs() < 4e-15, "{below:?} {above:?}");
+        // Of terms of a microsecond after years too.
+        for z in [0.5, 3.0, 50.0, 1e9, 1e15, 1e20] {
+            let mean = Weights::of(z).mean;
+            assert!((mean * z / (1.0 - (-z).exp()) - 1.0).abs() < 5e-16, "{z}: {mean}");
+        }
         let tiny = Weights::of(1e-9);
         assert!((tiny.now / (0.5e-9 - 1e-18 / 6.0) - 1.0).abs() < 1e-15);
         assert!((tiny.old / (0.5e-9 - 1e-18 / 3.0) - 1.0).abs() < 1e-15);

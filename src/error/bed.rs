@@ -23,7 +23,7 @@ pub enum BedError {
 
     /// A node leaves the contact, or yields: increments before and after that are not those of elastic contact that grows.
     #[error(
-        "event {event}: node ({ix}, {iy}) {happens}; only the increments of elastic contact that grows can be superposed"
+        "event {event}: node ({ix}, {iy}) {happens}; only the increments of elastic contact that grows can be superposed. {instead}"
     )]
     NotElasticGrowth {
         /// Number of the event, from 1 on.
@@ -34,6 +34,8 @@ pub enum BedError {
         iy: usize,
         /// What happens to it.
         happens: &'static str,
+        /// What is right instead.
+        instead: &'static str,
     },
 
     /// A scalar of a state that is not finite, or changes the wrong way.

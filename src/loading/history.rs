@@ -173,6 +173,17 @@ impl History {
         self.read(load, after, |state| state.contact.load, ContactState::at_load)
     }
 
+    /// The same with the state at a load \[N\] behind full contact, where a path ends before.
+    #[doc(hidden)] // for the program and the package of Python, which unload from there
+    #[must_use]
+    pub fn up_to_load(mut self, load: f64) -> Self {
+        let is_before = self.states.last().is_some_and(|state| state.contact.load < load);
+        if let Some(state) = self.at_load(load).filter(|_| is_before) {
+            self.extend([LoadingState { event: ContactEvent::Limit, ..state }]);
+        }
+        self
+    }
+
     /// The state at an approach \[m\]; see [`Self::at_load`].
     #[must_use]
     pub fn at_approach(&self, approach: f64) -> Option<LoadingState> {

@@ -5,6 +5,7 @@
 //! | [`altered`] | an updater some of whose answers are changed by closures |
 //! | [`bordering`] | an updater with the three verbs that every path needs |
 //! | [`dense`] | influence matrices, and dense solutions that share no code with the library |
+//! | [`page`] | tables of pages in Markdown |
 //! | [`surfaces`] | heights of rough surfaces |
 //! | `random` | random surfaces for property tests (feature `proptest`) |
 //! | [`table`] | tables of reference data |
@@ -17,6 +18,7 @@ pub mod altered;
 pub mod bordering;
 pub mod close;
 pub mod dense;
+pub mod page;
 #[cfg(feature = "proptest")]
 pub mod random;
 pub mod surfaces;

@@ -198,3 +198,23 @@ proptest! {
         }
     }
 }
+
+/// A load that is held over all decades of a series, as master curves of rubber have them: the pressure carries it at any time. What the weight of
+/// an increment is off by is the rounding of a few numbers of its size.
+#[test]
+fn pressures_carry_the_load_after_any_time() {
+    let history = history(24);
+    let bed = Bed::new(&history).unwrap();
+    let load = 0.3 * bed.last_load();
+    for terms in [&[(1e-6, 0.2), (1e-2, 0.2), (1e3, 0.2)][..], &[(1e-9, 0.5)], &[(1.0, 0.5)]] {
+        let body = Prony::shares(terms).unwrap();
+        let held = Creep::new(&bed, &body, &Corners::step(load).unwrap()).unwrap();
+        for time in [0.0, 1e-6, 1.0, 1e4, 1e8, 1e12, 1e20] {
+            let carried = held.pressure(time, usize::MAX).unwrap().load();
+            assert!(
+                (carried / load - 1.0).abs() < 1e-12,
+                "{terms:?} at {time} s: {carried} {load}"
+            );
+        }
+    }
+}

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use asperity::LoadingSolver;
 use asperity::io::{write_npy, write_x3p};
-use asperity::{LoadingSolver, LoadingState};
+use asperity::loading::History;
 
 use super::Solver;
 use super::job::Job;
@@ -27,7 +28,8 @@ pub(super) fn write(
     let kernel = job.kernel()?;
     let builder = LoadingSolver::builder(&surface, &kernel).max_load(last.contact.load);
     let path = builder.build().map_err(failed)?;
-    let states = path.collect::<Result<Vec<LoadingState>, _>>().map_err(failed)?;
+    let states = path.collect::<Result<History, _>>().map_err(failed)?;
+    let states = states.up_to_load(last.contact.load);
     // Approaches of the path count from the first touch of the first surface.
     let touch = -surface.max_height();
     let mut lines = "load,approach,mean_gap,contact_area,contact_area_fraction,contact_stiffness,\
@@ -36,7 +38,7 @@ pub(super) fn write(
     let printed = |stiffness: Option<f64>| {
         stiffness.map_or_else(String::new, |stiffness| format!("{stiffness:e}"))
     };
-    for state in states.iter().rev() {
+    for state in states.states().iter().rev() {
         let contact = &state.contact;
         // Writing to a text cannot fail.
         let _ = writeln!(

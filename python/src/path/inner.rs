@@ -56,15 +56,15 @@ enum Source {
 pub(super) struct Inner {
     source: Source,
     pub(super) history: Arc<loading::History>,
-    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that a record knows.
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body, if they are known.
     pub(super) bodies: Vec<(f64, f64)>,
 }
 
 impl Inner {
-    pub(super) fn live(engine: impl Engine + 'static) -> Self {
+    pub(super) fn live(engine: impl Engine + 'static, bodies: &[(f64, f64)]) -> Self {
         let layering = engine.problem().table().origin().layering();
         let history = Arc::new(loading::History::default().on(layering));
-        Self { source: Source::Live(Box::new(engine)), history, bodies: Vec::new() }
+        Self { source: Source::Live(Box::new(engine)), history, bodies: bodies.to_vec() }
     }
 
     pub(super) fn of_record(record: LoadingRecord, resume: Resume) -> Result<Self, Error> {

@@ -97,7 +97,7 @@ impl LoadingPath {
         }
     }
 
-    /// Those that the record of the path knows.
+    /// Those that the half-space or the record of the path knows.
     pub(crate) fn elastic_bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
         self.lock(py).bodies.clone()
     }
@@ -321,7 +321,8 @@ impl LoadingPath {
         self.e_star
     }
 
-    /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if the record of the path knows them: of one if the other is rigid.
+    /// Young's modulus [Pa] and Poisson's ratio of each elastic body, if the half-space or the record of the path knows them: of one if
+    /// the other is rigid.
     #[getter]
     fn bodies(&self, py: Python<'_>) -> Vec<(f64, f64)> {
         self.elastic_bodies(py)

@@ -145,7 +145,8 @@ fn load_path(
         }
         builder.build()
     })??;
-    Ok(LoadingPath::new(Inner::live(solver), half_space.modulus()))
+    let inner = Inner::live(solver, half_space.elastic_bodies());
+    Ok(LoadingPath::new(inner, half_space.modulus()))
 }
 
 /// Open the record of a path, to read it, to compute fields of its states, and to go on.

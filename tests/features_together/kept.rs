@@ -1,0 +1,76 @@
+//! Paths on disk.
+
+use asperity::loading::History;
+use asperity::record::LoadingRecord;
+use asperity::{ContactGrowth, Error, LoadingState};
+
+use super::dense::near;
+use super::rows::{Pressed, through_a_file};
+
+/// What is written is read: states, settings, body, and the fields of its states.
+pub(super) fn record(pressed: &mut Pressed<'_>) -> Result<(), Error> {
+    let name = pressed.row.name;
+    let written = LoadingRecord::new(&pressed.path, pressed.history.clone())?;
+    let read = through_a_file(&written);
+    assert_eq!(read.history(), &pressed.history, "{name}");
+    assert_eq!(read.history().layering(), pressed.row.kernel.origin().layering(), "{name}");
+    assert_eq!(read.settings(), written.settings(), "{name}");
+    assert_eq!(read.hardness_map()?, pressed.path.hardness_map(), "{name}");
+    assert_eq!(read.hardness_map()?, pressed.row.hardness, "{name}");
+    assert_eq!((read.end(), read.grid()), (pressed.path.end(), pressed.path.grid()), "{name}");
+    let mut replay = read.replay()?;
+    let [mut found, mut expected] = [read.states().to_vec(), pressed.history.states().to_vec()];
+    replay.add_unloading_stiffness(&mut found)?;
+    pressed.path.add_unloading_stiffness(&mut expected)?;
+    assert_eq!(found, expected, "{name}");
+    for state in pressed.some() {
+        let (found, expected) = (replay.pressure_at(&state)?, pressed.path.pressure_at(&state)?);
+        let greatest = expected.max();
+        for (found, expected) in found.iter().zip(&expected) {
+            // A solution by iterations to some 10⁻¹², beside one with a factor.
+            near(*found, *expected, 1e-9 * greatest, name);
+        }
+        assert_eq!(replay.contact_map_at(&state)?, pressed.path.contact_map_at(&state)?, "{name}");
+        assert_eq!(replay.yielded_map_at(&state)?, pressed.path.yielded_map_at(&state)?, "{name}");
+    }
+    Ok(())
+}
+
+/// A path that is interrupted and goes on from its record is the one that is not.
+pub(super) fn resume(pressed: &mut Pressed<'_>) -> Result<(), Error> {
+    let row = pressed.row;
+    let states = pressed.history.states().len();
+    for states in [3, states / 2, 4 * states / 5] {
+        let (path, before) = row.follow(states);
+        let (_, found) = row.resume(&LoadingRecord::new(&path, before)?);
+        let is_exact =
+            row.hardness.is_none() && row.kernel.contact_growth() != ContactGrowth::Unknown;
+        let tolerance = if row.iterative { row.tolerance() } else { 1e-10 };
+        compare(row.name, &found, &pressed.history, (!is_exact).then_some(tolerance));
+    }
+    Ok(())
+}
+
+/// Bit for bit, and from the states alone, with a hardness and where nodes may leave, to 10⁻¹⁰ with a factor and within the error of events
+/// without one.
+fn compare(name: &str, found: &History, expected: &History, tolerance: Option<f64>) {
+    let (found, expected) = (found.events(), expected.events());
+    assert_eq!(found.len(), expected.len(), "{name}");
+    let event = |state: &LoadingState| (state.step, state.event, state.node);
+    let last = &expected[expected.len() - 1].contact;
+    let energy = last.energy + last.plastic.map_or(0.0, |plastic| plastic.work);
+    for (a, b) in found.iter().zip(expected) {
+        assert_eq!(event(a), event(b), "{name}");
+        let Some(tolerance) = tolerance else {
+            assert_eq!(a, b, "{name}");
+            continue;
+        };
+        for (a, b, scale) in [
+            (a.contact.load, b.contact.load, last.load),
+            (a.contact.energy, b.contact.energy, energy),
+            (a.contact.mean_gap, b.contact.mean_gap, expected[0].contact.mean_gap),
+        ] {
+            near(a, b, tolerance * scale, name);
+        }
+    }
+}

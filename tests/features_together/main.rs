@@ -1,0 +1,223 @@
+//! Every pair of features is right by an independent solution, or refused: the table of `docs/features_together.md`, entry by entry.
+//!
+//! A column of that page is a test here, which goes through all rows. What the page says of the pair is what the test expects: `yes`
+//! is an answer that is right, and a letter the reason of a refusal. Columns of the program and of Python have their tests in
+//! `cli/tests/features_together.rs` and `python/tests/test_features_together.py`.
+#![cfg(feature = "io")]
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+mod dense;
+mod followed;
+mod kept;
+mod rows;
+mod solved;
+
+use std::path::Path;
+
+use asperity::kernel::Layering;
+use asperity::{
+    BedError, Boundary, ContactEvent, Error, FixedLoadSolver, KernelError, LoadingSolver,
+};
+use asperity_testing::page::tables;
+
+use rows::{Pressed, Row};
+
+/// A column: `Ok` if its answer is right, the error if there is none, and a panic if it is wrong.
+type Check = fn(&mut Pressed<'_>) -> Result<(), Error>;
+
+const COLUMNS: [(&str, Check); 12] = [
+    ("fixed load", solved::fixed_load),
+    ("sweep", solved::sweep),
+    ("fields", solved::fields),
+    ("unload", solved::unload),
+    ("record", kept::record),
+    ("resume", kept::resume),
+    ("patches", followed::patches),
+    ("leak", followed::leak),
+    ("slip", followed::slip),
+    ("creep", followed::creep),
+    ("conductance", followed::conductance),
+    ("FE table", followed::table),
+];
+
+/// Columns of the program and of Python, and where their tests are.
+const ELSEWHERE: [(&str, &str); 3] = [
+    ("ensembles", "cli/tests/features_together.rs"),
+    ("Python", "python/tests/test_features_together.py"),
+    ("pickles", "python/tests/test_features_together.py"),
+];
+
+fn page() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(root.join("docs/features_together.md")).unwrap()
+}
+
+/// The letter of the page for a refusal.
+fn reason(error: &Error) -> &'static str {
+    match error {
+        Error::Bed(BedError::NotElasticGrowth { happens: "yields", .. }) => "a",
+        Error::NotHomogeneous { .. } => "b",
+        Error::Bed(BedError::NotElasticGrowth { .. }) | Error::NodeLeaves { .. } => "c",
+        other => panic!("{other}"),
+    }
+}
+
+/// One column of the page, on all rows.
+fn column(name: &str) {
+    let check = COLUMNS.iter().find(|(column, _)| *column == name).unwrap().1;
+    let table = tables(&page(), "path");
+    let place = table[0].iter().position(|column| column == name).unwrap();
+    for row in rows::all().iter().chain(rows::both()) {
+        let cell = |part: &str| table.iter().find(|line| line[0] == part).unwrap()[place].as_str();
+        let cells: Vec<&str> = row.name.split(", ").map(cell).collect();
+        let found = match check(&mut row.press()) {
+            Ok(()) => "yes",
+            Err(error) => reason(&error),
+        };
+        // What one of several kinds of path refuses, all together do.
+        let refused: Vec<&str> = cells.into_iter().filter(|cell| *cell != "yes").collect();
+        let is_expected =
+            if refused.is_empty() { found == "yes" } else { refused.contains(&found) };
+        assert!(is_expected, "{} x {name}: {found}, and the page has {refused:?}", row.name);
+    }
+}
+
+#[test]
+fn fixed_load() {
+    column("fixed load");
+}
+
+#[test]
+fn sweep() {
+    column("sweep");
+}
+
+#[test]
+fn fields() {
+    column("fields");
+}
+
+#[test]
+fn unload() {
+    column("unload");
+}
+
+#[test]
+fn record() {
+    column("record");
+}
+
+#[test]
+fn resume() {
+    column("resume");
+}
+
+#[test]
+fn patches() {
+    column("patches");
+}
+
+#[test]
+fn leak() {
+    column("leak");
+}
+
+#[test]
+fn slip() {
+    column("slip");
+}
+
+#[test]
+fn creep() {
+    column("creep");
+}
+
+#[test]
+fn conductance() {
+    column("conductance");
+}
+
+#[test]
+fn fe_table() {
+    column("FE table");
+}
+
+/// A hardness asks for contact that is known to grow: the one pair of rows that there is not.
+#[test]
+fn a_hardness_on_a_stiff_layer_is_refused() {
+    let row = rows::all().iter().find(|row| row.name == "stiff layer").unwrap();
+    let path = LoadingSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
+    let single = FixedLoadSolver::builder(&row.surface, &*row.kernel).hardness(1e9).build();
+    for refused in [path.err(), single.err()] {
+        assert!(matches!(refused, Some(Error::Kernel(KernelError::GrowthUnknown))), "{refused:?}");
+    }
+    assert!(page().contains("GrowthUnknown"));
+}
+
+/// What a path on a stiff layer has before its first release.
+#[test]
+fn patches_are_followed_up_to_the_first_release() {
+    let row = rows::all().iter().find(|row| row.name == "stiff layer").unwrap();
+    let Pressed { history, .. } = row.press();
+    let mut states = history.states().iter();
+    let before = states.position(|state| state.event == ContactEvent::Release).unwrap();
+    assert!(before > 10, "{before}");
+    let (path, history) = row.follow(before);
+    followed::patches(&mut Pressed { row, path, history }).unwrap();
+}
+
+/// A row has what its name says, so that its entries test it.
+#[test]
+fn rows_are_what_they_are_called() {
+    for row in rows::all() {
+        let Pressed { history, .. } = row.press();
+        let states = history.states();
+        let last = states.last().unwrap().contact;
+        let count = |event| states.iter().filter(|state| state.event == event).count();
+        let yielded = last.plastic.map_or(0, |plastic| plastic.yielded_nodes);
+        let (name, nodes) = (row.name, row.kernel.grid().nodes());
+        assert_eq!(yielded > nodes / 10, row.hardness.is_some(), "{name}: {yielded}");
+        assert!(yielded < last.contact_nodes || name == "fully plastic", "{name}: {yielded}");
+        assert_eq!(yielded == nodes, name == "fully plastic", "{name}");
+        let is_full = ["full contact", "fully plastic"].contains(&name);
+        assert_eq!(last.contact_nodes == nodes, is_full, "{name}");
+        assert_eq!(count(ContactEvent::Release) > 0, name == "stiff layer", "{name}");
+        let is_estimated = states.iter().any(|state| state.approach_error > 0.0);
+        assert_eq!(is_estimated, name == "without a factor", "{name}");
+        let expected = match name {
+            "sheet" => Layering::OneMaterial,
+            "soft layer" | "stiff layer" => Layering::Several,
+            _ => Layering::HalfSpace,
+        };
+        assert_eq!(history.layering(), expected, "{name}");
+        let expected = match name {
+            "periodic" | "full contact" => Boundary::Periodic,
+            "periodic x" => Boundary::PeriodicX,
+            "periodic y" => Boundary::PeriodicY,
+            _ => Boundary::Free,
+        };
+        assert_eq!(row.kernel.boundary(), expected, "{name}");
+    }
+}
+
+/// The page has the rows and columns that are tested, and no other; every letter has its reason below the table.
+#[test]
+fn the_page_has_all_entries() {
+    let page = page();
+    let table = tables(&page, "path");
+    let (header, lines) = table.split_first().unwrap();
+    let columns = COLUMNS.iter().map(|(name, _)| *name);
+    let columns: Vec<&str> = columns.chain(ELSEWHERE.map(|(name, _)| name)).collect();
+    assert_eq!(header[1..], columns);
+    let rows: Vec<&str> = lines.iter().map(|line| line[0].as_str()).collect();
+    assert_eq!(rows, rows::all().iter().map(|row: &Row| row.name).collect::<Vec<_>>());
+    for cell in lines.iter().flat_map(|line| &line[1..]) {
+        let reason = format!("\n* **{cell}**: ");
+        assert!(cell == "yes" || page.contains(&reason), "no reason for {cell}");
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (name, file) in ELSEWHERE {
+        let text = std::fs::read_to_string(root.join(file)).unwrap();
+        assert!(text.contains(&format!("\"{name}\"")), "{file} does not test {name}");
+    }
+}
