@@ -77,8 +77,10 @@ fn few_nodes_of_one_patch_are_said_everywhere() -> Done {
     let folder = with_ball("few")?;
     let folder = &folder.0;
     let few = "the contact is not resolved";
-    for (nodes, is_few) in [(12, true), (200, false)] {
-        let path = format!("path {BALL} --material steel --max-nodes {nodes} --record r.npz");
+    for (nodes, is_few) in [(12_u32, true), (200, false)] {
+        let share = f64::from(nodes) / 1024.0;
+        let path =
+            format!("path {BALL} --material steel --max-area-fraction {share} --record r.npz");
         assert_eq!(words(folder, &path)?.contains(few), is_few, "{nodes}");
         let ended = object(folder, &path)?;
         assert_eq!(warns(&ended, few), is_few, "{nodes}");
@@ -112,10 +114,10 @@ fn only_metals_are_said_to_yield_like_metals() -> Done {
 }
 
 #[test]
-fn layers_thinner_than_a_cell_are_said_everywhere() -> Done {
+fn coats_thinner_than_a_cell_are_said_everywhere() -> Done {
     let folder = with_ball("thin")?;
     let folder = &folder.0;
-    let wide = "wider than the uppermost layer is thick";
+    let wide = "wider than the coat is thick";
     // Cells of 31.25 µm.
     for (thickness, is_thin) in [("20e-6", true), ("50e-6", false)] {
         let body = format!("{BALL} --layer 3e6,0.4,{thickness} --base rigid");

@@ -120,3 +120,17 @@ def test_what_does_not_leak() -> None:
         with pytest.raises(errors.AsperityError):
             seal.curve(path, states=states)
     assert seal.curve(path, states=2).closing is None
+
+
+def test_a_large_pressure_drop_is_warned_of(rough: asp.Surface) -> None:
+    path = asp.load_path(rough, asp.HalfSpace(1e9, boundary="love"), area_fraction=0.2)
+    path.run(check=False)
+    small = 1e-3 * path.state.mean_pressure
+    asp.Seal(1e-3, small, along="x").leak(path)
+    for seal in (asp.Seal(1e-3, 100.0 * small, along="x"), asp.Seal(1e-3, 1e5 * small, along="x")):
+        with pytest.warns(asp.AsperityWarning, match="would open the gap"):
+            seal.leak(path)
+        with pytest.warns(asp.AsperityWarning, match="would open the gap"):
+            seal.curve(path, states=4)
+        seal.leak(path, check=False)
+        seal.curve(path, states=4, check=False)

@@ -56,10 +56,10 @@ fn a_warning_that_does_not_fit_is_an_error() {
 /// Hertz contacts whose radius is 0.9, 1.1 and 1.3 times the distance to the border.
 #[test]
 fn peaks_of_the_border_are_noticed() -> Result<(), Error> {
-    let grid = Grid::square(32, 1.0)?;
+    let grid = Grid::square(32, 32.0)?;
     let half_space = Boussinesq::new(grid, 1.0)?;
     let ball = ball(&grid, 100.0, (0.0, 0.0))?;
-    let hertz = HertzSphere::new(1.0, 100.0)?;
+    let hertz = HertzSphere::new(100.0, 1.0)?;
     let mut solver = FixedLoadSolver::new(&ball, &half_space)?;
     for (part, is_peak) in [(0.9, false), (1.1, false), (1.3, true)] {
         let radius = part * 16.0;
@@ -148,12 +148,7 @@ fn pressures_that_solids_do_not_bear_are_noticed() {
         (3e6, 2.67e6, None, None),
         // What is known counts.
         (5e9, 73e9, Some(5.5e9), None),
-        (
-            11e9,
-            73e9,
-            Some(5.5e9),
-            Some("2.000 times the typical hardness of the material, 5.5 GPa"),
-        ),
+        (11e9, 73e9, Some(5.5e9), Some("2.0 times the typical hardness of the material, 5.5 GPa")),
     ] {
         let found = told(pressure, e_star, hardness);
         let is_right = match (&found, said) {
@@ -166,18 +161,28 @@ fn pressures_that_solids_do_not_bear_are_noticed() {
 }
 
 #[test]
-fn cells_wider_than_the_uppermost_layer_are_noticed() -> Result<(), Error> {
-    let layer = |thickness| Layer { young: 3e9, poisson: 0.3, thickness };
-    let of = |layers: &[f64], dx, dy| -> Result<_, Error> {
+fn cells_wider_than_a_coat_are_noticed() -> Result<(), Error> {
+    let of = |layers: &[(f64, f64)], base, dx, dy| -> Result<_, Error> {
+        let layer = |(young, thickness)| Layer { young, poisson: 0.3, thickness };
         let layers: Vec<_> = layers.iter().copied().map(layer).collect();
-        let body = LayeredBody::new(&layers, Base::Rigid)?;
+        let body = LayeredBody::new(&layers, base)?;
         Ok(Warning::of_layers(&body, &Grid::new(4, 4, dx, dy)?))
     };
-    assert_eq!(of(&[2e-6, 1e-9], 1e-6, 2e-6)?, None);
     let wide = Warning::WideCells { cell: 3e-6, thickness: 2e-6 };
-    assert_eq!(of(&[2e-6, 1.0], 1e-6, 3e-6)?, Some(wide));
+    let steel = Base::HalfSpace { young: 210e9, poisson: 0.3 };
+    for (layers, base, dy, expected) in [
+        (vec![(3e9, 2e-6)], Base::Rigid, 3e-6, Some(wide)),
+        (vec![(3e9, 2e-6)], Base::Rigid, 2e-6, None),
+        (vec![(450e9, 2e-6), (450e9, 1e-9)], steel, 2e-6, None),
+        (vec![(450e9, 2e-6), (3e9, 1.0)], steel, 3e-6, Some(wide)),
+        // Steps of a modulus that changes slowly count together, and a base like them is none.
+        (vec![(450e9, 1e-6), (400e9, 1e-6), (200e9, 1e-6)], steel, 3e-6, Some(wide)),
+        (vec![(300e9, 1e-6), (250e9, 1e-6)], steel, 3e-6, None),
+    ] {
+        assert_eq!(of(&layers, base, 1e-6, dy)?, expected, "{layers:?}");
+    }
     assert!(
-        wide.to_string().contains("3 µm are wider than the uppermost layer is thick, 2 µm"),
+        wide.to_string().contains("cells of 3 µm are wider than the coat is thick, 2 µm"),
         "{wide}"
     );
     Ok(())
@@ -215,13 +220,12 @@ fn moduli_in_other_units_are_noticed() {
     }
 }
 
-/// Balls at places between the nodes: cells in contact against Hertz. The correction is right on average over such places, while a
-/// single state may be off by twice as much.
+/// Balls at places between the nodes: cells in contact against Hertz. The correction is right on average over such places.
 #[test]
 fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
-    let grid = Grid::square(33, 1.0)?;
+    let grid = Grid::square(33, 33.0)?;
     let half_space = Boussinesq::new(grid, 1.0)?;
-    let hertz = HertzSphere::new(1.0, 100.0)?;
+    let hertz = HertzSphere::new(100.0, 1.0)?;
     let (mut of_few, mut unnoticed) = (Vec::new(), Vec::new());
     for offset in [(0.1, 0.2), (0.4, 0.1), (0.3, 0.45), (0.25, 0.25)] {
         let ball = ball(&grid, 100.0, offset)?;
@@ -234,9 +238,9 @@ fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
             let area = hertz.contact_area(hertz.approach_at_load(state.contact.load));
             let excess = state.contact.contact_area / area - 1.0;
             let nodes = state.contact.contact_nodes;
-            assert!(is_noticed || nodes > 15, "{nodes}");
+            assert!(is_noticed || nodes > 12, "{nodes}");
             assert!(!is_noticed || nodes < 100, "{nodes}");
-            if (12..16).contains(&nodes) {
+            if (9..13).contains(&nodes) {
                 of_few.push(excess);
             }
             if !is_noticed {
@@ -247,6 +251,5 @@ fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
     let mean = |excesses: &[f64]| excesses.iter().sum::<f64>() / excesses.len() as f64;
     assert!(mean(&of_few) > EXCESS, "{of_few:?}");
     assert!(mean(&unnoticed) < EXCESS, "{unnoticed:?}");
-    assert!(unnoticed.iter().all(|excess| *excess < 2.0 * EXCESS), "{unnoticed:?}");
     Ok(())
 }
