@@ -122,8 +122,8 @@ def test_what_does_not_leak() -> None:
     assert seal.curve(path, states=2).closing is None
 
 
-def test_a_large_pressure_drop_is_warned_of(rough: asp.Surface) -> None:
-    path = asp.load_path(rough, asp.HalfSpace(1e9, boundary="love"), area_fraction=0.2)
+def test_a_large_pressure_drop_is_warned_of() -> None:
+    path = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(1e9, boundary="love"), area_fraction=0.2)
     path.run(check=False)
     small = 1e-3 * path.state.mean_pressure
     asp.Seal(1e-3, small, along="x").leak(path)

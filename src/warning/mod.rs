@@ -213,9 +213,8 @@ impl fmt::Display for Warning {
             ),
             Self::EdgePeak { pressure, inside } => write!(
                 f,
-                "the greatest pressure, {}, is at the border of the grid, where the surface ends: the edge makes it, and it grows \
-                 on finer grids. Away from the border the greatest is {}. Take a larger piece of the surface, or a periodic half-space \
-                 if there is no such edge",
+                "the greatest pressure, {}, is at the border of the grid: the edge of the surface makes it, and it grows on finer \
+                 grids. Away from the border it is {}. Take a larger piece, or a periodic half-space if the surface has no edge there",
                 pascals(pressure),
                 pascals(inside)
             ),

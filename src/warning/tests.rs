@@ -56,7 +56,7 @@ fn a_warning_that_does_not_fit_is_an_error() {
 /// Hertz contacts whose radius is 0.9, 1.1 and 1.3 times the distance to the border.
 #[test]
 fn peaks_of_the_border_are_noticed() -> Result<(), Error> {
-    let grid = Grid::square(32, 32.0)?;
+    let grid = Grid::square(64, 32.0)?;
     let half_space = Boussinesq::new(grid, 1.0)?;
     let ball = ball(&grid, 100.0, (0.0, 0.0))?;
     let hertz = HertzSphere::new(100.0, 1.0)?;
