@@ -200,15 +200,15 @@ fn advice_names_an_option() -> Done {
     )?;
     refused(
         &format!("load --surface tilted.txt {load}"),
-        &["the heights have no unit", "`ReadOptions::height_unit` (`--height-unit`)"],
+        &["the heights have no unit", "give it with `--height-unit`"],
     )?;
     refused(
         &format!("load --surface tilted.txt --height-unit nm {load}"),
-        &["`ReadOptions::side` (`--side`)"],
+        &["give it with `--side`"],
     )?;
     let tilted = "info tilted.txt --height-unit nm --side 1e-3";
     let words = printed(&run(&folder.0, tilted)?);
-    let advice = "level it (`Topography::level`) unless the tilt is meant (`--level plane`)";
+    let advice = "level it (`--level plane`) unless the tilt is meant";
     assert!(words.contains(advice), "{words}");
     Ok(())
 }
