@@ -52,13 +52,14 @@ fn commands_of_the_pages_are_taken() {
         let text = fs::read_to_string(page).unwrap();
         // Every second piece lies between fences.
         for line in text.split("\n```").skip(1).step_by(2).flat_map(str::lines) {
-            // Not the line of a manifest.
             let starts = ["cargo run --release -- ", "asperity "];
             let command = starts.iter().find_map(|start| line.strip_prefix(start));
             let command = command.filter(|command| !command.starts_with("= "));
             let Some(command) = command.and_then(|command| command.split('#').next()) else {
                 continue;
             };
+            // A job scheduler puts the number of the task there.
+            let command = command.replace("$SLURM_ARRAY_TASK_ID", "1");
             let words = command.split_whitespace().chain(["--help"]);
             let words: Vec<&std::ffi::OsStr> = words.map(std::ffi::OsStr::new).collect();
             let output = asperity(&folder.0, &words).output().unwrap();
