@@ -10,7 +10,9 @@ pub(crate) fn told(warning: &Warning) -> String {
             format!("{warning} (`--yield`, or `--hardness` for another)")
         }
         Warning::HighPressure { hardness: None, .. } => format!("{warning} (`--hardness`)"),
-        Warning::NoLoad { .. } => format!("{warning} (`--max-load`, or `asperity load`)"),
+        Warning::NoLoad { .. } => {
+            format!("{warning} (`--max-load`; where all nodes touch at once, `asperity load`)")
+        }
         Warning::PressureDrop { .. } => format!("{warning} (`--pressure-drop`, `--load`)"),
         Warning::EdgePeak { .. } => format!("{warning} (`--periodic`)"),
         _ => warning.to_string(),

@@ -140,6 +140,12 @@ fn contact_without_a_load_is_said() -> Done {
     assert!(told.contains("25 nodes touch at the same height"), "{told}");
     assert!(told.contains("`--max-load`"), "{told}");
     assert!(warns(&object(&folder.0, line)?, "touch at the same height"));
+    // The path of a flat surface ends there whatever is asked for, and a single load does not.
+    let all = "path --surface flat.npy --side 1e-3 --material steel --max-load 10";
+    let told = words(&folder.0, all)?;
+    assert!(told.contains("`asperity load`") && !told.contains("check the units"), "{told}");
+    let one = words(&folder.0, "load --surface flat.npy --side 1e-3 --material steel --load 10")?;
+    assert!(one.contains("mean pressure 10 MPa"), "{one}");
     Ok(())
 }
 

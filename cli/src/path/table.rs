@@ -171,6 +171,8 @@ pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Fa
     let mut warnings: Vec<String> = found.map(|warning| crate::advice::told(&warning)).collect();
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
+        // A flat surface, whose nodes all touch before there is a load, says nothing of units.
+        && pressure.max() > 0.0
     {
         warnings.push(format!(
             "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",
