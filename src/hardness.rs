@@ -68,6 +68,24 @@ impl Hardness {
         self.uniform
     }
 
+    /// `Ok` for a load \[N\] under which not all nodes yield.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::BeyondHardness`].
+    pub(crate) fn check(&self, load: f64, grid: &Grid) -> Result<(), Error> {
+        let greatest = self.greatest_load(grid);
+        if load < greatest {
+            return Ok(());
+        }
+        let over_area = |load: f64| load / grid.nominal_area();
+        Err(Error::BeyondHardness {
+            load,
+            mean_pressure: over_area(load),
+            hardness: over_area(greatest),
+        })
+    }
+
     /// The load \[N\] under which all nodes yield.
     pub(crate) fn greatest_load(&self, grid: &Grid) -> f64 {
         self.values.iter().sum::<f64>() * grid.cell_area()

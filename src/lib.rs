@@ -118,6 +118,8 @@ mod test_chain;
 pub mod updater;
 mod warning;
 
+#[doc(hidden)]
+pub use asperity_surfaces::number;
 pub(crate) use asperity_surfaces::parallel;
 pub use asperity_surfaces::{
     Error as SurfaceError, FileError, Grid, HeightMap, SelfAffine, Surface, io, nalgebra, surface,

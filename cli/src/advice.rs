@@ -1,14 +1,21 @@
 //! Options of the command line that do what the library advises.
 
-use asperity::{Warning, surface};
+use asperity::Warning;
+use asperity_cli::outcome::of_program;
 
 /// What looks wrong, with the option that changes it if there is one.
 pub(crate) fn told(warning: &Warning) -> String {
-    match warning {
-        Warning::Surface(surface::Warning::Tilted { .. }) => format!("{warning} (`--level plane`)"),
-        Warning::HighPressure { .. } => {
-            format!("{warning} (`--hardness`, or `--yield` for a typical one)")
+    let told = match warning {
+        Warning::HighPressure { hardness: Some(_), .. } => {
+            format!("{warning} (`--yield`, or `--hardness` for another)")
         }
+        Warning::HighPressure { hardness: None, .. } => format!("{warning} (`--hardness`)"),
+        Warning::NoLoad { .. } => {
+            format!("{warning} (`--max-load`; where all nodes touch at once, `asperity load`)")
+        }
+        Warning::PressureDrop { .. } => format!("{warning} (`--pressure-drop`, `--load`)"),
+        Warning::EdgePeak { .. } => format!("{warning} (`--periodic`)"),
         _ => warning.to_string(),
-    }
+    };
+    of_program(&told)
 }

@@ -6,7 +6,9 @@ use std::str::FromStr;
 use asperity::kernel::{KernelOrigin, LayeredBody};
 use asperity::material::Material as Known;
 use asperity::record::LoadingRecord;
-use asperity::{Boundary, Error, Grid, InfluenceKernel, composite_modulus, plane_strain_modulus};
+use asperity::{
+    Boundary, Error, Grid, InfluenceKernel, Warning, composite_modulus, plane_strain_modulus,
+};
 use asperity_cli::half_space::{Periodic, half_space, layered};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
@@ -23,7 +25,7 @@ pub(crate) struct Elasticity {
     e_star: Option<f64>,
 
     /// One body, in place of E*: a name (steel, aluminium, copper, brass, titanium, glass, pmma, ptfe, rubber, ...: typical
-    /// values), or Young's modulus in Pa and Poisson's ratio: 210e9,0.3 [generated surface: steel]
+    /// values), or Young's modulus in Pa and Poisson's ratio: 210e9,0.3
     #[arg(long, value_name = "NAME|E,NU", conflicts_with = "e_star")]
     material: Option<Material>,
 
@@ -49,13 +51,21 @@ pub(crate) struct Bodies {
     pub(crate) elastic: Vec<[f64; 2]>,
     /// One of them if it has layers; E* is then the one that short waves see.
     pub(crate) layered: Option<LayeredBody>,
+    /// A typical hardness \[Pa\] of the softer body that is named; `None` where none is known.
+    pub(crate) hardness: Option<f64>,
     words: String,
 }
 
 impl Bodies {
     /// Bodies of which only E* is known, and where from.
     pub(crate) fn of_modulus(e_star: f64, source: &str) -> Self {
-        Self { e_star, elastic: Vec::new(), layered: None, words: source.to_string() }
+        Self {
+            e_star,
+            elastic: Vec::new(),
+            layered: None,
+            hardness: None,
+            words: source.to_string(),
+        }
     }
 
     /// A body with layers.
@@ -63,6 +73,7 @@ impl Bodies {
         Self {
             e_star: body.surface_modulus(),
             elastic: Vec::new(),
+            hardness: None,
             words: described(&body),
             layered: Some(body),
         }
@@ -96,6 +107,17 @@ impl Bodies {
             KernelOrigin::SpectralLayered { body } => Ok((spectral, layers(body))),
             _ => Err(Error::ForeignKernel),
         }
+    }
+
+    /// What looks wrong with them on a grid.
+    pub(crate) fn warnings(&self, grid: &Grid) -> impl Iterator<Item = Warning> {
+        let layers = self.layered.as_ref().and_then(|body| Warning::of_layers(body, grid));
+        Warning::of_modulus(self.e_star).into_iter().chain(layers)
+    }
+
+    /// What looks wrong with the greatest pressure of a contact in which nothing yields.
+    pub(crate) fn warning_of(&self, pressure: f64) -> Option<Warning> {
+        Warning::of_pressure(pressure, self.e_star, self.hardness)
     }
 
     /// How they answer on a grid.
@@ -170,15 +192,6 @@ impl Elasticity {
         }
     }
 
-    /// A typical hardness \[Pa\] of the softer body that is named, of steel if nothing was said; `None` where none is known.
-    pub(crate) fn typical_hardness(&self) -> Option<f64> {
-        let named = match (self.e_star, self.material) {
-            (None, None) if self.base.is_none() => [Some(Material::STEEL), None],
-            _ => [self.material, self.against],
-        };
-        named.into_iter().flatten().filter_map(|body| body.hardness).reduce(f64::min)
-    }
-
     /// The bodies, without which no measured surface can be pressed.
     pub(crate) fn required(&self) -> Result<Bodies, Failure> {
         self.given()?.ok_or_else(|| {
@@ -197,14 +210,12 @@ impl Bodies {
             }
             None => (plane_strain_modulus(first.e, first.nu), "rigid".to_string()),
         };
+        let both = || [Some(first), second].into_iter().flatten();
         Ok(Self {
             e_star: e_star.map_err(|error| Failure::new("invalid material", error))?,
-            elastic: [Some(first), second]
-                .into_iter()
-                .flatten()
-                .map(|material| [material.e, material.nu])
-                .collect(),
+            elastic: both().map(|material| [material.e, material.nu]).collect(),
             layered: None,
+            hardness: both().filter_map(|material| material.hardness).reduce(f64::min),
             words: format!("{first} against {against}"),
         })
     }
@@ -293,7 +304,7 @@ mod tests {
             bodies.to_string(),
             "1 mm of E = 3 MPa, ν = 0.50 on a rigid base against rigid: E* 4 MPa of the surface"
         );
-        assert!(elasticity(None)?.typical_hardness().is_none());
+        assert!(bodies.hardness.is_none());
         let pair = elasticity(Some("3e6,0.5"))?.required().map_err(|_| "refused")?;
         assert_eq!(pair.e_star, 2e6);
         let alone = Elasticity { against: Some("steel".parse()?), ..nothing() };

@@ -6,7 +6,7 @@ use asperity_cli::number::quantity;
 use asperity_cli::outcome::Failure;
 use clap::Args;
 
-use crate::elasticity::Elasticity;
+use crate::elasticity::Bodies;
 use crate::values;
 
 /// How much pressure the bodies bear.
@@ -37,14 +37,14 @@ impl fmt::Display for GreatestPressure {
 
 impl Hardness {
     /// The hardness of bodies, if there is to be one.
-    pub(crate) fn of(&self, bodies: &Elasticity) -> Result<Option<GreatestPressure>, Failure> {
+    pub(crate) fn of(&self, bodies: &Bodies) -> Result<Option<GreatestPressure>, Failure> {
         if let Some(pascals) = self.hardness {
             return Ok(Some(GreatestPressure { pascals, source: "" }));
         }
         if !self.typical {
             return Ok(None);
         }
-        match bodies.typical_hardness() {
+        match bodies.hardness {
             Some(pascals) => {
                 let source = ", typical of the material (--hardness for another)";
                 Ok(Some(GreatestPressure { pascals, source }))

@@ -1,12 +1,13 @@
 //! What the program `asperity` and the studies of this repository share: charts, numbers for people,
 //! and the half-space that a command line asks for.
 
+pub use asperity::number;
+
 pub mod axis;
 pub mod chart;
 pub mod contour;
 pub mod field_map;
 pub mod half_space;
-pub mod number;
 pub mod outcome;
 pub mod panel;
 pub mod picture;

@@ -104,13 +104,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
-    let hardness = options.hardness.of(&options.elasticity)?;
+    let hardness = options.hardness.of(&bodies)?;
     note!("bodies     {bodies}");
     if let Some(hardness) = hardness {
         note!("hardness   {hardness}");
     }
     let warnings = Warning::of_surface(&surface).into_iter();
-    for warning in warnings.chain(Warning::of_modulus(bodies.e_star)) {
+    for warning in warnings.chain(bodies.warnings(surface.grid())) {
         eprintln!("warning: {}", advice::told(&warning));
     }
     let grid = *surface.grid();
@@ -164,7 +164,15 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             } else {
                 answer!("{}", line(&answer));
             }
-            print_words(&solution, &resolution, bodies.e_star, effort.1);
+            print_words(&solution, &resolution, effort.1);
+            let on = (&grid, half_space.boundary());
+            let warnings = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
+                .map_err(|error| Failure::new("cannot look at the contact", error))?;
+            let yields = solution.plastic.is_some();
+            let high = bodies.warning_of(solution.max_pressure()).filter(|_| !yields);
+            for warning in warnings.iter().chain(&high) {
+                eprintln!("warning: {}", advice::told(warning));
+            }
             Ok(solution)
         });
         match solved {
@@ -277,19 +285,16 @@ fn line(answer: &[(&str, String)]) -> String {
 /// As an object; what is no number is null.
 fn object(answer: &[(&str, String)]) -> Value {
     let named = answer.iter().map(|(name, number)| {
-        let number = number.parse().map_or(Value::Null, |number: f64| json!(number));
-        ((*name).to_string(), number)
+        // Counts are integers.
+        let count = number.parse().map(|count: u64| json!(count));
+        let value = count.or_else(|_| number.parse().map(|number: f64| json!(number)));
+        ((*name).to_string(), value.unwrap_or(Value::Null))
     });
     Value::Object(named.collect::<Map<_, _>>())
 }
 
 /// The lines for people.
-fn print_words(
-    solution: &FixedLoadSolution,
-    resolution: &Resolution,
-    e_star: f64,
-    seconds_more: f64,
-) {
+fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_more: f64) {
     let state = solution.state;
     let greatest = solution.max_pressure();
     note!(
@@ -334,13 +339,6 @@ fn print_words(
             quantity(plastic.volume, "m³", 4),
             quantity(plastic.work, "J", 4)
         );
-    }
-    let high = Warning::of_pressure(greatest, e_star).filter(|_| solution.plastic.is_none());
-    if let Some(warning) = resolution.warning() {
-        eprintln!("warning: {warning}");
-    }
-    if let Some(warning) = high {
-        eprintln!("warning: {}", advice::told(&warning));
     }
     if state.contact_area_fraction == 1.0 {
         note!("note: the contact is full; beyond full contact only the pressure changes");

@@ -5,7 +5,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use asperity::io::write_whole;
-use asperity::{FileError, SurfaceError};
 
 use crate::{note, say};
 
@@ -59,13 +58,10 @@ impl Failure {
         let mut said = String::new();
         let mut cause: Option<&dyn Error> = self.source.as_deref();
         while let Some(error) = cause {
-            let text = error.to_string();
+            let text = of_program(&error.to_string());
             // Some errors quote their causes.
             if !said.ends_with(&text) {
-                match option(error) {
-                    Some(option) => eprintln!("  because: {text} (`{option}`)"),
-                    None => eprintln!("  because: {text}"),
-                }
+                eprintln!("  because: {}", without_name(&text, &self.what));
             }
             said = text;
             cause = error.source();
@@ -73,21 +69,25 @@ impl Failure {
     }
 }
 
-/// The option of the command line that supplies what an error says is not there.
-fn option(error: &(dyn Error + 'static)) -> Option<&'static str> {
-    let error = match error.downcast_ref() {
-        Some(asperity::Error::Surface(error)) => Some(error),
-        _ => error.downcast_ref(),
-    };
-    match error? {
-        SurfaceError::HeightNotFinite { .. } => Some("--fill"),
-        SurfaceError::File(FileError::NoSide) => Some("--side"),
-        SurfaceError::File(FileError::WhichChannel { wanted: None, .. }) => Some("--channel"),
-        SurfaceError::File(FileError::NoUnit { quantity, .. }) => Some(match *quantity {
-            "heights" => "--height-unit",
-            _ => "--lateral-unit",
-        }),
-        _ => None,
+/// Words of the library in those of the command line.
+#[must_use]
+pub fn of_program(text: &str) -> String {
+    const WORDS: [(&str, &str); 6] = [
+        ("`surface::fill_missing`", "`--fill`"),
+        ("`ReadOptions::height_unit`", "`--height-unit`"),
+        ("`ReadOptions::lateral_unit`", "`--lateral-unit`"),
+        ("`ReadOptions::side`", "`--side`"),
+        ("`ReadOptions::channel`", "`--channel`"),
+        ("`Topography::level`", "`--level plane`"),
+    ];
+    WORDS.iter().fold(text.to_string(), |text, (rust, option)| text.replace(rust, option))
+}
+
+/// A cause that begins with the name of a file, without it where what failed has named the file already.
+fn without_name<'a>(cause: &'a str, what: &str) -> &'a str {
+    match cause.split_once(": ") {
+        Some((name, rest)) if !name.is_empty() && what.ends_with(&format!(" {name}")) => rest,
+        _ => cause,
     }
 }
 
@@ -181,37 +181,44 @@ impl Outcome {
 
 #[cfg(test)]
 mod tests {
+    use asperity::{FileError, SurfaceError};
+
     use super::*;
 
-    /// Whatever is not in a file has an option, also where it comes out of the solver's crate; nothing else has.
+    /// Whatever errors and warnings advise in Rust has an option of the program, and no name of Rust is left.
     #[test]
-    fn what_is_not_there_has_an_option() {
-        let no_unit = |quantity| FileError::NoUnit {
+    fn advice_names_options() {
+        let no_unit = |quantity, option| FileError::NoUnit {
             path: PathBuf::new(),
             quantity,
             found: None,
-            option: "",
+            option,
         };
-        let which = |wanted: Option<&str>| FileError::WhichChannel {
-            path: PathBuf::new(),
-            wanted: wanted.map(str::to_string),
-            channels: Vec::new(),
-        };
-        let missing = || SurfaceError::HeightNotFinite { ix: 0, iy: 0, value: f64::NAN, count: 1 };
-        for (error, expected) in [
-            (missing(), Some("--fill")),
-            (FileError::NoSide.into(), Some("--side")),
-            (no_unit("heights").into(), Some("--height-unit")),
-            (no_unit("lengths along x and y").into(), Some("--lateral-unit")),
-            (which(None).into(), Some("--channel")),
-            (which(Some("Height")).into(), None),
-            (SurfaceError::EmptyGrid { nx: 0, ny: 1 }, None),
+        let which =
+            FileError::WhichChannel { path: PathBuf::new(), wanted: None, channels: Vec::new() };
+        let missing = SurfaceError::HeightNotFinite { ix: 0, iy: 0, value: f64::NAN, count: 1 };
+        let lateral = "`ReadOptions::lateral_unit` or `ReadOptions::side`";
+        let tilted = asperity::surface::Warning::Tilted { plane: 1e-6, left: 1e-9 };
+        for (text, option) in [
+            (missing.to_string(), "`--fill`"),
+            (FileError::NoSide.to_string(), "`--side`"),
+            (no_unit("heights", "`ReadOptions::height_unit`").to_string(), "`--height-unit`"),
+            (no_unit("lengths", lateral).to_string(), "`--lateral-unit` or `--side`"),
+            (which.to_string(), "`--channel`"),
+            (tilted.to_string(), "`--level plane`"),
         ] {
-            assert_eq!(option(&error), expected, "{error}");
+            let told = of_program(&text);
+            assert!(told.contains(option) && !told.contains("::"), "{told}");
         }
-        let of_solver = asperity::Error::from(missing());
-        assert_eq!(option(&of_solver), Some("--fill"));
-        assert_eq!(option(&asperity::Error::ForeignKernel), None);
-        assert_eq!(option(&std::io::Error::from(std::io::ErrorKind::NotFound)), None);
+    }
+
+    #[test]
+    fn a_file_is_named_once() {
+        let cause = "map.npy: No such file or directory";
+        assert_eq!(without_name(cause, "cannot read map.npy"), "No such file or directory");
+        assert_eq!(without_name(cause, "cannot read a map.npy of mine"), cause);
+        assert_eq!(without_name(cause, "cannot read other-map.npy"), cause);
+        assert_eq!(without_name("no colon", "cannot read map.npy"), "no colon");
+        assert_eq!(without_name(": nothing", "cannot read "), ": nothing");
     }
 }

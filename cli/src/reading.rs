@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::SurfaceError;
 use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
-use asperity::surface::{Topography, Trend};
+use asperity::surface::{Topography, Trend, Warning};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
@@ -16,7 +16,7 @@ use crate::values::{positive, unit};
 /// What a file does not say of itself, and how its surface is prepared.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
-    /// Side of the surface along x, in place of that in the file [generated surface: 1e-2]
+    /// Side of the surface along x, in place of that in the file
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
     pub(crate) side: Option<f64>,
 
@@ -138,6 +138,9 @@ impl Reading {
             let missing = measured.missing;
             measured = measured.fill_missing().map_err(failed)?;
             note!("filled     {}, interpolated from the nodes around", counted(missing, "node"));
+            if let Some(warning) = Warning::of_filling(missing, measured.heights.len()) {
+                eprintln!("warning: {warning}");
+            }
         }
         let surface = measured.topography().map_err(failed)?;
         let (sx, sy) = surface.trend(Trend::Plane).slopes();

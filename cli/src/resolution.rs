@@ -3,7 +3,7 @@
 use std::fmt;
 
 use asperity::patches::{Connectivity, ContactEdge, Patches};
-use asperity::{Boundary, Error, Grid, Warning};
+use asperity::{Boundary, Error, Grid};
 use asperity_cli::number::{area, counted};
 use nalgebra::DMatrix;
 
@@ -30,10 +30,6 @@ impl Resolution {
             area: edge.contact_nodes() as f64 * grid.cell_area(),
             corrected_area: edge.corrected_area(),
         })
-    }
-
-    pub(crate) fn warning(&self) -> Option<Warning> {
-        Warning::of_patches(self.patches, self.contact_nodes)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Lines on stdout and stderr, for people and for programs.
 
-use std::fmt::Arguments;
+use std::fmt::{Arguments, Display};
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,6 +34,14 @@ pub fn print(line: Arguments<'_>) {
 pub fn note(line: Arguments<'_>) {
     if !is_quiet() {
         eprintln!("{line}");
+    }
+}
+
+/// Prints a warning: among the lines for people, or on stderr if they [want none](be_quiet).
+pub fn warn(warning: impl Display) {
+    match is_quiet() {
+        true => eprintln!("warning: {warning}"),
+        false => answer(format_args!("warning: {warning}")),
     }
 }
 

@@ -38,3 +38,34 @@ fn the_first_command_prints_the_sample() {
     // Then come the names of what it wrote.
     assert!(printed.any(|line| line == "wrote out/contact_map.png"));
 }
+
+/// Every command that the pages show is one that the program takes: with `--help` at its end it prints its help.
+#[test]
+fn commands_of_the_pages_are_taken() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut pages = vec![repository.join("README.md"), repository.join("cli/README.md")];
+    let documents = fs::read_dir(repository.join("docs")).unwrap();
+    pages.extend(documents.map(|page| page.unwrap().path()).filter(|page| page.is_file()));
+    let folder = Scratch::new("commands").unwrap();
+    let mut commands = 0;
+    for page in pages.iter().filter(|page| page.extension().is_some_and(|end| end == "md")) {
+        let text = fs::read_to_string(page).unwrap();
+        // Every second piece lies between fences.
+        for line in text.split("\n```").skip(1).step_by(2).flat_map(str::lines) {
+            let starts = ["cargo run --release -- ", "asperity "];
+            let command = starts.iter().find_map(|start| line.strip_prefix(start));
+            let command = command.filter(|command| !command.starts_with("= "));
+            let Some(command) = command.and_then(|command| command.split('#').next()) else {
+                continue;
+            };
+            // A job scheduler puts the number of the task there.
+            let command = command.replace("$SLURM_ARRAY_TASK_ID", "1");
+            let words = command.split_whitespace().chain(["--help"]);
+            let words: Vec<&std::ffi::OsStr> = words.map(std::ffi::OsStr::new).collect();
+            let output = asperity(&folder.0, &words).output().unwrap();
+            assert!(output.status.success(), "{}: {line}: {}", page.display(), said(&output));
+            commands += 1;
+        }
+    }
+    assert!(commands > 20, "{commands}");
+}

@@ -139,7 +139,7 @@ fn pressures_that_nothing_bears_are_said() -> Done {
 fn assumed_units_and_sides_are_said() -> Done {
     let folder = with_surface("assumed")?;
     let metres = "its heights are assumed to be in m";
-    let square = "cells are assumed to be square: the side along y is 1e-2 m";
+    let square = "cells are assumed to be square: the side along y is 10 mm";
     let words = printed(&run(&folder.0, "info rough.npy --side 1e-2")?);
     assert!(words.contains(metres) && words.contains(square), "{words}");
     let load = "load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7";
@@ -196,19 +196,19 @@ fn advice_names_an_option() -> Done {
     let load = "--e-star 1 --load 1e-7";
     refused(
         &format!("load --surface holes.x3p {load}"),
-        &["2 of the heights are not finite", "`surface::fill_missing` (`--fill`)"],
+        &["2 heights are missing", "can be filled by `--fill`"],
     )?;
     refused(
         &format!("load --surface tilted.txt {load}"),
-        &["the heights have no unit", "`ReadOptions::height_unit` (`--height-unit`)"],
+        &["the heights have no unit", "give it with `--height-unit`"],
     )?;
     refused(
         &format!("load --surface tilted.txt --height-unit nm {load}"),
-        &["`ReadOptions::side` (`--side`)"],
+        &["give it with `--side`"],
     )?;
     let tilted = "info tilted.txt --height-unit nm --side 1e-3";
     let words = printed(&run(&folder.0, tilted)?);
-    let advice = "level it (`Topography::level`) unless the tilt is meant (`--level plane`)";
+    let advice = "level it (`--level plane`) unless the tilt is meant";
     assert!(words.contains(advice), "{words}");
     Ok(())
 }

@@ -29,7 +29,7 @@ plt.rcParams.update(
 def output(name: str) -> Path:
     """The picture of a script, in the folder of ``--out``."""
     parser = argparse.ArgumentParser(description=f"draws {name}")
-    parser.add_argument("--out", type=Path, default=Path("docs/images"), help="folder of the picture")
+    parser.add_argument("--out", type=Path, default=Path(), help="folder of the picture [default: the current one]")
     folder: Path = parser.parse_args().out
     folder.mkdir(parents=True, exist_ok=True)
     return folder / name

@@ -133,7 +133,7 @@ pub(crate) fn in_python(text: &str) -> String {
         ("`ReadOptions::channel`", "`channel=`"),
         ("`Topography::level`", "`Surface.level(\"plane\")`"),
         ("`kernel::check`", "`check_half_space`"),
-        ("The model is elastic;", "The model is elastic unless a `hardness=` is given;"),
+        ("The model is elastic", "The model is elastic unless a `hardness=` is given"),
         ("it has to be given", "it has to be given, as `half_space=`"),
         ("step the bed through it", "`Creep.follow` steps through it"),
     ];
@@ -224,6 +224,9 @@ fn describe(error: &Error) -> Described {
         Error::NotFinite { step } => (VALUE, "NotFinite", numbers![step]),
         Error::NotOnPath { step, load, approach, quantity, value, expected } => {
             (VALUE, "NotOnPath", numbers![step, load, approach, quantity, value, expected])
+        }
+        Error::BeyondHardness { load, mean_pressure, hardness } => {
+            (VALUE, "BeyondHardness", numbers![load, mean_pressure, hardness])
         }
         Error::ForeignKernel => (VALUE, "ForeignKernel", Vec::new()),
         Error::WrongKernel { expected, found } => (VALUE, "WrongKernel", numbers![expected, found]),

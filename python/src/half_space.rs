@@ -210,9 +210,13 @@ impl HalfSpace {
         &self.bodies
     }
 
-    /// What looks wrong with the modulus.
-    pub(crate) fn warnings(&self) -> Option<Warning> {
-        self.e_star.and_then(Warning::of_modulus)
+    /// What looks wrong with it on a grid.
+    pub(crate) fn warnings(&self, grid: &Grid) -> impl Iterator<Item = Warning> {
+        let layers = match &self.body {
+            Body::Layers { body, .. } => Warning::of_layers(body, grid),
+            _ => None,
+        };
+        self.e_star.and_then(Warning::of_modulus).into_iter().chain(layers)
     }
 }
 

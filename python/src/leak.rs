@@ -1,5 +1,6 @@
 //! Leakage through the gap.
 
+use asperity::Warning;
 use asperity::leak::{self, CriticalConstriction, Leak, LeakPoint};
 use asperity::surface::Axis;
 use numpy::PyArray1;
@@ -13,6 +14,7 @@ use crate::errors::Fallible;
 use crate::path::LoadingPath;
 use crate::results::result;
 use crate::state::State;
+use crate::warnings::warn_all;
 
 /// A viscous fluid before one edge of the surface, pressed through the gap to the opposite one.
 ///
@@ -77,19 +79,28 @@ impl Seal {
     /// path : LoadingPath
     /// state : State, optional
     ///     One of the path so far, or one that `History.at` has read from it; the last one if not given.
+    /// check : bool
+    ///     Warn if the pressure drop is not small beside the mean pressure of the contact.
     ///
     /// Returns
     /// -------
     /// results.Leak
-    #[pyo3(signature = (path, state=None))]
+    #[pyo3(signature = (path, state=None, *, check=true))]
     fn leak<'py>(
         &self,
         py: Python<'py>,
         path: PyRef<'py, LoadingPath>,
         state: Option<PyRef<'py, State>>,
+        check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
         let seal = self.seal;
-        of_leak(py, path.at(py, state, |engine, state| engine.leak_at(&seal, state))?)
+        let (leak, mean_pressure) = path.at(py, state, |engine, state| {
+            Ok((engine.leak_at(&seal, state)?, state.contact.mean_pressure()))
+        })?;
+        if check {
+            warn_all(py, Warning::of_pressure_drop(seal.pressure_drop(), [mean_pressure]))?;
+        }
+        of_leak(py, leak)
     }
 
     /// The leak through any gap map.
@@ -134,19 +145,26 @@ impl Seal {
     ///     With its states so far.
     /// states : int
     ///     Number of states, at least 2.
+    /// check : bool
+    ///     As of `leak`.
     ///
     /// Returns
     /// -------
     /// results.LeakCurve
-    #[pyo3(signature = (path, states=40))]
+    #[pyo3(signature = (path, states=40, *, check=true))]
     fn curve<'py>(
         &self,
         py: Python<'py>,
         path: PyRef<'py, LoadingPath>,
         states: usize,
+        check: bool,
     ) -> Fallible<Bound<'py, PyAny>> {
         let (seal, history) = (self.seal, path.history_now(py).history);
         let curve = path.computed(py, |engine| engine.leak_curve(&seal, &history, states))?;
+        if check {
+            let pressures = curve.points.iter().map(|point| point.state.contact.mean_pressure());
+            warn_all(py, Warning::of_pressure_drop(seal.pressure_drop(), pressures))?;
+        }
         let values = |get: &dyn Fn(&LeakPoint) -> f64| {
             column(py, curve.points.iter().map(get).collect::<Vec<f64>>())
         };

@@ -2,7 +2,8 @@
 
 use std::ffi::CString;
 
-use asperity::Warning;
+use asperity::nalgebra::DMatrix;
+use asperity::{Boundary, Error, Grid, Warning};
 use pyo3::prelude::*;
 
 use crate::errors::{Fallible, in_python};
@@ -14,6 +15,18 @@ pub(crate) fn warn(py: Python<'_>, message: &str) -> Fallible<()> {
     let text = CString::new(in_python(message).replace('\0', " "));
     let text = text.unwrap_or_default();
     Ok(PyErr::warn(py, &class, &text, 1)?)
+}
+
+/// What looks wrong with a contact; with its greatest pressure if a modulus is given.
+pub(crate) fn of_contact(
+    pressure: &DMatrix<f64>,
+    contact_map: &DMatrix<bool>,
+    on: (&Grid, Boundary),
+    e_star: Option<f64>,
+) -> Result<Vec<Warning>, Error> {
+    let mut warnings = Warning::of_contact(pressure, contact_map, on)?;
+    warnings.extend(e_star.and_then(|e_star| Warning::of_pressure(pressure.max(), e_star, None)));
+    Ok(warnings)
 }
 
 /// Gives all of these warnings.

@@ -214,6 +214,38 @@ def test_warnings(rough: asp.Surface, body: asp.HalfSpace) -> None:
         asp.load_path(rough, asp.HalfSpace(115.0, boundary="free"))
 
 
+def ball(nodes: int) -> asp.Surface:
+    """A sphere of 10 mm over 1 mm x 1 mm."""
+    x = ((np.arange(nodes) + 0.5) / nodes - 0.5) * 1e-3
+    return asp.Surface(-(x**2 + x[:, None] ** 2) / 0.02, 1e-3)
+
+
+def test_warnings_of_contacts() -> None:
+    # Rubber, which bears any pressure.
+    surface, free = ball(32), asp.HalfSpace(2.67e6, boundary="free")
+    # A contact that is cut off at the border, by a path, a single load and a sweep.
+    with pytest.warns(asp.AsperityWarning, match="border of the grid"):
+        asp.load_path(surface, free, load=0.093).run()
+    with pytest.warns(asp.AsperityWarning, match="border of the grid"):
+        asp.solve(surface, free, load=0.093)
+    with pytest.warns(asp.AsperityWarning, match="border of the grid"):
+        list(asp.sweep(surface, free, load=[0.093]))
+    # A few nodes.
+    with pytest.warns(asp.AsperityWarning, match="not resolved"):
+        asp.load_path(surface, free, nodes=12).run()
+    with pytest.warns(asp.AsperityWarning, match="not resolved"):
+        asp.solve(surface, free, load=1.2e-5)
+    # None of a contact that is resolved.
+    asp.load_path(surface, free, load=0.012).run()
+    asp.solve(surface, free, load=0.012)
+    # A flat surface touches all at once.
+    with pytest.warns(asp.AsperityWarning, match="touch at the same height"):
+        asp.load_path(asp.Surface(np.zeros((16, 16)), 1e-3), free, area_fraction=0.1).run()
+    thin = asp.HalfSpace.layered([(3e6, 0.4, 20e-6)], "rigid", "free")
+    with pytest.warns(asp.AsperityWarning, match="wider than the coat"):
+        asp.load_path(surface, thin, load=1e-3)
+
+
 def test_progress(rough: asp.Surface, body: asp.HalfSpace, capsys: pytest.CaptureFixture[str]) -> None:
     told: list[tuple[float, int]] = []
     path = asp.load_path(rough, body, area_fraction=0.5)

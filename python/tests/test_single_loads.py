@@ -122,7 +122,9 @@ def test_yielding(rough: asp.Surface, body: asp.HalfSpace) -> None:
     assert elastic.yielded_map is None and elastic.plastic_depth is None and elastic.yielded_nodes == 0
     with pytest.raises(asp.AsperityError) as over:
         asp.solve(rough, body, load=2.6e9 * rough.area, hardness=2.5e9, check=False)
-    assert over.value.kind == "OutOfRange"
+    assert over.value.kind == "BeyondHardness"
+    assert (over.value.mean_pressure, over.value.hardness) == (pytest.approx(2.6e9), pytest.approx(2.5e9))
+    assert "a mean pressure of 2.6 GPa" in str(over.value) and "their hardness, 2.5 GPa on average" in str(over.value)
 
 
 @pytest.mark.parametrize("boundary", ["free", "love"])

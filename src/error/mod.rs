@@ -7,6 +7,7 @@ mod kernel;
 mod slip;
 mod updater;
 
+use asperity_surfaces::number::quantity;
 use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
@@ -135,6 +136,23 @@ pub enum Error {
         value: f64,
         /// The value that a state has.
         expected: &'static str,
+    },
+
+    /// A load under which all nodes would have yielded.
+    #[error(
+        "a mean pressure of {} ({}) is beyond what the surface bears: all nodes yield at their hardness, {} on average, and the mean \
+         pressure stays below it",
+        quantity(*mean_pressure, "Pa", 4),
+        quantity(*load, "N", 4),
+        quantity(*hardness, "Pa", 4)
+    )]
+    BeyondHardness {
+        /// Load asked for \[N\].
+        load: f64,
+        /// The same over the nominal area \[Pa\].
+        mean_pressure: f64,
+        /// Mean hardness of the nodes \[Pa\].
+        hardness: f64,
     },
 
     /// A record of a path on a kernel that is not one of this crate.

@@ -95,12 +95,8 @@ impl<'a> Stepper<'a> {
         let cell = self.finest().cell_response();
         let sum = load / self.finest().grid.cell_area();
         cell.check(cell.displacement(sum))?;
-        if self.greatest_load().is_some_and(|greatest| load >= greatest) {
-            return Err(Error::OutOfRange {
-                quantity: "load",
-                value: load,
-                expected: "below the hardness times the nominal area, where all nodes yield",
-            });
+        if let Some(hardness) = self.hardness {
+            hardness.check(load, &self.finest().grid)?;
         }
         self.to(Prescribed::Sum(sum), sum, Some(load))
     }

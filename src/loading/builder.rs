@@ -264,7 +264,7 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let growth = problem.growth();
         let (plastic, problem) = match self.hardness.resolve(&problem)? {
             Some(hardness) => {
-                limits.check_hardness(hardness.greatest_load(&grid))?;
+                limits.check_hardness(&hardness, &grid)?;
                 fixed_bytes += Plastic::bytes_on(&grid, boundary);
                 if fixed_bytes > budget {
                     let needed = fixed_bytes;

@@ -2,6 +2,7 @@
 
 use super::state::{ContactEvent, LoadingState};
 use crate::contact::{ContactState, ContactTarget};
+use crate::hardness::Hardness;
 use crate::{Error, Grid};
 
 /// Why a path has ended.
@@ -105,15 +106,8 @@ impl Limits {
     }
 
     /// `Ok` unless the greatest load is one under which all nodes would yield.
-    pub(super) fn check_hardness(&self, most: f64) -> Result<(), Error> {
-        if self.load == f64::INFINITY || self.load < most {
-            return Ok(());
-        }
-        Err(Error::OutOfRange {
-            quantity: "greatest load",
-            value: self.load,
-            expected: "below the hardness times the nominal area, where all nodes yield",
-        })
+    pub(super) fn check_hardness(&self, hardness: &Hardness, grid: &Grid) -> Result<(), Error> {
+        if self.load == f64::INFINITY { Ok(()) } else { hardness.check(self.load, grid) }
     }
 
     /// `Ok` if a path that has got to a state has not passed any of the limits. It may be at one already, unless it is to

@@ -53,6 +53,8 @@ mod error;
 mod grid;
 pub mod io;
 #[doc(hidden)]
+pub mod number;
+#[doc(hidden)]
 pub mod parallel;
 pub mod surface;
 

@@ -29,7 +29,7 @@ fn a_measurement_is_read_filled_levelled_and_described() -> Done {
     assert_eq!(measured.missing, 2);
     assert_eq!(
         measured.to_string(),
-        "Digital Surf: 7 x 5 nodes, 1.4e-5 x 1.5e-5 m, 2 nodes (5.71 %) missing"
+        "Digital Surf: 7 x 5 nodes, 14 µm x 15 µm, 2 nodes (5.71 %) missing"
     );
     let refused = measured.clone().topography();
     assert!(matches!(refused, Err(Error::HeightNotFinite { count: 2, .. })), "{refused:?}");

@@ -217,7 +217,8 @@ fn two_nodes_by_hand() {
     for load in [1.5, 2.0] {
         assert!(matches!(
             solver.solve(load),
-            Err(Error::OutOfRange { quantity: "load", value, .. }) if value == load
+            Err(Error::BeyondHardness { load: found, mean_pressure, hardness })
+                if found == load && mean_pressure / hardness == load / 1.5
         ));
     }
     near(solver.solve(1.25).unwrap().state.approach, 2.75, 1e-11, "approach");

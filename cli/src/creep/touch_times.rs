@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::ContactEvent;
 use asperity::record::LoadingRecord;
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -34,8 +34,8 @@ pub(super) fn draw(
     }
     let values = times.map(|time| if time.is_nan() { time } else { time.max(first) });
     let caption = format!(
-        "{touched} of {} nodes touched, the last after {}",
-        grid.nodes(),
+        "{touched} of {} touched, the last after {}",
+        counted(grid.nodes(), "node"),
         quantity(last, "s", 4)
     );
     let map = FieldMap {

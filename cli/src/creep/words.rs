@@ -3,7 +3,7 @@
 use asperity::creep::{Course, CreepState};
 use asperity::{CreepError, Error};
 use asperity_cli::number::{quantity, significant};
-use asperity_cli::say;
+use asperity_cli::{say, speech};
 
 use super::Options;
 use super::course::Task;
@@ -142,10 +142,13 @@ fn cycles(sweep: &Result<Sweep, Error>) {
                 significant(worst.loss_factor, 3)
             );
             if sweep.is_coarse() {
-                say!(
-                    "warning: only {} nodes join and leave in such a cycle; the part of the loss that is theirs depends on the grid",
-                    sweep.moving_nodes
-                );
+                speech::warn(format_args!(
+                    "in such a cycle only {} in or out of contact; the part of the loss that is theirs depends on the grid",
+                    match sweep.moving_nodes {
+                        1 => "1 node goes".to_string(),
+                        count => format!("{count} nodes go"),
+                    }
+                ));
             }
         }
         Err(Error::Creep(CreepError::NoSteadyCycle { .. })) => {

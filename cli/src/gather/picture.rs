@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{self, BLUE, Chart, Corner, ORANGE, Series, Style};
+use asperity_cli::number::counted;
 use asperity_cli::outcome::Failure;
 
 use super::{Row, table};
@@ -51,7 +52,7 @@ fn chart(rows: &[Row], column: usize, paths: usize) -> Option<Chart> {
         x: Axis::logarithmic("load", "N", rows.first()?.load, rows.last()?.load),
         y: y.with_room(0.04, 0.06),
         series: vec![
-            Series::new(format!("mean of {paths} paths"), BLUE, Style::Line, mean),
+            Series::new(format!("mean of {}", counted(paths, "path")), BLUE, Style::Line, mean),
             Series::new("one standard deviation", ORANGE, Style::Dashed, above),
             Series::new("", ORANGE, Style::Dashed, below),
         ],

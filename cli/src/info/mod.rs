@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use asperity::Warning;
 use asperity::io::MeasuredSurface;
 use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
@@ -74,12 +74,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// What looks wrong; without a size there are no slopes.
-fn warnings(whole: &Whole) -> Vec<String> {
+fn warnings(measured: &MeasuredSurface, whole: &Whole) -> Vec<String> {
     let warnings = Warning::of_surface(&whole.surface).into_iter();
     let known = warnings.filter(|warning| {
         whole.has_size || !matches!(warning, Warning::Surface(surface::Warning::Steep { .. }))
     });
-    known.map(|warning| advice::told(&warning)).collect()
+    let filled = surface::Warning::of_filling(measured.missing, measured.heights.len());
+    known.chain(filled.map(Warning::Surface)).map(|warning| advice::told(&warning)).collect()
 }
 
 /// One object for programs.
@@ -103,7 +104,7 @@ fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
         "sz": map.peak_to_valley(),
         "rms_gradient": whole.rms_gradient(),
         "notes": measured.notes,
-        "warnings": warnings(whole),
+        "warnings": warnings(measured, whole),
     })
 }
 
@@ -123,8 +124,8 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
     }
     if measured.missing > 0 {
         say!(
-            "figures       of all nodes, the {} missing ones filled from those around them",
-            measured.missing
+            "figures       of all nodes, the {} filled from those around them",
+            counted(measured.missing, "missing one")
         );
     }
     let map = whole.surface.map();
@@ -164,7 +165,7 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
             "no gradients and no spectrum: the file does not contain the size of the surface; give it with --side"
         );
     }
-    for warning in warnings(whole) {
+    for warning in warnings(measured, whole) {
         say!("warning       {warning}");
     }
     Ok(())

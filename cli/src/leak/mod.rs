@@ -14,12 +14,13 @@ use asperity::leak::{Leak, LeakCurve, Seal};
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
 use asperity::updater::ConjugateGradient;
-use asperity::{LoadingSolver, LoadingState};
+use asperity::{LoadingSolver, LoadingState, Warning};
 use asperity_cli::number::quantity;
 use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{Args, ValueEnum};
 
+use crate::advice;
 use crate::values::positive;
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
@@ -151,10 +152,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
 
     let mut outcome = Outcome::default();
     let mut documents = Vec::new();
+    let mut pressures = Vec::new();
     if options.states > 0 {
         let curve = work.curve(options.states)?;
         documents.extend(curve.points.iter().map(words::point));
         words::print_curve(&curve, &work.record);
+        pressures.extend(curve.points.iter().map(|point| point.state.contact.mean_pressure()));
         outcome.written(table::write(&curve, &out.join("leak.csv")));
         match charts::draw(&curve, &out.join("leak.png")) {
             Ok(drawn) => drawn.into_iter().for_each(|name| outcome.written(Ok(name))),
@@ -170,6 +173,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Ok(leak) => {
                 words::print_leak(state, &leak, &work.seal);
                 if !options.load.is_empty() {
+                    pressures.push(state.contact.mean_pressure());
                     documents.push(words::leak(state, &leak));
                 }
                 outcome.all_written(maps::draw(&work.record, (state, &leak), &work.seal, (out, k)));
@@ -178,8 +182,11 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
     }
+    let warning = Warning::of_pressure_drop(options.pressure_drop, pressures);
+    let warning = warning.as_ref().map(advice::told);
+    warning.iter().for_each(speech::warn);
     if options.json
-        && let Some(document) = words::document(documents)
+        && let Some(document) = words::document(documents, warning)
     {
         answer!("{document}");
     }

@@ -4,7 +4,7 @@ use asperity::leak::{CriticalConstriction, Leak, LeakCurve, LeakPoint, Seal};
 use asperity::record::LoadingRecord;
 use asperity::surface::Axis;
 use asperity::{Boundary, LoadingState};
-use asperity_cli::number::{quantity, scientific};
+use asperity_cli::number::{counted, quantity, scientific};
 use asperity_cli::say;
 use serde_json::{Value, json};
 
@@ -32,7 +32,7 @@ pub(super) fn print_seal(record: &LoadingRecord, seal: &Seal) {
             if across { "sides joined, as the half-space repeats across" } else { "sides closed" }
         }
     };
-    say!("{} states on {nx} x {ny} nodes", record.states().len());
+    say!("{} on {nx} x {ny} nodes", counted(record.states().len(), "state"));
     say!(
         "fluid of {} under {} along {}, {sides}",
         quantity(seal.viscosity(), "Pa s", 4),
@@ -114,8 +114,8 @@ pub(super) fn print_leak(state: &LoadingState, leak: &Leak, seal: &Seal) {
         100.0 * narrowest.dissipation
     );
     say!(
-        "  the fluid flows through {} nodes; {} cut off; conserved to {:.0e}",
-        leak.flowing_nodes,
+        "  the fluid flows through {}; {} cut off; conserved to {:.0e}",
+        counted(leak.flowing_nodes, "node"),
         match leak.pools {
             1 => "1 pool is".to_string(),
             pools => format!("{pools} pools are"),
@@ -171,9 +171,10 @@ fn constriction(constriction: Option<CriticalConstriction>) -> Value {
     })
 }
 
-/// The last of all states, with all of them.
-pub(super) fn document(states: Vec<Value>) -> Option<Value> {
+/// The last of all states, with all of them, and with what looks wrong.
+pub(super) fn document(states: Vec<Value>, warning: Option<String>) -> Option<Value> {
     let mut document = states.last()?.clone();
     document["states"] = Value::Array(states);
+    document["warnings"] = warning.into_iter().collect();
     Some(document)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::patches::activation_map;
 use asperity::record::LoadingRecord;
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 
 /// The share of the nodes that touch below the range of the colours, so that the first few take no decades of it.
@@ -35,8 +35,8 @@ pub(super) fn draw(record: &LoadingRecord, name: &Path) -> Result<PathBuf, Failu
     .write(
         name,
         &format!(
-            "{touched} of {} nodes touched, up to W = {}",
-            grid.nodes(),
+            "{touched} of {} touched, up to W = {}",
+            counted(grid.nodes(), "node"),
             quantity(greatest, "N", 4)
         ),
     )

@@ -124,13 +124,22 @@ fn areas(record: &LoadingRecord, moment: &Moment) -> Result<Option<Chart>, Error
     };
     // A logarithmic axis has no zero.
     let foot = 0.8;
-    let counts = found.counts().iter().map(|&count| (count as f64).max(foot));
-    let points = outline(&edges, counts, foot);
+    // Each run of bins that are not empty has an outline of its own: an empty bin has nothing to draw.
+    let mut series = Vec::new();
+    let mut first = 0;
+    for run in found.counts().chunk_by(|one, next| (*one == 0) == (*next == 0)) {
+        let counts = run.iter().map(|&count| count as f64);
+        if run.iter().any(|&count| count > 0) {
+            let points = outline(&edges[first..=first + run.len()], counts, foot);
+            series.push(Series::new("", BLUE, Style::Line, points));
+        }
+        first += run.len();
+    }
     Ok(Some(Chart {
         title: counted(moment.patches.len(), "patch"),
         x: Axis::logarithmic("area of a patch", "m²", least, greatest),
         y: Axis::plain_logarithmic("patches in a quarter of a decade", foot, 1.5 * most as f64),
-        series: vec![Series::new("", BLUE, Style::Line, points)],
+        series,
         legend: Corner::TopRight,
     }))
 }

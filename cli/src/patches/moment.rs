@@ -3,7 +3,7 @@
 use asperity::LoadingState;
 use asperity::patches::{Connectivity, Patch, PatchLoad, Patches};
 use asperity::record::LoadingRecord;
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -17,10 +17,10 @@ pub(super) fn state(record: &LoadingRecord, options: &Options) -> Result<Loading
     };
     let missed = |what: String| {
         Failure::request(format!(
-            "the path has no state at {what}: it ends at {}, with {} of {} nodes in contact",
+            "the path has no state at {what}: it ends at {}, with {} of {} in contact",
             quantity(last.contact.load, "N", 6),
             last.contact.contact_nodes,
-            record.grid().nodes()
+            counted(record.grid().nodes(), "node")
         ))
     };
     if let Some(load) = options.at_load {

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::followed::Followed;
 use super::moment::Moment;
+use super::words::warnings;
 
 /// Percolation and sealing if patches could be followed, and one state with its patches and channels.
 pub(super) fn of(
@@ -39,6 +40,7 @@ pub(super) fn of(
                 .map(|place| json!({ "node": [place.node.0, place.node.1], "gap": place.gap }))
         );
     }
+    object["warnings"] = json!(warnings(record, moment)?);
     Ok(object)
 }
 

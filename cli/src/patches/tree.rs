@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::record::LoadingRecord;
 use asperity_cli::axis::Axis;
 use asperity_cli::chart::{BLUE, ORANGE};
+use asperity_cli::number::counted;
 use asperity_cli::outcome::Failure;
 use asperity_cli::panel::{Area, Drawn, Panel, anchor};
 use asperity_cli::picture::{FINE, draw_fine};
@@ -118,8 +119,8 @@ impl Tree<'_> {
         }
         let lasting = branches.iter().filter(|branch| branch.merger.is_none()).count();
         let title = format!(
-            "The {count} largest of {} patches: each from its first node until it merges into an older one, or to the end ({lasting}, orange)",
-            branches.len()
+            "The {count} largest of {}: each from its first node until it merges into an older one, or to the end ({lasting}, orange)",
+            counted(branches.len(), "patch")
         );
         let middle = (FINE * WIDTH / 2, FINE * 30);
         let pos = anchor(HPos::Center, VPos::Center);

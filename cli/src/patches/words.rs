@@ -8,7 +8,8 @@ use asperity::record::LoadingRecord;
 use asperity::surface::{Axis, Topography};
 use asperity::{Boundary, Error, LoadingState, Warning};
 use asperity_cli::number::{area, counted, quantity};
-use asperity_cli::say;
+use asperity_cli::outcome::of_program;
+use asperity_cli::{say, speech};
 
 use crate::elasticity::Bodies;
 use crate::resolution::Resolution;
@@ -74,6 +75,22 @@ pub(super) fn print_passages(file: &Path, record: &LoadingRecord, followed: &Fol
     say!();
 }
 
+/// What looks wrong with a record and one of its states.
+pub(super) fn warnings(record: &LoadingRecord, moment: &Moment) -> Result<Vec<String>, Error> {
+    let grid = record.grid();
+    let mut warnings =
+        Warning::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
+    let on = (&grid, record.kernel().boundary);
+    warnings.extend(Warning::of_contact(&moment.pressure, &moment.contact_map, on)?);
+    if let Ok((_, bodies)) = Bodies::of_record(record) {
+        warnings.extend(bodies.warnings(&grid));
+        // With a hardness it is what was asked for.
+        let yields = record.hardness_map()?.is_some();
+        warnings.extend(bodies.warning_of(moment.pressure.max()).filter(|_| !yields));
+    }
+    Ok(warnings.iter().map(|warning| of_program(&warning.to_string())).collect())
+}
+
 /// The narrowest place of the widest channel, and what looks wrong.
 pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<(), Error> {
     let (grid, boundary) = (record.grid(), record.kernel().boundary);
@@ -91,16 +108,7 @@ pub(super) fn print_channels(record: &LoadingRecord, moment: &Moment) -> Result<
     }
     let resolution = Resolution::of(&moment.contact_map, &grid, boundary)?;
     say!("mesh: {resolution}");
-    let mut warnings =
-        Warning::of_surface(&Topography::new(grid, record.heights().matrix().clone())?);
-    warnings.extend(resolution.warning());
-    if let Ok((_, Bodies { e_star, .. })) = Bodies::of_record(record) {
-        warnings.extend(Warning::of_modulus(e_star));
-        warnings.extend(Warning::of_pressure(moment.pressure.max(), e_star));
-    }
-    for warning in warnings {
-        say!("warning: {warning}");
-    }
+    warnings(record, moment)?.iter().for_each(speech::warn);
     Ok(())
 }
 

@@ -15,7 +15,7 @@ use super::interrupt::Interrupt;
 use super::job::Job;
 use super::joint::Named;
 use super::{Solver, save};
-use asperity_cli::number::scientific;
+use asperity_cli::number::{counted, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::speech;
 
@@ -80,8 +80,8 @@ impl Followed {
                         let load = scientific(state.contact.load, 3);
                         let left = progress.left(start.elapsed());
                         bar.set_message(format!(
-                            "{} nodes, W = {load} N{left}",
-                            state.contact.contact_nodes
+                            "{}, W = {load} N{left}",
+                            counted(state.contact.contact_nodes, "node")
                         ));
                     }
                     self.add(state, job, solver)

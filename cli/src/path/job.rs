@@ -246,6 +246,10 @@ impl Job {
         &self.bodies.elastic
     }
 
+    pub(super) fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
     pub(super) fn boundary(&self) -> Boundary {
         boundary(self.periodic)
     }
@@ -253,7 +257,7 @@ impl Job {
     /// What looks wrong before anything is computed.
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Warning::of_surface(&self.surface);
-        warnings.extend(Warning::of_modulus(self.e_star()));
+        warnings.extend(self.bodies.warnings(self.surface.grid()));
         warnings
     }
 

@@ -193,10 +193,10 @@ fn follow_one(
     if let Some(kept) = kept {
         outcome.written(kept);
     }
-    outcome.note(table::print(&job, &mut solver, &states, seconds));
-    if options.json {
-        outcome.note(object::print(&job, &mut solver, &states, seconds));
-    }
+    outcome.note(match options.json {
+        true => object::print(&job, &mut solver, &states, seconds),
+        false => table::print(&job, &mut solver, &states, seconds),
+    });
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));
     }

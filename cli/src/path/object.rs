@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::Solver;
 use super::job::Job;
-use super::table::{corrected_areas, reason, warnings};
+use super::table::{corrected_areas, reason, verify, warnings};
 
 /// Prints the end of the path as one line, and checks it as the table does.
 pub(super) fn print(
@@ -46,6 +46,5 @@ pub(super) fn print(
             "warnings": warnings(job, solver)?,
         })
     );
-    let wrong = |error| Failure::new("the last state violates the contact conditions", error);
-    solver.verify().map_err(wrong)
+    verify(solver)
 }

@@ -7,7 +7,7 @@ use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCho
 use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid, LoadingSolver};
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::outcome::Failure;
-use clap::{ArgGroup, Args, Parser, ValueEnum};
+use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
 use super::joint::Joint;
@@ -17,6 +17,12 @@ use crate::hardness::{GreatestPressure, Hardness};
 use crate::reading::Reading;
 use crate::room;
 use crate::values::{bytes, fraction, positive};
+
+/// An option whose help says what a generated surface has without it.
+fn generated(arg: Arg, value: &str) -> Arg {
+    let help = arg.get_help().map_or_else(String::new, ToString::to_string);
+    arg.help(format!("{help} [generated surface: {value}]"))
+}
 
 /// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
 ///
@@ -34,6 +40,7 @@ use crate::values::{bytes, fraction, positive};
 /// that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff 78.125e-6.
 #[derive(Debug, Clone, Parser)]
 #[command(group(ArgGroup::new("kept").multiple(true)))]
+#[command(mut_arg("side", |arg| generated(arg, "1e-2")), mut_arg("material", |arg| generated(arg, "steel")))]
 pub(crate) struct Options {
     /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
     /// an image are y; a NumPy array is [ix, iy]
@@ -174,7 +181,7 @@ impl Options {
 
     /// Their hardness, if there is to be one.
     pub(super) fn greatest_pressure(&self) -> Result<Option<GreatestPressure>, Failure> {
-        self.hardness.of(&self.elasticity)
+        self.hardness.of(&self.bodies()?)
     }
 
     /// What there is no room for.

@@ -23,9 +23,13 @@ pub(super) fn print(
     states: &[LoadingState],
     seconds: f64,
 ) -> Result<(), Failure> {
-    let Some(last) = states.last().filter(|_| !speech::is_quiet()) else {
+    let Some(last) = states.last() else {
         return Ok(());
     };
+    if speech::is_quiet() {
+        warnings(job, solver)?.iter().for_each(speech::warn);
+        return verify(solver);
+    }
     say!("{} in {seconds:.2} s", counted(states.len(), "state"));
     if let Some(end) = solver.end() {
         say!("ended by: {}", reason(end));
@@ -50,19 +54,18 @@ pub(super) fn print(
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
         .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;
     say!("mesh: at the last state {resolution}");
-    if let Some(warning) = resolution.warning() {
-        say!("warning: {warning}");
-    }
-    for warning in warnings(job, solver)? {
-        say!("warning: {warning}");
-    }
+    warnings(job, solver)?.iter().for_each(speech::warn);
     let certificate = solver
         .certificate()
         .map_err(|error| Failure::new("cannot compute the residuals of the last state", error))?;
     exactness(&certificate, last);
-    solver
-        .verify()
-        .map_err(|error| Failure::new("the last state violates the contact conditions", error))
+    verify(solver)
+}
+
+/// `Ok` if the last state fulfils the conditions of contact.
+pub(super) fn verify(solver: &mut Solver) -> Result<(), Failure> {
+    let wrong = |error| Failure::new("the last state violates the contact conditions", error);
+    solver.verify().map_err(wrong)
 }
 
 /// The corrected contact area \[m²\] after each event.
@@ -150,7 +153,7 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
     ];
     let excess = certificate
         .excess_pressure
-        .map(|excess| ("greatest pressure over hardness, less 1", scientific(excess, 2)));
+        .map(|excess| ("pressure beyond the hardness", format!("{} of it", scientific(excess, 2))));
     for (what, value) in left.into_iter().chain(excess) {
         say!("  {what:32} {value}");
     }
@@ -158,14 +161,18 @@ fn exactness(certificate: &Certificate, last: &LoadingState) {
 
 /// What looks wrong with the end of the path.
 pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Failure> {
-    let pressure = solver
-        .max_pressure()
-        .map_err(|error| Failure::new("cannot compute the pressure of the last state", error))?;
+    let failed = |error| Failure::new("cannot compute the pressure of the last state", error);
+    let pressure = solver.pressure().map_err(failed)?;
+    let on = (&job.grid(), job.boundary());
+    let of_contact = Warning::of_contact(&pressure, &solver.contact_map(), on).map_err(failed)?;
     // With a hardness it is what was asked for.
-    let high = Warning::of_pressure(pressure, job.e_star()).filter(|_| !job.has_hardness());
-    let mut warnings: Vec<String> = high.iter().map(crate::advice::told).collect();
+    let high = job.bodies().warning_of(pressure.max()).filter(|_| !job.has_hardness());
+    let found = high.into_iter().chain(of_contact);
+    let mut warnings: Vec<String> = found.map(|warning| crate::advice::told(&warning)).collect();
     if let (Some(LoadingEnd::FullContact | LoadingEnd::NoMoreEvents), Some(target)) =
         (solver.end(), job.missed(solver.state()))
+        // A flat surface, whose nodes all touch before there is a load, says nothing of units.
+        && pressure.max() > 0.0
     {
         warnings.push(format!(
             "the path ended before {target}. If you did not expect this, check the units: E* is {} Pa",

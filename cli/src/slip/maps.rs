@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::slip::SlipZone;
 use asperity_cli::field_map::{FieldMap, Scale};
-use asperity_cli::number::quantity;
+use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
@@ -53,10 +53,10 @@ pub(super) fn draw(joint: &Joint, directory: &Path) -> Result<Vec<PathBuf>, Fail
     let stick_map = map(&share, Scale::Linear, (0.0, 1.0), label).write(
         &directory.join("stick_map.png"),
         &format!(
-            "T = {} under P = {}: {} nodes stick, {} slip",
+            "T = {} under P = {}: {} in stick, {} in slip",
             quantity(force, "N", 4),
             quantity(state.load, "N", 4),
-            state.stick_nodes,
+            counted(state.stick_nodes, "node"),
             state.slipping_nodes
         ),
     )?;

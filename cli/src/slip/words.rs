@@ -99,8 +99,8 @@ pub(super) fn print(joint: &Joint, sheared: Option<&Sheared>) {
     }
     if let Some(sheared) = sheared {
         say!(
-            "along the history of {} rows {} are lost",
-            sheared.rows.len(),
+            "along the history of {} {} are lost",
+            counted(sheared.rows.len(), "row"),
             quantity(sheared.dissipation(), "J", 4)
         );
     }

@@ -3,7 +3,7 @@
 mod solution;
 mod sweep;
 
-use asperity::{ContactTarget, FixedLoadSolver, Warning};
+use asperity::{ContactTarget, FixedLoadSolver};
 use pyo3::prelude::*;
 
 use self::solution::Solution;
@@ -14,7 +14,7 @@ use crate::history::Setting;
 use crate::path::{Hardness, warn_of};
 use crate::surface::Surface;
 use crate::targets::Targets;
-use crate::warnings::warn_all;
+use crate::warnings::{of_contact, warn_all};
 
 /// How a solver is made.
 struct Settings {
@@ -73,7 +73,7 @@ fn solver(
 /// memory_budget : int, optional
 ///     Bytes that may be held; three quarters of the memory of the machine unless it is given (Linux).
 /// check : bool
-///     Warn of a surface, a modulus or a pressure that looks wrong.
+///     Warn of a surface, a modulus, layers or a contact that look wrong.
 ///
 /// Returns
 /// -------
@@ -126,8 +126,10 @@ fn solve(
     })??;
     let boundary = half_space.surroundings();
     let setting = Setting { grid, boundary, has_hardness: solved.plastic.is_some() };
-    if check && let (Some(e_star), None) = (half_space.modulus(), &solved.plastic) {
-        warn_all(py, Warning::of_pressure(solved.max_pressure(), e_star))?;
+    if check {
+        let e_star = half_space.modulus().filter(|_| solved.plastic.is_none());
+        let on = (&grid, boundary);
+        warn_all(py, of_contact(&solved.pressure, &solved.contact_map, on, e_star)?)?;
     }
     Ok(Solution::new(solved, setting))
 }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use asperity::fixed_load::FixedLoadSolution;
-use asperity::{ContactTarget, Error, Warning};
+use asperity::{ContactTarget, Error};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -20,7 +20,7 @@ use crate::history::Setting;
 use crate::path::warn_of;
 use crate::surface::Surface;
 use crate::targets::Targets;
-use crate::warnings::warn_all;
+use crate::warnings::{of_contact, warn_all};
 
 /// What the thread of a sweep sends.
 type Solved = Result<Result<FixedLoadSolution, Error>, String>;
@@ -35,6 +35,7 @@ pub(crate) struct LoadSweep {
     count: usize,
     setting: Setting,
     e_star: Option<f64>,
+    check: bool,
 }
 
 /// The thread that solves: the states that it goes on from borrow their solver, so that both live there.
@@ -96,8 +97,13 @@ impl LoadSweep {
         }
         match solved? {
             Some(Ok(Ok(solution))) => {
-                if let (Some(e_star), None) = (self.e_star, &solution.plastic) {
-                    warn_all(py, Warning::of_pressure(solution.max_pressure(), e_star))?;
+                if self.check {
+                    let e_star = self.e_star.filter(|_| solution.plastic.is_none());
+                    let on = (&self.setting.grid, self.setting.boundary);
+                    warn_all(
+                        py,
+                        of_contact(&solution.pressure, &solution.contact_map, on, e_star)?,
+                    )?;
                 }
                 Ok(Some(Solution::new(solution, self.setting)))
             }
@@ -220,7 +226,8 @@ fn sweep(
         }),
         count,
         setting: Setting { grid, boundary: half_space.surroundings(), has_hardness },
-        e_star: half_space.modulus().filter(|_| check),
+        e_star: half_space.modulus(),
+        check,
     })
 }
 

@@ -12,7 +12,7 @@ use std::time::Duration;
 use asperity::contact::Certificate;
 use asperity::loading::LoadingEnd;
 use asperity::nalgebra::DMatrix;
-use asperity::patches::{Patches, constriction};
+use asperity::patches::constriction;
 use asperity::{Error, Grid, LoadingState, Warning};
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -31,7 +31,7 @@ use crate::results::result;
 use crate::state::State;
 use crate::surface::Surface;
 use crate::targets::{Targets, named};
-use crate::warnings::{warn, warn_all};
+use crate::warnings::{of_contact, warn, warn_all};
 
 /// How long a path runs between two looks at signals and calls of `progress`.
 const STRETCH: Duration = Duration::from_millis(50);
@@ -167,15 +167,8 @@ impl LoadingPath {
         let e_star = self.e_star.filter(|_| !has_hardness);
         let engine = inner.engine_mut();
         let warnings = detached(py, move || {
-            let map = engine.contact_map_at(&state)?;
-            let four = asperity::patches::Connectivity::Four;
-            let patches = Patches::new(&map, &grid, boundary, four)?.patches().len();
-            let resolved = Warning::of_patches(patches, state.contact.contact_nodes);
-            let greatest = match e_star {
-                Some(e_star) => Warning::of_pressure(engine.pressure_at(&state)?.max(), e_star),
-                None => None,
-            };
-            Ok::<_, Error>(resolved.into_iter().chain(greatest).collect())
+            let pressure = engine.pressure_at(&state)?;
+            of_contact(&pressure, &engine.contact_map_at(&state)?, (&grid, boundary), e_star)
         });
         Ok(warnings??)
     }
@@ -206,8 +199,8 @@ impl LoadingPath {
     ///     True shows a bar, by tqdm if that is installed. A function is called some times a second with the part of the
     ///     path that is done, 0 to 1, and the last `State`.
     /// check : bool
-    ///     Warn if the greatest pressure at the end is more than solids bear elastically, or the grid does not resolve the
-    ///     patches of contact.
+    ///     Warn if the greatest pressure at the end is more than solids bear elastically or is made by the edge of the surface, if
+    ///     the grid does not resolve the patches of contact, and if the path ends before there is a load.
     ///
     /// Returns
     /// -------

@@ -41,7 +41,7 @@ impl Hardness {
 pub(crate) fn warn_of(py: Python<'_>, surface: &Surface, body: &HalfSpace) -> Fallible<()> {
     let topography = surface.topography()?;
     warn_all(py, detached(py, || Warning::of_surface(topography))?)?;
-    warn_all(py, body.warnings())?;
+    warn_all(py, body.warnings(surface.grid()))?;
     if surface.periodic() == Some(true) && body.surroundings() == asperity::Boundary::Free {
         warn(
             py,
@@ -75,7 +75,7 @@ pub(crate) fn warn_of(py: Python<'_>, surface: &Surface, body: &HalfSpace) -> Fa
 /// memory_budget : int, optional
 ///     Bytes that the path may hold; three quarters of the memory of the machine unless it is given (Linux).
 /// check : bool
-///     Warn of a surface or a modulus that looks wrong.
+///     Warn of a surface, a modulus or layers that look wrong.
 ///
 /// Returns
 /// -------

@@ -18,6 +18,7 @@ use crate::arrays::{self, Lengths};
 use crate::choice;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible, in_python};
+use crate::warnings::warn_all;
 
 /// A rough surface: heights in metres on a rectangular grid, positive towards the other body.
 ///
@@ -221,6 +222,8 @@ impl Surface {
     fn fill_missing(&self, py: Python<'_>) -> Fallible<Self> {
         let matrix = self.matrix();
         let filled = detached(py, || fill_missing(matrix.clone()))??;
+        let made_up = asperity::surface::Warning::of_filling(self.missing(), matrix.len());
+        warn_all(py, made_up.map(Warning::Surface))?;
         Ok(self.with(Topography::new(self.grid, filled)?))
     }
 

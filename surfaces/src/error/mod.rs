@@ -54,8 +54,8 @@ pub enum Error {
 
     /// Heights that are NaN or infinite: missing data of a measurement, or an overflow.
     #[error(
-        "{count} of the heights are not finite, the first at node ({ix}, {iy}), which is {value}; missing data of a \
-         measurement can be filled by `surface::fill_missing`"
+        "{}, the first at node ({ix}, {iy}); missing data of a measurement can be filled by `surface::fill_missing`",
+        not_finite(*value, *count)
     )]
     HeightNotFinite {
         /// Index of the first along x, in storage order.
@@ -69,7 +69,7 @@ pub enum Error {
     },
 
     /// A map without a single height that is finite: nothing to fill the others from.
-    #[error("none of the {nx} x {ny} heights is finite: there is nothing to fill them from")]
+    #[error("none of the {nx} x {ny} heights is finite: there is no surface in them")]
     NothingMeasured {
         /// Nodes along x.
         nx: usize,
@@ -172,6 +172,16 @@ pub enum Error {
     /// A file that could not be read or written, or does not say what it should.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+/// What heights are that are no numbers: missing, or infinite, by the first of them.
+fn not_finite(first: f64, count: usize) -> String {
+    match (first.is_nan(), count) {
+        (true, 1) => "1 height is missing".to_string(),
+        (true, _) => format!("{count} heights are missing"),
+        (false, 1) => format!("1 height is {first}"),
+        (false, _) => format!("{count} heights are not finite but {first}"),
+    }
 }
 
 impl Error {

@@ -5,6 +5,7 @@ use std::fmt;
 use nalgebra::DMatrix;
 
 use super::format::Format;
+use crate::number::{counted, quantity};
 use crate::surface::{Topography, Warning, fill_missing};
 use crate::{Error, FileError, Grid};
 
@@ -79,12 +80,15 @@ impl fmt::Display for MeasuredSurface {
         let (nx, ny) = self.heights.shape();
         write!(f, "{}: {nx} x {ny} nodes", self.format)?;
         match self.cell {
-            Some((dx, dy)) => write!(f, ", {:e} x {:e} m", nx as f64 * dx, ny as f64 * dy)?,
+            Some((dx, dy)) => {
+                let side = |n: usize, cell: f64| quantity(n as f64 * cell, "m", 6);
+                write!(f, ", {} x {}", side(nx, dx), side(ny, dy))?;
+            }
             None => write!(f, ", of unknown size")?,
         }
         if self.missing > 0 {
             let share = 100.0 * self.missing as f64 / (nx * ny) as f64;
-            write!(f, ", {} nodes ({share:.2} %) missing", self.missing)?;
+            write!(f, ", {} ({share:.2} %) missing", counted(self.missing, "node"))?;
         }
         Ok(())
     }
@@ -115,13 +119,13 @@ mod tests {
         let measured = plane(Some((0.5, 0.25)));
         assert_eq!(
             measured.to_string(),
-            "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m, 1 nodes (8.33 %) missing"
+            "Gwyddion Simple Field: 4 x 3 nodes, 2 m x 750 mm, 1 node (8.33 %) missing"
         );
         let (title, notes) = (measured.title.clone(), measured.notes.clone());
         let filled = measured.fill_missing()?;
         assert_eq!(filled.missing, 0);
         assert_eq!((&filled.title, &filled.notes), (&title, &notes));
-        assert_eq!(filled.to_string(), "Gwyddion Simple Field: 4 x 3 nodes, 2e0 x 7.5e-1 m");
+        assert_eq!(filled.to_string(), "Gwyddion Simple Field: 4 x 3 nodes, 2 m x 750 mm");
         let grid = filled.grid()?;
         assert_eq!((grid.shape(), grid.dx(), grid.dy()), ((4, 3), 0.5, 0.25));
         let surface = filled.topography()?;
@@ -142,7 +146,7 @@ mod tests {
         let unknown = plane(None);
         assert_eq!(
             unknown.to_string(),
-            "Gwyddion Simple Field: 4 x 3 nodes, of unknown size, 1 nodes (8.33 %) missing"
+            "Gwyddion Simple Field: 4 x 3 nodes, of unknown size, 1 node (8.33 %) missing"
         );
         assert!(matches!(unknown.grid(), Err(Error::File(FileError::NoSide))));
         let surface = unknown.fill_missing()?.topography();

@@ -10,6 +10,7 @@ use super::format::Format;
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::unit::LengthUnit;
+use crate::number::quantity;
 use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
@@ -195,7 +196,24 @@ impl ReadOptions {
         let (nx, ny) = channel.shape;
         if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {
             let side = ny as f64 * dy;
-            notes.push(format!("cells are assumed to be square: the side along y is {side:e} m"));
+            notes.push(format!(
+                "cells are assumed to be square: the side along y is {}",
+                quantity(side, "m", 6)
+            ));
+        }
+        let infinite =
+            || channel.values.iter().enumerate().filter(|(_, value)| value.is_infinite());
+        if let Some((first, value)) = infinite().next() {
+            notes.push(format!(
+                "{} {value} at node ({}, {}) and count as missing, as in files of several makers; a node that is never to touch \
+                 needs a finite height far below the others",
+                match infinite().count() {
+                    1 => "1 height is infinite,".to_string(),
+                    count => format!("{count} heights are infinite, the first"),
+                },
+                first % nx,
+                first / nx
+            ));
         }
         for value in &mut channel.values {
             // Infinite values mark missing nodes as well, in files of several makers.

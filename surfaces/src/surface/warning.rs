@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Filter, Topography, Trend, Window};
+use crate::number::quantity;
 
 /// Something about a surface that a person should look at: most often a unit that was mistaken. Nothing is refused because of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +25,13 @@ pub enum Warning {
     Smooth {
         /// Root mean square height \[m\].
         rms_height: f64,
+    },
+    /// A surface most of whose nodes were missing and have been filled.
+    Filled {
+        /// Nodes that were filled.
+        filled: usize,
+        /// Nodes of the surface.
+        nodes: usize,
     },
     /// Waves that the grid does not resolve: contact areas at light loads are those of the mesh.
     Unresolved {
@@ -70,6 +78,12 @@ impl Warning {
             }
         }
         warnings
+    }
+
+    /// Warnings about a surface on which so many nodes have been filled: most of it would be made up.
+    #[must_use]
+    pub fn of_filling(filled: usize, nodes: usize) -> Option<Self> {
+        (2 * filled > nodes).then_some(Self::Filled { filled, nodes })
     }
 }
 
@@ -120,13 +134,20 @@ impl fmt::Display for Warning {
             }
             Self::Tilted { plane, left } => write!(
                 f,
-                "the surface is tilted: a plane makes up {plane:.3e} m of its rms height, and only {left:.3e} m is \
-                 roughness. Contact would begin at one edge; level it (`Topography::level`) unless the tilt is meant"
+                "the surface is tilted: a plane makes up {} of its rms height, and only {} is roughness. Contact would begin at one edge; \
+                 level it (`Topography::level`) unless the tilt is meant",
+                quantity(plane, "m", 4),
+                quantity(left, "m", 4)
             ),
             Self::Smooth { rms_height } => write!(
                 f,
-                "the rms height of the surface is {rms_height:.3e} m, less than a tenth of an atom: is the unit of \
-                 heights right?"
+                "the rms height of the surface is {}, less than a tenth of an atom: is the unit of heights right?",
+                quantity(rms_height, "m", 4)
+            ),
+            Self::Filled { filled, nodes } => write!(
+                f,
+                "{filled} of {nodes} heights were missing and have been interpolated: most of this surface was never measured. Crop \
+                 it to what was, or measure again"
             ),
             Self::Unresolved { share } => write!(
                 f,
@@ -179,8 +200,8 @@ mod tests {
         assert!((plane / 4.61e-8 - 1.0).abs() < 0.01, "{plane}");
         assert!((left / 1e-9 - 1.0).abs() < 0.1, "{left}");
         let text = warning.to_string();
-        assert!(text.contains(&format!("{plane:.3e} m of its rms height")), "{text}");
-        assert!(text.contains(&format!("{left:.3e} m is roughness")), "{text}");
+        assert!(text.contains(&format!("{} of its rms height", quantity(plane, "m", 4))), "{text}");
+        assert!(text.contains(&format!("{} is roughness", quantity(left, "m", 4))), "{text}");
         Ok(())
     }
 
@@ -208,6 +229,7 @@ mod tests {
             Warning::Tilted { plane, left },
             Warning::Smooth { rms_height },
             Warning::Unresolved { share: 0.3 },
+            Warning::Filled { filled: 3, nodes: 4 },
         ] {
             let length = warning.to_string().len();
             let mut text = vec![0; length];

@@ -125,7 +125,7 @@ fn what_is_assumed_is_noted() {
         side,
         [
             "a NumPy array has no unit: its heights are assumed to be in m",
-            "cells are assumed to be square: the side along y is 5e-4 m"
+            "cells are assumed to be square: the side along y is 500 µm"
         ]
     );
     let both = ReadOptions::new().side(1e-3).side_y(1e-3);

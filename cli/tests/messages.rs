@@ -1,0 +1,137 @@
+//! Errors say what is wrong in the words of the command line.
+
+mod common;
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs;
+
+use asperity::io::write_npy;
+use common::{Scratch, asperity, is_refused, said};
+use nalgebra::DMatrix;
+use serde_json::Value;
+
+/// What a command that is refused says: the words that are expected, none of those that are not, no name of Rust, and each file once.
+#[test]
+fn errors_name_options() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("messages")?;
+    let tilted = DMatrix::from_fn(8, 8, |ix, iy| 1e-7 * (ix as f64 * 0.7 + iy as f64).sin());
+    write_npy(folder.join("map.npy"), &tilted)?;
+    let holed = tilted.map_with_location(|ix, iy, z| if ix == iy { f64::NAN } else { z });
+    write_npy(folder.join("holed.npy"), &holed)?;
+    write_npy(
+        folder.join("inf.npy"),
+        &holed.map(|z| if z.is_nan() { f64::NEG_INFINITY } else { z }),
+    )?;
+    fs::write(folder.join("map.txt"), "1 2\n3 4\n")?;
+    fs::write(folder.join("nan.txt"), "nan nan\nnan nan\n")?;
+    fs::write(folder.join("points.xyz"), "0 0 1\n1 0 2\n0 1 3\n1 1 4\n")?;
+    for (line, expected, not) in [
+        ("path --surface map.npy --material steel", vec!["`--side`"], vec![]),
+        (
+            "path --surface holed.npy --side 1e-3 --material steel",
+            vec!["8 heights are missing", "`--fill`"],
+            vec!["NaN"],
+        ),
+        (
+            "path --surface inf.npy --side 1e-3 --material steel",
+            vec!["8 heights are infinite, the first -inf at node (0, 0)", "`--fill`"],
+            vec!["NaN"],
+        ),
+        ("info map.txt", vec!["`--height-unit`"], vec![]),
+        ("info points.xyz --height-unit um", vec!["`--lateral-unit` or `--side`"], vec![]),
+        (
+            "path --surface nan.txt --side 1e-3 --height-unit um --material steel",
+            vec!["none of the 2 x 2 heights is finite"],
+            vec!["--fill", "fill"],
+        ),
+        ("info nothing.npy", vec!["cannot read nothing.npy"], vec![]),
+        (
+            "load --surface map.npy --side 1e-3 --material steel --hardness 1e6 --mean-pressure 2e6",
+            vec!["a mean pressure of 2 MPa (2 N)", "their hardness, 1 MPa on average"],
+            vec![],
+        ),
+        (
+            "path --surface map.npy --side 1e-3 --material steel --hardness 1e6 --mean-pressure 2e6",
+            vec!["a mean pressure of 2 MPa (2 N)", "their hardness, 1 MPa on average"],
+            vec![],
+        ),
+    ] {
+        let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+        let done = asperity(&folder.0, &words).output()?;
+        is_refused(&done, &expected);
+        let told = said(&done);
+        assert!(!told.contains("::"), "{told}");
+        for word in not {
+            assert!(!told.contains(word), "{told}");
+        }
+        let error = told.split("error: ").nth(1).unwrap_or_default();
+        for file in ["map.txt", "points.xyz", "nothing.npy", "nan.txt", "map.npy"] {
+            assert!(error.matches(file).count() <= 1, "{told}");
+        }
+    }
+    Ok(())
+}
+
+/// Counts are integers wherever a program reads them.
+#[test]
+fn counts_are_integers() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("integers")?;
+    let run = |line: &str| -> Result<Value, Box<dyn Error>> {
+        let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+        let done = asperity(&folder.0, &words).output()?;
+        assert!(done.status.success(), "{line}: {}", said(&done));
+        Ok(serde_json::from_slice(&done.stdout)?)
+    };
+    fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
+    let path = "--nodes 32 --periodic love --max-area-fraction 0.3";
+    let objects = [
+        run(&format!("path {path} --json --record r.npz"))?,
+        run("load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7 --json")?,
+        run("patches r.npz --json")?,
+        run("leak r.npz --viscosity 1e-3 --pressure-drop 1 --along x --json --states 3")?,
+        run("slip r.npz --friction 0.3 --load 1e4 --amplitude 1e3 --json")?,
+        run("creep r.npz --prony 0.3,1 --load 1e3 --time 10 --json")?,
+        run("info rough.npy --side 1e-2 --json")?,
+    ];
+    let mut found = 0;
+    for object in &objects {
+        check_counts(object, &mut found);
+    }
+    // One at least of each.
+    assert!(found >= objects.len(), "{found}");
+    Ok(())
+}
+
+/// Numbers under names of counts, at any depth.
+fn check_counts(value: &Value, found: &mut usize) {
+    const COUNTS: [&str; 14] = [
+        "contact_nodes",
+        "iterations",
+        "states",
+        "step",
+        "nodes",
+        "patches",
+        "pools",
+        "flowing_nodes",
+        "stick_nodes",
+        "slipping_nodes",
+        "nx",
+        "ny",
+        "missing",
+        "moving_nodes",
+    ];
+    match value {
+        Value::Object(members) => {
+            for (name, member) in members {
+                if let (true, Value::Number(number)) = (COUNTS.contains(&name.as_str()), member) {
+                    assert!(number.is_u64(), "{name}: {number}");
+                    *found += 1;
+                }
+                check_counts(member, found);
+            }
+        }
+        Value::Array(members) => members.iter().for_each(|member| check_counts(member, found)),
+        _ => (),
+    }
+}
