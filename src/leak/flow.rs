@@ -259,7 +259,7 @@ mod tests {
             for decades in [1.0, 3.0] {
                 let (eliminated, iterated) = both(decades, boundary)?;
                 assert!(iterated.is_some() && eliminated.iterations == 0);
-                for iterated in iterated {
+                if let Some(iterated) = iterated {
                     let error = iterated.rate / eliminated.rate - 1.0;
                     assert!(error.abs() <= iterated.lost + eliminated.lost);
                     for (a, b) in iterated.pressures.iter().zip(&eliminated.pressures) {
