@@ -10,6 +10,7 @@ use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use super::tuning::RECOGNISED;
 use crate::Error;
+use crate::contact::ContactState;
 use crate::updater::LinearUpdater;
 
 /// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
@@ -109,21 +110,32 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         run.contact = contact;
         let snapshot = Snapshot::of(run, phase, &last)?;
         snapshot.recognise(run, phase, &last)?;
-        let front = end.ahead.last().unwrap_or(&last);
+        let front_of_window = end.ahead.last().unwrap_or(&last);
         match (&end.next, phase) {
             (NextWindow::Factor(end), _) => {
                 windowed.follow_on(end.log.clone());
                 run.scalars.take_over(end.scalars);
                 let own = run.scalars.state(run.contact.len());
+                let front = &front_of_window.contact;
+                let stiffness = |state: &ContactState| {
+                    state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
+                };
                 let pairs = [
-                    (own.approach, front.contact.approach),
-                    (own.load, front.contact.load),
-                    (own.energy, front.contact.energy),
+                    (own.approach, front.approach),
+                    (own.load, front.load),
+                    (own.energy, front.energy),
+                    (stiffness(&own), stiffness(front)),
                 ];
-                // They are those of the last state, but for a load that must not fall by rounding.
-                let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
+                // They are those of the last state, but for a load that must not fall by rounding, and a stiffness that is infinite.
+                let is_front =
+                    pairs.iter().all(|(a, b)| a == b || (a - b).abs() <= RECOGNISED * b.abs());
                 if !is_front || !run.scalars.is_sound(&own) {
-                    return Err(not_on_path(front, "load", own.load, "the load of the state"));
+                    return Err(not_on_path(
+                        front_of_window,
+                        "load",
+                        own.load,
+                        "the load of the state",
+                    ));
                 }
             }
             (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
@@ -131,7 +143,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             }
             _ => {}
         }
-        run.last = run.last.map(|_| front.contact);
+        run.last = run.last.map(|_| front_of_window.contact);
         run.queue = end.ahead.iter().copied().collect();
         self.handed_over_at = end.handed_over_at;
         Ok(true)
