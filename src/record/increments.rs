@@ -17,7 +17,7 @@ use crate::{Error, Grid};
 const ROUNDING: f64 = 1e-9;
 /// Products and sums of the numbers of nodes and cells.
 const FEW_ROUNDINGS: f64 = 1e-14;
-/// Stiffnesses of two windows without a factor: each is solved to 10⁻⁴ or better, as the load between them needs it.
+/// Without a factor stiffnesses are estimates, from one window to the next to 10⁻⁴ or better.
 const SAME_STIFFNESS: f64 = 1e-3;
 /// The greatest part of the approach that a state may be off by and still say something.
 const GREATEST_ERROR: f64 = 0.1;
@@ -193,6 +193,7 @@ fn stiffnesses(
         [("contact stiffness", contact_stiffness), ("interfacial stiffness", interfacial_stiffness)]
     };
     let earlier = before.map_or([("", None); 2], of);
+    let has_yielded = state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0);
     for ((quantity, value), (_, earlier)) in of(state).into_iter().zip(earlier) {
         if before.is_some() && earlier.is_some() != value.is_some() {
             let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));
@@ -220,7 +221,9 @@ fn stiffnesses(
         if !is_one && (value == 0.0 || !may_fall_below) {
             return wrong(0.0, "is what a plateau has, and no other state");
         }
-        let Some(earlier) = earlier.filter(|_| !may_fall_below) else { continue };
+        // Where nodes have yielded, part of the approach is lost to their depth, and the rest may be stiffer.
+        let is_bounded = quantity == "contact stiffness" || !(may_fall_below || has_yielded);
+        let Some(earlier) = earlier.filter(|_| is_bounded) else { continue };
         let (least, most) = match state.event {
             ContactEvent::Touch => (earlier, f64::INFINITY),
             ContactEvent::Limit => (earlier, earlier),
