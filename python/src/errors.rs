@@ -222,6 +222,9 @@ fn describe(error: &Error) -> Described {
             (VALUE, "NotPositiveDefinite", numbers![ix, iy, approach, pivot])
         }
         Error::NotFinite { step } => (VALUE, "NotFinite", numbers![step]),
+        Error::Inconsistent { step, quantity, value, expected, reason } => {
+            (VALUE, "Inconsistent", numbers![step, quantity, value, expected, reason])
+        }
         Error::NotOnPath { step, load, approach, quantity, value, expected } => {
             (VALUE, "NotOnPath", numbers![step, load, approach, quantity, value, expected])
         }

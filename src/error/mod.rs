@@ -117,6 +117,21 @@ pub enum Error {
         step: usize,
     },
 
+    /// A number of a state does not follow from the states before, so that it was changed afterwards.
+    #[error("at step {step} the {quantity} is {value:e}, but {expected:e} {reason}")]
+    Inconsistent {
+        /// Number of events up to the state.
+        step: usize,
+        /// The quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// The value that it should have, or may have at most or at least.
+        expected: f64,
+        /// Why it should.
+        reason: &'static str,
+    },
+
     /// A state that does not lie on the path: one of another path, or one that was extrapolated beyond the
     /// interval between two events in which it would be a state.
     #[error(

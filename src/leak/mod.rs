@@ -40,8 +40,10 @@
 //!
 //! Cells are finite volumes: between two nodes flows what the halves of their cells conduct in series, the harmonic mean of g³/12η. The
 //! system is symmetric and positive definite, and its conductances differ by ten orders of magnitude and more near the closing of the
-//! last channel. It is solved by conjugate gradients with an algebraic multigrid preconditioner of aggregates, in memory proportional to
-//! the grid. Pressures are sums of two numbers and corrected until what is lost at all nodes together is at most 10⁻¹¹ of the leak rate,
+//! last channel. Nodes are eliminated in the order of nested dissection, from stars to meshes of conductances: all of them sums and
+//! products of positive numbers, so that none loses a digit, whatever the contrast. Above 2²⁰ nodes memory counts: there it is
+//! solved by conjugate gradients with an algebraic multigrid preconditioner of aggregates, and by elimination where these do not converge.
+//! Pressures are sums of four numbers, and what is lost at all nodes together is at most 10⁻¹¹ of the leak rate,
 //! so that the small differences of pressures in wide places, which carry the same flow, are right too.
 //!
 //! Pools that no channel joins to an edge are left out: their pressure is any. If no channel is left the leak rate is exactly 0.
@@ -54,6 +56,8 @@
 //! one constriction of a few cells decides, its leak rate is that of one sample. `docs/seals_that_leak.md` shows how it converges.
 
 mod curve;
+mod elimination;
+mod expansion;
 mod flow;
 mod graph;
 mod hierarchy;

@@ -48,7 +48,7 @@ pub struct Leak {
     pub flowing_nodes: usize,
     /// Number of pools: places with fluid that no channel joins to either edge. They are left out.
     pub pools: usize,
-    /// Iterations of the solver.
+    /// Iterations of the solver; 0 where elimination needs none.
     pub iterations: usize,
 }
 

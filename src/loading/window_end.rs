@@ -10,6 +10,7 @@ use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
 use super::tuning::RECOGNISED;
 use crate::Error;
+use crate::contact::ContactState;
 use crate::updater::{Left, LinearUpdater};
 
 /// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
@@ -141,13 +142,18 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         if let Some(scalars) = scalars {
             run.scalars.take_over(scalars);
             let own = run.scalars.state(run.contact.len());
+            let stiffness = |state: &ContactState| {
+                state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
+            };
             let pairs = [
                 (own.approach, front.contact.approach),
                 (own.load, front.contact.load),
                 (own.energy, front.contact.energy),
+                (stiffness(&own), stiffness(&front.contact)),
             ];
-            // They are those of the last state, but for a load that must not fall by rounding.
-            let is_front = pairs.iter().all(|(a, b)| (a - b).abs() <= RECOGNISED * b.abs());
+            // They are those of the last state, but for a load that must not fall by rounding, and a stiffness that is infinite.
+            let is_front =
+                pairs.iter().all(|(a, b)| a == b || (a - b).abs() <= RECOGNISED * b.abs());
             if !is_front || !run.scalars.is_sound(&own) {
                 return Err(not_on_path(front, "load", own.load, "the load of the state"));
             }

@@ -31,6 +31,7 @@
 //! # }
 //! ```
 
+mod increments;
 mod kernel;
 #[cfg(feature = "io")]
 mod npz;
@@ -155,7 +156,8 @@ impl LoadingRecord {
     ///
     /// [`Error::GridMismatch`] for heights of another grid; [`Error::NotFinite`] for a state with a scalar that no state has;
     /// [`Error::NotOnPath`], [`Error::NodeOutOfGrid`], [`Error::AlreadyInContact`] and [`Error::NotInContact`] for states that
-    /// are in no order of a path.
+    /// are in no order of a path; [`Error::Inconsistent`] for a number of a state that does not follow from the states before, which have
+    /// the rates of all that changes between two events.
     pub fn from_parts(
         grid: Grid,
         heights: HeightMap,
@@ -171,7 +173,13 @@ impl LoadingRecord {
                 return Err(Error::NotFinite { step: state.step });
             }
         }
-        let history = history.on(kernel.origin.layering());
+        let layering = kernel.origin.layering();
+        let ahead = history.window_end().map_or(&[][..], |end| &end.ahead);
+        let states: Vec<LoadingState> = history.states().iter().chain(ahead).copied().collect();
+        let hardness =
+            settings.hardness.as_ref().map(|hardness| hardness.map(&grid)).transpose()?;
+        increments::check(&grid, &heights, (layering, hardness.as_ref()), &states)?;
+        let history = history.on(layering);
         Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
     }
 

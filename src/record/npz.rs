@@ -252,9 +252,15 @@ impl LoadingRecord {
         let heights = HeightMap::new(archive.matrix("heights")?)?;
         let steps = archive.vector("step", None)?;
         let length = Some(steps.len());
-        let [ix, iy, nodes, events] =
-            ["ix", "iy", "contact_nodes", "event"].map(|name| archive.vector(name, length));
-        let (ix, iy, nodes, events) = (ix?, iy?, nodes?, events?);
+        let wholes = |name: &str| {
+            let values = archive.vector(name, length)?;
+            match values.iter().find(|value| whole(**value) as f64 != **value) {
+                Some(value) => Err(bad(format!("member '{name}': {value} is no whole number"))),
+                None => Ok(values),
+            }
+        };
+        let (ix, iy, nodes) = (wholes("ix")?, wholes("iy")?, wholes("contact_nodes")?);
+        let events = wholes("event")?;
         let mut states = Vec::with_capacity(steps.len());
         for k in 0..steps.len() {
             let event =
@@ -271,7 +277,7 @@ impl LoadingRecord {
             }
         }
         if parameters.settings.hardness.is_some() {
-            let yielded = archive.vector("yielded_nodes", length)?;
+            let yielded = wholes("yielded_nodes")?;
             for (state, yielded) in states.iter_mut().zip(yielded) {
                 let yielded_nodes = whole(yielded);
                 let plastic = PlasticState {

@@ -4,6 +4,7 @@
 mod along_paths;
 mod channels;
 mod chequerboard;
+mod contrast;
 mod references;
 mod refusals;
 

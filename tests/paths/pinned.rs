@@ -178,6 +178,8 @@ fn followed<U: LinearUpdater + Clone>(
         path = builder.clone().resume(record.history()).unwrap();
     }
     states.extend(path.by_ref().map(Result::unwrap));
+    // Its numbers follow from each other, as a record checks.
+    LoadingRecord::new(&path, states.iter().copied().collect()).unwrap();
     let timings = path.timings();
     let convolutions = path.convolutions();
     let pin = Pin {

@@ -1,0 +1,240 @@
+//! Whether the numbers of states follow from each other.
+//!
+//! Between two events a path is linear in the approach: its load, mean gap, energy and what has yielded follow at each state from the one before
+//! and its stiffnesses. First touch follows from the surface, areas from the number of nodes, and a node that touches makes a contact
+//! stiffer. A number that was changed afterwards contradicts one of these.
+
+use nalgebra::DMatrix;
+
+use crate::contact::ContactState;
+use crate::kernel::Layering;
+use crate::loading::{ContactEvent, LoadingState};
+use crate::surface::HeightMap;
+use crate::{Error, Grid};
+
+/// What rounding may change, relative to the greatest numbers of a path: sums over up to 10⁶ events, each to 10⁻¹⁶ of them, and the
+/// 10⁻¹⁰ to which a path that goes on from a record is the one that was not interrupted.
+const ROUNDING: f64 = 1e-9;
+/// Products and sums of the numbers of nodes and cells.
+const FEW_ROUNDINGS: f64 = 1e-14;
+/// Without a factor stiffnesses are estimates, from one window to the next to 10⁻⁴ or better.
+const SAME_STIFFNESS: f64 = 1e-3;
+/// The greatest part of the approach that a state may be off by and still say something.
+const GREATEST_ERROR: f64 = 0.1;
+
+/// A quantity of a state: its value, what it should be, and by how much it may be off.
+struct Found {
+    quantity: &'static str,
+    value: f64,
+    expected: f64,
+    tolerance: f64,
+    reason: &'static str,
+}
+
+impl Found {
+    fn at(self, state: &LoadingState) -> Result<(), Error> {
+        let Self { quantity, value, expected, tolerance, reason } = self;
+        if (value - expected).abs() <= tolerance {
+            return Ok(());
+        }
+        Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })
+    }
+}
+
+/// Checks the states of a path on a surface.
+///
+/// Estimated errors of the approach are taken at their word: loads and gaps are off by what they are at an approach that is off by so much.
+pub(super) fn check(
+    grid: &Grid,
+    heights: &HeightMap,
+    (layering, hardness): (Layering, Option<&DMatrix<f64>>),
+    states: &[LoadingState],
+) -> Result<(), Error> {
+    let (Some(first), Some(last)) = (states.first(), states.last()) else {
+        return Ok(());
+    };
+    let (ix, iy) = first.node;
+    Found {
+        quantity: "height of the node below the highest one",
+        value: -heights.matrix().get((ix, iy)).copied().unwrap_or(f64::NAN),
+        expected: 0.0,
+        tolerance: 0.0,
+        reason: "is what first touch has",
+    }
+    .at(first)?;
+    let mean_gap = -heights.matrix().mean();
+    first_touch(first, mean_gap)?;
+    let length = mean_gap.abs() + last.contact.approach.abs();
+    for state in states {
+        areas(grid, state)?;
+        let most = GREATEST_ERROR * length;
+        if !(0.0..=most).contains(&state.approach_error) {
+            return Err(Error::Inconsistent {
+                step: state.step,
+                quantity: "estimated error of the approach",
+                value: state.approach_error,
+                expected: most,
+                reason: "is the most, a tenth of approach and mean gap",
+            });
+        }
+    }
+    stiffnesses(None, first, layering)?;
+    if let Some(hardness) = hardness {
+        for state in states {
+            plastic(state, hardness, length)?;
+        }
+    }
+    for (before, state) in states.iter().zip(&states[1..]) {
+        increments(before, state, length)?;
+        stiffnesses(Some(before), state, layering)?;
+    }
+    Ok(())
+}
+
+/// Nothing is pressed yet, and the mean gap is that of the surface.
+fn first_touch(state: &LoadingState, mean_gap: f64) -> Result<(), Error> {
+    let ContactState { approach, load, energy, .. } = state.contact;
+    let reason = "is what first touch has";
+    for (quantity, value) in [("approach", approach), ("load", load), ("energy", energy)] {
+        Found { quantity, value, expected: 0.0, tolerance: 0.0, reason }.at(state)?;
+    }
+    let value = state.contact.mean_gap;
+    let tolerance = ROUNDING * mean_gap.abs();
+    Found { quantity: "mean gap", value, expected: mean_gap, tolerance, reason }.at(state)
+}
+
+fn areas(grid: &Grid, state: &LoadingState) -> Result<(), Error> {
+    let contact = &state.contact;
+    let nodes = contact.contact_nodes as f64;
+    let fraction = nodes / grid.nodes() as f64;
+    let area = nodes * grid.cell_area();
+    for (quantity, value, expected) in [
+        ("contact area", contact.contact_area, area),
+        ("contact area fraction", contact.contact_area_fraction, fraction),
+    ] {
+        let reason = "follows from the number of nodes in contact";
+        let tolerance = FEW_ROUNDINGS * expected;
+        Found { quantity, value, expected, tolerance, reason }.at(state)?;
+    }
+    Ok(())
+}
+
+/// What follows from the state before.
+fn increments(before: &LoadingState, state: &LoadingState, length: f64) -> Result<(), Error> {
+    let (start, end) = (&before.contact, &state.contact);
+    let predicted =
+        if start.is_plateau() { start.at_approach(end.approach) } else { start.at_load(end.load) };
+    // None without stiffnesses, which states made of data may be.
+    let Some(predicted) = predicted else {
+        return Ok(());
+    };
+    let reason = "follows from the state before";
+    let load = start.load.abs().max(end.load.abs());
+    let over = |stiffness: Option<f64>| {
+        let off = ROUNDING * load / stiffness.unwrap_or(f64::INFINITY).abs();
+        if start.is_plateau() || off.is_nan() { 0.0 } else { off }
+    };
+    // Lengths: what is estimated, what rounding takes from the approach, and what it takes from the load.
+    let off = before.approach_error + state.approach_error + ROUNDING * length;
+    let off = off + over(start.interfacial_stiffness) + over(start.contact_stiffness);
+    let area = end.contact_area / end.contact_area_fraction;
+    let [plastic, before] = [end.plastic, predicted.plastic].map(Option::unwrap_or_default);
+    for (quantity, value, expected, tolerance) in [
+        ("approach", end.approach, predicted.approach, off),
+        ("load", end.load, predicted.load, ROUNDING * load),
+        ("mean gap", end.mean_gap, predicted.mean_gap, off),
+        ("energy", end.energy, predicted.energy, off * load),
+        ("plastic volume", plastic.volume, before.volume, off * area),
+        ("plastic work", plastic.work, before.work, off * load),
+    ] {
+        Found { quantity, value, expected, tolerance, reason }.at(state)?;
+    }
+    Ok(())
+}
+
+/// The work of each yielded node is its hardness times its depth.
+fn plastic(state: &LoadingState, hardness: &DMatrix<f64>, length: f64) -> Result<(), Error> {
+    let contact = &state.contact;
+    let plastic = contact.plastic.unwrap_or_default();
+    let finite = || hardness.iter().copied().filter(|hardness| hardness.is_finite());
+    let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
+    let volume_off = (state.approach_error + ROUNDING * length) * contact.contact_area;
+    let rate_off = SAME_STIFFNESS * plastic.volume_per_load.abs();
+    for (quantity, value, depth, off) in [
+        ("plastic work", plastic.work, plastic.volume, volume_off),
+        ("plastic work per load", plastic.work_per_load, plastic.volume_per_load, rate_off),
+    ] {
+        let (low, high) = (least.min(most) * (depth - off), most * (depth + off));
+        let is_one = value >= 0.0 && (low..=high).contains(&value);
+        if !is_one {
+            let expected = if value < low { low } else { high };
+            let reason = "is what its volume and the hardness allow";
+            return Err(Error::Inconsistent {
+                step: state.step,
+                quantity,
+                value,
+                expected,
+                reason,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on a half-space, and
+/// 0 on a plateau alone.
+fn stiffnesses(
+    before: Option<&LoadingState>,
+    state: &LoadingState,
+    layering: Layering,
+) -> Result<(), Error> {
+    let of = |state: &LoadingState| {
+        let ContactState { contact_stiffness, interfacial_stiffness, .. } = state.contact;
+        [("contact stiffness", contact_stiffness), ("interfacial stiffness", interfacial_stiffness)]
+    };
+    let earlier = before.map_or([("", None); 2], of);
+    let has_yielded = state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0);
+    for ((quantity, value), (_, earlier)) in of(state).into_iter().zip(earlier) {
+        if before.is_some() && earlier.is_some() != value.is_some() {
+            let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));
+            let reason = "is what the state before has, of a body that has one or none";
+            return Err(Error::Inconsistent {
+                step: state.step,
+                quantity,
+                value,
+                expected,
+                reason,
+            });
+        }
+        let Some(value) = value else { continue };
+        // Under a layer gaps may open as the load grows.
+        let may_fall_below = quantity == "interfacial stiffness" && layering != Layering::HalfSpace;
+        let is_one = if state.contact.is_plateau() {
+            // Infinite in full contact.
+            value == 0.0 || value == f64::INFINITY
+        } else {
+            value > 0.0
+        };
+        let wrong = |expected, reason| {
+            Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })
+        };
+        if !is_one && (value == 0.0 || !may_fall_below) {
+            return wrong(0.0, "is what a plateau has, and no other state");
+        }
+        // Where nodes have yielded, part of the approach is lost to their depth, and the rest may be stiffer.
+        let is_bounded = quantity == "contact stiffness" || !(may_fall_below || has_yielded);
+        let Some(earlier) = earlier.filter(|_| is_bounded) else { continue };
+        let (least, most) = match state.event {
+            ContactEvent::Touch => (earlier, f64::INFINITY),
+            ContactEvent::Limit => (earlier, earlier),
+            ContactEvent::Release | ContactEvent::Yield => (0.0, earlier),
+        };
+        if value < least * (1.0 - SAME_STIFFNESS) {
+            return wrong(least, "is the least behind the state before");
+        }
+        if value > most * (1.0 + SAME_STIFFNESS) {
+            return wrong(most, "is the most behind the state before");
+        }
+    }
+    Ok(())
+}
