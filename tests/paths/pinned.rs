@@ -284,7 +284,7 @@ const TABLE: &[Row] = &[
     ("free, hard, iterations", 1152, 0x49641b45ffbb60d6, 0x7b82766a3a70efaf, [118, 1, 28, 798]),
     ("periodic, hard, factor", 1152, 0x36cc7e5d5d717180, 0x2584d3a866090f71, [17, 124, 0, 0]),
     ("periodic, hard, iterations", 1152, 0x36cc7e5d5d717180, 0x7cf9155a84c88b43, [109, 1, 33, 646]),
-    ("periodic, hard, factor, resumed", 1152, 0x36cc7e5d5d717180, 0xf408430f0cb22558, [11, 110, 0, 0]),
+    ("periodic, hard, factor, resumed", 1152, 0x36cc7e5d5d717180, 0x2584d3a866090f71, [11, 106, 0, 0]),
     ("periodic, hard, iterations, resumed", 1152, 0x36cc7e5d5d717180, 0x2feb9887e3603b11, [68, 1, 20, 424]),
     ("spectral, hard, factor", 1152, 0xe03930f9a28adde2, 0x6ce4e3c26b0c0302, [18, 199, 0, 0]),
     ("spectral, hard, iterations", 1152, 0xe03930f9a28adde2, 0x2f88272a7be25dbd, [110, 5, 30, 668]),
