@@ -10,6 +10,7 @@ const CHARTS = [
   ["Stiffness", "N/m", [["contact_stiffness", "contact, K"], ["interfacial_stiffness", "interfacial, Kᵢ"]]],
   ["Patches", "", [["patches", ""]]],
   ["Greatest patch, of the contact", "part", [["largest_share", ""]]],
+  ["Greatest pressure", "Pa", [["greatest_pressure", ""]]],
   ["Plastic volume", "m³", [["plastic_volume", ""]]],
 ];
 
@@ -76,10 +77,10 @@ class Chart {
       labelFont: "12px system-ui, sans-serif",
       font: "11px system-ui, sans-serif",
       stroke: () => ink("--ink"),
-      grid: { stroke: () => ink("--grid"), width: 1 },
+      grid: { stroke: () => ink(log ? "--faint" : "--grid"), width: 1 },
       ticks: { stroke: () => ink("--grid"), width: 1, size: 4 },
       gap: 3,
-      values: log ? (plot, splits) => splits.map((value) => (value !== null && Math.abs(Math.log10(value) % 1) < 1e-6 ? short(value) : "")) : (plot, splits) => splits.map(short),
+      values: (plot, splits) => (log ? decades(splits) : splits.map(short)),
     });
     const label = (axis) => `${axis.words}${axis.in.name ? " [" + axis.in.name + "]" : ""}`;
     const width = this.holder.clientWidth || 360;
@@ -89,9 +90,9 @@ class Chart {
         height: 210,
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, points: { show: lines.length > 0 } },
-        scales: { x: { time: false, distr: x.log ? 3 : 1 }, y: { distr: y.log ? 3 : 1, range: y.log ? undefined : (plot, least, most) => (least === most ? [least - 0.5, most + 0.5] : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
+        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : [0.5 * least, 1.5 * most || 1]) }, y: { distr: y.log ? 3 : 1, range: y.log ? undefined : (plot, least, most) => (least === most ? [least - 0.5, most + 0.5] : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
         axes: [{ ...axis(label(x), x.log), size: 30 }, { ...axis(label(y), y.log), size: 48 }],
-        series: [{}, ...lines.map((line) => ({ stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: false } }))],
+        series: [{}, ...lines.map((line) => ({ stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
         hooks: { setCursor: [(plot) => this.hover(plot)], draw: [() => this.follow()] },
       },
       this.data,
@@ -120,6 +121,7 @@ class Chart {
 
   follow() {
     if (!this.plot) return;
+    this.cursor.hidden = this.place === undefined;
     const value = this.place / this.x.in.factor;
     const left = this.place === undefined || (this.x.log && !(value > 0)) ? -10 : this.plot.valToPos(value, "x");
     this.cursor.style.transform = `translateX(${left.toFixed(1)}px)`;
@@ -128,13 +130,16 @@ class Chart {
 
   read() {
     const place = this.hovered ?? this.place;
-    if (place === undefined) return;
+    if (place === undefined || place === null) {
+      this.values.forEach((value) => (value.textContent = ""));
+      return;
+    }
     const values = this.lines.map((line) => {
       const at = line.at ? line.at(place) : null;
       return at === null ? NaN : line.y[at];
     });
     const { unit } = this.y;
-    const words = values.map((value) => (unit === "part" ? `${digits(100 * value)} %` : quantity(value, unit, this.y.nominal)));
+    const words = values.map((value) => (unit === "part" ? `${digits(100 * value)} %` : unit === "" && Number.isInteger(value) ? String(value) : quantity(value, unit, this.y.nominal)));
     words.forEach((text, i) => {
       const shown = this.hovered === null || this.hovered === undefined || i < words.length - 1 ? text : `${text} at ${quantity(place, this.x.unit, this.x.nominal)}`;
       if (this.values[i].textContent !== shown) this.values[i].textContent = shown;
@@ -145,6 +150,16 @@ class Chart {
   describe() {
     if (this.said) this.holder.setAttribute("aria-label", this.said);
   }
+}
+
+/** Labels of whole powers of ten, and of few if there are many. */
+function decades(splits) {
+  const isPower = (value) => value > 0 && Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
+  const every = Math.ceil(splits.filter(isPower).length / 6);
+  return splits.map((value) => {
+    const power = Math.round(Math.log10(value));
+    return isPower(value) && power % every === 0 ? short(value) : "";
+  });
 }
 
 /** A number beside a tick. */

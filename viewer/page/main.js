@@ -8,9 +8,11 @@ const PLAY = 14;
 class Viewer {
   constructor(paths, data) {
     Object.assign(this, { paths, data, lead: 0, event: paths[0].count - 1, along: "load", logX: false, logY: false });
-    this.maps = paths.map((path, index) => new MapView(path, index, (lead, event) => this.goTo(event, lead)));
+    this.maps = paths.map((path, index) => new MapView(path, index, paths[0], (lead, event) => this.goTo(event, lead)));
     byId("maps").append(...this.maps.map(({ figure }) => figure));
-    byId("maps").classList.toggle("two", paths.length > 1);
+    const several = paths.length > 1;
+    byId("stage").classList.toggle("two", several);
+    byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name}`) : null, readout)));
     this.controls();
     this.remake();
     this.goTo(this.event);
@@ -61,6 +63,8 @@ class Viewer {
     const value = this.values[this.event];
     this.maps.forEach((map, i) => map.show(i === this.lead ? this.event : map.path.eventAt(this.along, value)));
     this.charts.forEach((chart) => chart.setPlace(value));
+    // Other tables are of one path, and some of them run over its load.
+    this.panels.filter(({ along }) => along === "load").forEach(({ charts, path }) => charts.forEach((chart) => chart.setPlace(path.columns.load[path.present])));
     const row = this.rows?.get(this.event);
     if (row !== this.row) {
       this.row?.classList.remove("now");
@@ -89,7 +93,12 @@ class Viewer {
         series
           .map(([name, label], dash) => ({ name, label: several ? `${"AB"[record]} ${label}`.trim() : label, dash }))
           .filter(({ name }) => path.columns[name] && (name !== "yielded" || path.hasYielded))
-          .map(({ name, label, dash }) => ({ label, dash, colour: lineColour(record), x: path.columns[along], y: path.columns[name], at: (value) => path.eventAt(along, value * (1 + 1e-12)) })),
+          .map(({ name, label, dash }) => {
+            const line = { label, dash, colour: lineColour(record), x: path.columns[along], y: path.columns[name], at: (value) => path.eventAt(along, value * (1 + 1e-12)) };
+            // Fields are known at few states.
+            if (name !== "greatest_pressure") return line;
+            return { ...line, places: path.states.map(({ event }) => event), at: (value) => path.nearest(line.at(value)).event };
+          }),
       );
       if (!lines.length) return [];
       const nominal = paths[0].record.nominal_area;
@@ -97,10 +106,12 @@ class Viewer {
     });
     byId("charts").replaceChildren(...this.charts.map(({ figure }) => figure));
     this.charts.forEach((chart) => chart.draw());
-    this.panels = paths.flatMap((path) => path.record.panels.map(panel));
+    this.panels = paths.flatMap((path) => path.record.panels.map((found) => ({ ...panel(found), path })));
     const tables = paths.map((path, lead) => stateTable(path, (event) => this.goTo(event, lead)));
-    byId("words").replaceChildren(...this.panels.map(({ section }) => section), ...tables, ...paths.map((path) => wordsOf(path.record)));
-    this.panels.forEach(({ charts }) => charts.forEach((chart) => chart.draw()));
+    byId("panels").replaceChildren(...this.panels.map(({ section }) => section));
+    byId("tables").replaceChildren(...tables);
+    byId("words").replaceChildren(...paths.map((path) => wordsOf(path.record)));
+    this.everyChart().slice(this.charts.length).forEach((chart) => chart.draw());
     this.rows = new Map([...tables[0].querySelectorAll("tr[data-event]")].map((row) => [Number(row.dataset.event), row]));
     this.width = byId("stage").clientWidth;
     this.goTo(this.event);
@@ -114,14 +125,16 @@ class Viewer {
   resized() {
     if (byId("stage").clientWidth === this.width) return;
     this.width = byId("stage").clientWidth;
-    for (const chart of [...this.charts, ...this.panels.flatMap(({ charts }) => charts)]) chart.plot.setSize({ width: chart.holder.clientWidth || 360, height: 210 });
+    for (const chart of this.everyChart()) chart.plot.setSize({ width: chart.holder.clientWidth || 360, height: 210 });
     this.maps.forEach((map) => map.mark());
   }
 
+  everyChart() {
+    return [...this.charts, ...this.panels.flatMap(({ charts }) => charts)];
+  }
+
   forPrint() {
-    for (const chart of [...this.charts, ...this.panels.flatMap(({ charts }) => charts)]) {
-      chart.print.innerHTML = svgOf(chart);
-    }
+    for (const chart of this.everyChart()) chart.print.innerHTML = svgOf(chart);
   }
 
   controls() {

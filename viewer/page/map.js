@@ -33,8 +33,9 @@ const SCALARS = [
 const NEWEST = 0.01;
 
 class MapView {
-  constructor(path, index, onEvent) {
-    Object.assign(this, { path, index, onEvent, event: path.count - 1, node: null });
+  /** `scale` is the path whose loads the colours are of: the first of the page, for all maps. */
+  constructor(path, index, scale, onEvent) {
+    Object.assign(this, { path, index, scale, onEvent, event: path.count - 1, node: null });
     const { nx, ny, record } = path;
     this.canvas = make("canvas", { width: nx, height: ny, class: "nodes" });
     this.marks = make("canvas", { class: "marks", tabindex: 0, role: "img" });
@@ -42,6 +43,7 @@ class MapView {
     this.colour.append(...[["touch", "load at which it touched"], ["pressure", "pressure"], ["plain", "one colour"]].filter(([value]) => value !== "pressure" || path.states.length).map(option));
     this.ground = make("select", { "aria-label": "Colour of nodes out of contact" });
     this.ground.append(...[["plain", "plain"], ["gap", "gap"], ["heights", "heights"]].filter(([value]) => value !== "gap" || path.states.length).map(option));
+    this.orange = make("input", { type: "checkbox", checked: true });
     this.bar = make("canvas", { class: "bar", width: 256, height: 1, "aria-hidden": "true" });
     this.ticks = make("div", { class: "ticks" });
     this.key = make("p", { class: "key" });
@@ -63,14 +65,13 @@ class MapView {
       this.bar,
       this.ticks,
       this.key,
-      make("div", { class: "row small" }, make("label", {}, "contact ", this.colour), make("label", {}, "elsewhere ", this.ground), save),
+      make("div", { class: "row small" }, make("label", {}, "contact ", this.colour), make("label", {}, "elsewhere ", this.ground), path.hasYielded ? make("label", {}, this.orange, " yielded nodes orange") : null, save),
       this.under,
-      this.readout,
     );
     this.context = this.canvas.getContext("2d");
     this.image = this.context.createImageData(nx, ny);
     this.pixels = new Uint32Array(this.image.data.buffer);
-    this.colour.onchange = this.ground.onchange = () => this.recolour();
+    this.colour.onchange = this.ground.onchange = this.orange.onchange = () => this.recolour();
     this.marks.addEventListener("pointermove", (event) => this.point(this.nodeAt(event)));
     this.marks.addEventListener("pointerleave", () => this.point(null));
     this.marks.addEventListener("click", (event) => this.ask(this.nodeAt(event)));
@@ -110,11 +111,13 @@ class MapView {
 
   /** Colours of all nodes once they are in contact, by the order in which they touch. */
   recolour() {
-    const { path } = this, by = new Uint32Array(path.size);
-    const last = Math.max(1, path.contactNodes[path.count - 1]);
+    const { path, scale } = this, by = new Uint32Array(path.size);
+    const { load } = path.columns, last = Math.max(1, scale.contactNodes[scale.count - 1]);
     for (let node = 0; node < path.size; node++) {
       const first = path.first[node];
-      if (first >= 0) by[node] = viridis[Math.min(255, Math.floor((256 * (path.contactNodes[first] - 1)) / last))];
+      if (first < 0) continue;
+      const event = path === scale ? first : scale.eventAt("load", load[first]);
+      by[node] = viridis[Math.min(255, Math.floor((256 * (scale.contactNodes[event] - 1)) / last))];
     }
     this.byTouch = by;
     this.themed = themed();
@@ -131,7 +134,7 @@ class MapView {
     const mode = this.colour.value, ground = this.ground.value;
     const newest = path.contactNodes[event] > 0 ? event - Math.max(1, Math.ceil(NEWEST * path.contactNodes[event])) : event;
     const { out, newest: fresh } = this.themed, plain = viridis[110];
-    const scale = state ? 255 / state.levels : 0;
+    const scale = state ? 255 / state.levels : 0, orange = this.orange.checked;
     for (let iy = 0, node = 0; iy < ny; iy++) {
       let pixel = (ny - 1 - iy) * nx;
       for (let ix = 0; ix < nx; ix++, node++, pixel++) {
@@ -140,7 +143,7 @@ class MapView {
           if (ground === "plain") pixels[pixel] = out;
           else if (ground === "gap") pixels[pixel] = this.greys[state.isIn[node] ? 0 : Math.round(state.codes[node] * scale)];
           else pixels[pixel] = this.greys[255 - path.heights[node]];
-        } else if (yielded[node] >= 0) pixels[pixel] = YIELDED;
+        } else if (orange && yielded[node] >= 0) pixels[pixel] = YIELDED;
         else if (mode === "touch") pixels[pixel] = at > newest ? fresh : this.byTouch[node];
         else if (mode === "pressure") pixels[pixel] = state.isIn[node] ? viridis[Math.round(state.codes[node] * scale)] : fresh;
         else pixels[pixel] = at > newest ? fresh : plain;
@@ -163,7 +166,7 @@ class MapView {
   /** The colour bar, and what its colours mean. */
   words(state) {
     const { path, event } = this, mode = this.colour.value;
-    const kept = `${mode} ${this.ground.value} ${state?.number} ${Object.values(chosen)} ${isDark()}`;
+    const kept = `${mode} ${this.ground.value} ${state?.number} ${Object.values(chosen)} ${isDark()} ${this.orange.checked}`;
     const newest = Math.max(1, Math.ceil(NEWEST * path.contactNodes[event]));
     const fresh = mode === "pressure" ? (state.event < event ? "touched since that state" : "") : newest === 1 ? "touching now" : `touching now: the newest ${newest}`;
     if (kept === this.kept && fresh === this.fresh) return;
@@ -174,12 +177,12 @@ class MapView {
     this.bar.hidden = this.ticks.hidden = mode === "plain";
     this.ticks.replaceChildren(...this.scaleTicks(state).map((words) => make("span", {}, words)));
     const swatch = (colour, words) => make("span", {}, make("i", { style: `background: ${css(colour)}` }), words);
-    const meaning = mode === "touch" ? "colour: load at which the node touched; each colour covers the same area" : mode === "pressure" ? `pressure at ${this.nameOf(state)}` : "in contact";
+    const meaning = mode === "touch" ? `colour: load at which the node touched; each colour covers the same area${this.scale === path ? "" : " of A"}` : mode === "pressure" ? `pressure at ${this.nameOf(state)}` : "in contact";
     const gap = this.ground.value === "gap" ? `grey: gap at ${this.nameOf(state)}, dark up to ${quantity(state.gap, "m")}, by the root` : this.ground.value === "heights" ? `grey: heights over ${quantity(path.record.heights.greatest - path.record.heights.least, "m")}, light is high` : null;
     this.key.replaceChildren(
       make("span", {}, meaning),
       ...(fresh ? [swatch(this.themed.newest, fresh)] : []),
-      ...(path.hasYielded ? [swatch(YIELDED, "yielded")] : []),
+      ...(path.hasYielded && this.orange.checked ? [swatch(YIELDED, "yielded")] : []),
       this.ground.value === "plain" ? swatch(this.themed.out, "out of contact") : make("span", {}, gap),
     );
   }
@@ -189,13 +192,12 @@ class MapView {
   }
 
   scaleTicks(state) {
-    const { path } = this;
     if (this.colour.value === "pressure") return [0, 0.25, 0.5, 0.75, 1].map((part) => quantity(part * state.pressure, "Pa"));
-    const last = path.contactNodes[path.count - 1];
+    const { scale } = this, last = scale.contactNodes[scale.count - 1];
     return [0, 0.25, 0.5, 0.75, 1].map((part) => {
       const nodes = Math.max(1, Math.round(part * last));
-      const event = path.contactNodes.findIndex((count) => count >= nodes);
-      return quantity(path.columns.load[event], "N");
+      const event = scale.contactNodes.findIndex((count) => count >= nodes);
+      return quantity(scale.columns.load[event], "N");
     });
   }
 

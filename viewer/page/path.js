@@ -97,6 +97,9 @@ class ContactPath {
       this.states.push({ ...state, codes, isIn, levels, number: i + 1 });
     });
     this.goTo(end);
+    if (!states.length) return;
+    this.columns.greatest_pressure = new Float64Array(this.count).fill(NaN);
+    for (const { event, pressure } of this.states) this.columns.greatest_pressure[event] = pressure;
   }
 
   /** The state with pressure and gap that is nearest to an event, by load. */

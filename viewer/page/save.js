@@ -73,7 +73,7 @@ function svgOf(chart, { inkColour = "#111", gridColour = "#ccc" } = {}) {
       if (value === null) return;
       const place = at(value, scale), words = axis._values?.[k];
       const line = i === 0 ? `x1="${place}" x2="${place}" y1="${box.top + top}" y2="${box.top + top + box.height}"` : `y1="${place}" y2="${place}" x1="${box.left}" x2="${box.left + box.width}"`;
-      parts.push(`<line ${line} stroke="${gridColour}"/>`);
+      if (words) parts.push(`<line ${line} stroke="${gridColour}"/>`);
       if (words) parts.push(i === 0 ? `<text x="${place}" y="${box.top + top + box.height + 15}" text-anchor="middle">${escaped(words)}</text>` : `<text x="${box.left - 6}" y="${place + 4}" text-anchor="end">${escaped(words)}</text>`);
     });
   });

@@ -7,6 +7,7 @@ function factRows(facts) {
 
 function factText(value, unit) {
   if (Array.isArray(value)) return value.map((one) => factText(one, unit)).join(" × ");
+  if (Number.isInteger(value) && unit === "" && Math.abs(value) < 1e6) return String(value);
   if (typeof value === "number") return unit === "1" ? `${digits(100 * value)} %` : unit ? quantity(value, unit) : digits(value);
   return typeof value === "string" ? value : JSON.stringify(value);
 }
@@ -96,15 +97,15 @@ function panel(found) {
       const at = (value) => x.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(x[best] - value) ? i : best), 0);
       const line = { label: "", colour: lineColour(0), dash: 0, x, y, at, places: x.map((_, i) => i) };
       const log = steep.length === y.filter(Number.isFinite).length && Math.max(...steep) > 200 * Math.min(...steep);
-      return new Chart(`${found.title}: ${words(column.name)}`, { words: words(along.name), unit: unitOfColumn(along.name), log: positive }, { unit: unitOfColumn(column.name), log }, [line]);
+      return new Chart(`${found.short}: ${words(column.name)}`, { words: words(along.name), unit: unitOfColumn(along.name), log: positive }, { words: words(column.name), unit: unitOfColumn(column.name), log }, [line]);
     });
   section.append(make("div", { class: "charts" }, ...charts.map(({ figure }) => figure)));
-  return { section, charts };
+  return { section, charts, along: along.name };
 }
 
 /** What is said of a record. */
 function wordsOf(record, program, command) {
-  const settings = Object.entries(record.settings ?? {}).map(([name, value]) => ({ name, value, unit: "" }));
+  const settings = Object.entries(record.settings ?? {}).filter(([, value]) => value !== null).map(([name, value]) => ({ name, value, unit: "" }));
   const warnings = [...record.warnings.map((words) => `Warning: ${words}`), ...record.notes.map((words) => `Note: ${words}`)];
   return make(
     "section",

@@ -6,10 +6,11 @@ use std::time::SystemTime;
 
 use serde_json::{Map, Value, json};
 
-/// A table that a page can show: its file, what it is, its column along x, and whether that is logarithmic.
+/// A table that a page can show: its file, what it is, its column along x (the first one if that is empty), and those that are drawn.
 struct Kind {
     file: &'static str,
     title: &'static str,
+    short: &'static str,
     along: &'static str,
     charts: &'static [&'static str],
 }
@@ -18,36 +19,42 @@ const KINDS: [Kind; 6] = [
     Kind {
         file: "unloading.csv",
         title: "Unloading from the last state",
+        short: "Unloading",
         along: "approach",
         charts: &["load", "contact_area_fraction", "mean_gap"],
     },
     Kind {
         file: "slip.csv",
         title: "Slip under a tangential load",
+        short: "Slip",
         along: "displacement",
         charts: &["tangential_load", "slip_area", "tangential_stiffness"],
     },
     Kind {
         file: "cycles.csv",
         title: "Cycles",
+        short: "Cycles",
         along: "",
         charts: &["dissipation", "dissipated", "loss_factor"],
     },
     Kind {
         file: "creep.csv",
         title: "Creep",
+        short: "Creep",
         along: "time",
         charts: &["contact_area_fraction", "mean_gap", "load", "approach"],
     },
     Kind {
         file: "leak.csv",
         title: "Leak",
+        short: "Leak",
         along: "load",
         charts: &["leak_rate", "permeability", "constriction_gap"],
     },
     Kind {
         file: "history.csv",
         title: "History of the tangential load",
+        short: "History",
         along: "displacement",
         charts: &["tangential_load"],
     },
@@ -92,6 +99,7 @@ pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
         {
             Ok((columns, lines)) => beside.panels.push(json!({
                 "title": kind.title,
+                "short": kind.short,
                 "file": kind.file,
                 "along": kind.along,
                 "charts": kind.charts,

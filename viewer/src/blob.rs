@@ -4,7 +4,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use serde_json::{Value, json};
 
 /// How hard is tried to make it short: beyond, twice the time gains a hundredth.
-const LEVEL: u8 = 7;
+const LEVEL: u8 = 9;
 
 /// Bytes, deflated, as the page inflates them.
 pub(crate) fn deflated(bytes: &[u8]) -> String {

@@ -14,9 +14,10 @@ const STATES: usize = 24;
 /// Levels of a field, and of how many states one is kept, from fine to coarse: the first that fits.
 const FINENESS: [(f64, usize); 6] =
     [(126.0, 1), (62.0, 1), (30.0, 1), (14.0, 1), (14.0, 2), (6.0, 2)];
-/// Letters that fields of all states may take together: on small grids, and for each node of larger ones.
+/// Letters that fields of all states may take together on any grid.
 const LETTERS: usize = 250_000;
-const LETTERS_PER_NODE: usize = 6;
+/// Letters that a page has at most for each node of a larger grid, if it can: 1 MB on 256 × 256 nodes.
+const LETTERS_PER_NODE: usize = 15;
 
 /// What computes the fields of a path: its solver, or a replay of its record.
 pub trait Fields {
@@ -100,8 +101,14 @@ impl Field {
     }
 }
 
-/// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it.
-pub(crate) fn of(grid: &Grid, history: &History, fields: &mut dyn Fields) -> Result<Value, Error> {
+/// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it. The rest of the page has
+/// `taken` letters.
+pub(crate) fn of(
+    grid: &Grid,
+    history: &History,
+    taken: usize,
+    fields: &mut dyn Fields,
+) -> Result<Value, Error> {
     let contact_at = contact_at(grid, history);
     let mut found = Vec::new();
     for place in chosen(history) {
@@ -109,7 +116,7 @@ pub(crate) fn of(grid: &Grid, history: &History, fields: &mut dyn Fields) -> Res
         let (pressure, gap) = fields.pressure_and_gap_at(state)?;
         found.push(Field::of(place, contact_at(place), &pressure, &gap));
     }
-    let room = LETTERS.max(LETTERS_PER_NODE * grid.nodes());
+    let room = LETTERS.max((LETTERS_PER_NODE * grid.nodes()).saturating_sub(taken));
     let mut page = Value::Null;
     for (levels, every) in FINENESS {
         // The last state is always among them.

@@ -132,9 +132,14 @@ impl Report {
             panels.extend(found.panels);
             settings = settings.or(found.settings.map(|all| beside::flat(&all)));
         }
+        let events = events::of(record)?;
+        let heights = fields::heights(record.heights().matrix());
+        let texts =
+            [&events, &heights].into_iter().chain(&panels).map(|part| part.to_string().len());
+        let taken = page::letters() + texts.sum::<usize>();
         let computed = match fields {
-            Some(fields) => Computed::by(fields, record),
-            None => record.replay().and_then(|mut replay| Computed::by(&mut replay, record)),
+            Some(fields) => Computed::by(fields, record, taken),
+            None => record.replay().and_then(|mut replay| Computed::by(&mut replay, record, taken)),
         };
         let computed = computed.unwrap_or_else(|error| {
             notes.push(format!("pressure, gap and residuals are missing: {error}"));
@@ -158,8 +163,8 @@ impl Report {
             "notes": notes,
             "certificate": computed.certificate,
             "approach_error": last.approach_error,
-            "events": events::of(record)?,
-            "heights": fields::heights(record.heights().matrix()),
+            "events": events,
+            "heights": heights,
             "fields": computed.fields,
             "panels": panels,
         }));
@@ -187,8 +192,8 @@ struct Computed {
 }
 
 impl Computed {
-    fn by(fields: &mut dyn Fields, record: &LoadingRecord) -> Result<Self, Error> {
-        let found = fields::of(&record.grid(), record.history(), fields)?;
+    fn by(fields: &mut dyn Fields, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
+        let found = fields::of(&record.grid(), record.history(), taken, fields)?;
         let last = found["states"].as_array().and_then(|states| states.last());
         let greatest = last.and_then(|last| last["pressure"].as_f64());
         let certificate = match record.states().last() {

@@ -26,6 +26,11 @@ const PARTS: [(&str, &str); 2] = [
     ),
 ];
 
+/// Letters of the page without data.
+pub(crate) fn letters() -> usize {
+    PARTS.iter().map(|(_, part)| part.len()).sum()
+}
+
 /// The whole page with its data.
 pub(crate) fn of(data: &Value) -> String {
     let mut page = include_str!("../page/page.html").to_string();
