@@ -11,7 +11,7 @@ class Viewer {
     this.maps = paths.map((path, index) => new MapView(path, index, paths[0], (lead, event) => this.goTo(event, lead)));
     byId("maps").append(...this.maps.map(({ figure }) => figure));
     const several = paths.length > 1;
-    byId("stage").classList.toggle("two", several);
+    for (const id of ["stage", "tables", "words"]) byId(id).classList.toggle("two", several);
     byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name}`) : null, readout)));
     this.controls();
     this.remake();

@@ -1,6 +1,6 @@
 // Numbers in the units that the reader chooses.
 
-const PREFIXES = [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]];
+const PREFIXES = [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12], ["f", 1e-15], ["a", 1e-18]];
 const CHOICES = {
   length: ["auto", "m", "mm", "µm", "nm"],
   force: ["auto", "MN", "kN", "N", "mN", "µN"],

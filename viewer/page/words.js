@@ -12,7 +12,7 @@ function factText(value, unit) {
   return typeof value === "string" ? value : JSON.stringify(value);
 }
 
-const facts = (title, rows) => (rows.length ? make("section", { class: "facts" }, make("h2", {}, title), make("table", {}, make("tbody", {}, ...rows))) : null);
+const facts = (title, rows, kind = "") => (rows.length ? make("section", { class: `facts ${kind}` }, make("h2", {}, title), make("table", {}, make("tbody", {}, ...rows))) : null);
 
 /** The columns of the table of states: words, unit, and the value at an event. */
 function tableColumns(path) {
@@ -104,7 +104,7 @@ function panel(found) {
 }
 
 /** What is said of a record. */
-function wordsOf(record, program, command) {
+function wordsOf(record) {
   const settings = Object.entries(record.settings ?? {}).filter(([, value]) => value !== null).map(([name, value]) => ({ name, value, unit: "" }));
   const warnings = [...record.warnings.map((words) => `Warning: ${words}`), ...record.notes.map((words) => `Note: ${words}`)];
   return make(
@@ -117,7 +117,7 @@ function wordsOf(record, program, command) {
       { class: "columns" },
       facts("Surface, half-space, bodies", factRows(record.facts)),
       facts("How exact: residuals of the last state, 0 is exact", factRows(record.certificate)),
-      facts("Settings", factRows(settings)),
+      facts("Settings", factRows(settings), "settings"),
     ),
   );
 }
