@@ -24,7 +24,7 @@ const isDark = () => {
   return asked ? asked === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 };
 
-const themed = () => (isDark() ? { out: rgba(28, 33, 41), newest: rgba(255, 255, 255), grey: [28, 150] } : { out: rgba(233, 236, 241), newest: rgba(0, 0, 0), grey: [252, 150] });
+const themed = () => (isDark() ? { out: rgba(84, 93, 105), newest: rgba(255, 255, 255), grey: [70, 200] } : { out: rgba(233, 236, 241), newest: rgba(0, 0, 0), grey: [252, 150] });
 
 /** Greys for what is out of contact. */
 const greys = (levels) => {

@@ -13,6 +13,9 @@ class Viewer {
     const several = paths.length > 1;
     for (const id of ["stage", "tables", "words"]) byId(id).classList.toggle("two", several);
     byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name}`) : null, readout)));
+    // On the way to full contact most happens at small loads.
+    const { columns } = paths[0], half = paths[0].eventAt("load", 0.5 * columns.load.at(-1));
+    this.logX = this.logY = columns.area[half] > 0.75 * columns.area.at(-1);
     this.controls();
     this.remake();
     this.goTo(this.event);
@@ -144,6 +147,7 @@ class Viewer {
       this.remake();
     };
     for (const [id, name] of [["log-x", "logX"], ["log-y", "logY"]]) {
+      byId(id).checked = this[name];
       byId(id).onchange = (event) => {
         this[name] = event.target.checked;
         this.remake();
