@@ -8,7 +8,7 @@
 //! use asperity_report::{Report, Source};
 //!
 //! # fn main() -> Result<(), asperity::Error> {
-//! let half_space = Boussinesq::new(Grid::square(16, 1.25e-3)?, 115e9)?;
+//! let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
 //! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
 //! let history: History = path.by_ref().collect::<Result<_, _>>()?;
 //! let record = LoadingRecord::new(&path, history)?;

@@ -11,6 +11,9 @@ const PARTS: [(&str, &str); 2] = [
     (
         "@@script@@",
         concat!(
+            "/*\n",
+            include_str!("../vendor/uplot/LICENSE"),
+            "*/\n",
             include_str!("../vendor/uplot/uPlot.iife.min.js"),
             "\n\"use strict\";\n",
             include_str!("../page/decode.js"),

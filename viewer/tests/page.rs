@@ -12,7 +12,7 @@ use asperity::record::{KernelRecord, LoadingRecord, Settings};
 use asperity::surface::HeightMap;
 use asperity::{
     Boussinesq, ContactEvent, ContactRule, Error, Grid, InfluenceKernel, LoadingSolver,
-    PeriodicBoussinesq, SelfAffine, Surface,
+    PeriodicBoussinesq, SelfAffine,
 };
 use asperity_report::{Report, Source};
 use serde_json::Value;
@@ -197,6 +197,8 @@ fn fields_are_those_of_their_states() -> Result<(), Error> {
         assert_eq!((greatest, widest), (pressure.max(), gap.max()));
         for (node, level) in levels(left, &is_in, 32).into_iter().enumerate() {
             let part = match is_in[node] {
+                // At first touch there is no pressure yet.
+                true if greatest == 0.0 => 0.0,
                 true => pressure[node] / greatest,
                 false => (gap[node] / widest).max(0.0).sqrt(),
             };
@@ -249,18 +251,15 @@ fn no_text_becomes_a_tag() -> Result<(), Error> {
         (data["records"][0]["name"].as_str(), data["command"].as_str()),
         (Some(hostile), Some(hostile))
     );
-    for part in ["http://", "https://", "src=", "@import", "fetch("] {
-        let place = plain.find(part).map(|place| &plain[place.saturating_sub(60)..place + 60]);
-        // The name of SVG is no address that anybody visits.
-        assert!(place.is_none_or(|place| place.contains("w3.org/2000/svg")), "{part}: {place:?}");
-    }
+    // Whatever the page did, nothing could be fetched.
+    assert!(plain.contains("content=\"default-src 'none';"));
     Ok(())
 }
 
 #[test]
 fn a_record_without_states_has_no_page() -> Result<(), Error> {
-    let grid = Grid::square(8, 1.0)?;
-    let heights = HeightMap::new(SelfAffine::zhang2020(1).heights(&grid)?)?;
+    let grid = Grid::square(8, 1.25e-3)?;
+    let heights = HeightMap::new(asperity::nalgebra::DMatrix::from_element(8, 8, 0.0))?;
     let kernel = KernelRecord {
         origin: asperity::kernel::KernelOrigin::Other,
         boundary: asperity::Boundary::Free,
