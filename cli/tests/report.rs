@@ -17,7 +17,7 @@ fn run(folder: &Scratch, line: &str) -> std::process::Output {
 fn done(folder: &Scratch, line: &str) -> String {
     let output = run(folder, line);
     assert!(output.status.success(), "{}", said(&output));
-    String::from_utf8(output.stdout).unwrap() + &said(&output)
+    String::from_utf8_lossy(&output.stdout).into_owned() + &said(&output)
 }
 
 /// The data of a page.
