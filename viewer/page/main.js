@@ -12,10 +12,12 @@ class Viewer {
     byId("maps").append(...this.maps.map(({ figure }) => figure));
     const several = paths.length > 1;
     for (const id of ["stage", "tables", "words"]) byId(id).classList.toggle("two", several);
-    byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name}`) : null, readout)));
+    byId("reads").append(...this.maps.map(({ readout, path }, i) => make("div", {}, several ? make("p", { class: "which" }, `${"AB"[i]}: ${path.record.name} `, this.maps[i].ended) : null, readout)));
     // On the way to full contact most happens at small loads.
     const { columns } = paths[0], half = paths[0].eventAt("load", 0.5 * columns.load.at(-1));
     this.logX = this.logY = columns.area[half] > 0.75 * columns.area.at(-1);
+    const ends = paths.map((path) => path.columns.load.at(-1));
+    if (Math.max(...ends) > 3 * Math.min(...ends)) this.logX = true;
     this.controls();
     this.remake();
     this.goTo(this.event);
@@ -64,7 +66,10 @@ class Viewer {
     const slider = byId("slider");
     if (!this.sliding) slider.value = String(Math.round(this.placeOf(this.event) * STEPS));
     const value = this.values[this.event];
-    this.maps.forEach((map, i) => map.show(i === this.lead ? this.event : map.path.eventAt(this.along, value)));
+    this.maps.forEach((map, i) => {
+      map.show(i === this.lead ? this.event : map.path.eventAt(this.along, value));
+      map.ended.hidden = !(value > map.path.grown(this.along).at(-1));
+    });
     this.charts.forEach((chart) => chart.setPlace(value));
     // Other tables are of one path, and some of them run over its load.
     this.panels.filter(({ along }) => along === "load").forEach(({ charts, path }) => charts.forEach((chart) => chart.setPlace(path.columns.load[path.present])));

@@ -50,6 +50,7 @@ class MapView {
     this.under = make("p", { class: "under" });
     this.box = make("div", { class: "box" }, this.canvas, this.marks);
     this.box.style.aspectRatio = `${record.lx} / ${record.ly}`;
+    this.ended = make("em", {}, "has ended here");
     this.readout = make("dl", { class: "readout" });
     this.values = SCALARS.filter(([, name]) => path.columns[name]).map(([words, name, unit]) => {
       const value = make("dd");
@@ -60,7 +61,7 @@ class MapView {
     this.figure = make(
       "figure",
       { class: "map" },
-      make("figcaption", {}, record.name),
+      make("figcaption", { class: "name" }, record.name),
       this.box,
       this.bar,
       this.ticks,
