@@ -353,10 +353,23 @@ await step("a hostile name runs nothing", async () => {
   hostile.quiet();
 });
 
+await step("a notebook shows it in a frame of its own", async () => {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, acceptDownloads: true });
+  const page = await context.newPage();
+  // As `_repr_html_` of Python writes it.
+  const text = readFileSync(path.join(folder, "steel.html"), "utf8").replace(/[&"<>]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+  await page.setContent(`<iframe width="100%" height="900" sandbox="allow-scripts allow-downloads allow-modals" srcdoc="${text}"></iframe>`);
+  const frame = page.frames()[1];
+  await shown(frame);
+  const [download] = await Promise.all([page.waitForEvent("download"), frame.getByRole("button", { name: "Save map as PNG" }).click()]);
+  assert.ok(statSync(await download.path()).size > 10000);
+  await context.close();
+});
+
 for (const [file, words] of [["cut.html", /incomplete/], ["damaged.html", /damaged/], ["outside.html", /outside the grid|damaged/], ["empty.html", /no record/i]]) {
   await step(`${file}: an error in words`, async () => {
     const page = await open(file);
-    await page.waitForFunction(() => document.readyState === "complete" && !document.getElementById("fault").textContent.startsWith("This page is made"));
+    await page.waitForFunction(() => document.readyState === "complete" && !document.getElementById("fault").textContent.startsWith("The path is being read"));
     assert.match(await page.textContent("#fault"), words);
     assert.ok(await page.isVisible("#fault"));
     assert.ok(!(await page.isVisible("#all")));

@@ -40,7 +40,7 @@ class Chart {
   constructor(title, x, y, lines, onPlace) {
     Object.assign(this, { title, x, y, lines });
     this.legend = make("div", { class: "legend" });
-    this.holder = make("div", { class: "plot", role: "img" });
+    this.holder = make("div", { class: "plot", role: "img", "aria-label": title });
     this.print = make("div", { class: "print-chart", "aria-hidden": "true" });
     const save = make("button", { type: "button", class: "save", onclick: () => saveText(`${title}.svg`, "image/svg+xml", svgOf(this)), "aria-label": `Save the chart ${title} as SVG` }, "SVG");
     this.figure = make("figure", { class: "chart" }, make("figcaption", {}, make("span", {}, title), save), this.legend, this.holder, this.print);
@@ -104,6 +104,7 @@ class Chart {
       if (left >= 0 && this.onPlace) this.onPlace(this.plot.posToVal(left, "x") * x.in.factor);
     });
     this.follow();
+    this.describe();
   }
 
   /** The pointer's values in place of the slider's. */

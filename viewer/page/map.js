@@ -78,6 +78,7 @@ class MapView {
     this.marks.addEventListener("click", (event) => this.ask(this.nodeAt(event)));
     this.marks.addEventListener("keydown", (event) => this.steer(event));
     this.recolour();
+    this.describe();
   }
 
   nodeAt(event) {
