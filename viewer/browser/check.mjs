@@ -343,6 +343,24 @@ await step("two records", async () => {
   two.quiet();
 });
 
+await step("a path of one load", async () => {
+  const flat = await open("flat.html");
+  await shown(flat);
+  for (const along of ["approach", "area", "mean_pressure", "load"]) {
+    for (const logarithmic of [true, false]) {
+      await flat.selectOption("#along", along);
+      await flat.setChecked("#log-x", logarithmic);
+      await flat.setChecked("#log-y", logarithmic);
+      await flat.focus("#slider");
+      await flat.keyboard.press("Home");
+      await flat.keyboard.press("End");
+    }
+  }
+  await flat.selectOption("[aria-label='Colour of nodes in contact']", "pressure");
+  await printed(flat, "a path of one load");
+  flat.quiet();
+});
+
 await step("a hostile name runs nothing", async () => {
   const hostile = await open("hostile.html");
   await shown(hostile);

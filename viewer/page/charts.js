@@ -90,7 +90,7 @@ class Chart {
         height: 210,
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, points: { show: lines.length > 0 } },
-        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : [0.5 * least, 1.5 * most || 1]) }, y: { distr: y.log ? 3 : 1, range: y.log ? undefined : (plot, least, most) => (least === most ? [least - 0.5, most + 0.5] : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
+        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : around(least, most, x.log)) }, y: { distr: y.log ? 3 : 1, range: (plot, least, most) => (y.log || !(least < most) ? around(least, most, y.log) : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
         axes: [{ ...axis(label(x), x.log), size: 30 }, { ...axis(label(y), y.log), size: 48 }],
         series: [{}, ...lines.map((line) => ({ stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
         hooks: { setCursor: [(plot) => this.hover(plot)], draw: [() => this.follow()] },
@@ -151,6 +151,13 @@ class Chart {
   describe() {
     if (this.said) this.holder.setAttribute("aria-label", this.said);
   }
+}
+
+/** Ends of an axis for values that are all the same, for logarithms in whole decades, or for none at all. */
+function around(least, most, log) {
+  if (!Number.isFinite(least) || !Number.isFinite(most)) return log ? [1, 10] : [0, 1];
+  if (log) return uPlot.rangeLog(least, most, 10, true);
+  return least === 0 ? [0, 1] : [Math.min(0, 1.5 * least), Math.max(0, 1.5 * most)];
 }
 
 /** Labels of whole powers of ten, and of few if there are many. */
