@@ -115,7 +115,8 @@ fn target(target: &ContactTarget) -> Value {
 }
 
 /// Why a path has ended, in words.
-fn reason(end: LoadingEnd) -> &'static str {
+#[must_use]
+pub fn reason(end: LoadingEnd) -> &'static str {
     match end {
         LoadingEnd::FullContact => "full contact",
         LoadingEnd::FullyPlastic => "all cells have yielded",

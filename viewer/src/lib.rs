@@ -36,6 +36,7 @@ use asperity::record::LoadingRecord;
 use asperity::{Error, Grid};
 use serde_json::{Value, json};
 
+pub use facts::reason;
 pub use fields::Fields;
 
 /// A path for a page.
