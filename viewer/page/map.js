@@ -136,7 +136,7 @@ class MapView {
     const mode = this.colour.value, ground = this.ground.value;
     const newest = path.contactNodes[event] > 0 ? event - Math.max(1, Math.ceil(NEWEST * path.contactNodes[event])) : event;
     const { out, newest: fresh } = this.themed, plain = viridis[110];
-    const scale = state ? 255 / state.levels : 0, orange = this.orange.checked;
+    const scale = state ? 255 / state.levels : 0, orange = this.orange.checked, shades = mode === "pressure" ? this.shadesOf(state) : null;
     for (let iy = 0, node = 0; iy < ny; iy++) {
       let pixel = (ny - 1 - iy) * nx;
       for (let ix = 0; ix < nx; ix++, node++, pixel++) {
@@ -147,7 +147,7 @@ class MapView {
           else pixels[pixel] = this.greys[255 - path.heights[node]];
         } else if (orange && yielded[node] >= 0) pixels[pixel] = YIELDED;
         else if (mode === "touch") pixels[pixel] = at > newest ? fresh : this.byTouch[node];
-        else if (mode === "pressure") pixels[pixel] = state.isIn[node] ? viridis[Math.round(state.codes[node] * scale)] : fresh;
+        else if (mode === "pressure") pixels[pixel] = state.isIn[node] ? shades[state.codes[node]] : fresh;
         else pixels[pixel] = at > newest ? fresh : plain;
       }
     }
@@ -189,12 +189,25 @@ class MapView {
     );
   }
 
+  /** Colours of the levels of pressure: up to what a hundredth of the contact is above, so that a few peaks do not darken the rest. */
+  shadesOf(state) {
+    if (!state.shades) {
+      const { codes, isIn, levels } = state, counts = new Uint32Array(levels + 1);
+      codes.forEach((code, node) => (counts[code] += isIn[node]));
+      let above = counts.reduce((sum, count) => sum + count, 0) / 100, top = levels;
+      while (top > 1 && counts[top] <= above) above -= counts[top--];
+      state.top = (top / levels) ** 2;
+      state.shades = Uint32Array.from(counts, (_, code) => viridis[Math.min(255, Math.round((255 * (code / levels) ** 2) / state.top))]);
+    }
+    return state.shades;
+  }
+
   nameOf(state) {
     return `${quantity(this.path.columns.load[state.event], "N")} (state ${state.number} of ${this.path.states.length}, the nearest)`;
   }
 
   scaleTicks(state) {
-    if (this.colour.value === "pressure") return [0, 0.25, 0.5, 0.75, 1].map((part) => quantity(part * state.pressure, "Pa"));
+    if (this.colour.value === "pressure") return [0, 0.25, 0.5, 0.75, 1].map((part) => (part === 1 && state.top < 1 ? "≥ " : "") + quantity(part * state.top * state.pressure, "Pa"));
     const { scale } = this, last = scale.contactNodes[scale.count - 1];
     return [0, 0.25, 0.5, 0.75, 1].map((part) => {
       const nodes = Math.max(1, Math.round(part * last));

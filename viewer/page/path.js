@@ -112,7 +112,7 @@ class ContactPath {
   /** Pressure or gap of a node at a state, of which there is one. */
   fieldAt(state, node) {
     const part = state.codes[node] / state.levels;
-    return state.isIn[node] ? { pressure: part * state.pressure } : { gap: part * part * state.gap };
+    return state.isIn[node] ? { pressure: part * part * state.pressure } : { gap: part * part * state.gap };
   }
 
   heightOf(node) {

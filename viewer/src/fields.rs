@@ -12,8 +12,8 @@ use crate::blob::deflated;
 /// How many states have fields.
 const STATES: usize = 24;
 /// Levels of a field, and of how many states one is kept, from fine to coarse: the first that fits.
-const FINENESS: [(f64, usize); 6] =
-    [(126.0, 1), (62.0, 1), (30.0, 1), (14.0, 1), (14.0, 2), (6.0, 2)];
+const FINENESS: [(f64, usize); 8] =
+    [(126.0, 1), (62.0, 1), (44.0, 1), (30.0, 1), (22.0, 1), (14.0, 1), (14.0, 2), (6.0, 2)];
 /// Letters that fields of all states may take together on any grid.
 const LETTERS: usize = 250_000;
 /// Letters that a page has at most for each node of a larger grid, if it can: 1 MB on 256 × 256 nodes.
@@ -70,7 +70,7 @@ struct Field {
     pressure: f64,
     gap: f64,
     in_contact: Vec<bool>,
-    /// In parts of 65535.
+    /// Its root, in parts of 65535.
     parts: Vec<u16>,
 }
 
@@ -83,15 +83,13 @@ impl Field {
     ) -> Self {
         let greatest = |field: &DMatrix<f64>| field.iter().copied().fold(0.0, f64::max);
         let most = (greatest(pressure), greatest(gap));
+        // Small ones matter more: by the root.
         let whole = |part: f64| {
-            if part > 0.0 { (part.min(1.0) * f64::from(u16::MAX)).round() as u16 } else { 0 }
+            if part > 0.0 { (part.min(1.0).sqrt() * f64::from(u16::MAX)).round() as u16 } else { 0 }
         };
         let nodes = pressure.iter().zip(gap).zip(&in_contact);
-        let parts = nodes.map(|((p, g), is_in)| match is_in {
-            true => whole(p / most.0),
-            // Small gaps matter more: by the root.
-            false => whole((g / most.1).sqrt()),
-        });
+        let parts =
+            nodes.map(|((p, g), is_in)| whole(if *is_in { p / most.0 } else { g / most.1 }));
         Self { place, pressure: most.0, gap: most.1, parts: parts.collect(), in_contact }
     }
 

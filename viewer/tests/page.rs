@@ -199,7 +199,7 @@ fn fields_are_those_of_their_states() -> Result<(), Error> {
             let part = match is_in[node] {
                 // At first touch there is no pressure yet.
                 true if greatest == 0.0 => 0.0,
-                true => pressure[node] / greatest,
+                true => (pressure[node] / greatest).sqrt(),
                 false => (gap[node] / widest).max(0.0).sqrt(),
             };
             // Half a level, and that of the parts of 65535 before.
