@@ -17,6 +17,7 @@ mod materials;
 mod own_kernels;
 mod patches;
 mod path;
+mod report;
 mod results;
 mod slip;
 mod state;
@@ -37,6 +38,7 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     state::register(module)?;
     history::register(module)?;
     path::register(module)?;
+    report::register(module)?;
     fixed_load::register(module)?;
     patches::register(module)?;
     leak::register(module)?;

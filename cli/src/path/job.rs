@@ -198,6 +198,11 @@ impl Job {
         })
     }
 
+    /// What surface it is of.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     pub(super) fn grid(&self) -> Grid {
         *self.surface.grid()
     }

@@ -89,6 +89,10 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE.npz", group = "kept")]
     pub(super) record: Option<PathBuf>,
 
+    /// Write report.html: the contact at every state under a slider, charts and tables, in one page for a browser
+    #[arg(long)]
+    pub(super) report: bool,
+
     /// Write pressure and gap of the last state
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(super) fields: Option<Format>,

@@ -13,6 +13,7 @@ use asperity::contact::Certificate;
 use asperity::loading::LoadingEnd;
 use asperity::nalgebra::DMatrix;
 use asperity::patches::constriction;
+use asperity::record::LoadingRecord;
 use asperity::{Error, Grid, LoadingState, Warning};
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -116,6 +117,18 @@ impl LoadingPath {
         let mut inner = self.lock(py);
         let engine = inner.engine_mut();
         Ok(detached(py, || compute(engine))??)
+    }
+
+    /// What the engine computes with the record of the states so far, without the lock of the interpreter.
+    pub(crate) fn with_record<T: Send>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut dyn Engine, &LoadingRecord) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let mut inner = self.lock(py);
+        let record = inner.record()?;
+        let engine = inner.engine_mut();
+        Ok(detached(py, || compute(engine, &record))??)
     }
 
     /// What the engine computes at a state, without the lock of the interpreter.
