@@ -12,6 +12,7 @@ mod info;
 mod layers;
 mod leak;
 mod load;
+mod material;
 mod passages;
 mod patches;
 mod path;

@@ -8,6 +8,7 @@ mod compute;
 mod creep;
 mod errors;
 mod fixed_load;
+mod given;
 mod half_space;
 mod history;
 mod increments;
@@ -38,6 +39,7 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     state::register(module)?;
     history::register(module)?;
     path::register(module)?;
+    path::setup::register(module)?;
     report::register(module)?;
     fixed_load::register(module)?;
     patches::register(module)?;

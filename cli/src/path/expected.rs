@@ -11,8 +11,8 @@ use asperity_cli::outcome::Failure;
 use serde_json::{Value, json};
 
 use super::job::Job;
-use super::options::Updater;
 use super::progress::total;
+use super::updater::Updater;
 
 // Measured on 32 to 512 nodes a side, elastic and yielding, free and periodic, with each updater.
 

@@ -21,6 +21,7 @@ mod progress;
 mod source;
 mod table;
 mod unloading;
+mod updater;
 
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
@@ -110,7 +111,7 @@ fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
     for warning in job.warnings() {
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
-    let conductions = options.joint.check(&job)?;
+    let conductions = options.joint.check(&job.pair())?;
     Ok((job, conductions))
 }
 
@@ -205,7 +206,7 @@ fn follow_one(
     if options.report {
         outcome.written(report_of(&job, &mut solver, &states, (&options.out, begun)));
     }
-    outcome.all_written(options.joint.write(&job, &states, &options.out));
+    outcome.all_written(options.joint.write(&job.pair(), &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
     Ok(outcome)

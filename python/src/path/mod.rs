@@ -2,7 +2,7 @@
 
 mod engine;
 mod inner;
-mod setup;
+pub(crate) mod setup;
 mod unloading;
 
 use std::path::PathBuf;
@@ -22,7 +22,6 @@ use pyo3::types::PyDict;
 
 pub(crate) use self::engine::{Engine, Sheared};
 use self::inner::Inner;
-pub(crate) use self::setup::{Hardness, warn_of};
 use crate::arrays::{column, rows, shape};
 use crate::choice;
 use crate::compute::detached;
@@ -32,7 +31,7 @@ use crate::results::result;
 use crate::state::State;
 use crate::surface::Surface;
 use crate::targets::{Targets, named};
-use crate::warnings::{of_contact, warn, warn_all};
+use crate::warnings::{of_contact, warn_all};
 
 /// How long a path runs between two looks at signals and calls of `progress`.
 const STRETCH: Duration = Duration::from_millis(50);
@@ -679,6 +678,5 @@ impl<'py> Progress<'py> {
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<LoadingPath>()?;
-    setup::register(module)?;
     unloading::register(module)
 }
