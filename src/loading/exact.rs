@@ -69,12 +69,15 @@ impl Exact {
         updater: &mut U,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
+        if run.waiting().is_none() {
+            return Ok(None);
+        }
         let (touches, approach) = (most_nodes - run.contact_nodes(), run.scalars.approach());
         let size = run.affordable(updater, self.next_size(run, touches))?;
         run.renew_field(updater, approach)?;
         let Survey { first, beyond, rates } = self.survey(run)?;
-        if self.ranking.is_empty() && run.plastic.is_some() {
-            return Ok(None);
+        if self.ranking.is_empty() {
+            return Err(self.growth_stopped(run));
         }
         let start = Instant::now();
         let size = size.min(self.ranking.len());
