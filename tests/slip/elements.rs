@@ -142,11 +142,13 @@ proptest! {
             }).collect();
             let mut all = vec![(0.5 * bed.last_load(), 0.0)];
             all.extend(corners);
-            let (force, lost) = compare(&bed, friction, &all, 1);
+            let (force, _) = compare(&bed, friction, &all, 1);
             // Sums over 134 elements, through up to 1000 steps.
             prop_assert!(force < 1e-11, "{force:e}");
-            // Where the load changes the elements' own account is of second order in the step.
-            prop_assert!(lost < 0.05, "{lost:e}");
+            // Where the load changes the elements' own account is of second order in the step: a tenth of what is lost in steps from event to
+            // event, at worst, and a sixteenth of that in quarters of them.
+            let (_, lost) = compare(&bed, friction, &all, 4);
+            prop_assert!(lost < 0.02, "{lost:e}");
         }
     }
 }
