@@ -293,7 +293,7 @@ const TABLE: &[Row] = &[
     ("tiles, factor", 400, 0xbc5c3a8f86689941, 0x74da2c26cf05e71f, [8, 0, 0, 0]),
     ("tiles, iterations", 400, 0xbc5c3a8f86689941, 0x54541a417dd97434, [17, 0, 4, 113]),
     ("plateau, factor", 256, 0x86afd4d90931829d, 0xdf4c045ad8ffa6f7, [6, 0, 0, 0]),
-    ("plateau, iterations", 256, 0x86afd4d90931829d, 0x57c5dbe378a7e5d3, [8, 0, 9, 105]),
+    ("plateau, iterations", 256, 0x86afd4d90931829d, 0x189003486f7ea055, [10, 0, 9, 98]),
     ("hard plateau, factor", 512, 0xf82522ac9cc8343c, 0xd76a26334b45ff0b, [11, 66, 0, 0]),
     ("hard plateau, iterations", 512, 0xf82522ac9cc8343c, 0xf3a9ab8d0016f848, [29, 1, 13, 236]),
     ("strip, factor", 360, 0xe315699cffbb1351, 0xb1bbf3c98b94b715, [9, 0, 0, 0]),
