@@ -96,7 +96,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
     let items = [
         format!(
             "**Rule for the next node.** \"The smallest gap\" is not exact: {} of {} examined states have negative \
-             pressure, see above. [theory.md](theory.md#3-the-next-contact) says why.",
+             pressure, see above. [theory.md](../docs/theory.md#3-the-next-contact) says why.",
             report.rules.smallest_gap.negative, report.rules.smallest_gap.examined
         ),
         format!(
@@ -145,7 +145,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
         ),
         format!(
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
-             nodes, which do not take 20 minutes. [performance.md](performance.md#the-headline-case) has our time.",
+             nodes, which do not take 20 minutes. [performance.md](../docs/performance.md#the-headline-case) has our time.",
             100.0 * share,
             share * 65536.0,
             share / 100.0 * 65536.0

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Writes for each of Figs. 3 to 8 a picture and the numbers behind it, and `run_*.csv` with the
-//! whole loading of every surface. With `--report docs/validation_paper.md`, also a page with each number
+//! whole loading of every surface. With `--report paper/figure_by_figure.md`, also a page with each number
 //! and statement of the paper, our own numbers with their spread over the seeds, and a verdict by a criterion.
 //! With `--whole-path`, the path of every node as well.
 
@@ -121,7 +121,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             figure7,
             figure8,
         };
-        written.push(report.write(&out.join("validation_paper.md"))?);
+        written.push(report.write(&out.join("figure_by_figure.md"))?);
         written.push(report.write_criteria(&out.join("criteria.md"))?);
         if let Some(name) = &options.report {
             written.push(report.publish(name)?);

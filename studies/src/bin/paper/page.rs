@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::report::Report;
 use crate::{candidates, conclusions, criteria, findings, method, sections, statements};
 use asperity_cli::outcome::Failure;
+use asperity_studies::page::wrapped;
 
 /// The study writes between these lines of the page, and leaves the rest alone.
 const FIGURES: [&str; 2] =
@@ -123,7 +124,7 @@ impl Report {
              command writes the numbers and pictures:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
-             --report docs/validation_paper.md\n\
+             --report paper/figure_by_figure.md\n\
              ```\n\n\
              * **Rough surfaces**: {} × {} nodes, {} seeds each; \"a ± b\" is the mean over the seeds and \
              the sample standard deviation. There are three surfaces, because the paper does not determine its own: \
@@ -149,5 +150,5 @@ fn put(present: &str, [begin, end]: [&str; 2], text: &str) -> String {
         Some((before.to_string(), after))
     });
     let (before, after) = parts.unwrap_or((format!("{}\n\n", present.trim_end()), "\n"));
-    format!("{before}{begin}\n\n{text}\n\n{end}{after}")
+    format!("{before}{begin}\n\n{}\n\n{end}{after}", wrapped(text))
 }

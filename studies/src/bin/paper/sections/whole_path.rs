@@ -28,12 +28,12 @@ pub(crate) fn whole_path(path: &WholePath, prefix: &str) -> String {
     let against = path.against.as_ref().map_or(String::new(), against);
     format!(
         "The figures above follow events up to {} nodes and solve for single loads from there. The path without a factor \
-         ([theory.md](theory.md#11-without-a-factor)) has every event of the paper's mesh: Table 1's spectrum, seed 1, \
+         ([theory.md](../docs/theory.md#11-without-a-factor)) has every event of the paper's mesh: Table 1's spectrum, seed 1, \
          {} × {} nodes, all {nodes} of them from first touch to full contact at W = {} A₀E\\*.\n\n\
          ```text\n\
          cargo run --release -- path --nodes {} --short-cutoff 78.125e-6 --e-star 1 --max-area-fraction 1\n\
          cargo run --release -p asperity-studies --bin paper -- --nodes {} --whole-path out/path.csv --report \
-         docs/validation_paper.md --reuse\n\
+         paper/figure_by_figure.md --reuse\n\
          ```\n\n{}\n\n\
          The dashed line is the paper's greatest \
          load. The table gives the last state at or below each load (k \
