@@ -60,6 +60,17 @@ pub const DRIVERS: [(&str, Driver); 7] = [
     ("yielding", yielding),
 ];
 
+/// The bytes of hexadecimal digits.
+///
+/// # Errors
+///
+/// The text is something else.
+pub fn from_hex(text: &str) -> Result<Vec<u8>, Violation> {
+    let digits = |k: usize| u8::from_str_radix(text.get(k..k + 2)?, 16).ok();
+    let bytes = (0..text.len()).step_by(2).map(digits).collect::<Option<_>>();
+    bytes.ok_or_else(|| Violation::new(format!("these are no hexadecimal bytes: {text}")))
+}
+
 /// One case of a driver; a panic of the library is a violation as well.
 ///
 /// # Errors

@@ -19,6 +19,8 @@ pub(crate) struct Circumstances {
     pub(crate) tolerance: Option<f64>,
     /// Nodes that touch or leave together at the last state.
     pub(crate) on_the_edge: usize,
+    /// Mean hardness of the nodes, infinite without one.
+    pub(crate) bears: f64,
 }
 
 impl Circumstances {
@@ -31,6 +33,7 @@ impl Circumstances {
             budget: false,
             tolerance: None,
             on_the_edge: 0,
+            bears: dense.hardness().map_or(f64::INFINITY, |hardness| hardness.mean()),
         }
     }
 
@@ -57,6 +60,10 @@ impl Circumstances {
             // Cells so long that paths need a factor.
             Error::OutOfRange { value, .. } => {
                 self.tolerance.is_some() && *value > ConjugateGradient::MAX_ASPECT
+            }
+            // Sums of some hundred terms at most, which are rounded in another order.
+            Error::BeyondHardness { mean_pressure, .. } => {
+                *mean_pressure >= self.bears * (1.0 - 1e-13)
             }
             Error::Cycling { .. } => self.growth == ContactGrowth::Unknown && self.on_the_edge > 1,
             _ => false,

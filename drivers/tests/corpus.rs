@@ -1,26 +1,46 @@
-//! The inputs that fuzzing has found (`fuzz/corpus`), through the drivers.
+//! The inputs that fuzzing has found (`fuzz/corpus`, a line of hexadecimal digits for each), through the drivers.
 //!
-//! A folder that is missing or empty is a failure, and so is one that belongs to no driver.
+//! A file that is missing or empty is a failure, and so is one that belongs to no driver.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use asperity_drivers::{DRIVERS, Violation, case};
+use asperity_drivers::{DRIVERS, Violation, case, from_hex};
 
-/// What is in a folder of the corpus, in the order of names.
+fn of_repository(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
+fn failed(path: &Path) -> impl Fn(io::Error) -> Violation {
+    move |error| Violation::new(format!("{}: {error}", path.display()))
+}
+
+/// What is in a folder, in the order of names.
 fn entries(folder: &str) -> Result<Vec<PathBuf>, Violation> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus").join(folder);
+    let folder = of_repository(folder);
     let read = || -> io::Result<Vec<PathBuf>> {
         fs::read_dir(&folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
     };
-    let failed = |error: io::Error| Violation::new(format!("{}: {error}", folder.display()));
-    let mut entries = read().map_err(failed)?;
+    let mut entries = read().map_err(failed(&folder))?;
     entries.sort();
-    if entries.is_empty() {
-        return Err(Violation::new(format!("{} is empty", folder.display())));
-    }
     Ok(entries)
+}
+
+/// Names and bytes of the inputs of a target.
+fn inputs(target: &str) -> Result<Vec<(String, Vec<u8>)>, Violation> {
+    let file = of_repository(&format!("fuzz/corpus/{target}.hex"));
+    let text = fs::read_to_string(&file).map_err(failed(&file))?;
+    let lines = text.lines().map(|line| Ok((line.to_string(), from_hex(line)?)));
+    let mut inputs = lines.collect::<Result<Vec<_>, Violation>>()?;
+    if target == "parsers" {
+        // Files that other programs wrote: two zero bytes say that the rest is a file, read with default options.
+        for file in entries("tests/data/surface_files")? {
+            let bytes = fs::read(&file).map_err(failed(&file))?;
+            inputs.push((file.display().to_string(), [vec![0, 0], bytes].concat()));
+        }
+    }
+    Ok(inputs)
 }
 
 /// Every input of a target.
@@ -28,15 +48,14 @@ fn replay(target: &str) -> Result<(), Violation> {
     let Some((_, driver)) = DRIVERS.iter().find(|(name, _)| *name == target) else {
         return Err(Violation::new(format!("there is no driver '{target}'")));
     };
-    let files = entries(target)?;
+    let inputs = inputs(target)?;
     let mut checked = 0;
-    for file in &files {
-        let failed = |what: String| Violation::new(format!("{}: {what}", file.display()));
-        let bytes = fs::read(file).map_err(|error| failed(error.to_string()))?;
-        let tally = case(*driver, &bytes).map_err(|violation| failed(violation.to_string()))?;
+    for (name, bytes) in &inputs {
+        let tally = case(*driver, bytes)
+            .map_err(|violation| Violation::new(format!("{target} {name}: {violation}")))?;
         checked += tally.checked;
     }
-    println!("{target}: {} inputs, {checked} answers compared", files.len());
+    println!("{target}: {} inputs, {checked} answers compared", inputs.len());
     if checked == 0 {
         return Err(Violation::new(format!("no answer to {target} was compared")));
     }
@@ -74,10 +93,11 @@ fn records() -> Result<(), Violation> {
 }
 
 #[test]
-fn every_folder_has_a_driver() -> Result<(), Violation> {
-    let folders = entries("")?;
-    let names = folders.iter().filter_map(|folder| folder.file_name()?.to_str());
-    assert!(names.eq(DRIVERS.map(|(name, _)| name)), "{folders:?}");
+fn every_file_has_a_driver() -> Result<(), Violation> {
+    let files = entries("fuzz/corpus")?.into_iter().filter(|path| path.is_file());
+    let files: Vec<PathBuf> = files.collect();
+    let names = files.iter().filter_map(|file| file.file_stem()?.to_str());
+    assert!(names.eq(DRIVERS.map(|(name, _)| name)), "{files:?}");
     Ok(())
 }
 

@@ -7,7 +7,7 @@
 use std::env;
 use std::time::{Duration, Instant};
 
-use asperity_drivers::{DRIVERS, Driver, Tally, Violation, case};
+use asperity_drivers::{DRIVERS, Driver, Tally, Violation, case, from_hex};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -28,17 +28,10 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn from_hex(text: &str) -> Option<Vec<u8>> {
-    let digits = |k: usize| u8::from_str_radix(text.get(k..k + 2)?, 16).ok();
-    (0..text.len()).step_by(2).map(digits).collect()
-}
-
 /// Runs a driver on as many random inputs as it is told to, up to so many bytes each.
 fn drive(name: &str, driver: Driver, cases: u64, most_bytes: usize) -> Result<Tally, Violation> {
     if let Ok(text) = env::var("ASPERITY_DRIVER_BYTES") {
-        let bytes = from_hex(&text)
-            .ok_or_else(|| Violation::new("ASPERITY_DRIVER_BYTES holds no hexadecimal bytes"))?;
-        return case(driver, &bytes);
+        return case(driver, &from_hex(&text)?);
     }
     let seed = number("ASPERITY_DRIVER_SEED")?.unwrap_or(SEED);
     let seconds = number("ASPERITY_DRIVER_SECONDS")?;
@@ -119,8 +112,7 @@ fn earlier_failures_are_mended() -> Result<(), Violation> {
         let Some((_, driver)) = DRIVERS.iter().find(|(other, _)| *other == name) else {
             return Err(Violation::new(format!("there is no driver '{name}'")));
         };
-        let bytes = from_hex(text).unwrap_or_default();
-        case(*driver, &bytes)
+        case(*driver, &from_hex(text)?)
             .map_err(|violation| Violation::new(format!("{violation}\n{name} {text}")))?;
     }
     Ok(())

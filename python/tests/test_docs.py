@@ -6,6 +6,7 @@ import doctest
 import inspect
 import pydoc
 import re
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from asperity import _asperity, errors, results
 REPOSITORY = Path(__file__).resolve().parents[2]
 # Pages whose Python runs, and how many pieces of it there are at least.
 PAGES = {
+    "README.md": 1,
     "python/README.md": 4,
     "docs/python.md": 4,
     "docs/from_file_to_contact.md": 1,
@@ -104,6 +106,9 @@ def test_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     for name in ["ground.x3p", "ground.sdf"]:
         asp.example_surface(nodes=64).save("ground.x3p")
         (tmp_path / name).write_bytes((tmp_path / "ground.x3p").read_bytes())
+    # The first page reads a surface of the repository, in its folder.
+    (tmp_path / "tests/data").mkdir(parents=True)
+    shutil.copy(REPOSITORY / "tests/data/selfaffine_128.npy", tmp_path / "tests/data")
     blocks = re.findall(r"```python\n(.*?)```", (REPOSITORY / page).read_text(encoding="utf-8"), re.DOTALL)
     assert len(blocks) >= PAGES[page]
     scope: dict[str, object] = {}

@@ -37,7 +37,7 @@ impl Section<'_> {
     fn merged(&self, present: &str) -> String {
         let begin = format!("<!-- written by the study `{}`: begin -->", self.study);
         let end = format!("<!-- written by the study `{}`: end -->", self.study);
-        let section = format!("{begin}\n\n{}\n\n{end}", self.text.trim());
+        let section = format!("{begin}\n\n{}\n\n{end}", wrapped(self.text.trim()));
         let parts = present.split_once(&begin).and_then(|(before, rest)| {
             let (_, after) = rest.split_once(&end)?;
             Some((before, after))
@@ -47,6 +47,45 @@ impl Section<'_> {
             None => format!("{}\n\n{section}\n", present.trim_end()),
         }
     }
+}
+
+/// Columns of a line of prose at most.
+const COLUMNS: usize = 120;
+
+/// Text of a page whose paragraphs are one line each, with lines that are not too long. Tables, code, headings and pictures stay.
+pub fn wrapped(text: &str) -> String {
+    let mut fenced = false;
+    let lines = text.lines().map(|line| {
+        let fence = line.trim_start().starts_with("```");
+        fenced ^= fence;
+        let whole = fenced || fence || line.starts_with(['|', '#', '<', '!']);
+        if whole || line.chars().count() <= COLUMNS { line.to_string() } else { broken(line) }
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A paragraph, or an item of a list, in several lines.
+fn broken(line: &str) -> String {
+    let first = line.split(' ').next().unwrap_or_default();
+    let number = first.strip_suffix('.').is_some_and(|n| n.parse::<u32>().is_ok());
+    let indent = if first == "*" || number { first.chars().count() + 1 } else { 0 };
+    let (mut text, mut length) = (String::new(), 0);
+    for word in line.split_whitespace() {
+        let size = word.chars().count();
+        // At the beginning of a line these would be items of a list.
+        let sign = ["+", "-", "*"].contains(&word);
+        if length > 0 && length + 1 + size > COLUMNS && !sign {
+            text.push('\n');
+            text.push_str(&" ".repeat(indent));
+            length = indent;
+        } else if length > 0 {
+            text.push(' ');
+            length += 1;
+        }
+        text.push_str(word);
+        length += size;
+    }
+    text
 }
 
 #[cfg(test)]
@@ -69,5 +108,19 @@ mod tests {
         let again = section("one", "Changed.").merged(&both);
         assert_eq!(again, both.replace("First.", "Changed."));
         assert_eq!(section("two", "Second.").merged(&both), both);
+    }
+
+    #[test]
+    fn prose_is_wrapped_and_nothing_else() {
+        let words = "word ".repeat(50);
+        let long = words.trim_end();
+        let item = wrapped(&format!("12. {long}"));
+        assert!(item.lines().all(|line| line.chars().count() <= COLUMNS));
+        assert!(item.lines().skip(1).all(|line| line.starts_with("    word")));
+        let back: Vec<&str> = item.split_whitespace().collect();
+        assert_eq!(back.join(" "), format!("12. {long}"));
+        for kept in [format!("| {long} |"), format!("```text\n{long}\n```"), format!("## {long}")] {
+            assert_eq!(wrapped(&kept), kept);
+        }
     }
 }

@@ -130,21 +130,12 @@ def main(ours_path, page_path):
         for row in csv.DictReader(file):
             ours.setdefault(row["map"], {})[row["quantity"]] = float(row["value"])
 
-    lines = [
-        f"asperity beside tamaas {version('tamaas')} and SurfaceTopography {version('SurfaceTopography')}, NumPy {np.__version__}.",
-        "",
-    ]
+    # The differences of a quantity from that of a program, one for each map.
+    rows = {}
     wrong = []
     for name, (heights, cell) in MAPS.items():
-        nx, ny = heights.shape
         reference = others(heights, cell)
         different = DIFFERENT | (DIFFERENT_SHORT_WAVES if name == "formula_45x28" else {})
-        lines += [
-            f"### `{name}`: {nx} × {ny} nodes, cells of {cell[0]:.4g} m × {cell[1]:.4g} m",
-            "",
-            "| quantity | asperity | tamaas | difference | SurfaceTopography | difference |",
-            "|---|---|---|---|---|---|",
-        ]
         spectra = {}
         for quantity, value in ours[name].items():
             theirs = reference.get(quantity, {})
@@ -153,18 +144,13 @@ def main(ours_path, page_path):
                 if "SurfaceTopography" in theirs:
                     spectra.setdefault(family, []).append((value, theirs["SurfaceTopography"]))
                 continue
-            cells = []
-            for program in ["tamaas", "SurfaceTopography"]:
-                if program not in theirs:
-                    cells += ["", ""]
-                    continue
+            for program in theirs:
                 difference = value / theirs[program] - 1
                 note = different.get((quantity, program))
                 if note is None and abs(difference) > TOLERANCE:
                     wrong.append(f"{name}: {quantity} is {value!r}, of {program} {theirs[program]!r}")
                 shown = f"{difference:+.1e}" if note is None else f"{difference:+.1e} ({note})"
-                cells += [f"{theirs[program]:.12g}", shown]
-            lines.append(f"| {quantity} | {value:.12g} | {' | '.join(cells)} |")
+                rows.setdefault((quantity, program), {})[name] = shown
         for family, pairs in spectra.items():
             count = sum(key.rsplit(" ", 1)[0] == family for key in reference)
             found, expected = np.array(pairs).T
@@ -172,9 +158,18 @@ def main(ours_path, page_path):
             difference = np.max(np.abs(found - expected)) / np.max(expected)
             if count != len(pairs) or difference > TOLERANCE:
                 wrong.append(f"{name}: {len(pairs)} of {count} numbers of {family}, difference {difference}")
-            label = f"power spectral density: {len(pairs)} times {family}"
-            lines.append(f"| {label} | | | | | {difference:.1e} of the greatest |")
-        lines.append("")
+            rows.setdefault((f"power spectral density: {family}", "SurfaceTopography"), {})[name] = f"{difference:.1e}"
+
+    lines = [
+        f"asperity beside tamaas {version('tamaas')} and SurfaceTopography {version('SurfaceTopography')}, NumPy {np.__version__}: "
+        "asperity's number over theirs, less 1; of spectra the greatest difference over the greatest number.",
+        "",
+        f"| quantity | program | {' | '.join(f'`{name}`' for name in MAPS)} |",
+        "|---" * (2 + len(MAPS)) + "|",
+    ]
+    for (quantity, program), shown in rows.items():
+        lines.append(f"| {quantity} | {program} | {' | '.join(shown.get(name, '') for name in MAPS)} |")
+    lines.append("")
 
     page = Path(page_path)
     text = page.read_text()

@@ -15,8 +15,9 @@ use crate::{Error, Problem};
 /// Sums of the gaps out of contact, of plastic depths, and of these times the hardness.
 pub(super) const SUMS: usize = 3;
 
-/// `C_II⁻¹ b` on the contact I, by reciprocity what those sums are made of: b are the row sums of the nodes that have not yielded, the
-/// displacement under a pressure of 1 on those that have, and the one under their hardness.
+/// `C_II⁻¹ b` on the contact I for each right-hand side b: the row sums of the nodes that have not yielded, the displacement under a
+/// pressure of 1 on those that have, and the one under their hardness. C is symmetric, so that bᵀp = (C_II⁻¹ b)ᵀ C_II p: the sums
+/// follow from the displacements on the contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PlasticSums {
     fields: [Field; SUMS],

@@ -248,8 +248,8 @@ fn iterations(n: usize, word: &str, text: &mut String) -> Result<(), Error> {
          boundary; thicknesses in cells. Single loads from scratch to 10⁻¹⁰, at the load of each area fraction: steps of conjugate \
          gradients on the finest grid for the pressure + for the stiffness, and all convolutions there.\n\n\
          | body | 1 % | 10 % | 30 % | 60 % |\n|---|---:|---:|---:|---:|\n{loads}\n\
-         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`): convolutions an event, windows, events \
-         taken back, near ties settled.\n\n\
+         The first {STRETCH} events of a path from each of these states (`ConjugateGradient`): convolutions an event, and windows taken \
+         back.\n\n\
          | body | promise | 1 % | 10 % | 30 % | 60 % |\n|---|---|---:|---:|---:|---:|\n{paths}"
     );
     Ok(())
@@ -301,8 +301,10 @@ fn load_and_stretch(
     let events = (STRETCH + path.waiting()) as f64;
     let convolutions = (path.convolutions().unwrap_or_default() - before) as f64 / events;
     let timings = path.timings();
-    let path =
-        format!("{convolutions:.2}, {}, {}, {}", timings.windows, timings.taken_back, timings.ties);
+    let path = match timings.taken_back {
+        0 => format!("{convolutions:.2}"),
+        windows => format!("{convolutions:.2} ({windows} taken back)"),
+    };
     Ok([load, path])
 }
 

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Follows the loading path of several rough surfaces to 30 % contact by both rules, and looks at
-//! every state: its pressure, its gap, its approach. `docs/theory.md` quotes the table.
+//! every state: its pressure, its gap, its approach. `docs/theory.md` quotes the figures.
 
 use std::error::Error;
 

@@ -137,10 +137,9 @@ fn metals(directory: &Path, text: &mut String) -> Result<Vec<PathBuf>, Failure> 
     let _ = write!(
         text,
         "\nThe surface of the first command (256 × 256 nodes, E* = 230.8 GPa) with a hardness of 2.5 GPa, typical of steel, to 20 % \
-         contact: {} nodes touch and {} yield, each event exact. The load there is {:.1} kN; without a hardness it is {:.0} kN. \
-         Written by `cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md`.\n\n\
-         ![Contact area and yielded area against load, beside the elastic path](images/yielding_area.png)\n\n\
-         ![Contact map at 10 %, yielded nodes marked](images/yielding_map.png)\n",
+         contact: {} nodes touch and {} yield, under {:.1} kN; without a hardness the load is {:.0} kN. Written, with the pictures \
+         of [Metals that yield](metals_that_yield.md), by \
+         `cargo run --release -p asperity-studies --bin yielding -- --report docs/validation.md`.\n",
         count(ContactEvent::Touch),
         count(ContactEvent::Yield),
         load / 1e3,

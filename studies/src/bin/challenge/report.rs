@@ -58,10 +58,8 @@ impl Report {
              The geometry of M. H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118 (problem: \
              arXiv 1512.02403): L = 100 µm, H = {HURST}, λᵣ = 20 µm, λₛ = 0.1 µm, rms gradient {GRADIENT}, E\\* = 25 MPa, reference \
              load 250 kPa, which is 0.01 E\\*h′; periodic, kernel 2/(E\\*|q|). It is solved here **without adhesion**, which the \
-             challenge has, on a surface with our own phases. The consensus of that paper \
-             describes adhesive contact, so that its numbers cannot be compared and are not \
-             quoted. This section gives each quantity without adhesion, and the error that the \
-             resolution leaves. This command writes the numbers and the picture:\n\n\
+             challenge has, on a surface with our own phases. The numbers of that paper \
+             describe adhesive contact and cannot be compared. This command writes the numbers and the picture:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin challenge -- --report docs/validation.md\n\
              ```\n\n\
@@ -73,8 +71,8 @@ impl Report {
     fn resolution(&self) -> String {
         let band = self.meshes.first().and_then(|m| m.first()).map_or(0, |c| c.band);
         let mut text = format!(
-            "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on three meshes. *Limit*: Richardson's \
-             extrapolation from the finest two, of first order for the area as counted and of second for the mean gap.\n\n\
+            "### The error of the resolution\n\nThe same surface, its spectrum cut at L/{band}, on the coarsest and the finest of three meshes. *Limit*: \
+             Richardson's extrapolation from the finest two, of first order for the area as counted and of second for the mean gap.\n\n\
              | p̄/E\\* | nodes | cells to λₛ | A/A₀ | corrected | ḡ/h_rms | K_i h_rms/(A₀ p̄) | p_max/p̄ |\n\
              |---|---|---|---|---|---|---|---|\n"
         );
@@ -83,7 +81,7 @@ impl Report {
         for load in 0..count {
             let [counted, corrected, gap_limit] = self.limits(load);
             area = area.max((corrected / counted - 1.0).abs());
-            for mesh in &self.meshes {
+            for mesh in self.meshes.first().into_iter().chain(self.meshes.last()) {
                 row(&mut text, &mesh[load]);
             }
             if let [.., fine, finest] = self.meshes.as_slice() {

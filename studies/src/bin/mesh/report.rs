@@ -61,21 +61,6 @@ impl Study {
             let _ = writeln!(text, "| {load} | counted |{} {limit} |", row(State::kappa));
             let _ = writeln!(text, "| | corrected |{} |", row(State::corrected_kappa));
         }
-        let _ = write!(
-            text,
-            "\nḡ/h_rms and K_i h_rms/(A₀ p̄):\n\n| p̄/(E\\* h′) | |{}\n|---|---|{}\n",
-            self.meshes.iter().map(|f| format!(" {} cells |", f.mesh.cells)).collect::<String>(),
-            "---|".repeat(self.meshes.len()),
-        );
-        for (place, load) in LOADS.iter().enumerate() {
-            let row = |value: fn(&State) -> f64| {
-                let cells = self.meshes.iter();
-                let cells = cells.map(|f| format!(" {} |", f.spread(place, value).decimals(3)));
-                cells.collect::<String>()
-            };
-            let _ = writeln!(text, "| {load} | gap |{}", row(|s| s.gap));
-            let _ = writeln!(text, "| | stiffness |{}", row(|s| s.stiffness));
-        }
         let taken: Vec<f64> = self.meshes.iter().map(|f| self.taken(f)).collect();
         let agrees = taken.iter().all(|part| (part - 1.0).abs() <= 1.0 - REMOVED);
         let parts: Vec<String> = taken
@@ -186,23 +171,13 @@ impl Study {
         text.push_str("\n|---|---|");
         text.push_str(&"---|".repeat(LOADS.len()));
         text.push('\n');
-        let table = |text: &mut String, value: fn(&State) -> f64| {
-            for family in &self.bands {
-                let _ = write!(text, "| {} | {:.1} |", family.mesh.band, family.nayak);
-                for load in 0..LOADS.len() {
-                    let _ = write!(text, " {} |", family.spread(load, value).decimals(2));
-                }
-                text.push('\n');
+        for family in &self.bands {
+            let _ = write!(text, "| {} | {:.1} |", family.mesh.band, family.nayak);
+            for load in 0..LOADS.len() {
+                let kappa = family.spread(load, State::corrected_kappa);
+                let _ = write!(text, " {} |", kappa.decimals(2));
             }
-        };
-        table(&mut text, State::corrected_kappa);
-        for (name, value) in
-            [("ḡ/h_rms", (|s| s.gap) as fn(&State) -> f64), ("K_i h_rms/(A₀ p̄)", |s| s.stiffness)]
-        {
-            let columns = LOADS.map(|load| format!(" {load} |")).concat();
-            let rules = "---|".repeat(LOADS.len());
-            let _ = write!(text, "\n{name}:\n\n| λᵣ/λₛ | α |{columns}\n|---|---|{rules}\n");
-            table(&mut text, value);
+            text.push('\n');
         }
         let trend = self.trend(MIDDLE);
         let slope = Spread { mean: trend.slope, deviation: trend.error };

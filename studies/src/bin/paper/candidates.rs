@@ -1,12 +1,10 @@
 //! Which surface the paper had.
 
-use std::fmt::Write;
-
 use crate::criteria::{self, Claim, Verdict};
-use crate::figure7::{Fits, PAPER_EXPONENTIAL, ratio_of_line};
+use crate::figure7::ratio_of_line;
 use crate::report::Report;
 use crate::study::Family;
-use crate::surfaces::{PAPER_GRADIENT, PAPER_NODES, SIDE, SQ, short_cutoff};
+use crate::surfaces::{PAPER_GRADIENT, SIDE, SQ, short_cutoff};
 use crate::words::{list, signed};
 use crate::{conclusions, statements};
 use asperity_studies::spread::Spread;
@@ -48,33 +46,8 @@ pub(crate) fn claims(report: &Report) -> Vec<Claim> {
         ),
         conclusions::near_two(&report.figure6.ratios),
     ];
-    all.extend(exponentials(fits));
     all.push(statements::small_patches(report));
     all
-}
-
-/// The exponential of the approach over each of the ranges that the paper may have fitted.
-fn exponentials(fits: &[Fits]) -> impl Iterator<Item = Claim> {
-    let (y0, a, t) = PAPER_EXPONENTIAL;
-    let names = [
-        ["y₀ up to 2.5 × 10⁻³", "A of the same", "t of the same"],
-        ["y₀ up to 5 × 10⁻³", "A of the same", "t of the same"],
-        ["y₀ up to 10⁻²", "A of the same", "t of the same"],
-    ];
-    names.into_iter().enumerate().flat_map(move |(k, names)| {
-        let [offset, amplitude, scale] = names;
-        [
-            Claim::number(offset, (y0, "−2.56"), fits, |f| f.light[k].offset, |s| s.decimals(2)),
-            Claim::number(
-                amplitude,
-                (a, "2.26"),
-                fits,
-                |f| f.light[k].amplitude,
-                |s| s.decimals(2),
-            ),
-            Claim::number(scale, (t, "0.0021"), fits, |f| f.light[k].scale, |s| s.decimals(4)),
-        ]
-    })
 }
 
 /// Names of the surfaces for which a gradient and k are not contradicted.
@@ -116,22 +89,6 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
     let possible = possible(report, claims);
     let excluded: Vec<String> =
         names.iter().map(|name| quoted(name)).filter(|name| !possible.contains(name)).collect();
-    let mut counts = String::new();
-    for (place, name) in names.iter().enumerate() {
-        let count = |verdict| {
-            let all = claims.iter().map(|claim| claim.found[place].verdict);
-            all.filter(|found| *found == verdict).count()
-        };
-        let _ = writeln!(
-            counts,
-            "* **{name}**: of {} rows {} agree, {} near, {} differ or in part, {} undecided.",
-            claims.len(),
-            count(Verdict::Agrees),
-            count(Verdict::Near),
-            count(Verdict::Differs) + count(Verdict::InPart),
-            count(Verdict::Undecided),
-        );
-    }
     let verdict = match possible.len() {
         0 => "none of these surfaces has the paper's gradient and its k under the greatest load."
             .to_string(),
@@ -153,7 +110,7 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
         format!(" Contradicted: {}.", list(&excluded))
     };
     format!(
-        "### Which surface the paper had\n\n\
+        "## Which surface the paper had\n\n\
          Table 1 of the paper with eq. (23), Sq = {} µm, H = 0.8, λᵣ = L/4, on a square of {} mm, does not have the rms \
          gradient {PAPER_GRADIENT} that the paper states. Two others are shown beside it everywhere, with the same phases \
          for a seed and the same Sq:\n\n\
@@ -161,17 +118,13 @@ pub(crate) fn section(report: &Report, claims: &[Claim]) -> String {
          * **no roll-off**: the same with λᵣ = L, against the paper's table.\n\
          * **amplitudes ∝ C**: all of Table 1, but amplitudes of waves ∝ C(q), as if the root in B had been forgotten.\n\n\
          {}\n\
-         Gradients of this study's mesh, {} × {}, are those of the sum of waves, and all ratios k use them; with central \
-         differences, on {PAPER_NODES} × {PAPER_NODES} nodes, k would be smaller in proportion. The short cut-off is \
-         {:.1} µm, {:.1} cells. A surface *has the gradient* if either definition agrees or is near.\n\n{}\n\
+         All ratios k use the gradient of the sum of waves. The short cut-off is \
+         {:.1} µm, {:.1} cells. A surface *has the gradient* if either definition agrees or is near.\n\n\
          **Verdict:** {verdict}{against}",
         signed(SQ * 1e6, 0),
         signed(SIDE * 1e3, 0),
         criteria::table(&names, claims),
-        study.nodes,
-        study.nodes,
         short_cutoff(study.nodes) * 1e6,
         short_cutoff(study.nodes) * study.nodes as f64 / SIDE,
-        counts,
     )
 }

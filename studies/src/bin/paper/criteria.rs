@@ -161,11 +161,8 @@ pub(crate) fn table(columns: &[&str], claims: &[Claim]) -> String {
 /// The criteria of all claims.
 pub(crate) fn criteria<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
     let mut text = format!(
-        "### Criteria\n\n\
-         Each verdict follows from numbers by a criterion. The criteria were not fixed before the comparison: they were \
-         written a day after the first numbers were on this page, and some were made stricter \
-         since. A \
-         criterion explains a verdict; it does not make the comparison blind. \"Mean\" is over the seeds, σ their sample standard deviation.\n\n\
+        "# Criteria\n\n\
+         \"Mean\" is over the seeds, σ their sample standard deviation.\n\n\
          | | verdict |\n|---|---|\n\
          | a {NUMBER} of the paper | *agrees* if the mean is within 2σ or {} % of it; *near* within {} %; else *differs*; \
          *undecided* if it does not differ and 2σ is more than {} % of it |\n\

@@ -8,23 +8,15 @@ use asperity::{Boussinesq, LoadingSolver, RecursiveCholesky};
 use crate::surfaces::{E_STAR, grid};
 use asperity_cli::outcome::Failure;
 
-/// The meshes that the paper calls practical, and the areas.
-const MESHES: [usize; 4] = [128, 256, 512, 1024];
+/// The largest mesh that the paper calls practical, and the areas.
+const MESH: usize = 1024;
 const AREAS: [f64; 2] = [0.01, 0.1];
 /// The headline case of the paper.
 const HEADLINE: usize = 256;
 
-/// A path to an area on a mesh.
-pub(crate) struct Path {
-    pub(crate) mesh: usize,
-    pub(crate) area: f64,
-    pub(crate) contact: usize,
-    /// Half of the influence matrix, bytes.
-    pub(crate) factor: f64,
-}
-
 pub(crate) struct Effort {
-    pub(crate) paths: Vec<Path>,
+    /// Bytes of the factor of a path to each area on the largest mesh: half of the influence matrix.
+    pub(crate) factors: [f64; 2],
     /// Bytes that a path to the headline case holds at its end over those of the whole matrix.
     pub(crate) held: f64,
     /// Multiplications of a step of the paper's recursion with as many nodes, over those of a step in which y₁ and y₂
@@ -34,17 +26,10 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub(crate) fn new() -> Result<Self, Failure> {
-        let of_mesh = |mesh: usize| {
-            AREAS.map(|area| {
-                let contact = (area * (mesh * mesh) as f64) as usize;
-                let factor = 4.0 * (contact as f64).powi(2);
-                Path { mesh, area, contact, factor }
-            })
-        };
         let (nodes, held) =
             headline().map_err(|error| Failure::new("the path for its memory", error))?;
         Ok(Self {
-            paths: MESHES.into_iter().flat_map(of_mesh).collect(),
+            factors: AREAS.map(|area| 4.0 * (area * (MESH * MESH) as f64).floor().powi(2)),
             held,
             recursion: recursion(nodes as f64),
         })

@@ -26,8 +26,6 @@ pub(crate) struct Straight {
     pub(crate) slopes: [Spread; 3],
     /// Runs in which each of these is less than the one before.
     pub(crate) falling: usize,
-    /// Greatest deviation from the line over 30 %.
-    pub(crate) worst: Spread,
     /// A / A₀ under the greatest load.
     pub(crate) end: Spread,
 }
@@ -49,8 +47,7 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
         for (index, run) in family.runs.iter().enumerate() {
             let points = straight(run);
             let line = Line::fit(&points);
-            let worst = points.iter().map(|(x, y)| (y - line.at(*x)).abs());
-            lines.push((line, worst.fold(0.0, f64::max) / STRAIGHT));
+            lines.push(line);
             rows.extend(run.points.iter().map(|p| {
                 let numbers = [run.seed as f64, p.load, p.area, p.corrected];
                 [vec![family.rough.name().to_string()], numbers.map(|n| n.to_string()).to_vec()]
@@ -67,13 +64,11 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
                 lines_drawn.push(Series::new(name, BLACK, Style::Dashed, fitted));
             }
         }
-        let of = |value: fn(&(Line, f64)) -> f64| Spread::of(lines.iter().map(value));
         let slopes = slopes(family, &lines);
         fits.push(Straight {
-            pearson: of(|(line, _)| line.pearson),
+            pearson: Spread::of(lines.iter().map(|line| line.pearson)),
             slopes: [0, 1, 2].map(|k| Spread::of(slopes.iter().map(|found| found[k]))),
             falling: slopes.iter().filter(|s| s[0] > s[1] && s[1] > s[2]).count(),
-            worst: of(|(_, worst)| *worst),
             end: family.at_end(|p| p.area),
         });
     }
@@ -110,9 +105,9 @@ pub(crate) fn make(study: &Study, directory: &Path) -> Result<Figure5, Failure> 
 
 /// Slopes of every run that goes beyond 30 % contact: of its line, and of lines through the lower and the upper
 /// half of the loads beyond.
-fn slopes(family: &Family, lines: &[(Line, f64)]) -> Vec<[f64; 3]> {
+fn slopes(family: &Family, lines: &[Line]) -> Vec<[f64; 3]> {
     let runs = family.runs.iter().zip(lines);
-    runs.filter_map(|(run, (line, _))| {
+    runs.filter_map(|(run, line)| {
         let from = run.at_area(STRAIGHT)?.load;
         let to = run.last()?.load;
         let middle = 0.5 * (from + to);

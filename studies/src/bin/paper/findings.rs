@@ -1,4 +1,4 @@
-//! Rules, other programs, and what is wrong or ambiguous in the paper, each with its evidence.
+//! Rules, and what is wrong or ambiguous in the paper, each with its evidence.
 
 use std::fmt::Write;
 
@@ -31,7 +31,7 @@ pub(crate) fn rules(report: &Report) -> String {
     };
     let parted = rules.parted.map_or("never".to_string(), |step| format!("at node {}", step + 1));
     format!(
-        "### The two rules for the next contact\n\n\
+        "## The two rules for the next contact\n\n\
          Table 1, seed 1, {} × {} nodes, {} nodes in contact ({:.2} % of the area), by the rule of this crate, *the gap \
          that closes first*, and by the paper's, *the smallest gap*. Every tenth state is examined; counted are \
          pressures below −10⁻¹⁰ of their mean and gaps below −10⁻¹⁰ Sq.\n\n\
@@ -39,8 +39,7 @@ pub(crate) fn rules(report: &Report) -> String {
          |---|---|---|---|---|---|\n{}\n{}\n\n\
          The two rules first differ {parted}; the contact sets differ in {} of {} states. At the same number of nodes the load \
          differs by up to {:.2} % (from 100 nodes on), the approach by up to {:.3} Sq: this part \
-         of the paper's curves is due to its rule. The verdict on its statement that there are no negative pressures is in the \
-         table above.",
+         of the paper's curves is due to its rule.",
         rules.nodes,
         rules.nodes,
         rules.steps,
@@ -51,40 +50,6 @@ pub(crate) fn rules(report: &Report) -> String {
         rules.steps,
         100.0 * rules.load,
         rules.approach,
-    )
-}
-
-/// aspher and tamaas.
-pub(crate) fn peers(report: &Report) -> String {
-    let mut rows = String::new();
-    for peer in &report.peers {
-        let [theirs, ours] = peer.pressure;
-        let _ = writeln!(
-            rows,
-            "| {} {} | {} | {} | {} | {} | {} | {:.9} | {:.9} | {} |",
-            peer.program,
-            peer.version,
-            if peer.program == "aspher" { "free" } else { "periodic" },
-            scientific(peer.tolerance, 1),
-            scientific(peer.load, 1),
-            peer.nodes[0],
-            peer.nodes[1],
-            theirs,
-            ours,
-            scientific(peer.difference(), 1),
-        );
-    }
-    format!(
-        "### Other programs\n\n\
-         The surface of Table 1, seed 1, on 256 × 256 nodes. aspher solves the same problem as `Boussinesq`, the free \
-         half-space with Love's kernel; tamaas the periodic one of `Spectral`, 2/(E\\*|q|). Ours: `FixedLoadSolver` at \
-         10⁻⁸ for the first, the exact path for the second. Their numbers are in `studies/src/bin/paper/peers.csv`, made by \
-         `studies/src/bin/paper/peers.py`, which says how.\n\n\
-         | program | half-space | tolerance | W/A₀E\\* | nodes, theirs | ours | greatest p/E\\*, theirs | ours | difference |\n\
-         |---|---|---|---|---|---|---|---|---|\n{rows}\n\
-         The tolerance of aspher applies to all gaps together, and a greatest pressure may be \
-         wrong by several times that: these numbers \
-         are only a rough check, without a verdict. The section \"Other programs\" below judges 195 states, solved to 10⁻¹¹.",
     )
 }
 
@@ -131,7 +96,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
     let items = [
         format!(
             "**Rule for the next node.** \"The smallest gap\" is not exact: {} of {} examined states have negative \
-             pressure, see above; `docs/theory.md`, section 3, says why.",
+             pressure, see above. [theory.md](../docs/theory.md#3-the-next-contact) says why.",
             report.rules.smallest_gap.negative, report.rules.smallest_gap.examined
         ),
         format!(
@@ -147,7 +112,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
             scientific(printed, 1),
             scientific(corrected, 1)
         ),
-        "**Steps 2 and 13.** To begin with two nodes in contact is to begin after the first event. Step 13 has to compare \
+        "**Steps 2 and 13.** Two nodes in contact are after the first event. Step 13 has to compare \
          Δ²Σp with W, and to interpolate in the last interval, or it overshoots by up to one event. Here a path ends \
          at exactly its greatest load."
             .to_string(),
@@ -165,8 +130,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
             1.0 / (std::f64::consts::PI / 8.0).sin().powi(2)
         ),
         format!(
-            "**Fig. 3.** Δ = 2/N_x = 0.0124 means N_x = {NODES}. The paper does not say how it computes plane cases \
-             with a kernel in three dimensions. Its {WAVES} free waves in place of a periodic problem are off by up to {} p\\*, \
+            "**Fig. 3.** Δ = 2/N_x = 0.0124 means N_x = {NODES}. The paper does not say how it computes plane cases. Its {WAVES} free waves in place of a periodic problem are off by up to {} p\\*, \
              and no finer mesh helps.",
             scientific(worst_free, 1)
         ),
@@ -181,7 +145,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
         ),
         format!(
             "**\"pi/16 percent\"** is the fraction π/16 = {:.1} %: {:.0} nodes of 256². Taken as a percentage it would be {:.0} \
-             nodes, which do not take 20 minutes. `docs/performance.md` has our time for it, and the command.",
+             nodes, which do not take 20 minutes. [performance.md](../docs/performance.md#the-headline-case) has our time.",
             100.0 * share,
             share * 65536.0,
             share / 100.0 * 65536.0
@@ -201,7 +165,7 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
         ),
         format!(
             "**Figs. 6 to 8** show a free half-space under a finite square, but are compared with theories of an infinite \
-             one. {boundary}; at large contact the pressure is greatest at the border (Fig. 4), and approach and K \
+             one. At large contact the pressure is greatest at the border (Fig. 4), and approach and K \
              become those of a square punch (Fig. 7)."
         ),
         format!(
@@ -222,11 +186,11 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
              is the limit of his theory at *vanishing* load, as √(2π) is that of Bush, Gibson and Thomas; at other loads \
              the theory is the curve A/A₀ = erf(√2 W/A₀E\\*h′), whose k falls. Such a comparison \
              cannot fail either: since A ≤ A₀, k is \
-             below √(8/π) = {limit:.3} on every surface from W/A₀E\\* = h′/{limit:.3} on. So it has no verdict here; that with the whole \
-             curve is in the table of Fig. 6."
+             below √(8/π) = {limit:.3} on every surface from W/A₀E\\* = h′/{limit:.3} on. So it has no verdict here; the \
+             comparison with the whole curve has."
         ),
     ];
-    let mut text = "### Where the paper is wrong or ambiguous, and the evidence\n\n".to_string();
+    let mut text = "## Where the paper is wrong or ambiguous, and the evidence\n\n".to_string();
     for (number, item) in (1..).zip(items) {
         let _ = writeln!(text, "{number}. {item}");
     }
@@ -235,23 +199,12 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
 
 /// What the boundary does at the same load on the same surface.
 fn boundary_effect(report: &Report) -> String {
-    let of = |program: &str, load: f64| {
-        let mut peers = report.peers.iter();
-        peers.find(|p| p.program == program && p.load == load).map(|p| p.nodes[1] as f64)
-    };
-    let texts: Vec<String> = report
-        .peers
-        .iter()
-        .filter_map(|peer| {
-            let (free, periodic) = (of("aspher", peer.load)?, of("tamaas", peer.load)?);
-            (peer.program == "tamaas").then(|| {
-                format!(
-                    "{} % more nodes on the periodic half-space at W = {}",
-                    signed(100.0 * (periodic / free - 1.0), 1),
-                    scientific(peer.load, 1)
-                )
-            })
-        })
-        .collect();
-    texts.join(", ")
+    let texts = report.boundary.iter().map(|found| {
+        format!(
+            "{} % more nodes on the periodic half-space at W = {}",
+            signed(100.0 * (found.periodic as f64 / found.free as f64 - 1.0), 1),
+            scientific(found.load, 1)
+        )
+    });
+    texts.collect::<Vec<_>>().join(", ")
 }

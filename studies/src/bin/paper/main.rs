@@ -6,10 +6,11 @@
 //! ```
 //!
 //! Writes for each of Figs. 3 to 8 a picture and the numbers behind it, and `run_*.csv` with the
-//! whole loading of every surface. With `--report docs/validation.md`, also a page with each number
+//! whole loading of every surface. With `--report paper/figure_by_figure.md`, also a page with each number
 //! and statement of the paper, our own numbers with their spread over the seeds, and a verdict by a criterion.
 //! With `--whole-path`, the path of every node as well.
 
+mod boundary;
 mod candidates;
 mod conclusions;
 mod criteria;
@@ -27,7 +28,6 @@ mod method;
 mod misprint;
 mod options;
 mod page;
-mod peers;
 mod plane;
 mod polonsky_keer;
 mod report;
@@ -68,10 +68,6 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    if let Some(name) = &options.peers_surface {
-        return asperity::io::write_npy(name, peers::heights()?.matrix())
-            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error));
-    }
     let start = Instant::now();
     let out = &options.out;
     std::fs::create_dir_all(out)
@@ -113,7 +109,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     {
         let report = Report {
             rules: Rules::new(study.nodes)?,
-            peers: peers::compare()?,
+            boundary: boundary::effect()?,
             iterations: Iterations::new(study.nodes)?,
             effort: Effort::new()?,
             whole_path,
@@ -125,7 +121,8 @@ fn run(options: &Options) -> Result<(), Failure> {
             figure7,
             figure8,
         };
-        written.push(report.write(&out.join("validation.md"))?);
+        written.push(report.write(&out.join("figure_by_figure.md"))?);
+        written.push(report.write_criteria(&out.join("criteria.md"))?);
         if let Some(name) = &options.report {
             written.push(report.publish(name)?);
         }

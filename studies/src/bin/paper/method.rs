@@ -6,7 +6,7 @@ use crate::iterations::{Iterations, LIGHTEST, MODERATE};
 use crate::plane::Case;
 use crate::polonsky_keer;
 use crate::report::Report;
-use crate::words::{percent, scientific, signed};
+use crate::words::{percent, signed};
 
 /// Memory of the paper's computer.
 const MEMORY: f64 = 8e9;
@@ -69,13 +69,12 @@ fn gradients(found: &Iterations) -> [Claim; 2] {
 }
 
 /// A number of steps of plain conjugate gradients.
-pub(crate) fn said(steps: Option<usize>) -> String {
+fn said(steps: Option<usize>) -> String {
     steps.map_or(format!("more than {}", polonsky_keer::MOST), |steps| steps.to_string())
 }
 
 fn effort(effort: &Effort) -> Vec<Claim> {
-    let largest = effort.paths.iter().filter(|path| path.mesh == 1024);
-    let largest: Vec<_> = largest.map(|path| path.factor).collect();
+    let largest = effort.factors;
     let texts: Vec<String> =
         largest.iter().map(|bytes| format!("{} GB", signed(bytes / 1e9, 1))).collect();
     let fits: Vec<bool> = largest.iter().map(|bytes| *bytes <= MEMORY).collect();
@@ -83,8 +82,8 @@ fn effort(effort: &Effort) -> Vec<Claim> {
         Claim::new(
             "a factor saves half of the memory",
             "\"half of the storage\"",
-            "*agrees* if this crate's path holds at most 60 % of the bytes of the influence matrix of the contact, sphere as \
-             below; else *differs*",
+            "*agrees* if this crate's path holds at most 60 % of the bytes of the influence matrix of the contact, sphere to π/16 of 256² \
+             nodes; else *differs*",
             [Found::new(
                 format!("{} %", percent(effort.held, 0)),
                 Verdict::of(&[effort.held <= 0.6]),
@@ -108,51 +107,4 @@ fn effort(effort: &Effort) -> Vec<Claim> {
             [Found::new(texts.join(" and "), Verdict::of(&fits))],
         ),
     ]
-}
-
-/// Steps of conjugate gradients at all loads, and memory of paths.
-pub(crate) fn tables(report: &Report) -> String {
-    let found = &report.iterations;
-    let steps: Vec<String> = found
-        .steps
-        .iter()
-        .map(|steps| {
-            format!(
-                "| {} | {} | {} | {} | {} |",
-                scientific(steps.load, 1),
-                steps.nodes,
-                said(steps.plain),
-                steps.ours,
-                signed(steps.convolutions, 0)
-            )
-        })
-        .collect();
-    let paths: Vec<String> = report
-        .effort
-        .paths
-        .iter()
-        .map(|path| {
-            format!(
-                "| {}² | {} % | {} | {} GB |",
-                path.mesh,
-                percent(path.area, 0),
-                path.contact,
-                signed(path.factor / 1e9, 2)
-            )
-        })
-        .collect();
-    format!(
-        "Table 1, seed 1, {} × {} nodes. *Plain*: conjugate gradients of Polonsky and Keer (1999) from a uniform pressure, two \
-         convolutions a step; *ours*: steps of `FixedLoadSolver` on the finest grid, and its convolutions, those on coarser \
-         grids by their part. Both until no gap in contact and no overlap is above 10⁻⁸ of the approach:\n\n\
-         | W/A₀E\\* | nodes | plain | ours | convolutions |\n|---|---|---|---|---|\n{}\n\n\
-         The factor that the paper's procedure holds, 4n² bytes. There is no verdict on its time, \"about 20 min\" for π/16 of \
-         256², since it was another machine; `docs/performance.md` has ours for the same case, on an idle machine, and the \
-         command that measures it:\n\n\
-         | mesh | A/A₀ | nodes | factor |\n|---|---|---|---|\n{}",
-        found.nodes,
-        found.nodes,
-        steps.join("\n"),
-        paths.join("\n"),
-    )
 }

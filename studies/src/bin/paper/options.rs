@@ -38,10 +38,6 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "figure")]
     pub(crate) whole_path: Option<PathBuf>,
 
-    /// Only write the surface that `peers.py` wants, as a .npy file
-    #[arg(long, value_name = "FILE.npy")]
-    pub(crate) peers_surface: Option<PathBuf>,
-
     /// Also write the report into this file, between its markers, and its pictures into images/
     /// next to it; needs all figures
     #[arg(long, value_name = "FILE.md", conflicts_with = "figure")]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::report::Report;
 use crate::{candidates, conclusions, criteria, findings, method, sections, statements};
 use asperity_cli::outcome::Failure;
+use asperity_studies::page::wrapped;
 
 /// The study writes between these lines of the page, and leaves the rest alone.
 const FIGURES: [&str; 2] =
@@ -15,13 +16,23 @@ const WHOLE_PATH: [&str; 2] = [
     "<!-- written by the study `paper`, whole path: begin -->",
     "<!-- written by the study `paper`, whole path: end -->",
 ];
-const TITLE: &str = "# Validation\n";
+const TITLE: &str = "# The paper, figure by figure\n";
 
 impl Report {
     /// Writes the page alone, into the directory of the pictures.
     pub(crate) fn write(&self, name: &Path) -> Result<PathBuf, Failure> {
         let page = self.merged(TITLE.to_string(), "")?;
         std::fs::write(name, page)
+            .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
+        Ok(name.to_path_buf())
+    }
+
+    /// Writes the criterion of each verdict.
+    pub(crate) fn write_criteria(&self, name: &Path) -> Result<PathBuf, Failure> {
+        let (conclusions, statements) = (conclusions::claims(self), statements::claims(self));
+        let method = method::claims(self);
+        let claims = conclusions.iter().chain(&statements).chain(&method);
+        std::fs::write(name, criteria::criteria(claims))
             .map_err(|error| Failure::new(format!("cannot write {}", name.display()), error))?;
         Ok(name.to_path_buf())
     }
@@ -73,32 +84,22 @@ impl Report {
         let names = self.names();
         let (conclusions, statements) = (conclusions::claims(self), statements::claims(self));
         let (method, candidates) = (method::claims(self), candidates::claims(self));
-        let claims = conclusions.iter().chain(&statements).chain(&method);
         let sections = [
             self.introduction(),
-            criteria::criteria(claims),
+            format!("## The conclusions of the paper\n\n{}", criteria::table(&names, &conclusions)),
             format!(
-                "### The conclusions of the paper\n\n{}",
-                criteria::table(&names, &conclusions)
-            ),
-            format!(
-                "### Its other statements on the figures\n\n{}",
+                "## Its other statements on the figures\n\n{}",
                 criteria::table(&names, &statements)
             ),
-            format!(
-                "### Its statements on the method\n\n{}\n{}",
-                criteria::table(&["here"], &method),
-                method::tables(self)
-            ),
+            format!("## Its statements on the method\n\n{}", criteria::table(&["here"], &method)),
             candidates::section(self, &candidates),
             sections::figure3(self, prefix),
             sections::figure4(self, prefix),
-            sections::figure5(self, prefix),
+            sections::figure5(prefix),
             sections::figure6(self, prefix),
             sections::figure7(self, prefix),
             sections::figure8(self, prefix),
             findings::rules(self),
-            findings::peers(self),
             findings::list(self, &candidates::possible(self, &candidates))?,
         ];
         Ok(sections.map(|text| text.trim_end().to_string()).join("\n\n"))
@@ -117,30 +118,26 @@ impl Report {
             gap = gap.max(seam.mean_gap);
         }
         format!(
-            "## The paper, figure by figure\n\n\
-             This section compares every number and statement in the text of X. Zhang, Y. Zhang, \
-             Z. Jin, *A semi-analytical approach to the elastic loading behaviour of rough \
-             surfaces*, Friction 8(5), 970–981 (2020), \"the paper\", with ours. The curves in \
-             its pictures were not digitised and are not compared. This command writes the \
-             numbers and pictures of this section:\n\n\
+            "Every number and statement in the text of X. Zhang, Y. Zhang, Z. Jin, *A semi-analytical \
+             approach to the elastic loading behaviour of rough surfaces*, Friction 8(5), 970–981 \
+             (2020), \"the paper\", beside ours. The curves in its pictures were not digitised. This \
+             command writes the numbers and pictures:\n\n\
              ```text\n\
              cargo run --release -p asperity-studies --bin paper -- --nodes {} --seeds {} \
-             --report docs/validation.md\n\
+             --report paper/figure_by_figure.md\n\
              ```\n\n\
-             Without options the program uses 256 × 256 nodes, takes a few minutes, and writes \
-             into `out/paper`.\n\n\
              * **Rough surfaces**: {} × {} nodes, {} seeds each; \"a ± b\" is the mean over the seeds and \
-             the sample standard deviation.\n\
-             * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area), one \
-             state for each node; beyond that fixed loads, each with its exact tangent stiffness, \
-             up to 0.1 A₀E\\*. At the load where the two methods meet, their greatest differences \
-             over all runs are {area:.0e} of the area \
-             (a node that just touches counts in the path, but perhaps not under a fixed load), {approach:.0e} of the \
-             approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
+             the sample standard deviation. There are three surfaces, because the paper does not determine its own: \
+             see \"Which surface the paper had\".\n\
+             * **Loads**: the exact path to {} nodes in contact ({path:.0} % of the nominal area); beyond that \
+             fixed loads up to 0.1 A₀E\\*. Where the two methods meet, they differ by at most {area:.0e} of the area, \
+             {approach:.0e} of the approach, {gap:.0e} of the mean gap and {stiffness:.0e} of the stiffness.\n\
              * **Dimensionless**: loads W/A₀E\\*, lengths over Sq, stiffnesses K Sq/A₀E\\*, pressures over \
              E\\*.\n\
-             * **Three surfaces**, because the paper does not determine its surface with \
-             certainty: see \"Which surface the paper had\".",
+             * **Verdicts** follow from numbers. A number *agrees* if the mean is within 2σ or 5 % of the paper's, is \
+             *near* within 20 %, and *undecided* if 2σ is more than that. The program writes the criterion of every \
+             other row into `criteria.md`. The criteria were written a day after the first numbers were on this page, \
+             and some were made stricter since.",
             study.nodes, study.seeds, study.nodes, study.nodes, study.seeds, study.path_nodes,
         )
     }
@@ -153,5 +150,5 @@ fn put(present: &str, [begin, end]: [&str; 2], text: &str) -> String {
         Some((before.to_string(), after))
     });
     let (before, after) = parts.unwrap_or((format!("{}\n\n", present.trim_end()), "\n"));
-    format!("{before}{begin}\n\n{text}\n\n{end}{after}")
+    format!("{before}{begin}\n\n{}\n\n{end}{after}", wrapped(text))
 }

@@ -1,5 +1,6 @@
 //! All that was found.
 
+use crate::boundary::Boundary;
 use crate::effort::Effort;
 use crate::figure3::Figure3;
 use crate::figure4::Figure4;
@@ -8,7 +9,6 @@ use crate::figure6::Figure6;
 use crate::figure7::Figure7;
 use crate::figure8::Figure8;
 use crate::iterations::Iterations;
-use crate::peers::Comparison;
 use crate::rules::Rules;
 use crate::study::Study;
 use crate::whole_path::WholePath;
@@ -23,7 +23,7 @@ pub(crate) struct Report {
     pub(crate) figure7: Figure7,
     pub(crate) figure8: Figure8,
     pub(crate) rules: Rules,
-    pub(crate) peers: Vec<Comparison>,
+    pub(crate) boundary: Vec<Boundary>,
     pub(crate) iterations: Iterations,
     pub(crate) effort: Effort,
     /// If its file was given.

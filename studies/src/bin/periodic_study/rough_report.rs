@@ -49,21 +49,15 @@ impl Study {
              Mean ± standard deviation of one surface. With p̄/(E\\* h′) from {} to {}, p̄ ∝ exp(−ḡ/(γ h_rms)) fits with γ = {}, 1/γ = \
              {:.2}.\n\n\
              * **Area, light.** Where A/A₀ is below {LIGHT}, κ is {} with cells counted and {} corrected; under the lightest load {} \
-             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. Counted \
-             cells come close to the former at the smallest contacts mainly because of the mesh, \
-             which overestimates contacts of a few cells. The corrected κ is between the two at \
-             every light load: {} (criterion: the mean of the surfaces, each \
-             load). The section on mesh and spectrum extrapolates κ to vanishing cells. At the \
-             lightest loads there are few contacts, and the highest peaks determine the spread.\n\
+             and {}. Bush, Gibson and Thomas have √(2π) = {bgt:.3} for vanishing load, Persson √(8/π) = {persson:.3}. The \
+             corrected κ is between the two at every light load: {} (criterion: the mean of the surfaces, each \
+             load). The section on mesh and spectrum extrapolates κ to vanishing cells.\n\
              * **Area, heavy.** Persson's theory, A/A₀ = erf(√2 p̄/(E\\* h′)), is exact in full contact. Under the greatest load the \
              area that is still open is {} of A₀, {:.4} by the theory, {:.0} % {} than it says: {} (criterion: within {:.0} %).\n\
              * **Mean gap.** Between the first few contacts and a fifth of the area in contact, p̄ ∝ exp(−ḡ/(γ h_rms)): {} (criterion: \
-             γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness. It is \
-             steeper at the lightest loads, where the finite surface has no higher peaks, and at full contact the gap closes.\n\
+             γ from {} to {}). Akarapu, Sharp and Robbins (Phys. Rev. Lett. 106 (2011) 204301) found 0.48 for the stiffness.\n\
              * **Stiffness.** The exact tangent, not a difference of gaps: K_i h_rms/(A₀ p̄) is {} over the upper decade of the \
-             same loads, mean and deviation over them, and 1/γ = {:.2}. Both describe the same \
-             curve, so that there is no verdict. They differ only because the curve is not \
-             exactly exponential.",
+             same loads, and 1/γ = {:.2}. They differ only because the curve is not exactly exponential.",
             self.surfaces,
             CUTOFF * self.nodes as f64,
             self.kernel.name(),

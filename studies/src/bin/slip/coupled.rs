@@ -26,8 +26,9 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         text,
         "\n### A rigid surface on one body\n\nThe same, but a rigid surface on one body: tractions move the surface normally too, and pressing \
          leaves tractions. Pressed with friction in {RAMP} steps, then sheared between −U and U. All over what the \
-         path gives: T and D of the first loading, and of the second cycle.\n\n\
-         | surface | ν | β | U/κμδ | T, first loading | D, first loading | T, second cycle | D, second cycle |\n|---|---|---|---|---|---|---|---|\n"
+         path gives: T and D of the first loading, and of the second cycle, at U = {} times κμδ.\n\n\
+         | surface | ν | β | T, first loading | D, first loading | T, second cycle | D, second cycle |\n|---|---|---|---|---|---|---|\n",
+        AMPLITUDES.map(|amplitude| amplitude.to_string()).join(", ")
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
     for (pressed, ratio) in [
@@ -41,15 +42,18 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
         (Pressed::sphere(nodes), 0.45),
     ] {
         let pressed = pressed.map_err(failed)?;
+        let mut columns: [Vec<String>; 4] = Default::default();
+        let mut coupling = 0.0;
         for amplitude in AMPLITUDES {
             eprintln!("{}, ν = {ratio}, rigid against elastic, {amplitude}", pressed.name);
             let (beta, found) = cycle(&pressed, ratio, amplitude)?;
-            let _ = writeln!(
-                text,
-                "| {} | {ratio} | {beta:.3} | {amplitude} | {:.3} | {:.2} | {:.3} | {:.3} |",
-                pressed.name, found[0], found[1], found[2], found[3]
-            );
+            coupling = beta;
+            for ((column, value), digits) in columns.iter_mut().zip(found).zip([3, 2, 3, 3]) {
+                column.push(format!("{value:.digits$}"));
+            }
         }
+        let columns = columns.map(|column| column.join(", ")).join(" | ");
+        let _ = writeln!(text, "| {} | {ratio} | {coupling:.3} | {columns} |", pressed.name);
     }
     Ok(())
 }

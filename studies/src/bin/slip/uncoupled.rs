@@ -21,7 +21,7 @@ pub(crate) fn write(nodes: usize, text: &mut String) -> Result<(), Failure> {
          μ = {FRICTION}, sheared once by an incremental solution of Coulomb's law on all nodes: tractions along both directions within discs, \
          influences of Cerruti's half-space. β is 0. Tangential load and dissipation over those that the path gives, at displacements \
          U over κμδ; the last column is what acts across, Σ|q_y|/Σ|q_x| at 0.6.\n\n\
-         | surface | ν | T at U = 0.03 / 0.1 / 0.3 / 0.6 / 0.9 | D | across |\n|---|---|---|---|---|\n"
+         | surface | ν | T at U = 0.03, 0.1, 0.3, 0.6, 0.9 | D | across |\n|---|---|---|---|---|\n"
     );
     let failed = |error: asperity::Error| Failure::new("cannot press a surface", error);
     let made = [
@@ -77,5 +77,5 @@ fn shear(pressed: &Pressed, ratio: f64) -> Result<String, Failure> {
             across = coulomb.across();
         }
     }
-    Ok(format!("{} | {} | {:.0} %", forces.join(" / "), losses.join(" / "), 100.0 * across))
+    Ok(format!("{} | {} | {:.0} %", forces.join(", "), losses.join(", "), 100.0 * across))
 }

@@ -40,9 +40,8 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
         .map(|found| found.on_paper_mesh().inner)
         .fold(0.0, f64::max);
     format!(
-        "### Fig. 3: plane contacts against their closed forms\n\n{}\n\n\
-         The paper does not say how it computes plane cases with a kernel in three dimensions. Here a single \
-         row of cells is used, each a bar across the whole strip, so that no quantity can vary along it:\n\n\
+        "## Fig. 3: plane contacts against their closed forms\n\n{}\n\n\
+         A single row of cells, each a bar across the whole strip, so that no quantity can vary along it:\n\n\
          * **Cylinder**, eq. (20): the free half-space, a strip {LENGTH:.0} times as long as the domain is wide. \
          The error of a finite length ℓ is of second order in 1/ℓ: {} of p₀ if the strip is as long as the domain \
          is wide, and 10⁻⁶ times as large with the length used.\n\
@@ -52,14 +51,12 @@ pub(crate) fn figure3(report: &Report, prefix: &str) -> String {
          (−5, 5); the middle wave is compared at the same mean pressure. The error, up to {} p\\*, does not fall with a finer mesh, only with more waves: \
          {} with 1, {} with 3, {} with {WAVES} and {} with 15 at half contact.\n\n\
          Errors of the pressure over p₀ or p\\* with N = {NODES} cells over the contact of the cylinder, or the \
-         wavelength. *Inner* is the greatest error on |x| < 0.6 a, *rms* the root mean square over the contact. Both are \
-         averages over 20 loads with 0.9 to 1.1 times the half-width, since the error depends on where in a cell \
-         the edge lies (full contact: one load). \
-         Orders of convergence by a fit from N = 21 to 641:\n\n\
+         wavelength. *Inner* is the greatest error on |x| < 0.6 a, *rms* the root mean square over the contact, both \
+         averages over 20 loads. Orders of convergence by a fit from N = 21 to 641:\n\n\
          | case | inner error | rms error | orders, inner and rms |\n|---|---|---|---|\n{rows}\n\
          Away from the edge of contact the error is of second order in the cell size. Over the \
-         whole contact it is of first order, because the edge cuts cells; in full contact there is no edge, and it is \
-         of second order. Free waves have an additional error that no finer mesh removes.",
+         whole contact it is of first order, because the edge cuts cells. Free waves have an additional error that no \
+         finer mesh removes.",
         picture(
             prefix,
             "figure3",

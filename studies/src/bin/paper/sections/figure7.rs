@@ -12,17 +12,14 @@ pub(crate) fn figure7(report: &Report, prefix: &str) -> String {
     let punch = report.study.punch;
     let exact = asperity::reference::SQUARE_PUNCH_STIFFNESS * SQ / SIDE;
     format!(
-        "### Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
+        "## Fig. 7: approach and contact stiffness\n\n{}\n\n{}\n\
          The exponential is y₀ + A exp(−W/t) through u/Sq = −δ/Sq, the line is fitted from {} on; both by least \
-         squares over evenly spaced loads, since the paper does not say which spacing it used. \
-         The paper does not give the range of the exponential fit either. The fit depends more on \
-         the range than on the seed, so that all three ranges are judged (above). No fit starts \
-         at 0, but every path does. The paper's line cannot be one of u/Sq: saturation alone means a slope of {}. In the picture, and \
-         in two rows, u is divided by {LINE_UNIT} Sq, the unit in which its line fits. Only the \
-         ratio of intercept to slope is judged, because it does not depend on the unit.\n\n\
-         **Saturated stiffness.** The rigid square punch has K = {} E\\*L, {} in these units; the same punch on \
-         the mesh has {} ({} % less, the error of the mesh), and the rough surfaces end there. \
-         The value does not depend on roughness, so that there is no verdict on it.\n\n\
+         squares over evenly spaced loads. The paper gives neither its range nor its spacing, and the fit depends more on \
+         the range than on the seed, so that it has no verdict here. The paper's line cannot be one of u/Sq: saturation \
+         alone means a slope of {}. In the picture, and \
+         in two rows, u is divided by {LINE_UNIT} Sq, the unit in which its line fits.\n\n\
+         **Saturated stiffness.** The rigid square punch has K = {:.7} E\\*L, {} in these units; the same punch on \
+         the mesh has {} ({} % less, the error of the mesh), and the rough surfaces end there.\n\n\
          **Growth at light loads.** For few asperities of a finite surface a power with the exponent 1/(1 + H) = 0.56 is \
          expected (Pastewka et al., arXiv 1210.4635).",
         picture(prefix, "figure7", "Approach and contact stiffness against load, with fits"),
@@ -44,17 +41,12 @@ fn table(report: &Report) -> String {
     };
     let (y0, a, t) = PAPER_EXPONENTIAL;
     for (k, load) in LIGHT_LOADS.into_iter().enumerate() {
-        let of = |f: &Fits| f.light[k];
-        let range = format!("W ≤ {}", scientific(load, 2));
-        let name = |symbol: &str| format!("{symbol}, {range}");
-        row(&name("y₀"), &signed(y0, 2), &|f| of(f).offset.decimals(2));
-        row(&name("A"), &signed(a, 2), &|f| of(f).amplitude.decimals(2));
-        row(&name("t"), &signed(t, 4), &|f| of(f).scale.decimals(4));
-        let deviation = |f: &Fits| {
-            let (ours, power) = (of(f).deviation.mean, of(f).of_power.mean);
-            format!("{}; {}", signed(ours, 3), signed(power, 3))
+        let fit = |f: &Fits| {
+            let [y0, a] = [f.light[k].offset, f.light[k].amplitude].map(|s| s.decimals(2));
+            format!("{y0}; {a}; {}", f.light[k].scale.decimals(4))
         };
-        row(&name("rms deviation [Sq]; of a power"), "–", &deviation);
+        let paper = format!("{}; {}; {}", signed(y0, 2), signed(a, 2), signed(t, 4));
+        row(&format!("y₀; A; t, W ≤ {}", scientific(load, 2)), &paper, &fit);
     }
     let unit = |spread: Spread| scaled(spread, 1.0 / LINE_UNIT);
     let (slope, intercept) = PAPER_LINE;

@@ -25,16 +25,15 @@ pub(crate) fn figure8(report: &Report, prefix: &str) -> String {
         );
     }
     format!(
-        "### Fig. 8: mean gap and interfacial stiffness\n\n{}\n\n\
+        "## Fig. 8: mean gap and interfacial stiffness\n\n{}\n\n\
          A gap that falls linearly with ln W, ḡ = const − γ Sq ln W, has γ = −dḡ/d(ln W)/Sq = W/(Kᵢ Sq), which \
          the exact stiffness gives at every state. The law is taken to hold where γ, averaged over the \
          seeds, is within 10 % of its greatest value. The line is fitted in the paper's range, {} to {}. The last column has \
          α of Kᵢ ~ W^α at light, moderate and heavy loads.\n\n\
          | surface | range of the law | greatest γ | γ of the line | Pearson r of the line | γ at the ends of \
          the paper's range over γ of the line | α |\n|---|---|---|---|---|---|---|\n{rows}\n\
-         Where the law holds exactly, Kᵢ = W/(γ Sq) grows in proportion to W, at a constant rate. Below its range few \
-         asperities carry the load and γ is smaller (a finite surface has a highest summit), so that Kᵢ grows more slowly \
-         than W; above the range little gap is left, and Kᵢ grows faster.",
+         Below the range few asperities carry the load, and Kᵢ grows more slowly than W; above it little gap is left, and \
+         Kᵢ grows faster.",
         picture(
             prefix,
             "figure8",

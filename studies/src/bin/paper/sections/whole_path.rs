@@ -9,7 +9,7 @@ use crate::whole_path::{Against, WholePath};
 use crate::words::{percent, scientific, signed};
 
 /// Loads of the table, W/A₀E*.
-const LOADS: [f64; 10] = [1e-4, 1e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
+const LOADS: [f64; 5] = [1e-4, 1e-3, 0.01, 0.1, 1.0];
 /// The ordinate of the paper's line, in Sq.
 const UNIT: f64 = crate::figure7::LINE_UNIT;
 
@@ -28,15 +28,15 @@ pub(crate) fn whole_path(path: &WholePath, prefix: &str) -> String {
     let against = path.against.as_ref().map_or(String::new(), against);
     format!(
         "The figures above follow events up to {} nodes and solve for single loads from there. The path without a factor \
-         ([theory.md](theory.md#11-without-a-factor)) has every event of the paper's mesh: Table 1's spectrum, seed 1, \
+         ([theory.md](../docs/theory.md#11-without-a-factor)) has every event of the paper's mesh: Table 1's spectrum, seed 1, \
          {} × {} nodes, all {nodes} of them from first touch to full contact at W = {} A₀E\\*.\n\n\
          ```text\n\
          cargo run --release -- path --nodes {} --short-cutoff 78.125e-6 --e-star 1 --max-area-fraction 1\n\
          cargo run --release -p asperity-studies --bin paper -- --nodes {} --whole-path out/path.csv --report \
-         docs/validation.md --reuse\n\
+         paper/figure_by_figure.md --reuse\n\
          ```\n\n{}\n\n\
-         Each panel shows one quantity of Figs. 5 to 8; the dashed line is the paper's greatest \
-         load. The table gives the last state at or below each load, dimensionless as above (k \
+         The dashed line is the paper's greatest \
+         load. The table gives the last state at or below each load (k \
          with the rms gradient {:.4} of the sum of waves):\n\n\
          | W/A₀E\\* | nodes | A/A₀ | k | k corrected | u/{UNIT} Sq | ḡ/Sq | K Sq/A₀E\\* | Kᵢ Sq/A₀E\\* |\n\
          |---|---|---|---|---|---|---|---|---|\n{}{against}",
