@@ -1,10 +1,10 @@
 //! The two precisions of transforms.
 
+use asperity_fft::Plan;
 use num_complex::Complex;
-use rustfft::FftNum;
 
 /// A number that transforms can be done with.
-pub(crate) trait Real: FftNum + Default {
+pub(crate) trait Real: Plan + Default {
     /// Zero as a complex number.
     const ZERO: Complex<Self>;
 

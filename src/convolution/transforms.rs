@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use asperity_fft::{ComplexToReal, Fft, RealToComplex};
 use num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::{Fft, FftPlanner};
 
 use super::real::Real;
 use super::size::fast_size;
@@ -42,15 +41,13 @@ impl<T: Real> Transforms<T> {
         // A period is the grid's, however slow a length that is. A real transform of even length is a complex one of half that length.
         let px = if x_repeats { nx } else { 2 * fast_size(nx) };
         let py = if y_repeats { ny } else { fast_size(2 * ny - 1) };
-        let mut real = RealFftPlanner::new();
-        let mut complex = FftPlanner::new();
         Self {
             nx,
             ny,
-            row_forward: real.plan_fft_forward(px),
-            row_inverse: real.plan_fft_inverse(px),
-            column_forward: complex.plan_fft_forward(py),
-            column_inverse: complex.plan_fft_inverse(py),
+            row_forward: T::real_forward(px),
+            row_inverse: T::real_inverse(px),
+            column_forward: T::complex_forward(py),
+            column_inverse: T::complex_inverse(py),
         }
     }
 

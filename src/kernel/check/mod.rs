@@ -3,8 +3,8 @@
 mod contact;
 mod sets;
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
+use asperity_fft::Plan;
+use num_complex::Complex64;
 
 use self::contact::Contact;
 use super::{Boundary, ContactGrowth, InfluenceKernel, KernelTable};
@@ -98,14 +98,13 @@ pub fn check<K: InfluenceKernel + ?Sized>(kernel: &K) -> Result<KernelReport, Er
 fn least_symbol(table: &KernelTable) -> Result<f64, Error> {
     let grid = table.grid();
     let (nx, ny) = grid.shape();
-    let mut planner = FftPlanner::new();
     let mut rows: Vec<_> = (0..grid.nodes())
         .map(|node| Complex64::from(table.between(table.place(node), table.place(0))))
         .collect();
-    planner.plan_fft_forward(nx).process(&mut rows);
+    f64::complex_forward(nx).process(&mut rows);
     let mut columns: Vec<_> =
         (0..grid.nodes()).map(|place| rows[place / ny + nx * (place % ny)]).collect();
-    planner.plan_fft_forward(ny).process(&mut columns);
+    f64::complex_forward(ny).process(&mut columns);
     let greatest = columns.iter().map(|value| value.re).fold(0.0, f64::max);
     // A Fourier transform errs by a few rounding errors of the greatest value.
     let rounding = 16.0 * f64::EPSILON * greatest;

@@ -1,7 +1,7 @@
 //! Functions on a periodic grid that are even along x and along y, and their Fourier transform.
 
+use asperity_fft::Plan;
 use num_complex::Complex;
-use rustfft::FftPlanner;
 
 /// The values at 0 ≤ i ≤ nx / 2, 0 ≤ j ≤ ny / 2 of a function f(±i, ±j), periodic on nx × ny nodes.
 ///
@@ -44,9 +44,8 @@ impl Even {
 
     /// $`\frac1M \sum_{\mathbf k} f(\mathbf k) \, e^{2 \pi i (k_1 i / n_x + k_2 j / n_y)}`$.
     pub(in crate::kernel) fn inverse_transform(&self) -> Self {
-        let mut planner = FftPlanner::new();
-        let mut lines = |values: &[f64], n: usize| {
-            let (fft, half) = (planner.plan_fft_inverse(n), n / 2 + 1);
+        let lines = |values: &[f64], n: usize| {
+            let (fft, half) = (f64::complex_inverse(n), n / 2 + 1);
             let mut line = vec![Complex::default(); n];
             let mut scratch = vec![Complex::default(); fft.get_inplace_scratch_len()];
             let count = values.len() / half;

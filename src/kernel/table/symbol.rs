@@ -1,7 +1,7 @@
 //! Influence coefficients from a symbol: the inverse Fourier transform on the waves of a grid.
 
+use asperity_fft::Plan;
 use num_complex::Complex64;
-use rustfft::FftPlanner;
 
 use crate::kernel::MeanDisplacement;
 use crate::{Error, Grid, KernelError};
@@ -25,9 +25,8 @@ pub(super) fn coefficients(
     let values = on_the_waves(grid, mean, symbol)?;
     let mean = if values[0] == 0.0 { MeanDisplacement::Arbitrary } else { mean };
     let mut waves: Vec<_> = values.into_iter().map(Complex64::from).collect();
-    let mut planner = FftPlanner::new();
-    planner.plan_fft_inverse(nx).process(&mut waves);
-    let along_y = planner.plan_fft_inverse(ny);
+    f64::complex_inverse(nx).process(&mut waves);
+    let along_y = f64::complex_inverse(ny);
     let mut column = vec![Complex64::ZERO; ny];
     let mut result = vec![0.0; nx * ny];
     for ix in 0..nx {

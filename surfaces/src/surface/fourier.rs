@@ -1,9 +1,8 @@
 //! The waves that a periodic map consists of.
 
+use asperity_fft::Plan;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
 
 use crate::Grid;
 use crate::parallel::for_each_chunk;
@@ -44,7 +43,7 @@ impl Waves {
     /// The waves of `heights` with their mean `mean` on `grid`, whose shape is that of the heights.
     pub(super) fn new(heights: &DMatrix<f64>, mean: f64, grid: &Grid) -> Self {
         let (nx, ny) = grid.shape();
-        let along_x = RealFftPlanner::new().plan_fft_forward(nx);
+        let along_x = f64::real_forward(nx);
         let columns = along_x.complex_len();
         let mut rows = DMatrix::<Complex64>::zeros(columns, ny);
         for_each_chunk(rows.as_mut_slice(), columns * LINES, |chunk, spectra| {
@@ -61,7 +60,7 @@ impl Waves {
             }
         });
         let mut coefficients = rows.transpose();
-        let along_y = FftPlanner::new().plan_fft_forward(ny);
+        let along_y = f64::complex_forward(ny);
         let normalisation = 1.0 / grid.nodes() as f64;
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
             along_y.process(lines);
@@ -107,13 +106,13 @@ impl Waves {
     pub(super) fn restore(self) -> DMatrix<f64> {
         let Self { grid, mean, mut coefficients } = self;
         let (nx, ny) = grid.shape();
-        let along_y = FftPlanner::new().plan_fft_inverse(ny);
+        let along_y = f64::complex_inverse(ny);
         for_each_chunk(coefficients.as_mut_slice(), ny * LINES, |_, lines| {
             along_y.process(lines);
         });
         let mut rows = coefficients.transpose();
         drop(coefficients);
-        let along_x = RealFftPlanner::new().plan_fft_inverse(nx);
+        let along_x = f64::real_inverse(nx);
         let columns = along_x.complex_len();
         // Real up to rounding since the heights are; the transform insists on exactly.
         for row in rows.as_mut_slice().chunks_exact_mut(columns) {

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
+use asperity_fft::Plan;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
 
 use super::Topography;
 use crate::surface::fourier::Waves;
@@ -94,8 +94,7 @@ fn gaussian_along_x(heights: &DMatrix<f64>, cutoff: f64) -> DMatrix<f64> {
         }))
         .collect();
     let padded = (nodes + reach).next_power_of_two();
-    let mut planner = RealFftPlanner::new();
-    let (forward, inverse) = (planner.plan_fft_forward(padded), planner.plan_fft_inverse(padded));
+    let (forward, inverse) = (f64::real_forward(padded), f64::real_inverse(padded));
     let mut scratch =
         vec![Complex64::ZERO; forward.get_scratch_len().max(inverse.get_scratch_len())];
     let mut line = vec![0.0; padded];

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
+use asperity_fft::Plan;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
 
 use super::Topography;
 use crate::{Error, Grid};
@@ -58,8 +58,7 @@ fn fourier_along_x(heights: &DMatrix<f64>, nodes: usize) -> DMatrix<f64> {
     if nodes == old {
         return heights.clone();
     }
-    let mut planner = RealFftPlanner::new();
-    let (forward, inverse) = (planner.plan_fft_forward(old), planner.plan_fft_inverse(nodes));
+    let (forward, inverse) = (f64::real_forward(old), f64::real_inverse(nodes));
     let mut line = forward.make_input_vec();
     let (mut spectrum, mut resampled) = (forward.make_output_vec(), inverse.make_input_vec());
     let mut scratch = forward.make_scratch_vec();
