@@ -88,6 +88,7 @@ fn which(wanted: Option<&str>) -> String {
 
 fn unit(found: Option<&str>) -> String {
     match found {
+        Some("A") => "the unit 'A', the ampere, which is no length".to_string(),
         Some(unit) => format!("the unit '{unit}', which is no length"),
         None => "no unit".to_string(),
     }

@@ -34,6 +34,9 @@ pub struct MeasuredSurface {
     pub channels: Vec<String>,
     /// Format of the file.
     pub format: Format,
+    /// How the file was understood, where its format leaves that open: in a text, which numbers are heights, which sign
+    /// parts them, and which lines above them were not used. Empty for other formats.
+    pub understood: String,
     /// What was noticed in reading: a checksum that does not match, a mask taken for missing nodes.
     pub notes: Vec<String>,
 }
@@ -109,6 +112,7 @@ mod tests {
             title: "Topography".to_string(),
             channels: vec!["Topography".to_string()],
             format: Format::GwyddionSimpleField,
+            understood: String::new(),
             notes: vec!["a note".to_string()],
         }
     }

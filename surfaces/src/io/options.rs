@@ -176,12 +176,21 @@ impl ReadOptions {
         let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
         let unit = channel.height_unit.take();
+        let mut replaced = Vec::new();
+        // NumPy's metre is an assumption, see below.
+        let stated = unit.as_deref().filter(|_| format != Format::Npy);
+        replaced.extend(replacement("heights", self.height_unit, stated));
         let height = metres(self.height_unit, unit).map_err(|found| {
             let (path, option) = (path.to_path_buf(), "`ReadOptions::height_unit`");
             FileError::NoUnit { path, quantity: "heights", found, option }
         })?;
+        // A side in place of that of the file needs no unit.
+        let is_used = self.side.is_none() && channel.cell.is_some();
+        let unit = channel.lateral_unit.as_deref().filter(|_| is_used);
+        replaced.extend(replacement("lengths along x and y", self.lateral_unit, unit));
         let cell = self.cell(&mut channel, path)?;
         let mut notes = channel.notes;
+        notes.append(&mut replaced);
         if let Some(mask) = channel.mask.filter(|_| !self.ignore_mask) {
             let nodes = channel.values.iter_mut().zip(&mask).filter(|(_, marked)| **marked);
             let marked = nodes.map(|(value, _)| *value = f64::NAN).count();
@@ -222,7 +231,9 @@ impl ReadOptions {
         let missing = channel.values.iter().filter(|value| value.is_nan()).count();
         let heights = DMatrix::from_vec(nx, ny, channel.values);
         let title = channel.name;
-        Ok(MeasuredSurface { heights, missing, cell, title, channels: names, format, notes })
+        let understood = channel.understood;
+        let channels = names;
+        Ok(MeasuredSurface { heights, missing, cell, title, channels, format, understood, notes })
     }
 
     /// The map that was asked for; without a name, the only one, or the only one that is a length.
@@ -277,8 +288,15 @@ fn names(channels: &[Channel]) -> Vec<String> {
 
 /// Metres for a unit: the one given, otherwise that of the file, which is told if it is no length.
 fn metres(given: Option<LengthUnit>, found: Option<String>) -> Result<f64, Option<String>> {
-    let of_file = || found.as_deref()?.parse().ok();
+    let of_file = || LengthUnit::in_file(found.as_deref()?);
     given.or_else(of_file).map(LengthUnit::metres).ok_or(found)
+}
+
+/// What is said of a unit that takes the place of another in the file.
+fn replacement(of: &str, given: Option<LengthUnit>, found: Option<&str>) -> Option<String> {
+    let (given, found) = (given?, found?);
+    (LengthUnit::in_file(found) != Some(given))
+        .then(|| format!("the {of} are taken to be in {given}, although the file says '{found}'"))
 }
 
 /// What errors call a file before its format is known.

@@ -19,6 +19,8 @@ pub(super) struct Channel {
     pub(super) lateral_unit: Option<String>,
     /// Nodes that somebody marked in the file, in the order of the values.
     pub(super) mask: Option<Vec<bool>>,
+    /// How the file was understood, where its format leaves that open.
+    pub(super) understood: String,
     /// What the user should know: a checksum that does not match, a header that contradicts itself.
     pub(super) notes: Vec<String>,
 }
@@ -38,6 +40,7 @@ impl Channel {
             cell,
             lateral_unit: Some("m".to_string()),
             mask: None,
+            understood: String::new(),
             notes: Vec::new(),
         }
     }

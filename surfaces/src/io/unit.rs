@@ -40,6 +40,11 @@ impl LengthUnit {
     /// The metre.
     pub const METRE: Self = Self { symbol: "m", metres: 1.0 };
 
+    /// The unit that a file writes so, `None` if it is no length: A may be Å to a person, but is the ampere in a file.
+    pub(super) fn in_file(text: &str) -> Option<Self> {
+        text.parse().ok().filter(|_| text.trim() != "A")
+    }
+
     /// Its length \[m\].
     #[must_use]
     pub fn metres(self) -> f64 {

@@ -3,6 +3,7 @@
 
 mod hostile;
 mod refusals;
+mod stated;
 mod third_party;
 mod third_party_archives_and_text;
 mod truth;

@@ -2,12 +2,12 @@
 
 use std::str;
 
-use crate::io::lines::Lines;
+use crate::io::lines::{Line, Lines};
 
 /// What is between the cells of a row, and within numbers.
 ///
 /// Blanks always part numbers. In addition there is one sign that makes cells, which may be empty: `;` if there is one,
-/// otherwise a comma that is no decimal comma, otherwise a tab.
+/// otherwise a comma that is no decimal comma, otherwise a tab, unless blanks part numbers as well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Dialect {
     pub(super) separator: Option<u8>,
@@ -18,22 +18,44 @@ pub(super) struct Dialect {
 const LONGEST: usize = 128;
 
 impl Dialect {
+    /// Numbers with decimal points between blanks.
+    pub(super) const BLANKS: Self = Self { separator: None, decimal_comma: false };
+
     /// The dialect of the lines of numbers in a file.
     pub(super) fn of(lines: &Lines) -> Self {
-        let rest = lines.rest();
-        let semicolon = rest.contains(&b';');
-        let decimal_comma =
-            rest.contains(&b',') && (semicolon || commas_are_decimal(lines.clone()));
+        let rows = || lines.clone().filter(|line| !line.is_comment());
+        let has = |sign: u8| rows().any(|line| line.bytes.contains(&sign));
+        let (semicolon, comma) = (has(b';'), has(b','));
+        let decimal_comma = comma && (semicolon || commas_are_decimal(rows()));
         let separator = if semicolon {
             Some(b';')
-        } else if rest.contains(&b',') && !decimal_comma {
+        } else if comma && !decimal_comma {
             Some(b',')
-        } else if rest.contains(&b'\t') {
+        } else if has(b'\t') && !rows().any(|line| is_parted_by_blanks(line.bytes)) {
             Some(b'\t')
         } else {
             None
         };
         Self { separator, decimal_comma }
+    }
+
+    /// How a text is written.
+    pub(super) fn told(self) -> String {
+        let parted = match self.separator {
+            Some(b';') => "semicolons",
+            Some(b',') => "commas",
+            Some(_) => "tabs",
+            None => "blanks",
+        };
+        format!(
+            "parted by {parted}{}",
+            if self.decimal_comma { ", with decimal commas" } else { "" }
+        )
+    }
+
+    /// Whether this number has another decimal sign than others in the file: then one of the two parts thousands.
+    pub(super) fn is_foreign(self, word: &[u8]) -> bool {
+        self.decimal_comma && word.contains(&b'.') && parse(word).is_some()
     }
 
     /// The number that a word is, NaN for one that stands for a missing value, `None` for any other word.
@@ -86,7 +108,7 @@ fn means_missing(word: &[u8]) -> bool {
 ///
 /// A row of stars or hyphens alone is an ornament as long as there is no number.
 pub(super) fn is_row(line: &[u8]) -> bool {
-    let dialect = Dialect { separator: None, decimal_comma: false };
+    let dialect = Dialect::BLANKS;
     let mut numbers = false;
     for word in line.split(|byte| matches!(byte, b' ' | b'\t' | b';' | b',')) {
         if word.is_empty() {
@@ -100,11 +122,17 @@ pub(super) fn is_row(line: &[u8]) -> bool {
     numbers
 }
 
+/// Whether a line has several words without a tab between any of them.
+fn is_parted_by_blanks(line: &[u8]) -> bool {
+    let line = line.trim_ascii();
+    line.contains(&b' ') && !line.contains(&b'\t')
+}
+
 /// Whether commas are decimal in lines without `;`: if numbers are parted by blanks or tabs, and no comma stands at the end of
 /// one, or twice in one.
-fn commas_are_decimal(lines: Lines) -> bool {
+fn commas_are_decimal<'a>(rows: impl Iterator<Item = Line<'a>>) -> bool {
     let mut parted = false;
-    for line in lines.filter(|line| !line.is_comment()) {
+    for line in rows {
         let mut words = 0;
         for word in line.bytes.split(|byte| matches!(byte, b' ' | b'\t')) {
             if word.is_empty() {

@@ -1,5 +1,6 @@
 //! What stands above the numbers of a text: lines like `# Width: 10 µm`, and names of columns.
 
+use super::{markers, names};
 use crate::io::fault::Fault;
 use crate::io::unit::LengthUnit;
 
@@ -10,18 +11,32 @@ pub(super) struct Header {
     /// Side along x, side along y.
     width: Option<Length>,
     height: Option<Length>,
-    /// Spacing along both.
+    /// Spacing along both, or along x, and that along y.
     pixel: Option<Length>,
+    pixel_y: Option<Length>,
+    /// Unit of sides and spacings that have none of their own.
+    pub(super) side_unit: Option<String>,
     pub(super) value_unit: Option<String>,
     /// What the numbers have to be multiplied by to be in their unit.
     pub(super) factor: Option<f64>,
     /// Unit of the coordinates of points.
     pub(super) lateral_unit: Option<String>,
-    /// Whether columns are called x, y, z.
-    pub(super) names_columns: bool,
+    /// Numbers of columns and rows.
+    columns: Option<usize>,
+    rows: Option<usize>,
+    /// The last line that could be one of names of columns, and whether it is the last of all.
+    pub(super) names: Option<String>,
+    pub(super) ends_with_names: bool,
     /// The number that stands for a missing value.
     pub(super) missing: Option<f64>,
+    /// The first lines that say nothing that is known, and how many there are.
+    unread: Vec<String>,
+    unread_count: usize,
 }
+
+/// Lines that are shown of those that are not understood, and their length.
+const SHOWN: usize = 3;
+const SHOWN_LETTERS: usize = 40;
 
 /// A number and what is written behind it.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,25 +45,50 @@ struct Length {
     unit: Option<String>,
 }
 
-// What Gwyddion writes above a matrix, in the languages that it speaks, in small letters.
+// What Gwyddion writes above a matrix, in the languages that it speaks, in small letters, and what WSxM and SPIP call it.
 const TITLE: &str = "channel|kanál|kanal|canal|canale|チャネル|채널|канал";
-const WIDTH: &str = "width|šířka|breite|anchura|largeur|larghezza|幅|폭|largura|ширина";
-const HEIGHT: &str = "height|výška|höhe|altura|hauteur|altezza|高さ|높이|высота";
+const WIDTH: &str = "width|šířka|breite|anchura|largeur|larghezza|幅|폭|largura|ширина|x amplitude|x-length|x length";
+const HEIGHT: &str =
+    "height|výška|höhe|altura|hauteur|altezza|高さ|높이|высота|y amplitude|y-length|y length";
 const VALUE_UNIT: &str = "value units|jednotky hodnot|einheiten|werteinheiten|unités|unità valore|値の単位|값 단위|\
     unidades de valor|единицы измерения";
-/// What another program calls it.
-const DATA_UNIT: &str = "data unit";
+/// What other programs call it.
+const DATA_UNIT: &str = "data unit|unit data|exported image units|z-unit|z unit|z units|zunit|unit z|height unit|height units";
+const SIDE_UNIT: &str = "x-unit|x unit|x units|xunit|unit x|xy unit|unit xy|xyunit";
+const COLUMNS: &str = "x-pixels|nx|ncols|number of columns";
+const ROWS: &str = "y-pixels|ny|nrows|number of rows";
 
 impl Header {
     /// Takes in a line. Returns whether it says anything that is known.
     pub(super) fn add(&mut self, line: &str) -> bool {
         let line =
-            line.trim_start_matches(|c: char| matches!(c, '#' | '%' | '"') || c.is_whitespace());
-        let Some((key, value)) = line.split_once(['=', ':', '：']) else {
-            return self.add_words(line);
-        };
+            line.trim_matches(|c: char| matches!(c, '#' | '%' | '"' | '\\') || c.is_whitespace());
+        if line.is_empty() {
+            return false;
+        }
+        self.ends_with_names = false;
+        let words = || line.split_once(char::is_whitespace);
+        let pair = line.split_once(['=', ':', '：']);
+        if pair.is_some_and(|(key, value)| self.add_value(key, value.trim()))
+            || words().is_some_and(|(key, value)| self.add_word(key, value.trim()))
+        {
+            return true;
+        }
+        if names::could_be(line) {
+            self.names = Some(line.to_string());
+            self.ends_with_names = true;
+            return true;
+        }
+        if self.unread.len() < SHOWN {
+            self.unread.push(line.chars().take(SHOWN_LETTERS).collect());
+        }
+        self.unread_count += 1;
+        false
+    }
+
+    /// A line with a sign between key and value.
+    fn add_value(&mut self, key: &str, value: &str) -> bool {
         let key = key.trim().to_lowercase();
-        let value = value.trim();
         let is = |names: &str| names.split('|').any(|name| name == key);
         if is(TITLE) {
             self.title = value.to_string();
@@ -58,78 +98,84 @@ impl Header {
             self.height = Length::parse(value);
         } else if is(VALUE_UNIT) || is(DATA_UNIT) {
             self.value_unit = some(value);
+        } else if is(SIDE_UNIT) {
+            self.side_unit = some(value);
+        } else if is(COLUMNS) {
+            self.columns = value.parse().ok();
+        } else if is(ROWS) {
+            self.rows = value.parse().ok();
         } else if is("lateral units") {
             self.lateral_unit = some(value);
-        } else if is("pixel size") {
+        } else if is("pixel size") || is("scale x") {
             self.pixel = Length::parse(value);
+        } else if is("scale y") {
+            self.pixel_y = Length::parse(value);
+        } else if is("z amplitude") {
+            // WSxM gives the range of heights; its unit is that of them all.
+            self.value_unit = Length::parse(value).and_then(|range| range.unit);
+        } else if is("file format") && value.eq_ignore_ascii_case("ascii") {
+            // SPIP has lengths in nm.
+            self.side_unit.get_or_insert_with(|| "nm".to_string());
+        } else if is("bit2nm") {
+            // A unit of its own takes precedence.
+            if self.value_unit.is_none() {
+                self.factor = number(value);
+                self.value_unit = some("nm");
+            }
         } else if let Some(unit) = key.strip_prefix("height conversion factor (->") {
             self.factor = number(value);
             self.value_unit = some(unit.trim_end_matches(')'));
         } else {
-            return self.add_words(line);
-        }
-        true
-    }
-
-    /// Lines without a sign between key and value.
-    fn add_words(&mut self, line: &str) -> bool {
-        let mut words = line.split_whitespace();
-        // The header of a grid of geographers.
-        let (Some(key), Some(value), None) = (words.next(), words.next(), words.next()) else {
-            return self.add_columns(line);
-        };
-        match key.to_ascii_lowercase().as_str() {
-            "nodata_value" => {
-                self.missing = number(value);
-                self.missing.is_some()
-            }
-            "cellsize" => {
-                self.pixel = Length::parse(value);
-                self.pixel.is_some()
-            }
-            _ => self.add_columns(line),
-        }
-    }
-
-    /// Names of columns, perhaps with units: `x y z`, `X [mm]; Y [mm]; Z [µm]`, `x_mm,y_mm,height_nm`.
-    fn add_columns(&mut self, line: &str) -> bool {
-        let mut units = [const { None }; 3];
-        let mut column = None;
-        let parts = |c: char| c.is_whitespace() || ";,/_()[]{}<>\"':=".contains(c);
-        for word in line.split(parts).filter(|word| !word.is_empty()) {
-            let name = word.to_lowercase();
-            match (name.as_str(), column) {
-                ("x", None) => column = Some(0),
-                ("y", Some(0)) => column = Some(1),
-                ("z" | "height" | "value", Some(1)) => column = Some(2),
-                ("coordinate" | "position" | "axis" | "pos", Some(_)) => {}
-                // Further columns may be called anything.
-                (_, Some(2)) if word.parse::<LengthUnit>().is_err() => break,
-                (_, Some(k)) if word.parse::<LengthUnit>().is_ok() => {
-                    if let Some(unit) = units.get_mut(k) {
-                        *unit = Some(word.to_string());
-                    }
-                }
-                _ => return false,
-            }
-        }
-        if column != Some(2) {
             return false;
         }
-        let [x, y, z] = units;
-        self.names_columns = true;
-        // Coordinates in two units have none in common.
-        self.lateral_unit = x.filter(|x| y.as_ref().is_none_or(|y| y == x));
-        self.value_unit = z;
         true
+    }
+
+    /// The header of a grid of geographers: lines without a sign between key and value.
+    fn add_word(&mut self, key: &str, value: &str) -> bool {
+        let key = key.to_ascii_lowercase();
+        match key.as_str() {
+            "nodata_value" => self.missing = number(value),
+            "cellsize" => self.pixel = Length::parse(value),
+            "ncols" => self.columns = value.parse().ok(),
+            "nrows" => self.rows = value.parse().ok(),
+            _ => return false,
+        }
+        number(value).is_some()
+    }
+
+    /// `Ok` if the matrix has the shape that the header gives.
+    pub(super) fn check_shape(&self, (nx, ny): (usize, usize)) -> Result<(), Fault> {
+        for (name, stated, found) in [("columns", self.columns, nx), ("rows", self.rows, ny)] {
+            if let Some(stated) = stated {
+                ensure!(stated == found, "the header says {stated} {name}, but there are {found}");
+            }
+        }
+        Ok(())
+    }
+
+    /// What is said of lines that are not understood.
+    pub(super) fn unread(&self) -> String {
+        let more = if self.unread_count > self.unread.len() { ", ..." } else { "" };
+        match self.unread_count {
+            0 => String::new(),
+            1 => format!("; a line above them is not used: '{}'", self.unread.join("', '")),
+            count => format!(
+                "; {count} lines above them are not used: '{}'{more}",
+                self.unread.join("', '")
+            ),
+        }
     }
 
     /// Makes heights in their unit, NaN where they are missing, of the numbers in the file.
-    pub(super) fn apply(&self, numbers: &mut [f64]) {
-        let factor = self.factor.unwrap_or(1.0);
-        for number in numbers {
-            *number = if self.missing == Some(*number) { f64::NAN } else { *number * factor };
+    pub(super) fn apply(&self, numbers: &mut [f64], notes: &mut Vec<String>) {
+        if let Some(missing) = self.missing {
+            numbers.iter_mut().filter(|number| **number == missing).for_each(|n| *n = f64::NAN);
+        } else {
+            notes.append(&mut markers::remove(numbers));
         }
+        let factor = self.factor.unwrap_or(1.0);
+        numbers.iter_mut().for_each(|number| *number *= factor);
     }
 
     /// Whether it gives the sides of a matrix.
@@ -139,26 +185,28 @@ impl Header {
 
     /// The cell of a matrix, and its unit: that of the side along x.
     pub(super) fn cell(&self, (nx, ny): (usize, usize)) -> Result<Cell, Fault> {
-        if let Some(pixel) = &self.pixel {
-            return Ok((Some((pixel.value, pixel.value)), pixel.unit.clone()));
-        }
-        let (Some(width), Some(height)) = (&self.width, &self.height) else {
-            return Ok((None, None));
+        let (x, y, nx, ny) = match (&self.pixel, &self.width, &self.height) {
+            (Some(pixel), ..) => (pixel, self.pixel_y.as_ref().unwrap_or(pixel), 1, 1),
+            (None, Some(width), Some(height)) => (width, height, nx, ny),
+            _ => return Ok((None, None)),
         };
-        // Units of the height in one of the width, if they can be compared.
-        let ratio = if width.unit == height.unit {
-            Some(1.0)
-        } else {
-            height.metres().zip(width.metres()).map(|(height, width)| height / width)
-        };
-        let ratio = ratio.ok_or_else(|| {
-            let [width, height] =
-                [width, height].map(|side| side.unit.as_deref().unwrap_or_default());
+        let [unit_x, unit_y] = [x, y].map(|side| side.unit.as_ref().or(self.side_unit.as_ref()));
+        let ratio = ratio(unit_y, unit_x).ok_or_else(|| {
+            let [width, height] = [unit_x, unit_y].map(|unit| unit.map_or("", |unit| unit));
             fault!("the header gives the width in '{width}', but the height in '{height}'")
         })?;
-        let cell = (width.value / nx as f64, height.value * ratio / ny as f64);
-        Ok((Some(cell), width.unit.clone()))
+        let cell = (x.value / nx as f64, y.value * ratio / ny as f64);
+        Ok((Some(cell), unit_x.cloned()))
     }
+}
+
+/// How many of another unit a unit is, if they can be compared.
+pub(super) fn ratio(of: Option<&String>, other: Option<&String>) -> Option<f64> {
+    if of == other {
+        return Some(1.0);
+    }
+    let metres = |unit: Option<&String>| LengthUnit::in_file(unit?).map(LengthUnit::metres);
+    Some(metres(of)? / metres(other)?)
 }
 
 /// A cell in some unit, if both are known.
@@ -172,11 +220,6 @@ impl Length {
             .unwrap_or(text.len());
         let (value, unit) = text.split_at(end);
         Some(Self { value: number(value)?, unit: some(unit) })
-    }
-
-    /// Metres in its unit.
-    fn metres(&self) -> Option<f64> {
-        Some(self.unit.as_deref()?.parse::<LengthUnit>().ok()?.metres())
     }
 }
 

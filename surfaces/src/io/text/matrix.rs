@@ -1,5 +1,6 @@
 //! A text whose rows are those of the map.
 
+use super::axes::Axes;
 use super::header::Header;
 use super::table::Table;
 use crate::io::bytes::shape;
@@ -7,16 +8,28 @@ use crate::io::fault::Fault;
 use crate::io::raw::Channel;
 
 /// Row iy of the text holds the nodes (·, iy).
-pub(super) fn channel(header: Header, table: Table) -> Result<Channel, Fault> {
+pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Channel, Fault> {
     let (columns, rows) = (table.columns as u64, table.rows() as u64);
     let shape = shape(columns, rows)?;
-    let (cell, lateral_unit) = header.cell(shape)?;
+    if let Some(line) = table.second_block {
+        bail!(
+            "line {line} follows an empty line: the lines before it and from it on may be two maps; a text has to hold one only, \
+             without empty lines in it"
+        );
+    }
+    header.check_shape(shape)?;
+    let (mut cell, mut lateral_unit) = header.cell(shape)?;
+    if cell.is_none() {
+        (cell, lateral_unit) = (axes.cell, header.side_unit.clone());
+    }
     let mut values = table.values;
-    header.apply(&mut values);
+    let mut notes = axes.notes;
+    header.apply(&mut values, &mut notes);
     Ok(Channel {
-        name: header.title,
-        height_unit: header.value_unit,
+        height_unit: header.value_unit.clone(),
         lateral_unit,
+        understood: format!("{rows} rows of {columns} heights, {}", table.dialect.told()),
+        notes,
         ..Channel::in_metres(shape, values, cell)
     })
 }

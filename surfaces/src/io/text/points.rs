@@ -3,12 +3,13 @@
 //! Nodes are found from the coordinates, so that points may come in any order, and need not all be there: scanners leave out
 //! what they did not see.
 
-use super::header::Header;
+use super::names::Columns;
 use super::table::Table;
 use crate::Grid;
 use crate::io::bytes::{reserved, shape};
 use crate::io::fault::Fault;
 use crate::io::raw::Channel;
+use crate::number::counted;
 
 /// How far a point may be off its node, in spacings: as much as rounding to two digits of a spacing.
 const TOLERANCE: f64 = 0.05;
@@ -23,11 +24,11 @@ const SAME: f64 = 4.0 * TOLERANCE;
 const MAX_NODES: usize = 16;
 const MAX_COLUMNS: usize = 2;
 
-/// The map of which a table gives the points.
-pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
-    let columns = table.columns;
-    ensure!(columns >= 3, "a list of points x, y, z has three columns, but there are {columns}");
-    let (x, y) = (Axis::find("x", table, 0)?, Axis::find("y", table, 1)?);
+/// The map of which a table gives the points, in the units of its numbers.
+pub(super) fn channel(columns: &Columns, table: &Table) -> Result<Channel, Fault> {
+    let count = table.columns;
+    ensure!(count >= 3, "a list of points x, y, z has three columns, but there are {count}");
+    let (x, y) = (Axis::find("x", table, columns.x)?, Axis::find("y", table, columns.y)?);
     let (nx, ny) = shape(x.nodes, y.nodes)?;
     let count = table.rows();
     ensure!(
@@ -39,8 +40,9 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
     values.resize(nx * ny, f64::NAN);
     let mut filled = vec![false; nx * ny];
     let mut worst = 0.0_f64;
-    for (k, point) in (1..).zip(table.values.chunks_exact(columns)) {
-        let &[px, py, z, ..] = point else { continue };
+    for (k, point) in (1..).zip(table.values.chunks_exact(table.columns)) {
+        let place = |column: usize| point.get(column).copied().unwrap_or(f64::NAN);
+        let (px, py, z) = (place(columns.x), place(columns.y), place(columns.z));
         let (ix, off_x) = x.node(k, px)?;
         let (iy, off_y) = y.node(k, py)?;
         worst = worst.max(off_x).max(off_y);
@@ -56,7 +58,6 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
         );
         *value = z;
     }
-    header.apply(&mut values);
     let mut notes = Vec::new();
     if worst > NOTED {
         notes.push(format!(
@@ -64,13 +65,8 @@ pub(super) fn channel(header: Header, table: &Table) -> Result<Channel, Fault> {
              those of the nodes"
         ));
     }
-    if columns > 3 {
-        notes.push(format!("of {columns} columns the first three are read, as x, y, z"));
-    }
     Ok(Channel {
-        name: header.title,
-        height_unit: header.value_unit,
-        lateral_unit: header.lateral_unit,
+        understood: format!("{}, {}", counted(count, "point"), columns.how),
         notes,
         ..Channel::in_metres((nx, ny), values, Some((x.spacing, y.spacing)))
     })
@@ -101,9 +97,12 @@ impl Axis {
         };
         let extent = end - start;
         ensure!(extent != 0.0, "all points have {name} = {start}: a profile is no surface");
+        let count = sorted.len();
         let (least, columns) = spacing(sorted, extent).ok_or_else(|| {
             fault!(
-                "{name} has more than {} different values from {start} to {end}: the points do not lie on a grid",
+                "the {count} points lie on no regular grid: {name} has values from {start} to {end} that are less than \
+                 {:e} apart, as on more than {} nodes",
+                extent / Grid::MAX_SIDE as f64,
                 Grid::MAX_SIDE
             )
         })?;

@@ -11,11 +11,103 @@ use crate::io::lines::{Line, Lines};
 pub(super) struct Table {
     pub(super) columns: usize,
     pub(super) values: Vec<f64>,
+    pub(super) dialect: Dialect,
+    /// The line after the first empty one between rows, unless there is one between any two.
+    pub(super) second_block: Option<usize>,
 }
 
 impl Table {
+    /// Points x, y, z.
+    pub(super) fn of_points(values: Vec<f64>) -> Self {
+        Self { columns: 3, values, dialect: Dialect::BLANKS, second_block: None }
+    }
+
+    /// The numbers in the next lines, and in no others.
+    pub(super) fn of_lines(lines: Lines, count: usize) -> Result<Self, Fault> {
+        let mut table = Self::read(lines, Some(count))?;
+        table.second_block = None;
+        Ok(table)
+    }
+
     pub(super) fn rows(&self) -> usize {
         self.values.len() / self.columns.max(1)
+    }
+
+    /// Whether the first column counts the rows.
+    pub(super) fn counts_rows(&self) -> bool {
+        let mut numbers = self.values.iter().step_by(self.columns.max(1));
+        let Some(start) = numbers.next().filter(|start| matches!(**start, 0.0 | 1.0)) else {
+            return false;
+        };
+        (1..).zip(numbers).all(|(k, number)| *number == start + f64::from(k))
+    }
+
+    fn read(lines: Lines, most: Option<usize>) -> Result<Self, Fault> {
+        let dialect = Dialect::of(&lines);
+        let mut table = Self { columns: 0, values: Vec::new(), dialect, second_block: None };
+        let (mut first, mut leading_of_first) = (0, 0);
+        // Whether every row begins, or ends, with an empty cell: the separator belongs to the margin then.
+        let (mut begins_empty, mut ends_empty) = (true, true);
+        // An empty line behind every row is no sign of a second map.
+        let (mut is_parted, mut has_neighbours) = (true, false);
+        for line in lines {
+            if most.is_some_and(|most| table.columns > 0 && table.rows() >= most) {
+                break;
+            }
+            if line.is_comment() {
+                ensure!(
+                    !Header::default().add(&line.text()),
+                    at(line.offset),
+                    "line {} begins another map: a text has to hold one only",
+                    line.number
+                );
+                continue;
+            }
+            if is_blank(&line, dialect, table.columns) {
+                is_parted = true;
+                continue;
+            }
+            // No number is shorter than a digit and what parts it from the next.
+            table
+                .values
+                .try_reserve(line.bytes.len() / 2 + 1)
+                .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
+            let before = table.values.len();
+            let (leading, ends) = row(&line, dialect, &mut table.values)?;
+            let mut columns = table.values.len() - before;
+            // Blanks before a line, be they tabs, are no cells if other lines do without.
+            if table.columns > 0 && columns > table.columns && columns - leading <= table.columns {
+                table.values.drain(before..before + columns - table.columns);
+                columns = table.columns;
+            } else if before == table.columns && columns < before && table.columns > 0 {
+                let excess = before - columns;
+                if leading_of_first >= excess {
+                    table.values.drain(..excess);
+                    table.columns = columns;
+                }
+            }
+            begins_empty &= leading > 0;
+            ends_empty &= ends;
+            if table.columns == 0 {
+                (table.columns, first) = (columns, line.number);
+                leading_of_first = leading;
+            } else if is_parted {
+                table.second_block.get_or_insert(line.number);
+            } else {
+                has_neighbours = true;
+            }
+            is_parted = false;
+            ensure!(
+                columns == table.columns,
+                at(line.offset),
+                "line {} has {columns} numbers, but line {first} has {}",
+                line.number,
+                table.columns
+            );
+        }
+        drop_margins(&mut table, begins_empty, ends_empty);
+        table.second_block = table.second_block.filter(|_| has_neighbours);
+        Ok(table)
     }
 }
 
@@ -28,71 +120,28 @@ pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
             .next()
             .ok_or_else(|| fault!("there is no line in it that consists of numbers only"))?;
         if !line.is_comment() && is_row(line.bytes) {
-            return Ok((header, body(ahead)?));
+            return Ok((header, Table::read(ahead, None)?));
         }
         header.add(&line.text());
     }
 }
 
-fn body(lines: Lines) -> Result<Table, Fault> {
-    let dialect = Dialect::of(&lines);
-    let mut table = Table { columns: 0, values: Vec::new() };
-    let mut first = 0;
-    // Whether every row begins, or ends, with an empty cell: the separator belongs to the margin then.
-    let (mut begins_empty, mut ends_empty) = (true, true);
-    for line in lines {
-        if line.is_comment() {
-            ensure!(
-                !Header::default().add(&line.text()),
-                at(line.offset),
-                "line {} begins another map: a text has to hold one only",
-                line.number
-            );
-            continue;
-        }
-        if is_blank(&line, dialect, table.columns) {
-            continue;
-        }
-        // No number is shorter than a digit and what parts it from the next.
-        table
-            .values
-            .try_reserve(line.bytes.len() / 2 + 1)
-            .map_err(|_| std::io::Error::from(std::io::ErrorKind::OutOfMemory))?;
-        let before = table.values.len();
-        let margins = row(&line, dialect, &mut table.values)?;
-        begins_empty &= margins.0;
-        ends_empty &= margins.1;
-        let columns = table.values.len() - before;
-        if table.columns == 0 {
-            (table.columns, first) = (columns, line.number);
-        }
-        ensure!(
-            columns == table.columns,
-            at(line.offset),
-            "line {} has {columns} numbers, but line {first} has {}",
-            line.number,
-            table.columns
-        );
-    }
-    drop_margins(&mut table, begins_empty, ends_empty);
-    Ok(table)
-}
-
-/// Appends the numbers of a line. Returns whether its first and its last cell are empty.
-fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(bool, bool), Fault> {
+/// Appends the numbers of a line. Returns how many empty cells are before the first number, and whether the last is empty.
+fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(usize, bool), Fault> {
     let Some(separator) = dialect.separator else {
         cell(line, line.bytes, dialect, values)?;
-        return Ok((false, false));
+        return Ok((0, false));
     };
-    let (mut begins_empty, mut ends_empty) = (None, false);
+    let (mut leading, mut only_empty, mut ends_empty) = (0, true, false);
     for text in line.bytes.split(|byte| *byte == separator) {
         ends_empty = !cell(line, text, dialect, values)?;
-        begins_empty.get_or_insert(ends_empty);
+        only_empty &= ends_empty;
+        leading += usize::from(only_empty);
         if ends_empty {
             values.push(f64::NAN);
         }
     }
-    Ok((begins_empty == Some(true), ends_empty))
+    Ok((leading, ends_empty))
 }
 
 /// Appends the numbers of a cell. Returns whether there are any.
@@ -102,6 +151,12 @@ fn cell(line: &Line, text: &[u8], dialect: Dialect, values: &mut Vec<f64>) -> Re
         if word.is_empty() {
             continue;
         }
+        ensure!(
+            !dialect.is_foreign(word),
+            at(line.offset),
+            "line {} has a decimal point, but numbers in other lines have a decimal comma",
+            line.number
+        );
         values.push(dialect.number(word).ok_or_else(|| {
             let shown = String::from_utf8_lossy(word.get(..40).unwrap_or(word));
             fault!(at(line.offset), "'{shown}' in line {} is no number", line.number)

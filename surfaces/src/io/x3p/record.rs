@@ -85,7 +85,8 @@ impl Record {
     fn of(root: Node) -> Result<Self, Fault> {
         let name = root.tag_name().name();
         ensure!(
-            name == "ISO5436_2",
+            // Some programs write the name of the standard without its part.
+            matches!(name, "ISO5436_2" | "ISO5436"),
             at(place(root)),
             "expected the element ISO5436_2, but found {name}"
         );

@@ -1,0 +1,182 @@
+//! Names of columns: which of them are x, y and z, and their units.
+
+use super::table::Table;
+use crate::io::fault::Fault;
+use crate::io::unit::LengthUnit;
+
+/// The columns of a list of points.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Columns {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) z: usize,
+    /// Units of the three, as the names say.
+    pub(super) units: [Option<String>; 3],
+    /// How they were found.
+    pub(super) how: String,
+}
+
+/// Words between those of a name.
+const PARTS: &str = ";,/_()[]{}<>\"':=|-#%";
+
+/// What a name says of its column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    X,
+    Y,
+    Z,
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let parts = |c: char| c.is_whitespace() || PARTS.contains(c);
+    text.split(parts).filter(|word| !word.is_empty())
+}
+
+fn kind(word: &str) -> Option<Kind> {
+    match word.to_lowercase().as_str() {
+        "x" => Some(Kind::X),
+        "y" => Some(Kind::Y),
+        "z" | "height" | "heights" | "value" | "values" | "topography" | "elevation" => {
+            Some(Kind::Z)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a line could be one of names: it has both an x and a y.
+pub(super) fn could_be(line: &str) -> bool {
+    let has = |wanted| words(line).any(|word| kind(word) == Some(wanted));
+    has(Kind::X) && has(Kind::Y)
+}
+
+impl Columns {
+    /// The first three columns.
+    pub(super) fn first(how: &str) -> Self {
+        Self { y: 1, z: 2, how: how.to_string(), ..Self::default() }
+    }
+
+    /// The columns of a table below a line of names; `None` if it cannot be one of this table.
+    pub(super) fn named(line: &str, table: &Table) -> Result<Option<Self>, Fault> {
+        let line = line.trim().trim_start_matches(['#', '%']).trim_matches([' ', '"']);
+        let columns = table.columns;
+        let ways = ways(line, table);
+        if let Some(names) = ways.iter().find(|names| names.len() == columns) {
+            return Self::of(names);
+        }
+        // A data frame has no name for its running numbers.
+        let unnamed = |names: &&Vec<String>| names.len() + 1 == columns && table.counts_rows();
+        let Some(names) = ways.iter().find(unnamed) else {
+            return Ok(None);
+        };
+        Ok(Self::of(names)?.map(|found| Self {
+            x: found.x + 1,
+            y: found.y + 1,
+            z: found.z + 1,
+            how: format!("{} behind the unnamed column of running numbers", found.how),
+            ..found
+        }))
+    }
+
+    fn of(names: &[String]) -> Result<Option<Self>, Fault> {
+        let kinds: Vec<Option<Kind>> = names
+            .iter()
+            .map(|name| {
+                let mut found = words(name).filter_map(kind);
+                let first = found.next()?;
+                // `x (value)` is x.
+                found.all(|kind| kind == first || kind == Kind::Z).then_some(first)
+            })
+            .collect();
+        let only = |wanted| {
+            let mut places = (0..kinds.len()).filter(|k| kinds.get(*k) == Some(&Some(wanted)));
+            places.next().filter(|_| places.next().is_none())
+        };
+        let (Some(x), Some(y)) = (only(Kind::X), only(Kind::Y)) else {
+            return Ok(None);
+        };
+        let is_z =
+            |name: &String| words(name).next().is_some_and(|word| word.eq_ignore_ascii_case("z"));
+        let mut called_z = (0..names.len()).filter(|k| names.get(*k).is_some_and(is_z));
+        let called_z = called_z.next().filter(|_| called_z.next().is_none());
+        let third = (names.len() == 3).then(|| 3 - x - y);
+        let z = called_z.or_else(|| only(Kind::Z)).or(third).ok_or_else(|| {
+            fault!(
+                "of the columns {} it is not clear which has the heights: call one of them z",
+                names.join(", ")
+            )
+        })?;
+        let name = |k: usize| names.get(k).map(String::as_str).unwrap_or_default();
+        let units = [x, y, z].map(|k| unit(name(k)));
+        let how = format!("columns {}, {}, {} by name", name(x), name(y), name(z));
+        Ok(Some(Self { x, y, z, units, how }))
+    }
+}
+
+/// The names in a line, in all ways in which they could be parted.
+fn ways(line: &str, table: &Table) -> Vec<Vec<String>> {
+    let cells = |separator: &str| -> Vec<String> {
+        line.split(separator).map(|name| name.trim().to_string()).collect()
+    };
+    let own = table.dialect.separator.map(|byte| char::from(byte).to_string());
+    let signs = own.as_deref().into_iter().chain([";", "\t", ","]);
+    let mut ways: Vec<_> = signs.filter(|sign| line.contains(sign)).map(cells).collect();
+    let wide: Vec<String> = cells("  ").into_iter().filter(|name| !name.is_empty()).collect();
+    ways.push(wide);
+    ways.push(words_with_units(line));
+    ways.push(from_letters(line));
+    ways
+}
+
+/// Names of one word, perhaps with something in brackets behind it.
+fn words_with_units(line: &str) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let mut is_open = false;
+    for word in line.split_whitespace() {
+        let belongs = is_open || word.starts_with(['(', '[', '{', '<']);
+        match names.last_mut().filter(|_| belongs) {
+            Some(name) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            None => names.push(word.to_string()),
+        }
+        let open = word.rfind(['(', '[', '{', '<']);
+        let close = word.rfind([')', ']', '}', '>']);
+        is_open = match (open, close) {
+            (Some(open), close) => close.is_none_or(|close| close < open),
+            (None, Some(_)) => false,
+            (None, None) => is_open,
+        };
+    }
+    names
+}
+
+/// Names of several words that begin with x, y and z.
+fn from_letters(line: &str) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for word in line.split_whitespace() {
+        let begins = words(word).next().is_some_and(|word| kind(word).is_some());
+        match names.last_mut().filter(|_| !begins) {
+            Some(name) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            None => names.push(word.to_string()),
+        }
+    }
+    names
+}
+
+/// The unit in a name: in brackets, or its last word.
+fn unit(name: &str) -> Option<String> {
+    let is_length = |word: &str| word.parse::<LengthUnit>().is_ok();
+    let mut brackets = name.split(['(', '[', '{', '<']).skip(1).map(|rest| {
+        let inside = rest.split([')', ']', '}', '>']).next().unwrap_or_default().trim();
+        inside.strip_prefix("in ").unwrap_or(inside).trim()
+    });
+    let of_brackets = brackets.clone().find(|unit| is_length(unit)).or_else(|| {
+        brackets.find(|unit| !unit.is_empty() && words(unit).all(|word| kind(word).is_none()))
+    });
+    let last = || words(name).skip(1).last().filter(|word| is_length(word));
+    of_brackets.or_else(last).map(str::to_string)
+}
