@@ -5,7 +5,7 @@ use std::str::FromStr;
 use asperity::kernel::{Base, Layer, LayeredBody};
 use asperity_cli::number::quantity;
 
-use crate::elasticity::Material;
+use crate::material::Material;
 
 /// A layer: `210e9,0.3,20e-6` or `gold,2e-6`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,11 +12,13 @@ mod info;
 mod layers;
 mod leak;
 mod load;
+mod material;
 mod passages;
 mod patches;
 mod path;
 mod physics;
 mod reading;
+mod report;
 mod resolution;
 mod room;
 mod settings;
@@ -61,6 +63,7 @@ enum Command {
     Load(Box<load::Options>),
     Info(info::Options),
     Gather(gather::Options),
+    Report(report::Options),
     Patches(patches::Options),
     Slip(slip::Options),
     Leak(leak::Options),
@@ -92,6 +95,7 @@ fn main() -> ExitCode {
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
+        Some(Command::Report(options)) => report::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
         Some(Command::Leak(options)) => leak::run(&options),
@@ -110,7 +114,7 @@ fn main() -> ExitCode {
 
 /// The main job on a generated surface, and what to do next.
 fn example(given: &ArgMatches) -> Result<(), Failure> {
-    path::run(&path::Options::parse_from(["asperity path"]), given)?;
+    path::run(&path::Options::parse_from(["asperity path", "--report"]), given)?;
     say!(
         "\nnext: `asperity info FILE` describes your surface; `asperity path --help` lists the options of this command"
     );

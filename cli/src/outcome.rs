@@ -156,7 +156,10 @@ impl Outcome {
     /// Prints the files, unless people want none; reports all failures but the first, which it returns.
     pub fn finish(self) -> Result<(), Failure> {
         say!();
-        for file in &self.files {
+        // What shows all of it comes first.
+        let is_page = |file: &&PathBuf| file.extension().is_some_and(|end| end == "html");
+        let (pages, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_page);
+        for file in pages.into_iter().chain(others) {
             say!("wrote {}", file.display());
         }
         self.finish_quietly()

@@ -1,5 +1,6 @@
 //! `asperity completions` and `asperity manual`: what a shell and `man` read.
 
+use std::ffi::OsStr;
 use std::io;
 
 use asperity_cli::outcome::Failure;
@@ -56,4 +57,23 @@ fn written(text: &[u8]) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// A word as a shell reads it.
+pub(crate) fn quoted(word: &OsStr) -> String {
+    let word = word.to_string_lossy();
+    let is_plain = |c: char| c.is_alphanumeric() || "_-./,:+=@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.into_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+/// The command that was given.
+pub(crate) fn command() -> String {
+    let mut words = std::env::args_os();
+    // Wherever the program lies.
+    words.next();
+    let words = words.map(|word| quoted(&word));
+    std::iter::once("asperity".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

@@ -36,6 +36,7 @@ fn the_first_command_prints_the_sample() {
         assert_eq!(printed.next().map(lasting), Some(lasting(line)));
     }
     // Then come the names of what it wrote.
+    assert!(printed.any(|line| line == "wrote out/report.html"));
     assert!(printed.any(|line| line == "wrote out/contact_map.png"));
 }
 

@@ -21,6 +21,8 @@ Where to find it
     the elastic body
 ``load_path``, ``open``
     the loading path, its states (``History``, ``State``) and fields, and its records
+``report``
+    a path as one page for a browser
 ``solve``, ``sweep``
     single loads
 ``patches``, ``label_patches``
@@ -64,6 +66,7 @@ from asperity._asperity import (
     PatchAnalysis,
     PatchMap,
     Prony,
+    Report,
     Seal,
     Solution,
     State,
@@ -91,6 +94,7 @@ from asperity._asperity import (
     patches,
     pressure_distribution,
     read,
+    report,
     save_fields,
     self_affine,
     set_threads,
@@ -119,6 +123,7 @@ __all__ = [
     "PatchAnalysis",
     "PatchMap",
     "Prony",
+    "Report",
     "Seal",
     "Solution",
     "State",
@@ -147,6 +152,7 @@ __all__ = [
     "patches",
     "pressure_distribution",
     "read",
+    "report",
     "results",
     "save_fields",
     "self_affine",

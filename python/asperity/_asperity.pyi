@@ -21,6 +21,7 @@ __all__ = [
     "PatchAnalysis",
     "PatchMap",
     "Prony",
+    "Report",
     "Seal",
     "Solution",
     "State",
@@ -55,6 +56,7 @@ __all__ = [
     "patches",
     "pressure_distribution",
     "read",
+    "report",
     "save_fields",
     "self_affine",
     "set_threads",
@@ -525,6 +527,15 @@ class PatchAnalysis:
     def __len__(self) -> int: ...
 
 @final
+class Report:
+    @property
+    def html(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def save(self, file: _Path) -> None: ...
+    def _repr_html_(self) -> str: ...
+
+@final
 class Seal:
     def __new__(cls, viscosity: float, pressure_drop: float, along: _Axis) -> Seal: ...
     @property
@@ -706,6 +717,14 @@ def read(
     name: _Path | None = None,
 ) -> Surface: ...
 def channels(path: _Path) -> list[str]: ...
+def report(
+    path: LoadingPath,
+    other: LoadingPath | None = None,
+    *,
+    name: str = "path",
+    other_name: str = "other path",
+    folder: _Path | None = None,
+) -> Report: ...
 def save_fields(
     path: _Path, fields: dict[str, _Floats] | dict[str, ArrayLike], size: _Lengths, *, unit: str = ""
 ) -> None: ...

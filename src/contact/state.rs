@@ -9,8 +9,8 @@ use crate::Grid;
 /// in contact.
 ///
 /// In full contact, that of a flat surface under no load too, the mean gap is exactly 0 and the interfacial stiffness
-/// infinite. Nodes that touch at one approach have a state each, of which only the last lasts: with a factor the others have the
-/// stiffnesses of the nodes taken so far, without one those of equal steps, and they agree on the last.
+/// infinite. Nodes that touch at one approach have a state each, of which only the last lasts: the others have the
+/// stiffnesses of the nodes taken so far, without a factor nearly. Where nodes may yield, they have those of equal steps without one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

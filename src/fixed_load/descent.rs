@@ -1,6 +1,5 @@
 //! Projected conjugate gradients on a contact set.
 
-use super::hierarchy::scale;
 use super::iterate::{Criteria, Errors, Progress};
 use super::level::{Level, Prescribed};
 use super::release::release;
@@ -98,7 +97,7 @@ impl<'a> Descent<'a> {
             for ((x, from), end) in self.pressure.iter_mut().zip(&start.pressure).zip(&end) {
                 *x = (from + part * (end - from)).max(0.0);
             }
-            scale(&mut self.pressure, self.prescribed);
+            self.prescribed.scale(&mut self.pressure);
             self.move_there()?;
             if self.energy_since(start) < 0.0 {
                 return Ok(());

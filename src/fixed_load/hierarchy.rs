@@ -8,7 +8,6 @@ use super::settings::Settings;
 use super::tuning::{COARSE_RMS_HEIGHTS, COARSE_TOLERANCE, COARSEST};
 use crate::convolution::Convolution;
 use crate::kernel::Blocks;
-use crate::krylov::sum;
 use crate::parallel::inside;
 use crate::{Error, Problem};
 
@@ -87,7 +86,7 @@ impl Hierarchy {
             solve_roughly(level, prescribed.on_cells(cell, level.grid.cell_area()), settings)?;
             blocks.prolong(&level.iterate.pressure, &mut fine.iterate.pressure);
             let fine_cell = fine.grid.cell_area();
-            scale(&mut fine.iterate.pressure, prescribed.on_cells(cell, fine_cell));
+            prescribed.on_cells(cell, fine_cell).scale(&mut fine.iterate.pressure);
         }
         Ok(())
     }
@@ -119,20 +118,6 @@ fn start_uniformly(level: &mut Level, prescribed: Prescribed) {
         Prescribed::Approach(_) => 0.0,
     };
     pressure.fill(value);
-}
-
-/// Gives pressures the sum that is prescribed. What cannot have it, from a solution that failed, becomes uniform.
-pub(super) fn scale(pressure: &mut [f64], prescribed: Prescribed) {
-    if let Prescribed::Sum(target) = prescribed {
-        let factor = target / sum(pressure);
-        if factor > 0.0 && factor.is_finite() {
-            for value in pressure {
-                *value *= factor;
-            }
-        } else {
-            pressure.fill(target / pressure.len() as f64);
-        }
-    }
 }
 
 /// Solves well enough for a start on the next finer grid, and where that takes too many iterations
@@ -176,11 +161,11 @@ mod tests {
             // The sum is infinite.
             ([1e308; 3], [2.0; 3]),
         ] {
-            scale(&mut pressure, prescribed);
+            prescribed.scale(&mut pressure);
             assert_eq!(pressure, expected);
         }
         let mut pressure = [1.0, 2.0, 0.0];
-        scale(&mut pressure, Prescribed::Approach(1.0));
+        Prescribed::Approach(1.0).scale(&mut pressure);
         assert_eq!(pressure, [1.0, 2.0, 0.0]);
     }
 }

@@ -30,6 +30,20 @@ impl Prescribed {
             approach @ Self::Approach(_) => approach,
         }
     }
+
+    /// Gives pressures the sum that is prescribed. What cannot have it, from a solution that failed, becomes uniform.
+    pub(super) fn scale(self, pressure: &mut [f64]) {
+        if let Self::Sum(target) = self {
+            let factor = target / sum(pressure);
+            if factor > 0.0 && factor.is_finite() {
+                for value in pressure {
+                    *value *= factor;
+                }
+            } else {
+                pressure.fill(target / pressure.len() as f64);
+            }
+        }
+    }
 }
 
 /// The contact problem on one grid.

@@ -3,7 +3,7 @@
 use super::active_set::ActiveSet;
 use super::continuation::Continuation;
 use super::hardness::{Round, Yielded};
-use super::hierarchy::{Hierarchy, scale};
+use super::hierarchy::Hierarchy;
 use super::iterate::Criteria;
 use super::level::{Level, Prescribed};
 use super::plateau::Plateau;
@@ -295,7 +295,7 @@ impl<'a> Stepper<'a> {
                 finest.iterate.approach = approach;
                 continue;
             }
-            scale(&mut finest.iterate.pressure, rest);
+            rest.scale(&mut finest.iterate.pressure);
             iterations += self.solve(rest, false)?;
         }
     }

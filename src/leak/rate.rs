@@ -8,7 +8,8 @@ use super::mean_field::bruggeman;
 use super::network::{BEHIND, Beyond, LEFT, Network, Place, RIGHT};
 use crate::patches;
 use crate::surface::Axis;
-use crate::{Boundary, Error, Grid};
+use crate::updater::LinearUpdater;
+use crate::{Boundary, Error, Grid, LoadingSolver, LoadingState};
 
 /// Nodes on each side of the critical constriction that count as its surroundings.
 const AROUND: usize = 4;
@@ -66,6 +67,44 @@ pub struct CriticalConstriction {
     /// The share of the power Q Δp that is lost in the square of 9 × 9 cells about it. If all of the fluid passes here, it is the share of the
     /// pressure drop that falls there.
     pub dissipation: f64,
+}
+
+impl Seal {
+    /// The leak through a gap \[m\], where nothing flows through nodes in contact. The sides are open to each other on a periodic
+    /// boundary, and closed on a free one.
+    ///
+    /// A gap that is not positive is closed as well, and so is one below 10⁻¹² of the greatest. It takes some 1 s and 220 MB on
+    /// 512 × 512 nodes, 7 s and 1 GB on 1024 × 1024; above that memory is proportional to the grid, as far as iterations converge.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GridMismatch`] for a field of another shape; [`Error::FieldNotFinite`]; [`Error::OutOfRange`] for nodes out of contact that
+    /// overlap by more than 10⁻⁴ of the greatest gap, for cells more than 10⁶ times as long as wide, and for leak rates
+    /// that over- or underflow; [`Error::NotPositive`] for such a conductivity; [`Error::NoConvergence`].
+    pub fn leak(
+        &self,
+        gap: &DMatrix<f64>,
+        contact_map: &DMatrix<bool>,
+        on: (&Grid, Boundary),
+    ) -> Result<Leak, Error> {
+        Leak::new(self, gap, contact_map, on)
+    }
+
+    /// The leak at any state of a path up to the present one.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingSolver::gap_at`] and of [`Self::leak`].
+    pub fn leak_at<U: LinearUpdater>(
+        &self,
+        path: &mut LoadingSolver<U>,
+        state: &LoadingState,
+    ) -> Result<Leak, Error> {
+        let gap = path.gap_at(state)?;
+        let contact_map = path.contact_map_at(state)?;
+        let on = (&path.grid(), path.problem().boundary());
+        self.leak(&gap, &contact_map, on)
+    }
 }
 
 impl Leak {

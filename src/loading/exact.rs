@@ -36,6 +36,8 @@ pub(super) struct Exact {
     ranking: Ranking,
     /// All windows so far.
     log: FactorLog,
+    /// Whether the present solution is one of the factor before the last nodes yielded.
+    is_behind: bool,
 }
 
 /// What is known when a window begins.
@@ -55,6 +57,7 @@ impl Exact {
             window: Window::default(),
             ranking: Ranking::new(),
             log: FactorLog::default(),
+            is_behind: false,
         }
     }
 
@@ -66,12 +69,15 @@ impl Exact {
         updater: &mut U,
         most_nodes: usize,
     ) -> Result<Option<Error>, Error> {
+        if run.waiting().is_none() {
+            return Ok(None);
+        }
         let (touches, approach) = (most_nodes - run.contact_nodes(), run.scalars.approach());
         let size = run.affordable(updater, self.next_size(run, touches))?;
         run.renew_field(updater, approach)?;
         let Survey { first, beyond, rates } = self.survey(run)?;
-        if self.ranking.is_empty() && run.plastic.is_some() {
-            return Ok(None);
+        if self.ranking.is_empty() {
+            return Err(self.growth_stopped(run));
         }
         let start = Instant::now();
         let size = size.min(self.ranking.len());
@@ -88,13 +94,9 @@ impl Exact {
         if played == 0 {
             return Err(failure.unwrap_or_else(|| self.growth_stopped(run)));
         }
-        let joined: Vec<usize> = self.window.events().iter().map(|event| event.position).collect();
         self.follow(run, updater)?;
         if self.window.events().len() < played {
             failure = None;
-        }
-        if run.plastic.is_none() {
-            self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
         }
         let start = Instant::now();
         let queued = self.enqueue(run, before, rates);
@@ -111,10 +113,17 @@ impl Exact {
         &self.log
     }
 
-    /// Goes on behind these windows. The nodes that the last one left are watched in the same order.
-    pub(super) fn follow_on(&mut self, log: FactorLog) {
+    /// The present solution, if the factor would find another one, but for rounding.
+    pub(super) fn solution(&self, run: &LoadingRun) -> Option<Solution> {
+        self.is_behind.then(|| run.field.solution().clone())
+    }
+
+    /// Goes on behind these windows, from a solution of the factor before, if there is one. The nodes that the last one left are watched
+    /// in the same order.
+    pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
         self.window = Window::ended_with(log.untouched());
         self.log = log;
+        self.is_behind = is_behind;
     }
 
     /// How many nodes to watch.
@@ -296,6 +305,8 @@ impl Exact {
         }
         let begun = run.mark();
         run.join(updater, &self.window)?;
+        let joined = self.window.events().iter().map(|event| event.position);
+        let joined: Vec<usize> = joined.collect();
         let may_fail = self.growth == ContactGrowth::Monotone || run.plastic.is_some();
         while may_fail && self.window.events().len() > 1 {
             // The next window needs the same solution and the same displacements, and finds them.
@@ -314,6 +325,8 @@ impl Exact {
             run.roll_back(&begun, |problem, contact| updater.truncate(problem, contact))?;
             return Err(error);
         }
+        self.log.push(self.window.nodes(), joined.into_iter(), self.window.events().len());
+        self.is_behind = false;
         Ok(())
     }
 
@@ -429,6 +442,9 @@ impl Exact {
         });
         followed.map_err(|error| run.memory.in_all(error))?;
         run.releases.remember(known);
+        let places = left.iter().map(|left| left.position);
+        self.log.push_yielded(trial.yielded.len(), places, &joined);
+        self.is_behind = true;
         trial.adopt(run, plastic);
         Ok(())
     }

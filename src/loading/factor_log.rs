@@ -18,6 +18,9 @@ pub(crate) struct FactorLog {
     pub(crate) windows: Vec<[usize; 3]>,
     /// For each node that left how many windows came before, and its place in the order of contact.
     pub(crate) left: Vec<[usize; 2]>,
+    /// For each window in which nodes yielded how many windows came before, and how many they were: those of them that had touched
+    /// before left at once, and others of the window joined.
+    pub(crate) yielded: Vec<[usize; 2]>,
 }
 
 /// One window of a log.
@@ -52,6 +55,27 @@ impl FactorLog {
     /// Notes a node that left from a place in the order of contact.
     pub(super) fn push_left(&mut self, position: usize) {
         self.left.push([self.windows.len(), position]);
+    }
+
+    /// Notes that `count` nodes have yielded, those at some places of the contact among them, and that others joined.
+    pub(super) fn push_yielded(
+        &mut self,
+        count: usize,
+        left: impl Iterator<Item = usize>,
+        joined: &[usize],
+    ) {
+        // So that what left before is no part of it.
+        self.windows.push([0; 3]);
+        self.yielded.push([self.windows.len(), count]);
+        left.for_each(|position| self.push_left(position));
+        for block in joined.chunks(JOINED) {
+            self.push(block, 0..block.len(), block.len());
+        }
+    }
+
+    /// Whether nodes yielded behind so many windows.
+    fn yields_behind(&self, windows: usize) -> bool {
+        self.yielded.binary_search_by_key(&windows, |[behind, _]| *behind).is_ok()
     }
 
     /// The places from which nodes left behind so many windows.
@@ -110,20 +134,37 @@ impl FactorLog {
         let mut grown = ContactSequence::new(problem.grid());
         for (behind, LoggedWindow { watched, joined, stayed }) in (1..).zip(self.windows()) {
             let count = grown.len();
-            if let Some(&node) = watched.iter().find(|&&node| grown.contains(node)) {
-                let (ix, iy) = problem.grid().coordinates(node);
-                return Err(Error::AlreadyInContact { ix, iy });
-            }
-            let known = joined.iter().filter(|&&place| place < watched.len()).count();
+            // Nodes in contact were watched where they might yield.
+            let out = watched.iter().take_while(|&&node| !grown.contains(node)).count();
+            let (outside, inside) = watched.split_at(out);
+            let known = joined.iter().filter(|&&place| place < out).count();
             length("watched nodes that joined a factor", known, joined.len())?;
             let mut schur = Schur::default();
-            updater.watch(problem, &grown, watched, &mut schur)?;
-            let factor = WindowFactor::of(schur, joined)?;
-            joined.iter().try_for_each(|&place| grown.push(watched[place]))?;
-            updater.join(problem, &grown, &factor)?;
+            if !inside.is_empty() {
+                let positions = places(grown.order(), inside);
+                length("watched nodes in contact", positions.len(), inside.len())?;
+                updater.watch_both(problem, &grown, outside, &positions, &mut schur)?;
+            } else if !outside.is_empty() {
+                updater.watch(problem, &grown, outside, &mut schur)?;
+            }
+            if !joined.is_empty() {
+                let factor = WindowFactor::of(schur, joined)?;
+                joined.iter().try_for_each(|&place| grown.push(outside[place]))?;
+                updater.join(problem, &grown, &factor)?;
+            }
             if stayed < joined.len() {
                 grown.truncate(count + stayed);
                 updater.truncate(problem, &grown)?;
+            }
+            let left = self.left_behind(behind).map(|position| {
+                let node = grown.order().get(position).copied().unwrap_or(usize::MAX);
+                Left { node, position }
+            });
+            let left: Vec<Left> = left.collect();
+            if self.yields_behind(behind) {
+                left.iter().try_for_each(|left| grown.remove(left.node).map(drop))?;
+                updater.release(problem, &grown, &left)?;
+                continue;
             }
             for position in self.left_behind(behind) {
                 let node = grown.order().get(position).copied().unwrap_or(usize::MAX);
@@ -136,6 +177,13 @@ impl FactorLog {
         length("nodes that joined a factor in the order of contact", same, contact.len())?;
         Ok(true)
     }
+}
+
+/// The places of some nodes in an order, as far as they are ascending ones of it.
+fn places(order: &[usize], nodes: &[usize]) -> Vec<usize> {
+    let mut nodes = nodes.iter().peekable();
+    let found = order.iter().enumerate().filter(|(_, node)| nodes.next_if_eq(node).is_some());
+    found.map(|(place, _)| place).collect()
 }
 
 #[cfg(test)]

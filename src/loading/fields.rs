@@ -228,6 +228,21 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         Ok(self.gap_over(displacement, (state.step, state.contact.approach)))
     }
 
+    /// Pressure and gap at any state up to the present one, of one solution: see [`Self::pressure_at`].
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Self::pressure_at`].
+    pub fn pressure_and_gap_at(
+        &mut self,
+        state: &LoadingState,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
+        let pressure = self.solved_at(state)?;
+        let displacement = self.displacement_under(&pressure, state.contact.load)?;
+        let gap = self.gap_over(displacement, (state.step, state.contact.approach));
+        Ok((pressure.map(without_tension), gap))
+    }
+
     /// The gap, which is none where the overlap is the plastic depth.
     fn gap_over(&self, displacement: DMatrix<f64>, (step, approach): (usize, f64)) -> DMatrix<f64> {
         let mut gap = self.total_gap_over(displacement, approach);

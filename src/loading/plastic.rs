@@ -148,6 +148,21 @@ impl Plastic {
         }
     }
 
+    /// The same when nodes have yielded in groups, one after the other, and the problem of the elastic ones: with the roundings of a path that
+    /// went through these groups.
+    pub(super) fn after<'a>(
+        &self,
+        groups: impl Iterator<Item = &'a [usize]>,
+    ) -> Result<(Self, Problem), Error> {
+        let (mut plastic, mut problem) = self.beside(&[])?;
+        for yielded in groups {
+            let displaced = plastic.displaced(yielded)?;
+            problem = plastic.elastic(&problem, &displaced);
+            plastic = plastic.grown(yielded, &displaced);
+        }
+        Ok((plastic, problem))
+    }
+
     /// The same when these nodes and no others have yielded, and the problem of the elastic ones.
     pub(super) fn beside(&self, yielded: &[usize]) -> Result<(Self, Problem), Error> {
         let displaced = self.displaced(yielded)?;

@@ -47,7 +47,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         if phase.restore(run, &order, end)? {
             self.handed_over_at = Some(order.len());
         }
-        self.procedure.follow_on(FactorLog::of_blocks(&order));
+        self.procedure.follow_on(FactorLog::of_blocks(&order), false);
         if let Procedure::Stepwise(stepwise, _) = &mut self.procedure {
             stepwise.inherit(last.approach_error);
         }

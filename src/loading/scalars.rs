@@ -175,6 +175,11 @@ impl PathScalars {
         Self { plastic: Some(PlasticScalars::default()), ..self }
     }
 
+    /// So many nodes have yielded; what follows from a solution is yet to be renewed.
+    pub(super) fn place_yielded(&mut self, nodes: usize) {
+        self.plastic.get_or_insert_default().nodes = nodes;
+    }
+
     /// Stiffness, and sums of closing rates and of plastic rates.
     pub(super) fn rates(&self) -> Rates {
         Rates {

@@ -74,12 +74,13 @@ pub(super) enum Procedure {
 }
 
 impl Procedure {
-    /// Goes on with a factor that grew so; with none if there is nothing in the log.
-    pub(super) fn follow_on(&mut self, log: FactorLog) {
+    /// Goes on with a factor that grew so; with none if there is nothing in the log. The solution at hand may be one of the factor before
+    /// nodes yielded.
+    pub(super) fn follow_on(&mut self, log: FactorLog, is_behind: bool) {
         match self {
-            Self::Windows(windowed, _) => windowed.follow_on(log),
+            Self::Windows(exact, _) => exact.follow_on(log, is_behind),
             Self::Stepwise(stepwise, _) => stepwise.follow_on(log),
-            Self::Yielding(_) => {}
+            Self::Yielding(windows) => windows.0.follow_on(log, is_behind),
         }
     }
 }
@@ -160,7 +161,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         if !is_enough && phase.hand_over(run, end)? {
             self.handed_over_at = Some(run.contact.len());
             // How the factor grew is of no use any more.
-            self.procedure.follow_on(FactorLog::default());
+            self.procedure.follow_on(FactorLog::default(), false);
         }
         let stop = phase.stop(run, end);
         match (&mut self.procedure, phase) {

@@ -1,6 +1,9 @@
 //! Where a path is in its windows: what a record keeps besides states, so that a path that goes on is the one that was not
 //! interrupted.
 
+use std::mem;
+use std::sync::Arc;
+
 use super::factor_log::FactorLog;
 use super::limits::LoadingEnd;
 use super::phase::Phase;
@@ -11,7 +14,7 @@ use super::state::{ContactEvent, LoadingState};
 use super::tuning::RECOGNISED;
 use crate::Error;
 use crate::contact::ContactState;
-use crate::updater::{Left, LinearUpdater};
+use crate::updater::{Left, LinearUpdater, Solution};
 
 /// The end of the last window that a path has computed, which lies ahead of the state that it has yielded.
 ///
@@ -21,7 +24,7 @@ use crate::updater::{Left, LinearUpdater};
 /// |---|---|---|
 /// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
 /// | `handed_over_at` | | when the factor was given up, which memory may have decided |
-/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
+/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events; behind yields the solution of the factor before | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
 ///
 /// Nothing else is remembered from window to window. Timings are not kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,33 +47,38 @@ pub(crate) struct FactorEnd {
     pub(crate) log: FactorLog,
     /// Approach, load, energy, mean gap, stiffness and closing rate in the gauge of the kernel.
     pub(crate) scalars: [f64; 6],
+    /// The solution at the end of a window in which nodes yielded: that of the factor before.
+    pub(crate) solution: Option<Solution>,
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
     /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, behind an error,
-    /// and for paths on which nodes yield, of which it is not known.
+    /// and without a factor on paths on which nodes yield, of which it is not known.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
         use LoadingEnd::{Failed, FullContact, Memory};
         let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
         if self.state.is_none() || self.failure.is_some() || is_over {
             return None;
         }
-        let (log, refined, is_single) = match &self.procedure {
-            Procedure::Windows(windowed, refined) => (windowed.log(), refined, false),
-            Procedure::Stepwise(stepwise, refined) => {
-                (stepwise.log(), refined, stepwise.has_begun())
-            }
-            Procedure::Yielding(_) => return None,
+        let (log, solution) = match &self.procedure {
+            Procedure::Windows(exact, _) => (exact.log(), exact.solution(&self.run)),
+            Procedure::Yielding(windows) => (windows.0.log(), windows.0.solution(&self.run)),
+            Procedure::Stepwise(stepwise, _) => (stepwise.log(), None),
         };
-        let next = match &self.phase {
-            Phase::Factor { .. } => {
+        let next = match (&self.phase, &self.procedure) {
+            (Phase::Factor { .. }, _) => {
                 let (log, scalars) = (log.clone(), self.run.scalars.numbers());
-                NextWindow::Factor(Box::new(FactorEnd { log, scalars }))
+                NextWindow::Factor(Box::new(FactorEnd { log, scalars, solution }))
             }
-            Phase::Iterations(iterations) => {
-                let end = refined.end(&self.run, &**iterations, is_single)?;
+            (Phase::Iterations(iterations), Procedure::Windows(_, refined)) => {
+                let end = refined.end(&self.run, &**iterations, false)?;
                 NextWindow::Iterations(Box::new(end))
             }
+            (Phase::Iterations(iterations), Procedure::Stepwise(stepwise, refined)) => {
+                let end = refined.end(&self.run, &**iterations, stepwise.has_begun())?;
+                NextWindow::Iterations(Box::new(end))
+            }
+            (Phase::Iterations(_), Procedure::Yielding(_)) => return None,
         };
         let ahead = self.run.queue.iter().copied().collect();
         Some(WindowEnd { ahead, handed_over_at: self.handed_over_at, next })
@@ -83,13 +91,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             return Ok(false);
         };
         let (run, phase) = (&mut self.run, &mut self.phase);
-        let (refined, may_leave) = match &mut self.procedure {
-            Procedure::Windows(_, refined) => (refined, false),
-            Procedure::Stepwise(_, refined) => (refined, true),
-            Procedure::Yielding(_) => return Ok(false),
-        };
+        let may_leave = matches!(self.procedure, Procedure::Stepwise(..));
         let mut contact = run.contact.clone();
         let mut left = Vec::new();
+        let mut yielded: Vec<usize> = run.releases.yielded_at(last.step).collect();
         for (state, step) in end.ahead.iter().zip(last.step + 1..) {
             let (ix, iy) = state.node;
             let node = run.problem.grid().node(ix, iy).unwrap_or(usize::MAX);
@@ -97,13 +102,19 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 ContactEvent::Touch => contact.push(node).map(|()| true)?,
                 ContactEvent::Release if may_leave => {
                     let position = contact.remove(node)?;
-                    left.push((step, Left { node, position }));
+                    left.push((step, state.event, Left { node, position }));
+                    true
+                }
+                ContactEvent::Yield if run.plastic.is_some() => {
+                    let position = contact.remove(node)?;
+                    left.push((step, state.event, Left { node, position }));
+                    yielded.push(node);
                     true
                 }
                 _ => false,
             };
-            let is_next =
-                is_event && state.step == step && state.contact.contact_nodes == contact.len();
+            let nodes = contact.len() + yielded.len();
+            let is_next = is_event && state.step == step && state.contact.contact_nodes == nodes;
             if !is_next || !state.contact.is_finite() || state.approach_error.is_nan() {
                 let number = state.step as f64;
                 return Err(not_on_path(
@@ -114,34 +125,59 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 ));
             }
         }
-        let restored = match &end.next {
-            NextWindow::Factor(end) => phase.restore_factor(run, &contact, &end.log)?,
-            NextWindow::Iterations(end) if refined.can_follow(end) => {
-                phase.restore_iterations(run, &contact, end)?
+        let restored = match (&end.next, &mut self.procedure) {
+            (NextWindow::Factor(end), _) => {
+                let plastic = run.plastic.as_ref();
+                let after = plastic.map(|plastic| plastic.after(groups(&end.log, &yielded)));
+                let before = after.transpose()?.map(|(plastic, problem)| {
+                    let plastic = run.plastic.replace(Arc::new(plastic));
+                    (plastic, mem::replace(&mut run.problem, problem))
+                });
+                let restored = phase.restore_factor(run, &contact, &end.log)?;
+                if let Some(before) = before.filter(|_| !restored) {
+                    (run.plastic, run.problem) = before;
+                }
+                restored
             }
-            NextWindow::Iterations(_) => false,
+            (
+                NextWindow::Iterations(end),
+                Procedure::Windows(_, refined) | Procedure::Stepwise(_, refined),
+            ) if refined.can_follow(end) => phase.restore_iterations(run, &contact, end)?,
+            (NextWindow::Iterations(_), _) => false,
         };
         if !restored {
             return Ok(false);
         }
         run.contact = contact;
-        left.into_iter().for_each(|(step, left)| run.releases.push(step, left));
+        for (step, event, left) in left {
+            match event {
+                ContactEvent::Yield => run.releases.push_yielded(step, left),
+                _ => run.releases.push(step, left),
+            }
+        }
         let front = end.ahead.last().unwrap_or(&last);
         // The contact of the last one is solved anew if a node has left since.
         let known = if run.releases.is_prefix(last.step) { &last } else { front };
         let snapshot = Snapshot::of(run, phase, known)?;
         snapshot.recognise(run, phase, known)?;
-        let scalars = match (&end.next, &mut *phase) {
-            (NextWindow::Iterations(end), Phase::Iterations(iterations)) => {
+        let scalars = match (&end.next, &mut *phase, &mut self.procedure) {
+            (
+                NextWindow::Iterations(end),
+                Phase::Iterations(iterations),
+                Procedure::Windows(_, refined) | Procedure::Stepwise(_, refined),
+            ) => {
                 refined.follow_on(run, &mut **iterations, end)?;
                 end.scalars
             }
-            (NextWindow::Factor(end), _) => Some(end.scalars),
+            (NextWindow::Factor(end), ..) => Some(end.scalars),
             _ => None,
         };
         if let Some(scalars) = scalars {
             run.scalars.take_over(scalars);
-            let own = run.scalars.state(run.contact.len());
+            if let Some(plastic) = &run.plastic {
+                run.scalars.place_yielded(plastic.count());
+            }
+            let own = run.scalars.state(run.contact_nodes());
             let stiffness = |state: &ContactState| {
                 state.contact_stiffness.or(state.interfacial_stiffness).unwrap_or_default()
             };
@@ -158,11 +194,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 return Err(not_on_path(front, "load", own.load, "the load of the state"));
             }
         }
-        let log = match &end.next {
-            NextWindow::Factor(end) => end.log.clone(),
-            NextWindow::Iterations(_) => FactorLog::default(),
+        let (log, solution) = match &end.next {
+            NextWindow::Factor(end) => (end.log.clone(), end.solution.clone()),
+            NextWindow::Iterations(_) => (FactorLog::default(), None),
         };
-        self.procedure.follow_on(log);
+        self.procedure.follow_on(log, solution.is_some());
+        if let Some(solution) = solution {
+            let approach = run.scalars.approach();
+            run.field.place(&run.contact, solution, approach)?;
+            run.check_closed(&run.problem, &run.contact, approach)?;
+        }
         if let Procedure::Stepwise(stepwise, _) = &mut self.procedure
             && scalars.is_some()
         {
@@ -173,6 +214,18 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         self.handed_over_at = end.handed_over_at;
         Ok(true)
     }
+}
+
+/// The nodes that yielded in each window of a log, and before it what the log knows nothing of.
+fn groups<'a>(log: &'a FactorLog, yielded: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
+    let known: usize = log.yielded.iter().map(|[_, count]| *count).sum();
+    let (before, mut rest) = yielded.split_at(yielded.len().saturating_sub(known));
+    let groups = log.yielded.iter().map(move |[_, count]| {
+        let (own, others) = rest.split_at((*count).min(rest.len()));
+        rest = others;
+        own
+    });
+    [before].into_iter().filter(|before| !before.is_empty()).chain(groups)
 }
 
 #[cfg(test)]

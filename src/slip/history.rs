@@ -84,6 +84,11 @@ const SAME_RATIO: f64 = 1e-12;
 /// Pieces shorter than this part of the load are what rounding leaves of a loop that closes.
 const SAME_LOAD: f64 = 1e-14;
 
+/// What is left of a step in both loads after a part of it.
+fn left(part: f64, load: f64, force: f64) -> (f64, f64) {
+    ((1.0 - part) * load, (1.0 - part) * force)
+}
+
 /// Where a front stops that would get so far: at the lower end of the piece below it, if it reaches that or nearly does.
 fn stop(reach: f64, below: &Piece, load: f64) -> f64 {
     let lowest = below.start.load;
@@ -115,14 +120,19 @@ impl<'a> SlipHistory<'a> {
             self.turn(force)?;
             return Ok(self.state());
         }
-        let slope = self.snapped((force - self.force()) / (load - before));
+        let mut change = force - self.force();
+        let exact = change / (load - before);
+        let slope = self.snapped(exact);
+        if slope != exact {
+            change = slope * (load - before);
+        }
         if self.stays_at_limit(slope) {
             return Err(SlipError::StaysAtLimit { from: before, to: load }.into());
         }
         if load > before {
-            self.press(target, slope)?;
+            self.press(target, slope, change)?;
         } else {
-            self.relieve(target, slope)?;
+            self.relieve(target, slope, change)?;
         }
         Ok(self.state())
     }
@@ -234,45 +244,53 @@ impl<'a> SlipHistory<'a> {
     }
 
     /// P grows.
-    fn press(&mut self, target: BedState, slope: f64) -> Result<(), Error> {
+    fn press(&mut self, target: BedState, slope: f64, mut change: f64) -> Result<(), Error> {
         let limit = self.friction.coefficient();
         if slope.abs() <= limit {
             self.push(self.load, slope);
             self.load = target;
             return Ok(());
         }
-        // Slip from the edge, and the front recedes.
+        // Slip from the edge, and the front recedes. What is left of the step is counted in both loads: where P hardly changes, its digits
+        // say nothing of how far the step is.
         let top = slope.signum() * limit;
-        while self.load.load < target.load {
+        let mut rise = target.load - self.load.load;
+        while rise > 0.0 {
             let Some((front, below)) = self.front(top) else {
                 self.replace(top, self.bed.first(), target);
                 return Ok(());
             };
-            let rate = (slope - top) / (top - below.ratio);
+            let way = ((change - top * rise) / (top - below.ratio)).max(0.0);
             let lowest = below.start.load;
-            let load = (self.load.load + (front.load - lowest) / rate).min(target.load);
-            let end = if load < target.load {
+            let part = (front.load - lowest) / way;
+            let end = if part < 1.0 {
+                let load = (self.load.load + part * rise).min(target.load);
                 Part { load, front: lowest }
             } else {
-                let reach = front.load - rate * (load - self.load.load);
-                Part { load, front: stop(reach, &below, load) }
+                let load = target.load;
+                Part { load, front: stop(front.load - way, &below, load) }
             };
             self.slide(top, &below, &front, end)?;
+            (rise, change) = if part < 1.0 { left(part, rise, change) } else { (0.0, 0.0) };
         }
         Ok(())
     }
 
     /// P falls.
-    fn relieve(&mut self, target: BedState, slope: f64) -> Result<(), Error> {
+    fn relieve(&mut self, target: BedState, slope: f64, mut change: f64) -> Result<(), Error> {
         let limit = self.friction.coefficient();
-        while self.load.load > target.load {
+        let mut fall = self.load.load - target.load;
+        while fall > 0.0 {
             let Some(last) = self.pieces.last().copied() else {
                 self.load = target;
                 return Ok(());
             };
             if last.ratio == slope {
                 // Unloading retraces: nothing slips.
-                self.cut(self.bed.at_load(target.load.max(last.start.load))?);
+                let stop = target.load.max(last.start.load);
+                let part = if stop > target.load { (self.load.load - stop) / fall } else { 1.0 };
+                self.cut(self.bed.at_load(stop)?);
+                (fall, change) = left(part, fall, change);
                 continue;
             }
             // The present slip zone goes on, unless T falls faster than its limit.
@@ -282,22 +300,24 @@ impl<'a> SlipHistory<'a> {
                 self.cut(target);
                 return Ok(());
             };
-            // How fast the front falls with the load.
-            let rate = (top - slope) / (top - below.ratio);
+            // How far the front would fall in the rest of the step, and after which parts of it the piece below is eaten, or the load
+            // has reached the front, so that the slip zone is gone.
+            let way = ((top * fall + change) / (top - below.ratio)).max(0.0);
             let (now, lowest) = (self.load.load, below.start.load);
-            let eaten = now - (front.load - lowest) / rate;
-            // Where the load has reached the front, the slip zone is gone.
-            let gone = if rate < 1.0 { now - (now - front.load) / (1.0 - rate) } else { 0.0 };
-            let gone = gone.min(front.load);
-            let load = target.load.max(eaten).max(gone).min(now);
-            let reach = if load == eaten {
+            let eaten = (front.load - lowest) / way;
+            let gone = if way < fall { (now - front.load) / (fall - way) } else { f64::INFINITY };
+            let part = 1.0_f64.min(eaten).min(gone).max(0.0);
+            let load = if part < 1.0 { now - part * fall } else { target.load };
+            let load = load.clamp(target.load, now);
+            let reach = if part == eaten {
                 lowest
-            } else if load == gone {
+            } else if part == gone {
                 load
             } else {
-                stop(front.load - rate * (now - load), &below, load)
+                stop(front.load - part * way, &below, load)
             };
             self.slide(top, &below, &front, Part { load, front: reach.min(load) })?;
+            (fall, change) = left(part, fall, change);
         }
         Ok(())
     }

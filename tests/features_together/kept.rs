@@ -2,7 +2,7 @@
 
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
-use asperity::{ContactGrowth, Error, LoadingState};
+use asperity::{Error, LoadingState};
 
 use super::dense::near;
 use super::rows::{Pressed, through_a_file};
@@ -43,16 +43,13 @@ pub(super) fn resume(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     for states in [3, states / 2, 4 * states / 5] {
         let (path, before) = row.follow(states);
         let (_, found) = row.resume(&LoadingRecord::new(&path, before)?);
-        let is_exact =
-            row.hardness.is_none() && row.kernel.contact_growth() != ContactGrowth::Unknown;
-        let tolerance = if row.iterative { row.tolerance() } else { 1e-10 };
-        compare(row.name, &found, &pressed.history, (!is_exact).then_some(tolerance));
+        let is_exact = row.hardness.is_none() || !row.iterative;
+        compare(row.name, &found, &pressed.history, (!is_exact).then_some(row.tolerance()));
     }
     Ok(())
 }
 
-/// Bit for bit, and from the states alone, with a hardness and where nodes may leave, to 10⁻¹⁰ with a factor and within the error of events
-/// without one.
+/// Bit for bit, and from the states alone, with a hardness and without a factor, within the error of events.
 fn compare(name: &str, found: &History, expected: &History, tolerance: Option<f64>) {
     let (found, expected) = (found.events(), expected.events());
     assert_eq!(found.len(), expected.len(), "{name}");

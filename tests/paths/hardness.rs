@@ -579,7 +579,7 @@ fn what_makes_no_sense_is_refused() {
     let most = HARDNESS * grid().nominal_area();
     for (load, is_refused) in [(most, true), (2.0 * most, true), (0.999 * most, false)] {
         let built = builder().hardness(HARDNESS).max_load(load).build();
-        assert_eq!(matches!(built, Err(Error::OutOfRange { .. })), is_refused, "{load}");
+        assert_eq!(matches!(built, Err(Error::BeyondHardness { .. })), is_refused, "{load}");
     }
     let unknown = KernelTable::new(&**kernel).unwrap();
     let coefficient = |di, dj| unknown.coefficient(di, dj).unwrap_or_default();

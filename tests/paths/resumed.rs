@@ -7,9 +7,10 @@ use asperity::record::LoadingRecord;
 use asperity::surface::HeightMap;
 use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
-    Boussinesq, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver, LoadingState,
-    PeriodicBoussinesq, Spectral,
+    Boussinesq, ContactEvent, ContactRule, ContactTarget, Grid, InfluenceKernel, LoadingSolver,
+    LoadingState, PeriodicBoussinesq, Spectral,
 };
+use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -94,6 +95,35 @@ pub(crate) fn steps(seed: u64, count: usize, range: std::ops::Range<usize>) -> V
 fn on_threads(threads: usize, work: impl FnOnce() + Send) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(work);
+}
+
+/// With a factor and a hardness, of all nodes and of each, to the yield of the last node: also where windows begin with a solution of the
+/// factor before nodes yielded, on plateaus, and in windows that watch one node.
+#[test]
+fn with_a_factor_and_a_hardness() {
+    let heights = rough(&grid(), 5);
+    for (k, (name, kernel)) in half_spaces(grid()).into_iter().enumerate() {
+        let builder =
+            || LoadingSolver::builder(&heights, &*kernel).updater(RecursiveCholesky::new());
+        let full = whole(builder()).last().unwrap().contact;
+        let hardness = 0.4 * full.load / (full.contact_area / full.contact_area_fraction);
+        let (nx, ny) = grid().shape();
+        let map = DMatrix::from_fn(nx, ny, |ix, iy| match (ix + 3 * iy) % 7 {
+            0 => f64::INFINITY,
+            k => hardness * (0.5 + 0.2 * k as f64),
+        });
+        for builder in [
+            builder().hardness(hardness),
+            builder().hardness(hardness).window_size(1),
+            builder().hardness_map(&map),
+        ] {
+            let all = whole(builder.clone());
+            let yields = all.iter().filter(|state| state.event == ContactEvent::Yield).count();
+            println!("{name}: {} states, {yields} yields", all.len());
+            assert!(2 * yields > all.len() - yields);
+            interrupt(&builder, &all, &steps(70 + k as u64, 6, 1..all.len()), &identical);
+        }
+    }
 }
 
 /// Without a factor from the start, to full contact, with both rules and with windows of any size.

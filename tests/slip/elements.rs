@@ -142,11 +142,55 @@ proptest! {
             }).collect();
             let mut all = vec![(0.5 * bed.last_load(), 0.0)];
             all.extend(corners);
-            let (force, lost) = compare(&bed, friction, &all, 1);
+            let (force, _) = compare(&bed, friction, &all, 1);
             // Sums over 134 elements, through up to 1000 steps.
             prop_assert!(force < 1e-11, "{force:e}");
-            // Where the load changes the elements' own account is of second order in the step.
-            prop_assert!(lost < 0.05, "{lost:e}");
+            // Where the load changes the elements' own account is of second order in the step: a tenth of what is lost in steps from event to
+            // event, at worst, and a sixteenth of that in quarters of them.
+            let (_, lost) = compare(&bed, friction, &all, 4);
+            prop_assert!(lost < 0.02, "{lost:e}");
+        }
+    }
+}
+
+/// Where a load changes by its last digit, or a little more, and the tangential load by most of what friction bears: the joint is that of a
+/// constant load, to what P changes by.
+#[test]
+fn loads_that_hardly_change_are_constant() {
+    for kernel in kernels() {
+        let (_, history) = rough_path(kernel.as_ref(), 741, 0.6);
+        let bed = Bed::new(&history).unwrap();
+        let friction = Friction::new(0.35, 1.25).unwrap();
+        let load = 0.44 * bed.last_load();
+        let limit = 0.35 * load;
+        // First loading, and a joint with slip of both signs.
+        for before in [&[0.0][..], &[0.6, -0.3, 0.1]] {
+            let follow = |near: f64| {
+                let mut joint = SlipHistory::new(&bed, friction);
+                joint.to(0.94 * bed.last_load(), 0.0).unwrap();
+                for force in before {
+                    joint.to(near, force * limit).unwrap();
+                }
+                joint.to(load, 0.94 * limit).unwrap()
+            };
+            let constant = follow(load);
+            for (near, error) in [
+                (load.next_down(), 1e-13),
+                (load.next_up(), 1e-13),
+                (load * (1.0 + 1e-12), 1e-11),
+                (load * (1.0 - 1e-12), 1e-11),
+                (load * (1.0 + 1e-9), 1e-8),
+                (load * (1.0 - 1e-9), 1e-8),
+            ] {
+                let found = follow(near);
+                // The force is what was asked for, whatever the step.
+                assert!(relative(found.tangential_load, 0.94 * limit) < 1e-13, "{near}: {found:?}");
+                assert!(
+                    relative(found.displacement, constant.displacement) < error,
+                    "{near}: {found:?}"
+                );
+                assert_eq!(found.stick_nodes, constant.stick_nodes);
+            }
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The command that goes on with an interrupted path.
 
-use std::ffi::OsStr;
 use std::path::Path;
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, CommandFactory};
 
 use super::Options;
+use crate::shell::quoted;
 
 /// The words of a command that continues the path of a record with all options that were given, but for those that the record knows.
 pub(super) fn command(record: &Path, given: &ArgMatches) -> String {
@@ -37,14 +37,4 @@ pub(super) fn command(record: &Path, given: &ArgMatches) -> String {
         }
     }
     words
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
-    let is_plain = |c: char| c.is_alphanumeric() || "_-./,:+=@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.into_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
 }

@@ -15,16 +15,21 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use super::Solver;
-use super::options::{AREA_FRACTION, Options, Updater, no_room};
+use super::joint::Pair;
+use super::options::Options;
 use super::parts::Parts;
 use super::progress::Progress;
 use super::source::{Generated, fingerprint, generate, read, source_of};
+use super::updater::{Updater, no_room};
 use crate::elasticity::Bodies;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::Failure;
+
+/// Contact area over nominal area at which a path ends if nobody says where.
+const AREA_FRACTION: f64 = 0.1;
 
 /// A surface on its grid and what is asked of it.
 pub(super) struct Job {
@@ -198,6 +203,11 @@ impl Job {
         })
     }
 
+    /// What surface it is of.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     pub(super) fn grid(&self) -> Grid {
         *self.surface.grid()
     }
@@ -241,9 +251,14 @@ impl Job {
         self.bodies.layered.as_ref().map_or(Layering::HalfSpace, LayeredBody::layering)
     }
 
-    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
-    pub(super) fn elastic(&self) -> &[[f64; 2]] {
-        &self.bodies.elastic
+    /// What a joint needs to know of the bodies.
+    pub(super) fn pair(&self) -> Pair<'_> {
+        Pair {
+            e_star: self.bodies.e_star,
+            elastic: &self.bodies.elastic,
+            layering: self.layering(),
+            has_hardness: self.has_hardness(),
+        }
     }
 
     pub(super) fn bodies(&self) -> &Bodies {

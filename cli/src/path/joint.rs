@@ -5,13 +5,21 @@ use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
 use asperity::joint::{Conduction, FeProgram, InterfaceTable};
-use asperity::kernel::Theory;
+use asperity::kernel::{Layering, Theory};
 use asperity::loading::History;
 use asperity_cli::outcome::{self, Failure};
 use clap::{Args, ValueEnum};
 
-use super::job::Job;
 use crate::values::positive;
+
+/// The bodies of a joint.
+pub(super) struct Pair<'a> {
+    pub(super) e_star: f64,
+    /// Young's modulus \[Pa\] and Poisson's ratio of each elastic body that is known.
+    pub(super) elastic: &'a [[f64; 2]],
+    pub(super) layering: Layering,
+    pub(super) has_hardness: bool,
+}
 
 /// Conduction and tables for finite elements.
 #[derive(Debug, Clone, Args)]
@@ -144,18 +152,18 @@ impl Joint {
     }
 
     /// What cannot be done, before the work.
-    pub(super) fn check(&self, job: &Job) -> Result<Vec<Named>, Failure> {
+    pub(super) fn check(&self, pair: &Pair<'_>) -> Result<Vec<Named>, Failure> {
         if self.friction.is_some() {
-            self.compliance_ratio(job.e_star(), job.elastic())?;
+            self.compliance_ratio(pair.e_star, pair.elastic)?;
         }
-        if self.unresolved_roughness.is_some() && job.has_hardness() {
+        if self.unresolved_roughness.is_some() && pair.has_hardness {
             return Err(Failure::request(
                 "--unresolved-roughness needs an elastic path: the approach of a contact that yields is not that of one shape. What is left of it \
                  has bounds: give --unload, and follow residual_surface.npy without a hardness to a load beyond the one of interest",
             ));
         }
-        let conductions = self.conductions(job.e_star())?;
-        let layering = job.layering();
+        let conductions = self.conductions(pair.e_star)?;
+        let layering = &pair.layering;
         let failed = |error| Failure::new("cannot compute what follows from the stiffness", error);
         if !conductions.is_empty() {
             layering.check(Theory::Conductance).map_err(failed)?;
@@ -169,11 +177,11 @@ impl Joint {
     /// Writes the files that were asked for.
     pub(super) fn write(
         &self,
-        job: &Job,
+        pair: &Pair<'_>,
         states: &[LoadingState],
         directory: &Path,
     ) -> Result<Vec<PathBuf>, Failure> {
-        let conductions = self.conductions(job.e_star())?;
+        let conductions = self.conductions(pair.e_star)?;
         let history: History = states.iter().copied().collect();
         let mut files = Vec::new();
         if let Some(roughness) = self.unresolved_roughness {
@@ -190,7 +198,7 @@ impl Joint {
                 builder = builder.conduction(conduction);
             }
             if let Some(friction) = self.friction {
-                let ratio = self.compliance_ratio(job.e_star(), job.elastic())?;
+                let ratio = self.compliance_ratio(pair.e_star, pair.elastic)?;
                 builder = builder.friction(friction, ratio);
             }
             let table = builder.build().map_err(|error| Failure::writing(&name, error))?;

@@ -1,7 +1,7 @@
 //! `asperity path`: from a rough surface to its whole loading path.
 //!
 //! Writes `settings.json`, `path.csv` with one line for each state, `loading_curve.svg` and
-//! `contact_map.png`, the record of the path if it is asked for, and prints a short table. If the path ends with
+//! `contact_map.png`, the record of the path and its page if they are asked for, and prints a short table. If the path ends with
 //! an error, everything up to there is written all the same, and the exit code is 1. After Ctrl-C the record and
 //! `path.csv` are written, and the exit code is 130.
 
@@ -21,9 +21,10 @@ mod progress;
 mod source;
 mod table;
 mod unloading;
+mod updater;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use asperity::patches::ContactEdge;
 use asperity::updater::LinearUpdater;
@@ -35,6 +36,7 @@ use clap::ArgMatches;
 use nalgebra::DMatrix;
 
 use crate::ensemble::Member;
+use crate::report;
 use crate::settings::Settings;
 use expected::Expected;
 use follow::{Followed, PathFile};
@@ -109,7 +111,7 @@ fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
     for warning in job.warnings() {
         eprintln!("warning: {}", crate::advice::told(&warning));
     }
-    let conductions = options.joint.check(&job)?;
+    let conductions = options.joint.check(&job.pair())?;
     Ok((job, conductions))
 }
 
@@ -131,6 +133,7 @@ fn follow_one(
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let (job, conductions) = prepare(options)?;
+    let begun = SystemTime::now();
     // What cannot be written is said before the work.
     std::fs::create_dir_all(&options.out)
         .map_err(|error| Failure::new(format!("cannot create {}", options.out.display()), error))?;
@@ -200,7 +203,10 @@ fn follow_one(
     if options.unload {
         outcome.all_written(unloading::write(&job, &mut solver, &options.out));
     }
-    outcome.all_written(options.joint.write(&job, &states, &options.out));
+    if options.report {
+        outcome.written(report_of(&job, &mut solver, &states, (&options.out, begun)));
+    }
+    outcome.all_written(options.joint.write(&job.pair(), &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
     outcome.written(map::draw(&job, &mut solver, &options.out));
     Ok(outcome)
@@ -214,6 +220,18 @@ fn interrupted(given: &ArgMatches, record: &Path, states: usize) -> Failure {
         format!("interrupted: {states} in {}; continue with `{again}`", record.display()),
         interrupt::EXIT_CODE,
     )
+}
+
+/// Writes the page of the path, with the tables that have been written since it began.
+fn report_of(
+    job: &Job,
+    solver: &mut Solver,
+    states: &[LoadingState],
+    tables: (&Path, SystemTime),
+) -> Result<PathBuf, Failure> {
+    let failed = |error| Failure::new("cannot make the report", error);
+    let record = job.record_of(solver, states).map_err(failed)?;
+    report::of_path(job.name(), &record, solver, tables)
 }
 
 /// Writes the record of the path so far, and fields of its last state.

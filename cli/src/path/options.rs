@@ -3,19 +3,18 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use asperity::updater::{ConjugateGradient, Handover, LinearUpdater, RecursiveCholesky};
-use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid, LoadingSolver};
+use asperity::{Boundary, ContactRule, ContactTarget, Error, Grid};
 use asperity_cli::half_space::{Periodic, boundary};
 use asperity_cli::outcome::Failure;
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
 use super::joint::Joint;
+use super::updater::{Updater, no_room};
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::hardness::{GreatestPressure, Hardness};
 use crate::reading::Reading;
-use crate::room;
 use crate::values::{bytes, fraction, positive};
 
 /// An option whose help says what a generated surface has without it.
@@ -88,6 +87,10 @@ pub(crate) struct Options {
     /// Save the path in this file; numpy.load opens it, and --resume continues the path from it
     #[arg(long, value_name = "FILE.npz", group = "kept")]
     pub(super) record: Option<PathBuf>,
+
+    /// Write report.html: the contact at every state under a slider, charts and tables, in one page for a browser
+    #[arg(long)]
+    pub(super) report: bool,
 
     /// Write pressure and gap of the last state
     #[arg(long, value_enum, value_name = "FORMAT")]
@@ -208,23 +211,6 @@ impl Options {
     }
 }
 
-/// What there is no room for, with the largest grid for which there is; with a factor alone that depends on where the path ends.
-pub(super) fn no_room(
-    what: String,
-    error: Error,
-    (updater, boundary, budget): (Updater, Boundary, Option<usize>),
-) -> Failure {
-    match updater {
-        Updater::Cholesky => Failure::new(what, error),
-        Updater::Auto | Updater::Iterative => room::failure(what, error, |grid| {
-            LoadingSolver::check_room_to_full_contact(grid, boundary, budget)
-        }),
-    }
-}
-
-/// Contact area over nominal area at which a path ends if nobody says where.
-pub(super) const AREA_FRACTION: f64 = 0.1;
-
 /// [`ContactRule`] on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum Rule {
@@ -239,27 +225,6 @@ impl From<Rule> for ContactRule {
         match rule {
             Rule::FirstContact => Self::FirstContact,
             Rule::ApproximateOrder => Self::ApproximateOrder,
-        }
-    }
-}
-
-/// The updater on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum Updater {
-    /// A Cholesky factor while it is faster, then iterations
-    Auto,
-    /// A Cholesky factor: states are exact to rounding; memory grows with the square of the number of nodes in contact
-    Cholesky,
-    /// Iterations from the first node on; memory is proportional to the grid
-    Iterative,
-}
-
-impl Updater {
-    pub(super) fn make(self) -> Box<dyn LinearUpdater> {
-        match self {
-            Self::Auto => Box::new(Handover::new()),
-            Self::Cholesky => Box::new(RecursiveCholesky::new()),
-            Self::Iterative => Box::new(ConjugateGradient::new()),
         }
     }
 }

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use nalgebra::DMatrix;
 use serde_json::{Map, Value, json};
 
-use super::options::Updater;
+use super::updater::Updater;
 use crate::elasticity::Bodies;
 use crate::settings::Settings;
 

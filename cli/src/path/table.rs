@@ -12,6 +12,7 @@ use asperity_cli::half_space::is_of_mean_planes;
 use asperity_cli::number::{counted, quantity, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::{say, speech};
+pub(super) use asperity_report::reason;
 
 /// Loads of the rows, as fractions of the last.
 const LOADS: [f64; 10] = [1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -190,20 +191,4 @@ fn rows(states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
         rows.extend(history.at_load(load).filter(|state| rows.last() != Some(state)));
     }
     rows
-}
-
-/// Why a path has ended, in words.
-pub(super) fn reason(end: LoadingEnd) -> &'static str {
-    match end {
-        LoadingEnd::FullContact => "full contact",
-        LoadingEnd::FullyPlastic => "all cells have yielded",
-        LoadingEnd::Load => "the requested load",
-        LoadingEnd::Approach => "the requested approach",
-        LoadingEnd::MeanGap => "the requested mean gap",
-        LoadingEnd::AreaFraction => "the requested contact area",
-        LoadingEnd::Nodes => "the requested number of nodes",
-        LoadingEnd::Memory => "the memory budget",
-        LoadingEnd::NoMoreEvents => "no further node touches",
-        _ => "an error",
-    }
 }

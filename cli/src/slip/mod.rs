@@ -18,7 +18,7 @@ use asperity_cli::outcome::{Failure, Outcome};
 use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
-use crate::elasticity::Material;
+use crate::material::Material;
 use crate::values::positive;
 use history::Sheared;
 use joint::Joint;

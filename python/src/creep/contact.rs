@@ -9,6 +9,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::columns::columns;
 use super::prony::Prony;
 use super::steps::CreepSteps;
 use crate::arrays::{Found, Kind, column, rows};
@@ -170,22 +171,6 @@ impl Creep {
 
 /// Times that there is memory for, and patience.
 const MOST_TIMES: usize = 10_000_000;
-
-/// States over time as columns.
-pub(super) fn columns<'py>(py: Python<'py>, states: &[CreepState]) -> Fallible<Bound<'py, PyDict>> {
-    let of = |get: fn(&CreepState) -> f64| column(py, states.iter().map(get).collect::<Vec<f64>>());
-    let columns = PyDict::new(py);
-    columns.set_item("time", of(|state| state.time))?;
-    columns.set_item("load", of(|state| state.load))?;
-    columns.set_item("effective_load", of(|state| state.effective_load))?;
-    columns.set_item("approach", of(|state| state.approach))?;
-    let nodes = states.iter().map(|state| state.contact_nodes as i64).collect();
-    columns.set_item("contact_nodes", column::<i64>(py, nodes))?;
-    columns.set_item("contact_area", of(|state| state.contact_area))?;
-    columns.set_item("area_fraction", of(|state| state.contact_area_fraction))?;
-    columns.set_item("mean_gap", of(|state| state.mean_gap))?;
-    Ok(columns)
-}
 
 #[pymethods]
 impl Creep {

@@ -1,5 +1,6 @@
 //! Viscoelastic bodies.
 
+mod columns;
 mod contact;
 mod cycle;
 mod prony;

@@ -10,7 +10,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::contact::columns;
+use super::columns::columns;
 use crate::arrays::rows;
 use crate::compute::cancellable;
 use crate::errors::Fallible;

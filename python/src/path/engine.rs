@@ -28,6 +28,10 @@ pub(crate) trait Engine: Send + Sync {
     fn pressure_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
     fn displacement_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
     fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
+    fn pressure_and_gap_at(
+        &mut self,
+        state: &LoadingState,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error>;
     fn contact_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error>;
     fn yielded_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error>;
     fn plastic_depth_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error>;
@@ -117,6 +121,13 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
 
     fn gap_at(&mut self, state: &LoadingState) -> Result<DMatrix<f64>, Error> {
         Self::gap_at(self, state)
+    }
+
+    fn pressure_and_gap_at(
+        &mut self,
+        state: &LoadingState,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
+        Self::pressure_and_gap_at(self, state)
     }
 
     fn contact_map_at(&self, state: &LoadingState) -> Result<DMatrix<bool>, Error> {

@@ -2,7 +2,7 @@
 
 mod engine;
 mod inner;
-mod setup;
+pub(crate) mod setup;
 mod unloading;
 
 use std::path::PathBuf;
@@ -13,6 +13,7 @@ use asperity::contact::Certificate;
 use asperity::loading::LoadingEnd;
 use asperity::nalgebra::DMatrix;
 use asperity::patches::constriction;
+use asperity::record::LoadingRecord;
 use asperity::{Error, Grid, LoadingState, Warning};
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -21,7 +22,6 @@ use pyo3::types::PyDict;
 
 pub(crate) use self::engine::{Engine, Sheared};
 use self::inner::Inner;
-pub(crate) use self::setup::{Hardness, warn_of};
 use crate::arrays::{column, rows, shape};
 use crate::choice;
 use crate::compute::detached;
@@ -31,7 +31,7 @@ use crate::results::result;
 use crate::state::State;
 use crate::surface::Surface;
 use crate::targets::{Targets, named};
-use crate::warnings::{of_contact, warn, warn_all};
+use crate::warnings::{of_contact, warn_all};
 
 /// How long a path runs between two looks at signals and calls of `progress`.
 const STRETCH: Duration = Duration::from_millis(50);
@@ -116,6 +116,18 @@ impl LoadingPath {
         let mut inner = self.lock(py);
         let engine = inner.engine_mut();
         Ok(detached(py, || compute(engine))??)
+    }
+
+    /// What the engine computes with the record of the states so far, without the lock of the interpreter.
+    pub(crate) fn with_record<T: Send>(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&mut dyn Engine, &LoadingRecord) -> Result<T, Error> + Send,
+    ) -> Fallible<T> {
+        let mut inner = self.lock(py);
+        let record = inner.record()?;
+        let engine = inner.engine_mut();
+        Ok(detached(py, || compute(engine, &record))??)
     }
 
     /// What the engine computes at a state, without the lock of the interpreter.
@@ -666,6 +678,5 @@ impl<'py> Progress<'py> {
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<LoadingPath>()?;
-    setup::register(module)?;
     unloading::register(module)
 }

@@ -2,17 +2,16 @@
 
 use std::path::PathBuf;
 
-use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
-use asperity::{ContactRule, Grid, LoadingSolver, Warning};
+use asperity::{ContactRule, LoadingSolver};
 use pyo3::prelude::*;
 
+use super::LoadingPath;
 use super::inner::{Inner, Resume, Updater};
-use super::{LoadingPath, warn, warn_all};
-use crate::arrays::{Found, Kind};
 use crate::choice::choose;
 use crate::compute::detached;
 use crate::errors::{Failure, Fallible};
+use crate::given::{Hardness, warn_of};
 use crate::half_space::HalfSpace;
 use crate::surface::Surface;
 use crate::targets::Targets;
@@ -21,35 +20,6 @@ const RULES: [(&str, ContactRule); 2] = [
     ("first-contact", ContactRule::FirstContact),
     ("approximate-order", ContactRule::ApproximateOrder),
 ];
-
-/// A hardness: one number, or a map.
-pub(crate) enum Hardness {
-    Same(f64),
-    Map(DMatrix<f64>),
-}
-
-impl Hardness {
-    pub(crate) fn of(value: &Bound<'_, PyAny>, grid: &Grid) -> Fallible<Self> {
-        match value.extract::<f64>() {
-            Ok(hardness) => Ok(Self::Same(hardness)),
-            Err(_) => Ok(Self::Map(Found::of(value, "hardness", Kind::Real)?.on(grid)?)),
-        }
-    }
-}
-
-/// Warns of what looks wrong with a surface on a half-space.
-pub(crate) fn warn_of(py: Python<'_>, surface: &Surface, body: &HalfSpace) -> Fallible<()> {
-    let topography = surface.topography()?;
-    warn_all(py, detached(py, || Warning::of_surface(topography))?)?;
-    warn_all(py, body.warnings(surface.grid()))?;
-    if surface.periodic() == Some(true) && body.surroundings() == asperity::Boundary::Free {
-        warn(
-            py,
-            "the surface is said to be periodic, but the half-space is free: its edge is real there",
-        )?;
-    }
-    Ok(())
-}
 
 /// Set up the loading path of a rough surface on an elastic half-space.
 ///
@@ -194,7 +164,7 @@ fn open(
     Ok(LoadingPath::new(inner, e_star))
 }
 
-pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(load_path, module)?)?;
     module.add_function(wrap_pyfunction!(open, module)?)
 }

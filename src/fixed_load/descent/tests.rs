@@ -164,7 +164,7 @@ fn the_way_down_ends_where_the_energy_is_less() -> Result<(), Error> {
         for (k, &part) in parts.iter().enumerate() {
             let mut expected = on_the_way(part);
             if part > edge {
-                scale(&mut expected, prescribed);
+                prescribed.scale(&mut expected);
             }
             let mut everywhere = begin.clone();
             contact.scatter(&expected, &mut everywhere);

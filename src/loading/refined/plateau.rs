@@ -1,15 +1,17 @@
 //! Nodes that touch together, too many to be watched: a flat punch, a plateau.
 
+use super::candidates::Candidates;
+use super::states::pinned;
 use super::{Refined, keeps_growing};
 use crate::Error;
 use crate::loading::run::LoadingRun;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
+use crate::loading::tuning::{MOST_TIES, PART};
 use crate::updater::Iterations;
 
 impl Refined {
     /// Lets all nodes that touch at a time join, and those that are known to, up to `most`, in the order of their indices.
-    /// Between them stiffness and closing rate change in equal steps.
     pub(super) fn enter(
         &mut self,
         run: &mut LoadingRun,
@@ -30,37 +32,66 @@ impl Refined {
         let error = error.fold(tolerances.tie, f64::max);
         group.sort_unstable();
         group.truncate(most);
-        for &node in &group {
-            run.contact.push(node)?;
-        }
         self.last_span = self.last_span.max(time);
-        // However little is left open by so many nodes: rates must be exact.
-        self.rate_span = f64::INFINITY;
-        if let Err(error) = run.advance_field(iterations, approach, self.rate_span) {
-            let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
-            return Err(error);
-        }
-        let mut start = mark.scalars;
-        start.advance(approach);
-        run.scalars.place_at(approach);
-        if let Err(error) = keeps_growing(run, run.contact.len(), tolerances) {
-            let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
-            return Err(error);
-        }
-        self.survey(run)?;
-        let [stiffness, closing] = start.missing(&run.scalars);
-        let error = start.reported_error(error, start.load_of(stiffness, error));
+        let entered = self.join_all(run, iterations, (&group, approach));
+        let entered = entered.and_then(|increments| {
+            keeps_growing(run, run.contact.len(), tolerances).map(|()| increments)
+        });
+        let increments = match entered {
+            Ok(increments) => increments,
+            Err(error) => {
+                let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
+                return Err(error);
+            }
+        };
+        let mut walked = mark.scalars;
+        walked.advance(approach);
+        let [stiffness, _] = walked.missing(&run.scalars);
+        let error = walked.reported_error(error, walked.load_of(stiffness, error));
         self.joined.clone_from(&group);
-        let share = (group.len() as f64).recip();
-        for (k, node) in group.into_iter().enumerate() {
+        for (k, (node, increment)) in group.into_iter().zip(increments).enumerate() {
             let contact_nodes = mark.count + k + 1;
-            start.touch([share * stiffness, share * closing], contact_nodes);
-            start.clamp_mean_gap();
+            walked.touch(increment, contact_nodes);
+            walked.clamp_mean_gap();
             let step = run.releases.steps(contact_nodes);
             let event = (step, ContactEvent::Touch, node);
-            run.enqueue_at(&start, event, contact_nodes, error)?;
+            run.enqueue_at(&walked, event, contact_nodes, error)?;
         }
         Ok(())
+    }
+
+    /// Lets nodes join at an approach, in windows with a solution behind each. Returns what each adds to stiffness and closing rate: as
+    /// the pivots say, scaled so that they end where the solution is.
+    fn join_all(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        (group, approach): (&[usize], f64),
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let mut increments = Vec::with_capacity(group.len());
+        let mut left = group;
+        while !left.is_empty() {
+            // Where few gaps are open each counts for much of what is left of the closing rate.
+            let open = run.problem.grid().nodes() - run.contact.len();
+            let size = (open / PART).clamp(self.size, MOST_TIES * self.size);
+            let (nodes, others) = left.split_at(size.min(left.len()));
+            left = others;
+            let times = nodes.iter().map(|&node| (0.0, node)).collect();
+            let candidates = Candidates { nodes: times, horizon: 0.0, group: None };
+            let mut window = self.propose(run, iterations, candidates, 0.0)?;
+            for (position, &node) in nodes.iter().enumerate() {
+                window.happen(position, 0.0).map_err(|bad| run.not_positive_definite(bad))?;
+                run.contact.push(node)?;
+            }
+            // The approach goes on from the last of them only. However little is left open by so many nodes: rates must be exact there.
+            self.rate_span = if left.is_empty() { f64::INFINITY } else { 0.0 };
+            let before = run.scalars;
+            run.advance_field(iterations, approach, self.rate_span)?;
+            run.scalars.place_at(approach);
+            self.survey(run)?;
+            increments.extend(pinned(&window, before.missing(&run.scalars)));
+        }
+        Ok(increments)
     }
 }
 
@@ -84,6 +115,7 @@ mod tests {
         refined.last_span = 0.5;
         let tolerances = test_chain::tolerances(1.0, 0.0, tie);
         let iterations = &mut Altered::inexact(0.0);
+        run.advance_field(iterations, 1.0, 0.0)?;
         refined.enter(&mut run, iterations, &tolerances, (1.0, known), most)?;
         Ok((run, refined))
     }

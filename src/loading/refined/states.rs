@@ -27,15 +27,12 @@ pub(super) fn enqueue(
     for event in &settled.events {
         window.happen(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
     }
-    let steps: Vec<[f64; 2]> = window.increments().collect();
-    let missing = start.missing(&run.scalars);
-    let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
-    let scaled = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { missing[k] / total(k) });
+    let steps = pinned(&window, start.missing(&run.scalars));
     let mut walked = *start;
     let mut along = Vec::with_capacity(settled.events.len());
     for (k, (event, step)) in settled.events.iter().zip(&steps).enumerate() {
         walked.advance(start.approach() + event.time);
-        walked.touch([0, 1].map(|k| scaled[k] * step[k]), mark.count + k + 1);
+        walked.touch(*step, mark.count + k + 1);
         along.push(walked);
     }
     walked.advance(run.scalars.approach());
@@ -53,12 +50,20 @@ pub(super) fn enqueue(
         let step = run.releases.steps(contact_nodes);
         let node = window.node(event.position);
         let error = settled.errors[k];
-        load_error += scalars.load_of(scaled[0] * steps[k][0], error);
+        load_error += scalars.load_of(steps[k][0], error);
         let error = OF_TIME * error + of_gaps[k];
         let error = scalars.reported_error(error, OF_LOAD * load_error);
         run.enqueue_at(&scalars, (step, ContactEvent::Touch, node), contact_nodes, error)?;
     }
     Ok(())
+}
+
+/// What each event of a window adds to stiffness and closing rate, scaled so that all of them add what they should.
+pub(super) fn pinned(window: &Window, all: [f64; 2]) -> Vec<[f64; 2]> {
+    let steps: Vec<[f64; 2]> = window.increments().collect();
+    let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
+    let scale = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { all[k] / total(k) });
+    steps.into_iter().map(|step| [scale[0] * step[0], scale[1] * step[1]]).collect()
 }
 
 #[cfg(test)]

@@ -5,23 +5,33 @@ use std::io::{Seek, Write};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::{COLUMNS, Column, code, event, whole};
-use crate::contact::ContactState;
+use super::{COLUMNS, Column, PLASTIC_COLUMNS, code, event, whole};
+use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, RefinedEnd, WindowEnd};
-use crate::updater::{Kept, KeptField};
+use crate::updater::{Kept, KeptField, Solution};
 use crate::{Error, Grid};
 
 /// Whole numbers of a state before the columns.
 const WHOLE: usize = 5;
+/// Numbers of a state on what has yielded.
+const PLASTIC: usize = 1 + PLASTIC_COLUMNS.len();
 
 /// What is not an array.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Numbers {
     handed_over_at: Option<usize>,
+    /// Whether nodes may have yielded.
+    #[serde(default)]
+    has_hardness: bool,
     /// With a factor: the nodes that have left it.
     #[serde(default)]
     left: usize,
+    /// With a factor: the windows in which nodes yielded, and the nodes of the solution that is kept behind them.
+    #[serde(default)]
+    yielded: usize,
+    #[serde(default)]
+    solution: usize,
     /// Without a factor.
     iterations: Option<IterationNumbers>,
 }
@@ -40,9 +50,13 @@ struct IterationNumbers {
 
 impl Numbers {
     pub(super) fn of(end: &WindowEnd) -> Self {
-        let left = match &end.next {
-            NextWindow::Factor(end) => end.log.left.len(),
-            NextWindow::Iterations(_) => 0,
+        let [left, yielded, solution] = match &end.next {
+            NextWindow::Factor(end) => {
+                let solution = end.solution.as_ref();
+                let nodes = solution.map_or(0, |solution| solution.pressure.len());
+                [end.log.left.len(), end.log.yielded.len(), nodes]
+            }
+            NextWindow::Iterations(_) => [0; 3],
         };
         let iterations = match &end.next {
             NextWindow::Factor(_) => None,
@@ -55,7 +69,9 @@ impl Numbers {
                 marks: end.kept.marks,
             }),
         };
-        Self { handed_over_at: end.handed_over_at, left, iterations }
+        let handed_over_at = end.handed_over_at;
+        let has_hardness = end.ahead.iter().any(|state| state.contact.plastic.is_some());
+        Self { handed_over_at, has_hardness, left, yielded, solution, iterations }
     }
 }
 
@@ -73,17 +89,32 @@ pub(super) fn write(
         whole.into_iter().map(|number| number as f64).chain(columns).collect::<Vec<_>>()
     });
     archive.numbers("window_ahead", end.ahead.len() * (WHOLE + COLUMNS.len()), ahead)?;
+    if Numbers::of(end).has_hardness {
+        let plastic = end.ahead.iter().flat_map(|state| {
+            let plastic = state.contact.plastic.unwrap_or_default();
+            let columns = PLASTIC_COLUMNS.iter().map(move |column| (column.get)(&plastic));
+            std::iter::once(plastic.yielded_nodes as f64).chain(columns)
+        });
+        archive.numbers("window_plastic", end.ahead.len() * PLASTIC, plastic)?;
+    }
     let mut nodes = |name: &str, nodes: &[usize]| {
         archive.integers(name, nodes.len(), nodes.iter().map(|&node| node as i64))
     };
     let end = match &end.next {
         NextWindow::Factor(end) => {
-            let FactorEnd { log, scalars } = &**end;
+            let FactorEnd { log, scalars, solution } = &**end;
             nodes("window_watched", &log.watched)?;
             nodes("window_places", &log.joined)?;
             nodes("window_sizes", log.windows.as_flattened())?;
             if !log.left.is_empty() {
                 nodes("window_left", log.left.as_flattened())?;
+            }
+            if !log.yielded.is_empty() {
+                nodes("window_yielded", log.yielded.as_flattened())?;
+            }
+            if let Some(Solution { pressure, rate }) = solution {
+                archive.numbers("window_pressure", pressure.len(), pressure.iter().copied())?;
+                archive.numbers("window_rate", rate.len(), rate.iter().copied())?;
             }
             return archive.numbers("window_scalars", scalars.len(), scalars.iter().copied());
         }
@@ -149,7 +180,22 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         }
         state
     });
-    let ahead = states.collect();
+    let mut ahead: Vec<LoadingState> = states.collect();
+    if numbers.has_hardness && !ahead.is_empty() {
+        let plastic = archive.vector("window_plastic", ahead.len().checked_mul(PLASTIC))?;
+        for (state, numbers) in ahead.iter_mut().zip(plastic.chunks_exact(PLASTIC)) {
+            let yielded_nodes = whole(numbers[0]);
+            let mut plastic = PlasticState {
+                yielded_nodes,
+                yielded_area_fraction: yielded_nodes as f64 / grid.nodes() as f64,
+                ..PlasticState::default()
+            };
+            for (column, value) in PLASTIC_COLUMNS.iter().zip(&numbers[1..]) {
+                (column.set)(&mut plastic, *value);
+            }
+            state.contact.plastic = Some(plastic);
+        }
+    }
     let vector = |name: &str| archive.vector(name, None);
     let nodes = |name: &str| -> Result<Vec<usize>, Error> {
         Ok(vector(name)?.into_iter().map(whole).collect())
@@ -161,20 +207,29 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         Ok(scalars)
     };
     let Some(iterations) = numbers.iterations else {
-        let left = match numbers.left {
-            0 => Vec::new(),
-            count => {
-                let left = archive.vector("window_left", count.checked_mul(2))?;
-                left.into_iter().map(whole).collect()
+        let pairs = |name: &str, count: usize| -> Result<Vec<[usize; 2]>, Error> {
+            if count == 0 {
+                return Ok(Vec::new());
             }
+            let pairs = archive.vector(name, count.checked_mul(2))?;
+            let pairs: Vec<usize> = pairs.into_iter().map(whole).collect();
+            Ok(pairs.as_chunks().0.to_vec())
+        };
+        let solution = match numbers.solution {
+            0 => None,
+            count => Some(Solution {
+                pressure: archive.vector("window_pressure", Some(count))?,
+                rate: archive.vector("window_rate", Some(count))?,
+            }),
         };
         let log = FactorLog {
             watched: nodes("window_watched")?,
             joined: nodes("window_places")?,
             windows: nodes("window_sizes")?.as_chunks().0.to_vec(),
-            left: left.as_chunks().0.to_vec(),
+            left: pairs("window_left", numbers.left)?,
+            yielded: pairs("window_yielded", numbers.yielded)?,
         };
-        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars: scalars()? }));
+        let next = NextWindow::Factor(Box::new(FactorEnd { log, scalars: scalars()?, solution }));
         return Ok(WindowEnd { ahead, handed_over_at, next });
     };
     let values = archive.vector("window_numbers", Some(9))?;

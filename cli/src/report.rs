@@ -1,0 +1,71 @@
+//! `asperity report`: a path as one page, for a browser.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use asperity::record::LoadingRecord;
+use asperity_cli::note;
+use asperity_cli::outcome::{self, Failure, Outcome};
+use asperity_report::{Fields, Report, Source};
+use clap::Args;
+
+use crate::shell;
+
+/// A recorded path as one page for a browser: the contact at every state under a slider, charts, tables, and what made it
+///
+/// The page is one file that needs no network and no other file: open it by a double click, or mail it. It has the order of all events, all
+/// scalars, pressure and gap at 24 states, the surface, the bodies, warnings and residuals. Tables that `asperity slip`, creep, leak and
+/// `path --unload` have written beside the record, and not before it, are shown too. Two records are compared.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Files that `asperity path --record` has written: one, or two to compare
+    #[arg(value_name = "FILE.npz", required = true, num_args = 1..=2)]
+    records: Vec<PathBuf>,
+
+    /// Folder of other tables of the first record: slip.csv, creep.csv, leak.csv, unloading.csv; may be given several times
+    #[arg(long, value_name = "DIR")]
+    with: Vec<PathBuf>,
+
+    /// The page
+    #[arg(long, value_name = "FILE.html", default_value = "report.html")]
+    out: PathBuf,
+}
+
+/// Reads the records and writes the page.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    outcome::check_place(&options.out)?;
+    if let Some(folder) = options.with.iter().find(|folder| !folder.is_dir()) {
+        return Err(Failure::request(format!("there is no folder {}", folder.display())));
+    }
+    let mut report = Report::new().made_by(shell::command());
+    let mut folders = options.with.iter();
+    for file in &options.records {
+        let name = file.display().to_string();
+        let failed = |error| Failure::new(format!("cannot show {name}"), error);
+        let record = LoadingRecord::read_npz(file).map_err(failed)?;
+        let source = Source::new(&name, &record).beside(file);
+        // All of them belong to the first record.
+        let source = folders.by_ref().fold(source, |source, folder| source.with_folder(folder));
+        report.add(source).map_err(failed)?;
+    }
+    for note in report.notes() {
+        note!("note: {note}");
+    }
+    let mut outcome = Outcome::default();
+    outcome.written(outcome::write(&options.out, report.html()));
+    outcome.finish()
+}
+
+/// The page of a path that has just been followed, with the tables that were written since it began.
+pub(crate) fn of_path(
+    name: &str,
+    record: &LoadingRecord,
+    fields: &mut dyn Fields,
+    (folder, since): (&Path, SystemTime),
+) -> Result<PathBuf, Failure> {
+    let file = folder.join("report.html");
+    let mut report = Report::new().made_by(shell::command());
+    let source = Source::new(name, record).computed_by(fields).with_folder_since(folder, since);
+    report.add(source).map_err(|error| Failure::new("cannot make the report", error))?;
+    outcome::write(&file, report.html())
+}

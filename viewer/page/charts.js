@@ -1,0 +1,185 @@
+// Charts over the path, drawn by uPlot, with a cursor that follows the slider.
+
+/** What charts can run over: column, words, unit. */
+const ALONG = [["load", "load", "N"], ["mean_pressure", "mean pressure", "Pa"], ["area", "contact area", "1"], ["approach", "approach", "m"]];
+
+/** The charts: title, unit, and series as column and words. */
+const CHARTS = [
+  ["Contact area", "1", [["area", "counted"], ["corrected", "corrected"], ["yielded", "yielded"]]],
+  ["Mean gap", "m", [["mean_gap", ""]]],
+  ["Stiffness", "N/m", [["contact_stiffness", "contact, K"], ["interfacial_stiffness", "interfacial, Kᵢ"]]],
+  ["Patches", "", [["patches", ""]]],
+  ["Greatest patch, of the contact", "part", [["largest_share", ""]]],
+  ["Greatest pressure", "Pa", [["greatest_pressure", ""]]],
+  ["Plastic volume", "m³", [["plastic_volume", ""]]],
+];
+
+/** Points of a line: more than pixels. */
+const POINTS = 700;
+const DASHES = [[], [7, 4], [2, 3]];
+
+/** Places of events spread evenly over an axis. */
+function spread(values, isLog) {
+  const first = isLog ? values.findIndex((value) => value > 0) : 0;
+  if (first < 0) return [];
+  const last = values.length - 1, scale = (value) => (isLog ? Math.log(value) : value);
+  const [from, to] = [scale(values[first]), scale(values[last])];
+  const places = [first];
+  const step = (to - from) / POINTS;
+  for (let place = first + 1, next = from + step; place <= last; place++) {
+    if (scale(values[place]) >= next || place === last) {
+      places.push(place);
+      next = Math.max(next + step, scale(values[place]));
+    }
+  }
+  return places;
+}
+
+class Chart {
+  /** Lines are `{ label, colour, dash, x, y }` with whole columns; axes `{ words, unit, log, nominal }`. */
+  constructor(title, x, y, lines, onPlace) {
+    Object.assign(this, { title, x, y, lines });
+    this.legend = make("div", { class: "legend" });
+    this.holder = make("div", { class: "plot", role: "img", "aria-label": title });
+    this.print = make("div", { class: "print-chart", "aria-hidden": "true" });
+    const save = make("button", { type: "button", class: "save", onclick: () => saveText(`${title}.svg`, "image/svg+xml", svgOf(this)), "aria-label": `Save the chart ${title} as SVG` }, "SVG");
+    this.figure = make("figure", { class: "chart" }, make("figcaption", {}, make("span", {}, title), save), this.legend, this.holder, this.print);
+    this.cursor = make("div", { class: "cursor" });
+    this.values = lines.map((line) => {
+      const value = make("b");
+      const swatch = make("i");
+      swatch.style.borderTop = `2.5px ${["solid", "dashed", "dotted"][line.dash]} ${line.colour}`;
+      this.legend.append(make("span", {}, swatch, line.label ? line.label + " " : "", value));
+      return value;
+    });
+    this.onPlace = onPlace;
+  }
+
+  draw() {
+    this.plot?.destroy();
+    const { x, y, lines } = this;
+    const greatest = (values) => values.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, Math.abs(value)) : most), 0);
+    const all = lines.map((line) => {
+      const places = line.places ?? spread(line.x, x.log);
+      const number = (value, log, factor) => (Number.isFinite(value) && (!log || value > 0) ? value / factor : null);
+      return { places, line, number };
+    });
+    x.in = unitFor(x.unit, Math.max(...lines.map((line) => greatest(line.x))), x.nominal);
+    y.in = y.unit === "part" ? { name: "%", factor: 0.01 } : unitFor(y.unit, Math.max(...all.map(({ places, line }) => greatest(places.map((place) => line.y[place])))), y.nominal);
+    const tables = all.map(({ places, line, number }) => {
+      const kept = places.filter((place) => number(line.x[place], x.log, 1) !== null);
+      return [kept.map((place) => line.x[place] / x.in.factor), kept.map((place) => number(line.y[place], y.log, y.in.factor))];
+    });
+    this.data = uPlot.join(tables);
+    const axis = (words, log) => ({
+      label: words,
+      labelSize: 18,
+      labelFont: "12px system-ui, sans-serif",
+      font: "11px system-ui, sans-serif",
+      stroke: () => ink("--ink"),
+      grid: { stroke: () => ink(log ? "--faint" : "--grid"), width: 1 },
+      ticks: { stroke: () => ink("--grid"), width: 1, size: 4 },
+      gap: 3,
+      values: (plot, splits) => (log ? decades(splits) : splits.map(short)),
+    });
+    const label = (axis) => `${axis.words}${axis.in.name ? " [" + axis.in.name + "]" : ""}`;
+    const width = this.holder.clientWidth || 360;
+    this.plot = new uPlot(
+      {
+        width,
+        height: 210,
+        legend: { show: false },
+        cursor: { drag: { x: false, y: false }, points: { show: lines.length > 0 } },
+        scales: { x: { time: false, distr: x.log ? 3 : 1, range: (plot, least, most) => (least < most ? [least, most] : around(least, most, x.log)) }, y: { distr: y.log ? 3 : 1, range: (plot, least, most) => (y.log || !(least < most) ? around(least, most, y.log) : [Math.min(0, least), most + 0.04 * (most - Math.min(0, least))]) } },
+        axes: [{ ...axis(label(x), x.log), size: 30 }, { ...axis(label(y), y.log), size: 48 }],
+        series: [{}, ...lines.map((line) => ({ stroke: () => line.colour, width: 1.8, dash: DASHES[line.dash], spanGaps: true, points: { show: (line.places?.length ?? Infinity) < 50, size: 5, fill: line.colour } }))],
+        hooks: { setCursor: [(plot) => this.hover(plot)], draw: [() => this.follow()] },
+      },
+      this.data,
+      this.holder,
+    );
+    this.plot.over.append(this.cursor);
+    this.plot.over.addEventListener("click", () => {
+      const { left } = this.plot.cursor;
+      if (left >= 0 && this.onPlace) this.onPlace(this.plot.posToVal(left, "x") * x.in.factor);
+    });
+    this.follow();
+    this.describe();
+  }
+
+  /** The pointer's values in place of the slider's. */
+  hover(plot) {
+    const { left } = plot.cursor;
+    this.hovered = left >= 0 ? plot.posToVal(left, "x") * this.x.in.factor : null;
+    this.read();
+  }
+
+  /** The slider is at a value along x. */
+  setPlace(value) {
+    this.place = value;
+    this.follow();
+  }
+
+  follow() {
+    if (!this.plot) return;
+    this.cursor.hidden = this.place === undefined;
+    const value = this.place / this.x.in.factor;
+    const left = this.place === undefined || (this.x.log && !(value > 0)) ? -10 : this.plot.valToPos(value, "x");
+    this.cursor.style.transform = `translateX(${left.toFixed(1)}px)`;
+    this.read();
+  }
+
+  read() {
+    const place = this.hovered ?? this.place;
+    if (place === undefined || place === null) {
+      this.values.forEach((value) => (value.textContent = ""));
+      return;
+    }
+    const values = this.lines.map((line) => {
+      const at = line.at ? line.at(place) : null;
+      return at === null ? NaN : line.y[at];
+    });
+    const { unit } = this.y;
+    const words = values.map((value) => (unit === "part" ? `${digits(100 * value)} %` : unit === "" && Number.isInteger(value) ? String(value) : quantity(value, unit, this.y.nominal)));
+    words.forEach((text, i) => {
+      const shown = this.hovered === null || this.hovered === undefined || i < words.length - 1 ? text : `${text} at ${quantity(place, this.x.unit, this.x.nominal)}`;
+      if (this.values[i].textContent !== shown) this.values[i].textContent = shown;
+    });
+    this.said = `${this.title} over ${this.x.words}, at ${quantity(place, this.x.unit, this.x.nominal)}: ${this.lines.map((line, i) => `${line.label} ${words[i]}`).join(", ")}`;
+  }
+
+  describe() {
+    if (this.said) this.holder.setAttribute("aria-label", this.said);
+  }
+}
+
+/** Ends of an axis for values that are all the same, for logarithms in whole decades, or for none at all. */
+function around(least, most, log) {
+  if (!Number.isFinite(least) || !Number.isFinite(most)) return log ? [1, 10] : [0, 1];
+  if (log) return uPlot.rangeLog(least, most, 10, true);
+  return least === 0 ? [0, 1] : [Math.min(0, 1.5 * least), Math.max(0, 1.5 * most)];
+}
+
+/** Labels of whole powers of ten, and of few if there are many. */
+function decades(splits) {
+  const isPower = (value) => value > 0 && Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
+  const every = Math.ceil(splits.filter(isPower).length / 6);
+  return splits.map((value) => {
+    const power = Math.round(Math.log10(value));
+    return isPower(value) && power % every === 0 ? short(value) : "";
+  });
+}
+
+/** A number beside a tick. */
+function short(value) {
+  if (value === null || value === undefined) return "";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-3) {
+    const [mantissa, exponent] = value.toExponential(2).split("e");
+    const power = `10${[...exponent.replace("+", "")].map((letter) => SUPERSCRIPTS[letter]).join("")}`;
+    const trimmed = mantissa.replace(/\.?0+$/, "");
+    return trimmed === "1" ? power : `${trimmed}·${power}`;
+  }
+  return String(+value.toPrecision(6));
+}

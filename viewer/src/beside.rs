@@ -1,0 +1,171 @@
+//! Tables that other commands have written beside a record.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use serde_json::{Map, Value, json};
+
+/// A table that a page can show: its file, what it is, its column along x (the first one if that is empty), and those that are drawn.
+struct Kind {
+    file: &'static str,
+    title: &'static str,
+    short: &'static str,
+    along: &'static str,
+    charts: &'static [&'static str],
+}
+
+const KINDS: [Kind; 6] = [
+    Kind {
+        file: "unloading.csv",
+        title: "Unloading from the last state",
+        short: "Unloading",
+        along: "approach",
+        charts: &["load", "contact_area_fraction", "mean_gap"],
+    },
+    Kind {
+        file: "slip.csv",
+        title: "Slip under a tangential load",
+        short: "Slip",
+        along: "displacement",
+        charts: &["tangential_load", "slip_area", "tangential_stiffness"],
+    },
+    Kind {
+        file: "cycles.csv",
+        title: "Cycles",
+        short: "Cycles",
+        along: "",
+        charts: &["dissipation", "dissipated", "loss_factor"],
+    },
+    Kind {
+        file: "creep.csv",
+        title: "Creep",
+        short: "Creep",
+        along: "time",
+        charts: &["contact_area_fraction", "mean_gap", "load", "approach"],
+    },
+    Kind {
+        file: "leak.csv",
+        title: "Leak",
+        short: "Leak",
+        along: "load",
+        charts: &["leak_rate", "permeability", "constriction_gap"],
+    },
+    Kind {
+        file: "history.csv",
+        title: "History of the tangential load",
+        short: "History",
+        along: "displacement",
+        charts: &["tangential_load"],
+    },
+];
+
+/// Lines of a table that a page has at most; of more, some evenly spread.
+const LINES: usize = 400;
+/// Bytes of a file that is read.
+const BYTES: u64 = 100_000_000;
+
+/// What was found in a folder.
+#[derive(Default)]
+pub(crate) struct Beside {
+    pub(crate) panels: Vec<Value>,
+    pub(crate) settings: Option<Value>,
+    /// What was left out, and why.
+    pub(crate) notes: Vec<String>,
+}
+
+/// The files of a folder that are of a record: those that are not older. Without a record all.
+pub(crate) fn of(folder: &Path, record: Option<SystemTime>) -> Beside {
+    let mut beside = Beside::default();
+    for kind in KINDS {
+        let file = folder.join(kind.file);
+        let Ok(about) = fs::metadata(&file) else { continue };
+        if !about.is_file() {
+            continue;
+        }
+        if let (Some(record), Ok(written)) = (record, about.modified())
+            && written < record
+        {
+            beside.notes.push(format!("{} is left out: it is older than the record", kind.file));
+            continue;
+        }
+        if about.len() > BYTES {
+            beside.notes.push(format!("{} is left out: it has {} bytes", kind.file, about.len()));
+            continue;
+        }
+        match fs::read_to_string(&file)
+            .map_err(|error| error.to_string())
+            .and_then(|text| table(&text, &kind))
+        {
+            Ok((columns, lines)) => beside.panels.push(json!({
+                "title": kind.title,
+                "short": kind.short,
+                "file": kind.file,
+                "along": kind.along,
+                "charts": kind.charts,
+                "lines": lines,
+                "columns": columns,
+            })),
+            Err(why) => beside.notes.push(format!("{} is left out: {why}", kind.file)),
+        }
+    }
+    // Whatever determines the path; a record does not know the name of its surface.
+    let settings = fs::read_to_string(folder.join("settings.json")).ok();
+    beside.settings = settings.and_then(|text| serde_json::from_str(&text).ok());
+    beside
+}
+
+/// The columns of a table that the page shows, and how many lines it has.
+fn table(text: &str, kind: &Kind) -> Result<(Vec<Value>, usize), String> {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let names: Vec<&str> = lines.next().ok_or("it is empty")?.split(',').map(str::trim).collect();
+    let rows: Vec<&str> = lines.collect();
+    let every = rows.len().div_ceil(LINES).max(1);
+    let mut columns: Vec<Vec<Option<f64>>> = vec![Vec::new(); names.len()];
+    let kept = rows.iter().enumerate().filter(|(i, _)| i % every == 0 || i + 1 == rows.len());
+    for (number, row) in kept {
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        if cells.len() != names.len() {
+            let (found, expected) = (cells.len(), names.len());
+            return Err(format!("line {} has {found} columns and not {expected}", number + 2));
+        }
+        for (column, cell) in columns.iter_mut().zip(cells) {
+            let value = cell.parse().ok().filter(|value: &f64| value.is_finite());
+            column.push(value.map(rounded));
+        }
+    }
+    let along = if kind.along.is_empty() { names[0] } else { kind.along };
+    let columns = names.iter().zip(columns);
+    let columns = columns.filter(|(name, _)| **name == along || kind.charts.contains(name));
+    let columns = columns.map(|(name, values)| json!({"name": name, "values": values}));
+    Ok((columns.collect(), rows.len()))
+}
+
+/// Six digits, of which charts show fewer.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// The names and values of settings, those of groups as `group.name`.
+pub(crate) fn flat(settings: &Value) -> Map<String, Value> {
+    fn add(name: &str, value: &Value, into: &mut Map<String, Value>) {
+        let Value::Object(group) = value else {
+            into.insert(name.to_string(), value.clone());
+            return;
+        };
+        for (key, value) in group {
+            let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+            add(&name, value, into);
+        }
+    }
+    let mut all = Map::new();
+    add("", settings, &mut all);
+    all
+}
+
+/// Where a record lies, and when it was written.
+pub(crate) fn place_of(record: &Path) -> (PathBuf, Option<SystemTime>) {
+    let folder = record.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let written = fs::metadata(record).and_then(|about| about.modified()).ok();
+    (folder.unwrap_or(Path::new(".")).to_path_buf(), written)
+}

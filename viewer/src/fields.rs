@@ -1,0 +1,184 @@
+//! Pressure and gap at some states spread over the path, in few levels.
+
+use asperity::contact::Certificate;
+use asperity::loading::History;
+use asperity::nalgebra::DMatrix;
+use asperity::updater::LinearUpdater;
+use asperity::{Error, Grid, LoadingSolver, LoadingState};
+use serde_json::{Value, json};
+
+use crate::blob::deflated;
+
+/// How many states have fields.
+const STATES: usize = 24;
+/// Levels of a field, and of how many states one is kept, from fine to coarse: the first that fits.
+const FINENESS: [(f64, usize); 8] =
+    [(126.0, 1), (62.0, 1), (44.0, 1), (30.0, 1), (22.0, 1), (14.0, 1), (14.0, 2), (6.0, 2)];
+/// Letters that fields of all states may take together on any grid.
+const LETTERS: usize = 250_000;
+/// Letters that a page has at most for each node of a larger grid, if it can: 1 MB on 256 × 256 nodes.
+const LETTERS_PER_NODE: usize = 15;
+
+/// What computes the fields of a path: its solver, or a replay of its record.
+pub trait Fields {
+    /// Pressure \[Pa\] and gap \[m\] at a state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingSolver::pressure_and_gap_at`].
+    fn pressure_and_gap_at(
+        &mut self,
+        state: &LoadingState,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error>;
+
+    /// How well a state fulfils the conditions of contact.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`LoadingSolver::certificate_at`].
+    fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error>;
+}
+
+impl<U: LinearUpdater> Fields for LoadingSolver<U> {
+    fn pressure_and_gap_at(
+        &mut self,
+        state: &LoadingState,
+    ) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
+        Self::pressure_and_gap_at(self, state)
+    }
+
+    fn certificate_at(&mut self, state: &LoadingState) -> Result<Certificate, Error> {
+        Self::certificate_at(self, state)
+    }
+}
+
+/// States of a path as places among all, at loads that grow as the cubes of whole numbers: first contact and full load both have some.
+fn chosen(history: &History) -> Vec<usize> {
+    let states = history.states();
+    let last = states.last().map_or(0.0, |state| state.contact.load);
+    let up_to = |load: f64| states.partition_point(|state| state.contact.load <= load);
+    let part = |i: usize| (i as f64 / STATES as f64).powi(3);
+    let places = (1..STATES).map(|i| up_to(part(i) * last).saturating_sub(1));
+    let mut places: Vec<usize> = places.chain(states.len().checked_sub(1)).collect();
+    places.dedup();
+    places
+}
+
+/// A field at a state: of each node a part of the greatest pressure in contact, or of the greatest gap out of it.
+struct Field {
+    place: usize,
+    pressure: f64,
+    gap: f64,
+    in_contact: Vec<bool>,
+    /// Its root, in parts of 65535.
+    parts: Vec<u16>,
+}
+
+impl Field {
+    fn of(
+        place: usize,
+        in_contact: Vec<bool>,
+        pressure: &DMatrix<f64>,
+        gap: &DMatrix<f64>,
+    ) -> Self {
+        let greatest = |field: &DMatrix<f64>| field.iter().copied().fold(0.0, f64::max);
+        let most = (greatest(pressure), greatest(gap));
+        // Small ones matter more: by the root.
+        let whole = |part: f64| {
+            if part > 0.0 { (part.min(1.0).sqrt() * f64::from(u16::MAX)).round() as u16 } else { 0 }
+        };
+        let nodes = pressure.iter().zip(gap).zip(&in_contact);
+        let parts =
+            nodes.map(|((p, g), is_in)| whole(if *is_in { p / most.0 } else { g / most.1 }));
+        Self { place, pressure: most.0, gap: most.1, parts: parts.collect(), in_contact }
+    }
+
+    fn levels(&self, levels: f64) -> Vec<u8> {
+        let level = |part: &u16| (f64::from(*part) / f64::from(u16::MAX) * levels).round() as u8;
+        self.parts.iter().map(level).collect()
+    }
+}
+
+/// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it. The rest of the page has
+/// `taken` letters.
+pub(crate) fn of(
+    grid: &Grid,
+    history: &History,
+    taken: usize,
+    fields: &mut dyn Fields,
+) -> Result<Value, Error> {
+    let contact_at = contact_at(grid, history);
+    let mut found = Vec::new();
+    for place in chosen(history) {
+        let Some(state) = history.states().get(place) else { continue };
+        let (pressure, gap) = fields.pressure_and_gap_at(state)?;
+        found.push(Field::of(place, contact_at(place), &pressure, &gap));
+    }
+    let room = LETTERS.max((LETTERS_PER_NODE * grid.nodes()).saturating_sub(taken));
+    let mut page = Value::Null;
+    for (levels, every) in FINENESS {
+        // The last state is always among them.
+        let kept = || found.iter().rev().step_by(every).rev();
+        let code = |field: &Field| predicted(&field.levels(levels), &field.in_contact, grid.nx());
+        let data = deflated(&kept().flat_map(code).collect::<Vec<u8>>());
+        let fits = data.len() <= room;
+        let states = kept().map(
+            |field| json!({"event": field.place, "pressure": field.pressure, "gap": field.gap}),
+        );
+        page = json!({"levels": levels, "states": states.collect::<Vec<_>>(), "data": data});
+        if fits {
+            break;
+        }
+    }
+    Ok(page)
+}
+
+/// Which nodes are in contact at a state, by its place among all.
+fn contact_at<'a>(grid: &'a Grid, history: &'a History) -> impl Fn(usize) -> Vec<bool> + 'a {
+    move |place| {
+        let mut is_in = vec![false; grid.nodes()];
+        for state in history.states().iter().take(place + 1) {
+            let node = state.node.0 + grid.nx() * state.node.1;
+            let Some(node) = is_in.get_mut(node) else { continue };
+            *node = state.event != asperity::ContactEvent::Release;
+        }
+        is_in
+    }
+}
+
+/// Levels less what the neighbours before let expect: fields are smooth, and what is left deflates well.
+fn predicted(levels: &[u8], is_in: &[bool], nx: usize) -> Vec<u8> {
+    let at = |node: usize, back: usize| {
+        node.checked_sub(back).filter(|&other| is_in[other] == is_in[node])
+    };
+    (0..levels.len())
+        .map(|node| {
+            let left = if node % nx > 0 { at(node, 1) } else { None };
+            let (below, corner) =
+                (at(node, nx), if node % nx > 0 { at(node, nx + 1) } else { None });
+            let level = |place: Option<usize>| place.map(|place| i32::from(levels[place]));
+            let expected = match (level(left), level(below), level(corner)) {
+                (Some(left), Some(below), Some(corner)) => {
+                    // Along a plane, but within what is beside.
+                    (left + below - corner).clamp(left.min(below), left.max(below))
+                }
+                (Some(left), Some(below), None) => (left + below) / 2,
+                (Some(one), None, _) | (None, Some(one), _) => one,
+                (None, None, _) => 0,
+            };
+            levels[node].wrapping_sub(expected as u8)
+        })
+        .collect()
+}
+
+/// Heights in levels, likewise.
+pub(crate) fn heights(heights: &DMatrix<f64>) -> Value {
+    const HEIGHTS: f64 = 254.0;
+    let (least, most) = (heights.min(), heights.max());
+    let range = if most > least { most - least } else { 1.0 };
+    let levels: Vec<u8> =
+        heights.iter().map(|z| ((z - least) / range * HEIGHTS).round() as u8).collect();
+    let all = vec![true; levels.len()];
+    let data = deflated(&predicted(&levels, &all, heights.nrows()));
+    json!({"least": least, "greatest": most, "levels": HEIGHTS, "data": data})
+}

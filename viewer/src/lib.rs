@@ -1,0 +1,204 @@
+//! A loading path as one HTML file that needs no network, no server and no other file: a map of contact at every state under a slider,
+//! charts with a cursor that follows it, and what the record says of surface, bodies and exactness.
+//!
+//! ```
+//! use asperity::loading::History;
+//! use asperity::record::LoadingRecord;
+//! use asperity::{Boussinesq, Grid, LoadingSolver, SelfAffine};
+//! use asperity_report::{Report, Source};
+//!
+//! # fn main() -> Result<(), asperity::Error> {
+//! let half_space = Boussinesq::new(Grid::square(32, 1.25e-3)?, 115e9)?;
+//! let mut path = LoadingSolver::builder(&SelfAffine::zhang2020(1), &half_space).max_load(500.0).build()?;
+//! let history: History = path.by_ref().collect::<Result<_, _>>()?;
+//! let record = LoadingRecord::new(&path, history)?;
+//! let mut report = Report::new();
+//! report.add(Source::new("ground steel", &record).computed_by(&mut path))?;
+//! let page = report.html();
+//! assert!(page.starts_with("<!DOCTYPE html>"));
+//! # Ok(())
+//! # }
+//! ```
+
+mod beside;
+mod blob;
+mod column;
+mod events;
+mod facts;
+mod fields;
+mod page;
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use asperity::Error;
+use asperity::nalgebra::DMatrix;
+use asperity::record::LoadingRecord;
+use serde_json::{Value, json};
+
+pub use facts::reason;
+pub use fields::Fields;
+
+/// A path for a page.
+pub struct Source<'a> {
+    name: String,
+    record: &'a LoadingRecord,
+    fields: Option<&'a mut dyn Fields>,
+    folders: Vec<(PathBuf, Option<SystemTime>)>,
+}
+
+impl<'a> Source<'a> {
+    /// The path of a record, under a name for people.
+    #[must_use]
+    pub fn new(name: impl Into<String>, record: &'a LoadingRecord) -> Self {
+        Self { name: name.into(), record, fields: None, folders: Vec::new() }
+    }
+
+    /// With what computes its fields: the path itself, if it is there. Otherwise the record is replayed.
+    #[must_use]
+    pub fn computed_by(mut self, fields: &'a mut dyn Fields) -> Self {
+        self.fields = Some(fields);
+        self
+    }
+
+    /// With the tables of slip, creep, leak and unloading that lie beside the file of the record and are not older.
+    #[must_use]
+    pub fn beside(mut self, file: &Path) -> Self {
+        self.folders.push(beside::place_of(file));
+        self
+    }
+
+    /// With the tables of a folder, whatever their age.
+    #[must_use]
+    pub fn with_folder(mut self, folder: &Path) -> Self {
+        self.folders.push((folder.to_path_buf(), None));
+        self
+    }
+
+    /// With the tables of a folder that were not written before a moment.
+    #[must_use]
+    pub fn with_folder_since(mut self, folder: &Path, moment: SystemTime) -> Self {
+        self.folders.push((folder.to_path_buf(), Some(moment)));
+        self
+    }
+}
+
+/// A page of one path, or of several to compare.
+#[derive(Debug, Default)]
+pub struct Report {
+    command: Option<String>,
+    records: Vec<Value>,
+    notes: Vec<String>,
+}
+
+impl Report {
+    /// Without a path.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// With the command that makes the page.
+    #[must_use]
+    pub fn made_by(mut self, command: impl Into<String>) -> Self {
+        self.command = Some(command.into());
+        self
+    }
+
+    /// What was left out, and why; the page says it too.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Adds a path. Where its fields cannot be computed, as on a kernel that is not of the crate, the page has none and says why.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a record without a state; those of [`LoadingRecord::contact`].
+    pub fn add(&mut self, source: Source<'_>) -> Result<(), Error> {
+        let Source { name, record, fields, folders } = source;
+        let grid = record.grid();
+        let Some(last) = record.states().last() else {
+            return Err(Error::OutOfRange {
+                quantity: "number of states of the record",
+                value: 0.0,
+                expected: "at least 1",
+            });
+        };
+        let (mut notes, mut panels, mut settings) = (Vec::new(), Vec::new(), None);
+        for (folder, since) in folders {
+            let found = beside::of(&folder, since);
+            notes.extend(found.notes);
+            panels.extend(found.panels);
+            settings = settings.or(found.settings.map(|all| beside::flat(&all)));
+        }
+        let events = events::of(record)?;
+        let heights = fields::heights(record.heights().matrix());
+        let texts =
+            [&events, &heights].into_iter().chain(&panels).map(|part| part.to_string().len());
+        let taken = page::letters() + texts.sum::<usize>();
+        let computed = match fields {
+            Some(fields) => Computed::by(fields, record, taken),
+            None => record.replay().and_then(|mut replay| Computed::by(&mut replay, record, taken)),
+        };
+        let computed = computed.unwrap_or_else(|error| {
+            notes.push(format!("pressure, gap and residuals are missing: {error}"));
+            Computed { fields: Value::Null, certificate: Vec::new(), pressure: None }
+        });
+        let (nx, ny) = grid.shape();
+        let (lx, ly) = grid.sides();
+        self.notes.extend(notes.iter().cloned());
+        self.records.push(json!({
+            "name": name,
+            "nx": nx,
+            "ny": ny,
+            "lx": lx,
+            "ly": ly,
+            "repeats": record.kernel().boundary.repeats(),
+            "nominal_area": grid.nominal_area(),
+            "facts": facts::of(record)?,
+            "settings": settings,
+            "warnings": facts::warnings(record, computed.pressure.as_ref())?,
+            "notes": notes,
+            "certificate": computed.certificate,
+            "approach_error": last.approach_error,
+            "events": events,
+            "heights": heights,
+            "fields": computed.fields,
+            "panels": panels,
+        }));
+        Ok(())
+    }
+
+    /// The page.
+    #[must_use]
+    pub fn html(&self) -> String {
+        page::of(&json!({
+            "format": 1,
+            "program": concat!("asperity ", env!("CARGO_PKG_VERSION")),
+            "command": self.command,
+            "records": self.records,
+        }))
+    }
+}
+
+/// What takes solutions.
+struct Computed {
+    fields: Value,
+    certificate: Vec<Value>,
+    /// Of the last state \[Pa\].
+    pressure: Option<DMatrix<f64>>,
+}
+
+impl Computed {
+    fn by(fields: &mut dyn Fields, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
+        let found = fields::of(&record.grid(), record.history(), taken, fields)?;
+        let (mut certificate, mut pressure) = (Vec::new(), None);
+        if let Some(last) = record.states().last() {
+            certificate = facts::certificate(&fields.certificate_at(last)?, last);
+            pressure = Some(fields.pressure_and_gap_at(last)?.0);
+        }
+        Ok(Self { fields: found, certificate, pressure })
+    }
+}
