@@ -163,11 +163,10 @@ pub(crate) fn list(report: &Report, possible: &[String]) -> Result<String, Failu
             signed(y0 + a, 2),
             signed(-1.0 / (SQUARE_PUNCH_STIFFNESS * SQ / SIDE), 0)
         ),
-        format!(
             "**Figs. 6 to 8** show a free half-space under a finite square, but are compared with theories of an infinite \
              one. At large contact the pressure is greatest at the border (Fig. 4), and approach and K \
              become those of a square punch (Fig. 7)."
-        ),
+            .to_string(),
         format!(
             "**Memory.** k = 1.0 with the gradient {PAPER_GRADIENT} at 0.1 A₀E\\* means A/A₀ = {area:.2}: {:.1} × 10⁵ nodes of \
              512², whose factor takes {:.0} GB, on a computer with 8 GB. Beyond its limit the paper names conjugate \
