@@ -1,6 +1,6 @@
 //! What stands above the numbers of a text: lines like `# Width: 10 µm`, and names of columns.
 
-use super::{markers, names};
+use super::{markers, words};
 use crate::io::fault::Fault;
 use crate::io::unit::LengthUnit;
 
@@ -74,7 +74,7 @@ impl Header {
         {
             return true;
         }
-        if names::could_be(line) {
+        if words::could_be(line) {
             self.names = Some(line.to_string());
             self.ends_with_names = true;
             return true;

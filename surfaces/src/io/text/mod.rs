@@ -19,6 +19,7 @@ mod names;
 mod points;
 mod quotes;
 mod table;
+mod words;
 mod wyko;
 mod zygo;
 

@@ -1,6 +1,7 @@
 //! Names of columns: which of them are x, y and z, and their units.
 
 use super::table::Table;
+use super::words::{Kind, kind, words};
 use crate::io::fault::Fault;
 use crate::io::unit::LengthUnit;
 
@@ -14,39 +15,6 @@ pub(super) struct Columns {
     pub(super) units: [Option<String>; 3],
     /// How they were found.
     pub(super) how: String,
-}
-
-/// Words between those of a name.
-const PARTS: &str = ";,/_()[]{}<>\"':=|-#%";
-
-/// What a name says of its column.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    X,
-    Y,
-    Z,
-}
-
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    let parts = |c: char| c.is_whitespace() || PARTS.contains(c);
-    text.split(parts).filter(|word| !word.is_empty())
-}
-
-fn kind(word: &str) -> Option<Kind> {
-    match word.to_lowercase().as_str() {
-        "x" => Some(Kind::X),
-        "y" => Some(Kind::Y),
-        "z" | "height" | "heights" | "value" | "values" | "topography" | "elevation" => {
-            Some(Kind::Z)
-        }
-        _ => None,
-    }
-}
-
-/// Whether a line could be one of names: it has both an x and a y.
-pub(super) fn could_be(line: &str) -> bool {
-    let has = |wanted| words(line).any(|word| kind(word) == Some(wanted));
-    has(Kind::X) && has(Kind::Y)
 }
 
 impl Columns {

@@ -1,0 +1,34 @@
+//! Words that say which column has x, y or the heights.
+
+/// Words between those of a name.
+const PARTS: &str = ";,/_()[]{}<>\"':=|-#%";
+
+/// What a name says of its column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    X,
+    Y,
+    Z,
+}
+
+pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+    let parts = |c: char| c.is_whitespace() || PARTS.contains(c);
+    text.split(parts).filter(|word| !word.is_empty())
+}
+
+pub(super) fn kind(word: &str) -> Option<Kind> {
+    match word.to_lowercase().as_str() {
+        "x" => Some(Kind::X),
+        "y" => Some(Kind::Y),
+        "z" | "height" | "heights" | "value" | "values" | "topography" | "elevation" => {
+            Some(Kind::Z)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a line could be one of names: it has both an x and a y.
+pub(super) fn could_be(line: &str) -> bool {
+    let has = |wanted| words(line).any(|word| kind(word) == Some(wanted));
+    has(Kind::X) && has(Kind::Y)
+}
