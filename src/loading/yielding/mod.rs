@@ -21,7 +21,7 @@ use crate::loading::tolerances::WindowTolerances;
 use crate::loading::trial::Trial;
 use crate::loading::tuning::{
     CERTAIN, FEWEST, LEFT_OUT, MOST_CHANGE, MOST_TIES, OF_RESIDUAL, OF_RESIDUAL_BEYOND, PART,
-    REMEMBERED, SLACK_OF_RATE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
+    REMEMBERED, SLACK_OF_RATE, TOLERANCE, TRUSTED, WATCHED, WATCHED_UNSETTLED,
 };
 use crate::loading::walk::Carried;
 use crate::loading::window::correction::{self, AtEnd};
@@ -538,7 +538,9 @@ fn pulled(
 ) -> Option<(usize, f64)> {
     let Trial { contact, problem, .. } = trial;
     let [_, slack] = slacks(run, (problem, contact), tolerances, approach);
-    let tension = slack.tension / problem.table().self_influence();
+    // Rounding of heights pulls at nodes that touch together.
+    let rounding = TOLERANCE * (problem.greatest_gap() + approach);
+    let tension = slack.tension.max(rounding) / problem.table().self_influence();
     run.field.pressures(contact, approach).find(|(_, pressure)| *pressure < -tension)
 }
 
