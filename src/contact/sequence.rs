@@ -103,6 +103,15 @@ impl ContactSequence {
         self.is_in.get(node).copied().unwrap_or(false)
     }
 
+    /// The place of each node of the grid in the order of joining; `None` out of contact.
+    pub(crate) fn places(&self) -> Vec<Option<usize>> {
+        let mut places = vec![None; self.is_in.len()];
+        for (place, &node) in self.order.iter().enumerate() {
+            places[node] = Some(place);
+        }
+        places
+    }
+
     /// A number that changes with every edit: two sequences of the same revision are equal.
     #[must_use]
     pub fn revision(&self) -> u64 {

@@ -234,11 +234,14 @@ impl Exact {
         horizon: f64,
     ) -> Result<(), Error> {
         let (approach, order) = (run.scalars.approach(), run.contact.order());
-        let places = places(order, run.problem.grid().nodes());
         let chosen = self.ranking[..size].iter().map(|&(_, node)| node);
         let (inside, outside): (Vec<_>, Vec<_>) = chosen.partition(|&n| run.contact.contains(n));
-        let mut positions: Vec<usize> = inside.iter().map(|&node| places[node]).collect();
-        positions.sort_unstable();
+        let mut positions = Vec::with_capacity(inside.len());
+        if !inside.is_empty() {
+            let places = run.contact.places();
+            positions.extend(inside.iter().filter_map(|&node| places[node]));
+            positions.sort_unstable();
+        }
         let schur = self.window.schur_mut();
         if positions.is_empty() {
             updater.watch(&run.problem, &run.contact, &outside, schur)?;
@@ -544,15 +547,6 @@ fn plastic_sums<U: LinearUpdater>(
         positions.iter().map(|&place| [solved[place][0], solved[place][1], last[place][0]]),
     );
     Ok(answered)
-}
-
-/// The place of each node in an order; of nodes that are not there it means nothing.
-fn places(order: &[usize], nodes: usize) -> Vec<usize> {
-    let mut places = vec![0; nodes];
-    for (place, &node) in order.iter().enumerate() {
-        places[node] = place;
-    }
-    places
 }
 
 #[cfg(test)]

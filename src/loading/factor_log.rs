@@ -156,20 +156,11 @@ impl FactorLog {
                 grown.truncate(count + stayed);
                 updater.truncate(problem, &grown)?;
             }
-            let left = self.left_behind(behind).map(|position| {
-                let node = grown.order().get(position).copied().unwrap_or(usize::MAX);
-                Left { node, position }
-            });
-            let left: Vec<Left> = left.collect();
+            let left: Vec<usize> = self.left_behind(behind).collect();
             if self.yields_behind(behind) {
-                left.iter().try_for_each(|left| grown.remove(left.node).map(drop))?;
-                updater.release(problem, &grown, &left)?;
-                continue;
-            }
-            for position in self.left_behind(behind) {
-                let node = grown.order().get(position).copied().unwrap_or(usize::MAX);
-                grown.remove(node)?;
-                updater.release(problem, &grown, &[Left { node, position }])?;
+                leave(updater, problem, &mut grown, &left)?;
+            } else {
+                left.chunks(1).try_for_each(|one| leave(updater, problem, &mut grown, one))?;
             }
         }
         let pairs = grown.order().iter().zip(contact.order());
@@ -177,6 +168,22 @@ impl FactorLog {
         length("nodes that joined a factor in the order of contact", same, contact.len())?;
         Ok(true)
     }
+}
+
+/// Lets the nodes at some places leave a contact and its factor at once.
+fn leave(
+    updater: &mut (impl LinearUpdater + ?Sized),
+    problem: &Problem,
+    contact: &mut ContactSequence,
+    places: &[usize],
+) -> Result<(), Error> {
+    let left = places.iter().map(|&position| {
+        let node = contact.order().get(position).copied().unwrap_or(usize::MAX);
+        Left { node, position }
+    });
+    let left: Vec<Left> = left.collect();
+    left.iter().try_for_each(|left| contact.remove(left.node).map(drop))?;
+    updater.release(problem, contact, &left)
 }
 
 /// The places of some nodes in an order, as far as they are ascending ones of it.

@@ -1,5 +1,6 @@
 //! Nodes that left the linear system, and the contact before they did.
 
+use super::state::ContactEvent;
 use crate::updater::Left;
 
 /// A node that left the linear system.
@@ -37,6 +38,14 @@ impl Releases {
     /// Notes that a node yielded at the event number `step`.
     pub(super) fn push_yielded(&mut self, step: usize, Left { node, position }: Left) {
         self.note(Release { step, node, position, has_yielded: true });
+    }
+
+    /// Notes either, as the event says.
+    pub(super) fn push_event(&mut self, step: usize, event: ContactEvent, left: Left) {
+        match event {
+            ContactEvent::Yield => self.push_yielded(step, left),
+            _ => self.push(step, left),
+        }
     }
 
     fn note(&mut self, release: Release) {

@@ -17,11 +17,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         let releases = &mut run.releases;
         let Replayed { elastic, .. } =
             replay(&run.problem.grid(), history, |step, event, left| {
-                if event == ContactEvent::Yield {
-                    releases.push_yielded(step, left);
-                } else {
-                    releases.push(step, left);
-                }
+                releases.push_event(step, event, left);
             })?;
         run.yield_at(history.states().last().map_or(0, |state| state.step))?;
         // A limit is no event: it comes again if the path is still to end there.

@@ -150,10 +150,7 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         run.contact = contact;
         for (step, event, left) in left {
-            match event {
-                ContactEvent::Yield => run.releases.push_yielded(step, left),
-                _ => run.releases.push(step, left),
-            }
+            run.releases.push_event(step, event, left);
         }
         let front = end.ahead.last().unwrap_or(&last);
         // The contact of the last one is solved anew if a node has left since.

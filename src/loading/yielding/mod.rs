@@ -163,7 +163,7 @@ impl RefinedYielding {
     /// Chooses the nodes with the smallest times.
     fn choose(&mut self, run: &LoadingRun, tolerances: &WindowTolerances) -> Candidates {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let places = places(run);
+        let places = run.contact.places();
         let wanted = self.most_events().min(run.contact.len() / PART);
         let size = self.size.min(wanted.max(FEWEST));
         let ranking = &mut self.ranking;
@@ -456,7 +456,7 @@ impl RefinedYielding {
         (time, known): (f64, &[usize]),
         touches: usize,
     ) -> Result<(), Error> {
-        let places = places(run);
+        let places = run.contact.places();
         let tie_of = |node: usize| Self::tie_of(run, tolerances, (node, places[node]));
         let together =
             |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
@@ -574,15 +574,6 @@ fn within(events: &[WindowEvent], touches: usize) -> usize {
     last.map_or(events.len(), |(place, _)| place + 1)
 }
 
-/// The place of each node in the contact.
-fn places(run: &LoadingRun) -> Vec<Option<usize>> {
-    let mut places = vec![None; run.problem.grid().nodes()];
-    for (place, &node) in run.contact.order().iter().enumerate() {
-        places[node] = Some(place);
-    }
-    places
-}
-
 /// How fast the event of a node comes, relative to the approach: how fast its gap closes, or its pressure rises times what a pressure
 /// displaces.
 fn closing(run: &LoadingRun, node: usize, place: Option<usize>) -> f64 {
@@ -634,10 +625,7 @@ fn at_end(
     window: &Window,
     (trial, approach): (&Trial, f64),
 ) -> Vec<AtEnd> {
-    let mut places = vec![None; run.problem.grid().nodes()];
-    for (place, &node) in trial.contact.order().iter().enumerate() {
-        places[node] = Some(place);
-    }
+    let places = trial.contact.places();
     let solution = run.field.solution();
     let hardness = plastic.hardness().values();
     let at = |(position, &node): (usize, &usize)| {
