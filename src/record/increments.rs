@@ -37,8 +37,18 @@ impl Found {
         if (value - expected).abs() <= tolerance {
             return Ok(());
         }
-        Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })
+        Err(inconsistent(state, quantity, [value, expected], reason))
     }
+}
+
+/// The error of a state whose quantity has a value in place of another one.
+fn inconsistent(
+    state: &LoadingState,
+    quantity: &'static str,
+    [value, expected]: [f64; 2],
+    reason: &'static str,
+) -> Error {
+    Error::Inconsistent { step: state.step, quantity, value, expected, reason }
 }
 
 /// Checks the states of a path on a surface.
@@ -72,13 +82,9 @@ pub(super) fn check(
         areas(grid, state)?;
         let most = GREATEST_ERROR * length;
         if !(0.0..=most).contains(&state.approach_error) {
-            return Err(Error::Inconsistent {
-                step: state.step,
-                quantity: "estimated error of the approach",
-                value: state.approach_error,
-                expected: most,
-                reason: "is the most, a tenth of approach and mean gap",
-            });
+            let quantity = "estimated error of the approach";
+            let reason = "is the most, a tenth of approach and mean gap";
+            return Err(inconsistent(state, quantity, [state.approach_error, most], reason));
         }
     }
     stiffnesses(None, first, layering)?;
@@ -172,13 +178,7 @@ fn plastic(state: &LoadingState, hardness: &DMatrix<f64>, length: f64) -> Result
         if !is_one {
             let expected = if value < low { low } else { high };
             let reason = "is what its volume and the hardness allow";
-            return Err(Error::Inconsistent {
-                step: state.step,
-                quantity,
-                value,
-                expected,
-                reason,
-            });
+            return Err(inconsistent(state, quantity, [value, expected], reason));
         }
     }
     Ok(())
@@ -201,13 +201,7 @@ fn stiffnesses(
         if before.is_some() && earlier.is_some() != value.is_some() {
             let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));
             let reason = "is what the state before has, of a body that has one or none";
-            return Err(Error::Inconsistent {
-                step: state.step,
-                quantity,
-                value,
-                expected,
-                reason,
-            });
+            return Err(inconsistent(state, quantity, [value, expected], reason));
         }
         let Some(value) = value else { continue };
         // Under a layer gaps may open as the load grows.
@@ -218,9 +212,8 @@ fn stiffnesses(
         } else {
             value > 0.0
         };
-        let wrong = |expected, reason| {
-            Err(Error::Inconsistent { step: state.step, quantity, value, expected, reason })
-        };
+        let wrong =
+            |expected, reason| Err(inconsistent(state, quantity, [value, expected], reason));
         if !is_one && (value == 0.0 || !may_fall_below) {
             return wrong(0.0, "is what a plateau has, and no other state");
         }
