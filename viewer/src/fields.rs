@@ -100,19 +100,20 @@ impl Field {
 }
 
 /// Pressure and gap at some states: one level a node, of the pressure in contact and of the gap out of it. The rest of the page has
-/// `taken` letters.
+/// `taken` letters. Returns the pressure of the last state as well.
 pub(crate) fn of(
     grid: &Grid,
     history: &History,
     taken: usize,
     fields: &mut dyn Fields,
-) -> Result<Value, Error> {
+) -> Result<(Value, Option<DMatrix<f64>>), Error> {
     let contact_at = contact_at(grid, history);
-    let mut found = Vec::new();
+    let (mut found, mut last) = (Vec::new(), None);
     for place in chosen(history) {
         let Some(state) = history.states().get(place) else { continue };
         let (pressure, gap) = fields.pressure_and_gap_at(state)?;
         found.push(Field::of(place, contact_at(place), &pressure, &gap));
+        last = Some(pressure);
     }
     let room = LETTERS.max((LETTERS_PER_NODE * grid.nodes()).saturating_sub(taken));
     let mut page = Value::Null;
@@ -130,7 +131,7 @@ pub(crate) fn of(
             break;
         }
     }
-    Ok(page)
+    Ok((page, last))
 }
 
 /// Which nodes are in contact at a state, by its place among all.

@@ -193,12 +193,11 @@ struct Computed {
 
 impl Computed {
     fn by(fields: &mut dyn Fields, record: &LoadingRecord, taken: usize) -> Result<Self, Error> {
-        let found = fields::of(&record.grid(), record.history(), taken, fields)?;
-        let (mut certificate, mut pressure) = (Vec::new(), None);
-        if let Some(last) = record.states().last() {
-            certificate = facts::certificate(&fields.certificate_at(last)?, last);
-            pressure = Some(fields.pressure_and_gap_at(last)?.0);
-        }
+        let (found, pressure) = fields::of(&record.grid(), record.history(), taken, fields)?;
+        let certificate = match record.states().last() {
+            Some(last) => facts::certificate(&fields.certificate_at(last)?, last),
+            None => Vec::new(),
+        };
         Ok(Self { fields: found, certificate, pressure })
     }
 }
