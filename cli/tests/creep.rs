@@ -3,19 +3,12 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 
-use common::{Scratch, asperity, data, is_refused, said};
+use common::{Scratch, data, is_refused, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
-
-fn output(folder: &Path, line: &str) -> std::io::Result<Output> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    asperity(folder, &words).output()
-}
 
 fn run(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
     let done = output(folder, line)?;

@@ -3,30 +3,22 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
-use std::process::Output;
 use std::time::{Duration, Instant};
 
-use common::{Scratch, asperity, is_refused, said};
+use common::{Scratch, is_refused, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
-
-fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    Ok(asperity(folder, &words).output()?)
-}
 
 #[test]
 fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     let folder = Scratch::new("ensemble-same")?;
     let line = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..2 --out runs";
-    assert!(run(&folder.0, line)?.status.success());
+    assert!(output(&folder.0, line)?.status.success());
     let first = fs::read(folder.join("runs/seed_1/path.csv"))?;
     // The same: one more is followed, two are skipped.
     let more = "path --nodes 32 --max-area-fraction 0.1 --seeds 1..3 --out runs";
-    let done = run(&folder.0, more)?;
+    let done = output(&folder.0, more)?;
     let told = String::from_utf8(done.stdout)?;
     assert!(told.contains("1 path to follow, 2 finished"), "{told}");
     for (other, words) in [
@@ -49,7 +41,7 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
         let nodes = if other.contains("--nodes") { "" } else { "--nodes 32" };
         for dry in ["", "--dry-run"] {
             let line = format!("path {nodes} {other} --seeds 1..4 --out runs {dry}");
-            let done = run(&folder.0, &line)?;
+            let done = output(&folder.0, &line)?;
             is_refused(&done, words);
             is_refused(&done, &["runs/seed_1", "--out"]);
         }
@@ -58,8 +50,8 @@ fn seeds_that_are_there_are_skipped_if_they_are_the_same() -> Done {
     assert_eq!(fs::read(folder.join("runs/seed_1/path.csv"))?, first);
     // Without settings nobody can tell.
     fs::remove_file(folder.join("runs/seed_2/settings.json"))?;
-    is_refused(&run(&folder.0, more)?, &["seed_2", "settings.json"]);
-    is_refused(&run(&folder.0, "gather runs")?, &["seed_2", "settings.json"]);
+    is_refused(&output(&folder.0, more)?, &["seed_2", "settings.json"]);
+    is_refused(&output(&folder.0, "gather runs")?, &["seed_2", "settings.json"]);
     Ok(())
 }
 
@@ -70,12 +62,12 @@ fn mixtures_are_not_gathered() -> Done {
         "path --nodes 32 --seeds 1..2 --out runs",
         "path --nodes 32 --seeds 3..3 --periodic love --out others",
     ] {
-        assert!(run(&folder.0, line)?.status.success());
+        assert!(output(&folder.0, line)?.status.success());
     }
-    assert!(run(&folder.0, "gather runs")?.status.success());
+    assert!(output(&folder.0, "gather runs")?.status.success());
     fs::remove_file(folder.join("runs/gather.csv"))?;
     fs::rename(folder.join("others/seed_3"), folder.join("runs/seed_3"))?;
-    let done = run(&folder.0, "gather runs")?;
+    let done = output(&folder.0, "gather runs")?;
     is_refused(&done, &["seed_3", "seed_1", "half_space", "free", "Love"]);
     assert!(!said(&done).contains("surface.seed"), "{}", said(&done));
     assert!(!folder.join("runs/gather.csv").exists());
@@ -88,7 +80,7 @@ fn all_seeds_there_are_can_be_asked_for() -> Done {
     let folder = Scratch::new("ensemble-all")?;
     let line = "path --nodes 32 --seeds 0..18446744073709551615 --dry-run --out runs";
     let start = Instant::now();
-    let done = run(&folder.0, line)?;
+    let done = output(&folder.0, line)?;
     assert!(done.status.success(), "{}", said(&done));
     assert!(start.elapsed() < Duration::from_secs(20));
     let told = String::from_utf8(done.stdout)?;
@@ -100,7 +92,7 @@ fn all_seeds_there_are_can_be_asked_for() -> Done {
         ("--seeds 1..2 --task 5/7", "0 paths"),
         ("--seeds 18446744073709551615..18446744073709551615 --task 1/2", "0 paths"),
     ] {
-        let done = run(&folder.0, &format!("path --nodes 32 {task} --dry-run --out runs"))?;
+        let done = output(&folder.0, &format!("path --nodes 32 {task} --dry-run --out runs"))?;
         let told = String::from_utf8(done.stdout)?;
         assert!(told.starts_with(count), "{task}: {told}");
     }
@@ -142,7 +134,7 @@ fn settings_lie_beside_every_path() -> Done {
             &["\"record\": \"r.npz\"", "\"heights_md5\": \"", "spectral", "\"Load\": 4.0"],
         ),
     ] {
-        let done = run(&folder.0, line)?;
+        let done = output(&folder.0, line)?;
         assert!(done.status.success(), "{line}: {}", said(&done));
         let text = fs::read_to_string(folder.join("out/settings.json"))?;
         for word in words {
@@ -159,7 +151,7 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
     let folder = Scratch::new("ensemble-dry")?;
     let surface = common::data("selfaffine_128.npy");
     let surface = format!("--surface {} --side 1e-2 --material steel", surface.display());
-    assert!(run(&folder.0, "path --nodes 32 --record r.npz")?.status.success());
+    assert!(output(&folder.0, "path --nodes 32 --record r.npz")?.status.success());
     // Files as they are, and their number.
     let written = || -> std::io::Result<(Vec<Vec<u8>>, usize)> {
         let files = ["r.npz", "out/path.csv", "out/settings.json", "out/contact_map.png"];
@@ -187,7 +179,7 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
         (&format!("{surface} --max-approach 1e-4"), 539, 0.05, 39.0),
         ("--resume r.npz --max-area-fraction 1", 1024, 0.06, 34.0),
     ] {
-        let done = run(&folder.0, &format!("path {line} --dry-run --json --out out"))?;
+        let done = output(&folder.0, &format!("path {line} --dry-run --json --out out"))?;
         assert!(done.status.success(), "{line}: {}", said(&done));
         let object: serde_json::Value = serde_json::from_slice(&done.stdout)?;
         let number = |name: &str| object[name].as_f64().ok_or_else(|| format!("{line}: no {name}"));
@@ -198,14 +190,14 @@ fn a_dry_run_estimates_and_writes_nothing() -> Done {
         assert!((0.6..1.6).contains(&memory), "{line}: {memory} of the memory");
         assert!(written()? == before, "{line} has written");
     }
-    let done = run(&folder.0, "path --nodes 32 --dry-run")?;
+    let done = output(&folder.0, "path --nodes 32 --dry-run")?;
     let told = String::from_utf8(done.stdout)?;
     assert!(
         told.starts_with("about 102 nodes in contact, ") && told.ends_with("of memory\n"),
         "{told}"
     );
     // What the path would refuse is refused.
-    is_refused(&run(&folder.0, "path --nodes 32 --dry-run --unload")?, &["--hardness"]);
+    is_refused(&output(&folder.0, "path --nodes 32 --dry-run --unload")?, &["--hardness"]);
     assert!(written()? == before);
     Ok(())
 }

@@ -3,12 +3,11 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
 use asperity_testing::page::tables;
-use common::{Scratch, asperity, said};
+use common::{Scratch, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -36,8 +35,7 @@ const ROWS: [(&str, &str, &[&str]); 15] = [
 
 /// What the program says if it refuses, `None` if it does what is asked.
 fn refused(folder: &Path, line: &str) -> Result<Option<String>, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    let done = asperity(folder, &words).output()?;
+    let done = output(folder, line)?;
     // A panic or a signal is no refusal.
     assert!([Some(0), Some(1), Some(2)].contains(&done.status.code()), "{line}: {}", said(&done));
     Ok((!done.status.success()).then(|| said(&done)))

@@ -3,22 +3,15 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 
-use common::{Scratch, asperity, is_refused, said};
+use common::{Scratch, is_refused, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
-fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    Ok(asperity(folder, &words).output()?)
-}
-
 fn finished(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
-    let done = run(folder, line)?;
+    let done = output(folder, line)?;
     assert!(done.status.success(), "{line}: {}", said(&done));
     Ok(said(&done) + &String::from_utf8_lossy(&done.stdout))
 }
@@ -90,7 +83,7 @@ fn what_yields_conducts_as_well() -> Done {
         assert_eq!(a?, b?, "{file}");
     }
     let line = "path --nodes 32 --hardness 2e9 --conductivity 50 --unresolved-roughness 1e-8";
-    is_refused(&run(&folder.0, line)?, &["residual_surface.npy"]);
+    is_refused(&output(&folder.0, line)?, &["residual_surface.npy"]);
     Ok(())
 }
 
@@ -164,10 +157,10 @@ fn a_typical_hardness_is_said() -> Done {
         ("path --nodes 32 --unload", "--hardness"),
         ("path --nodes 32 --hardness 1e9 --mean-pressure 1e9", "all nodes yield"),
     ] {
-        is_refused(&run(&folder.0, line)?, &[word]);
+        is_refused(&output(&folder.0, line)?, &[word]);
     }
     for line in ["path --hardness 60HRC", "path --hardness 0", "path --hardness 1e9 --yield"] {
-        assert_eq!(run(&folder.0, line)?.status.code(), Some(2), "{line}");
+        assert_eq!(output(&folder.0, line)?.status.code(), Some(2), "{line}");
     }
     Ok(())
 }

@@ -3,11 +3,10 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 
 use asperity::io::write_npy;
-use common::{Scratch, asperity, is_refused, said};
+use common::{Scratch, is_refused, output, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -57,8 +56,7 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
             vec![],
         ),
     ] {
-        let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-        let done = asperity(&folder.0, &words).output()?;
+        let done = output(&folder.0, line)?;
         is_refused(&done, &expected);
         let told = said(&done);
         assert!(!told.contains("::"), "{told}");
@@ -78,10 +76,7 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
 fn counts_are_integers() -> Result<(), Box<dyn Error>> {
     let folder = Scratch::new("integers")?;
     let run = |line: &str| -> Result<Value, Box<dyn Error>> {
-        let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-        let done = asperity(&folder.0, &words).output()?;
-        assert!(done.status.success(), "{line}: {}", said(&done));
-        Ok(serde_json::from_slice(&done.stdout)?)
+        Ok(serde_json::from_slice(&common::run(&folder.0, line)?.stdout)?)
     };
     fs::copy(common::data("selfaffine_48.npy"), folder.join("rough.npy"))?;
     let path = "--nodes 32 --periodic love --max-area-fraction 0.3";

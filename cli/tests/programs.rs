@@ -3,23 +3,16 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Output;
 
-use common::{Scratch, asperity, data, said};
+use common::{Scratch, data, output, said};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
-fn run(folder: &Path, line: &str) -> std::io::Result<Output> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    asperity(folder, &words).output()
-}
-
 /// The only line of stdout, as JSON, of a program that has nothing else to say than warnings.
 fn answer(folder: &Path, line: &str) -> Result<Value, Box<dyn Error>> {
-    let done = run(folder, line)?;
+    let done = output(folder, line)?;
     assert!(done.status.success(), "{}", said(&done));
     let errors = String::from_utf8(done.stderr)?;
     assert!(errors.lines().all(|line| line.starts_with("warning: ")), "{errors}");
@@ -63,7 +56,7 @@ fn every_command_answers_programs() -> Done {
     assert_eq!(info["nx"], 48);
 
     let done =
-        run(folder, "path --nodes 16 --seeds 1..3 --max-area-fraction 0.2 --quiet --out many")?;
+        output(folder, "path --nodes 16 --seeds 1..3 --max-area-fraction 0.2 --quiet --out many")?;
     assert!(done.status.success() && done.stdout.is_empty(), "{}", said(&done));
     let gathered = answer(folder, "gather many --loads 5 --json")?;
     assert_eq!(
@@ -80,13 +73,13 @@ fn every_command_answers_programs() -> Done {
 fn quiet_is_quiet() -> Done {
     let folder = Scratch::new("quiet")?;
     for line in ["--quiet path --nodes 32 --max-area-fraction 0.2", "path -q --nodes 16"] {
-        let done = run(&folder.0, line)?;
+        let done = output(&folder.0, line)?;
         assert!(done.status.success() && done.stdout.is_empty(), "{}", said(&done));
         let errors = String::from_utf8(done.stderr)?;
         assert!(errors.lines().all(|line| line.starts_with("warning: ")), "{errors}");
         assert!(folder.0.join("out/path.csv").is_file());
     }
-    let failed = run(&folder.0, "info -q nothing.sur")?;
+    let failed = output(&folder.0, "info -q nothing.sur")?;
     assert_eq!(failed.status.code(), Some(1));
     assert!(String::from_utf8(failed.stderr)?.contains("nothing.sur"));
     Ok(())
@@ -96,17 +89,17 @@ fn quiet_is_quiet() -> Done {
 fn shells_and_manuals() -> Done {
     let folder = Scratch::new("shells")?;
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let done = run(&folder.0, &format!("completions {shell}"))?;
+        let done = output(&folder.0, &format!("completions {shell}"))?;
         let script = String::from_utf8(done.stdout)?;
         assert!(done.status.success() && script.contains("max-area-fraction"), "{shell}");
     }
     for (line, word) in [("manual", "patches"), ("manual load", "mean\\-pressure")] {
-        let done = run(&folder.0, line)?;
+        let done = output(&folder.0, line)?;
         let page = String::from_utf8(done.stdout)?;
         assert!(done.status.success() && page.contains(".TH") && page.contains(word), "{page}");
     }
-    assert_eq!(run(&folder.0, "manual nothing")?.status.code(), Some(1));
-    let help = String::from_utf8(run(&folder.0, "--help")?.stdout)?;
+    assert_eq!(output(&folder.0, "manual nothing")?.status.code(), Some(1));
+    let help = String::from_utf8(output(&folder.0, "--help")?.stdout)?;
     assert!(help.contains("130: interrupted"), "{help}");
     Ok(())
 }

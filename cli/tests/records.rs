@@ -9,18 +9,13 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use common::{Scratch, asperity, is_refused, said};
+use common::{Scratch, asperity, is_refused, output, said};
 
 type Done = Result<(), Box<dyn Error>>;
 
-fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    Ok(asperity(folder, &words).output()?)
-}
-
 /// What the program prints if all goes well.
 fn printed(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {
-    let done = run(folder, line)?;
+    let done = output(folder, line)?;
     assert!(done.status.success(), "{line}: {}", said(&done));
     Ok(String::from_utf8(done.stdout)?)
 }
@@ -115,7 +110,7 @@ fn targets_that_lie_behind_are_read_from_the_record() -> Done {
         assert_eq!(fs::read(folder.join("r.npz"))?, record, "{target}");
     }
     // It would lose what lies beyond.
-    let done = run(&folder.0, "path --resume r.npz --max-load 1 --record r.npz")?;
+    let done = output(&folder.0, "path --resume r.npz --max-load 1 --record r.npz")?;
     is_refused(&done, &["r.npz", "another file"]);
     assert_eq!(fs::read(folder.join("r.npz"))?, record);
     printed(&folder.0, "path --resume r.npz --max-load 1 --record short.npz")?;
@@ -128,10 +123,10 @@ fn targets_that_lie_behind_are_read_from_the_record() -> Done {
 fn a_record_grows_with_its_path() -> Done {
     let folder = Scratch::new("records-grow")?;
     let first =
-        run(&folder.0, &format!("{PATH} --max-area-fraction 0.1 --record r.npz --out first"))?;
+        output(&folder.0, &format!("{PATH} --max-area-fraction 0.1 --record r.npz --out first"))?;
     assert!(first.status.success(), "{}", said(&first));
     let short = fs::read(folder.join("r.npz"))?.len();
-    let again = run(&folder.0, "path --updater cholesky --resume r.npz --out again")?;
+    let again = output(&folder.0, "path --updater cholesky --resume r.npz --out again")?;
     let lines = |output: &Output| {
         let said = said(output);
         let lines = said.lines();
@@ -204,7 +199,7 @@ fn a_small_budget_loses_nothing() -> Done {
         let line = format!(
             "{line} --max-area-fraction 0.4 --memory-budget {budget} --record out/r.npz --fields npy"
         );
-        let done = run(&folder.0, &line)?;
+        let done = output(&folder.0, &line)?;
         is_refused(&done, &["the budget is 5 MB"]);
         assert!(!said(&done).contains("values, but found"), "{}", said(&done));
         let out = folder.join("out");
@@ -334,7 +329,7 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ),
         ("path --nodes 100000", &["the largest square grid that fits"]),
     ] {
-        let done = run(&folder.0, line)?;
+        let done = output(&folder.0, line)?;
         is_refused(&done, words);
         assert!(!said(&done).contains("EOCD"), "{}", said(&done));
         assert!(!folder.join("out/path.csv").exists(), "{line}");
@@ -352,12 +347,12 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
         ("load --friction 0.3", "frictionless"),
         ("info --hardness 1e9", "nothing yields"),
     ] {
-        let done = run(&folder.0, line)?;
+        let done = output(&folder.0, line)?;
         assert_eq!(done.status.code(), Some(2), "{line}");
         assert!(said(&done).contains(word), "{}", said(&done));
     }
     // The largest grid that is told is one that fits to full contact, and one with a tenth more nodes a side is not.
-    let done = run(&folder.0, "path --nodes 4000 --memory-budget 10e6")?;
+    let done = output(&folder.0, "path --nodes 4000 --memory-budget 10e6")?;
     let text = said(&done);
     let told = text.split(" at any load has ").nth(1);
     let side = told.and_then(|rest| rest.split(' ').next());
@@ -366,8 +361,8 @@ fn what_cannot_be_done_is_said_before_the_work() -> Done {
     let line = |side: usize| {
         format!("path --nodes {side} --memory-budget 10e6 --max-area-fraction 1 --out largest")
     };
-    assert!(run(&folder.0, &line(side))?.status.success(), "{side}");
-    let larger = run(&folder.0, &line(side + side / 10))?;
+    assert!(output(&folder.0, &line(side))?.status.success(), "{side}");
+    let larger = output(&folder.0, &line(side + side / 10))?;
     is_refused(&larger, &["the budget is 10 MB"]);
     Ok(())
 }
@@ -384,14 +379,14 @@ fn a_path_on_layers_goes_on() -> Done {
             format!("{PATH} --layer 20e9,0.3,1e-3 --layer copper,5e-4 --base steel {periodic}");
         let first =
             format!("{line} --max-area-fraction 0.1 --record {name}.npz --out {name}_first");
-        let first = run(&folder.0, &first)?;
+        let first = output(&folder.0, &first)?;
         assert!(said(&first).contains(&format!("bodies     {coat}")), "{}", said(&first));
         let settings = fs::read_to_string(folder.join(&format!("{name}_first/settings.json")))?;
         assert!(settings.contains("20000000000.0"), "{settings}");
         let more = format!(
             "path --updater cholesky --resume {name}.npz --max-area-fraction 0.2 --out {name}_more"
         );
-        assert!(said(&run(&folder.0, &more)?).contains(coat));
+        assert!(said(&output(&folder.0, &more)?).contains(coat));
         printed(&folder.0, &format!("{line} --max-area-fraction 0.2 --out {name}_whole"))?;
         are_alike(
             &folder.join(&format!("{name}_more/path.csv")),
@@ -414,20 +409,20 @@ fn a_path_that_repeats_along_one_side_goes_on() -> Done {
         let line = format!("{PATH} --periodic {along}");
         let first =
             format!("{line} --max-area-fraction 0.1 --record {along}.npz --out {along}_first");
-        let first = run(&folder.0, &first)?;
+        let first = output(&folder.0, &first)?;
         assert!(told(&first).contains(&format!("half-space {said_of}")), "{}", told(&first));
         let settings = fs::read_to_string(folder.join(&format!("{along}_first/settings.json")))?;
         assert!(settings.contains(&said_of), "{settings}");
         let more = format!(
             "path --updater cholesky --resume {along}.npz --max-area-fraction 0.2 --out {along}_more"
         );
-        assert!(told(&run(&folder.0, &more)?).contains(&said_of));
+        assert!(told(&output(&folder.0, &more)?).contains(&said_of));
         printed(&folder.0, &format!("{line} --max-area-fraction 0.2 --out {along}_whole"))?;
         are_alike(
             &folder.join(&format!("{along}_more/path.csv")),
             &folder.join(&format!("{along}_whole/path.csv")),
         )?;
-        let patches = run(&folder.0, &format!("patches {along}.npz --out {along}_patches"))?;
+        let patches = output(&folder.0, &format!("patches {along}.npz --out {along}_patches"))?;
         let boundary = format!("along {along} periodic boundary");
         assert!(
             patches.status.success() && told(&patches).contains(&boundary),
@@ -438,11 +433,11 @@ fn a_path_that_repeats_along_one_side_goes_on() -> Done {
             let leak = format!(
                 "leak {along}.npz --viscosity 1e-3 --pressure-drop 1e5 --along {flow} --states 3 --out {along}_{flow}"
             );
-            let leak = run(&folder.0, &leak)?;
+            let leak = output(&folder.0, &leak)?;
             assert!(leak.status.success() && told(&leak).contains(sides), "{}", told(&leak));
         }
     }
-    let both = run(&folder.0, &format!("{PATH} --layer steel,1e-6 --base rigid --periodic x"))?;
+    let both = output(&folder.0, &format!("{PATH} --layer steel,1e-6 --base rigid --periodic x"))?;
     is_refused(&both, &["layers repeat", "love"]);
     Ok(())
 }
@@ -465,7 +460,7 @@ fn bad_layers_are_refused() -> Done {
         ("--layer 1e9,0.3,1e-6 --base rigid --e-star 1e9", "--e-star"),
         ("--against steel", "--against"),
     ] {
-        let done = run(&folder.0, &format!("path --nodes 16 {line}"))?;
+        let done = output(&folder.0, &format!("path --nodes 16 {line}"))?;
         // What is wrong with a number is an error, and what is wrong with the arguments one of the command line.
         assert!(matches!(done.status.code(), Some(1 | 2)), "{line}: {}", said(&done));
         assert!(said(&done).contains(words), "{line}: {}", said(&done));

@@ -4,12 +4,11 @@ mod common;
 
 use std::collections::BTreeSet;
 use std::error::Error;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
 use asperity_testing::page::tables;
-use common::{Scratch, asperity, said};
+use common::{Scratch, run};
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
@@ -80,9 +79,7 @@ fn the_page_is_that_of_the_files() -> Done {
     for line in PATHS {
         let generated = if line.contains("--resume") { "" } else { "--nodes 32 --record r.npz" };
         let line = format!("path {generated} {line}");
-        let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-        let done = asperity(&folder.0, &words).output()?;
-        assert!(done.status.success(), "{line}: {}", said(&done));
+        run(&folder.0, &line)?;
         let (names, text) = members(&folder.join("r.npz"))?;
         arrays.extend(names);
         parameters.extend(keys(&text, &["kernel", "settings"]));

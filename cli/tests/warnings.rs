@@ -3,23 +3,14 @@
 mod common;
 
 use std::error::Error;
-use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Output;
 
 use asperity::io::write_npy;
-use common::{Scratch, asperity, said};
+use common::{Scratch, run, said};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
-
-fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    let done = asperity(folder, &words).output()?;
-    assert!(done.status.success(), "{line}: {}", said(&done));
-    Ok(done)
-}
 
 /// All that a command prints.
 fn words(folder: &Path, line: &str) -> Result<String, Box<dyn Error>> {

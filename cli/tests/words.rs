@@ -9,17 +9,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use common::{Scratch, asperity, data, is_refused, said};
+use common::{Scratch, asperity, data, is_refused, run, said};
 
 type Done = Result<(), Box<dyn Error>>;
-
-/// The program with the words of a line, which has to succeed.
-fn run(folder: &Path, line: &str) -> Result<Output, Box<dyn Error>> {
-    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
-    let done = asperity(folder, &words).output()?;
-    assert!(done.status.success(), "{line}: {}", said(&done));
-    Ok(done)
-}
 
 fn printed(done: &Output) -> String {
     String::from_utf8_lossy(&done.stdout).into_owned()

@@ -41,6 +41,19 @@ pub fn asperity(folder: &Path, arguments: &[&OsStr]) -> Command {
     command
 }
 
+/// What the program does in a folder with the words of a line.
+pub fn output(folder: &Path, line: &str) -> std::io::Result<Output> {
+    let words: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    asperity(folder, &words).output()
+}
+
+/// The same of a line that has to succeed.
+pub fn run(folder: &Path, line: &str) -> std::io::Result<Output> {
+    let done = output(folder, line)?;
+    assert!(done.status.success(), "{line}: {}", said(&done));
+    Ok(done)
+}
+
 /// The program under a limit that a shell sets first.
 pub fn limited(folder: &Path, limit: &str, arguments: &[&OsStr]) -> std::io::Result<Output> {
     Command::new("sh")
