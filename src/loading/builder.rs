@@ -12,14 +12,13 @@ use super::history::History;
 use super::limits::Limits;
 use super::phase::Phase;
 use super::plastic::Plastic;
-use super::refined::Refined;
+use super::estimated::Estimated;
 use super::releases::Releases;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings, Memory};
 use super::scalars::PathScalars;
 use super::solver::{LoadingSolver, Procedure};
 use super::stepwise::Stepwise;
-use super::yielding::RefinedYielding;
 use crate::contact::{ContactSequence, ContactState, ContactTarget};
 use crate::hardness::Limit;
 use crate::updater::{ConjugateGradient, Handover, LinearUpdater, WindowFactor};
@@ -278,17 +277,12 @@ impl<'a, U: LinearUpdater> LoadingBuilder<'a, U> {
         let settles = self.rule == ContactRule::FirstContact;
         let procedure = match growth {
             ContactGrowth::Unknown => {
-                let refined = Refined::with_releases(self.window_size, settles);
-                Procedure::Stepwise(Stepwise::default(), refined)
-            }
-            _ if plastic.is_some() => {
-                let refined = RefinedYielding::new(self.window_size, settles);
-                let exact = Exact::new(growth, self.window_size);
-                Procedure::Yielding(Box::new((exact, refined)))
+                let estimated = Estimated::with_releases(self.window_size, settles);
+                Procedure::Stepwise(Stepwise::default(), estimated)
             }
             _ => {
-                let refined = Refined::new(self.window_size, settles);
-                Procedure::Windows(Exact::new(growth, self.window_size), refined)
+                let estimated = Estimated::new(self.window_size, settles);
+                Procedure::Windows(Exact::new(growth, self.window_size), estimated)
             }
         };
         // Before first touch.

@@ -7,13 +7,13 @@ use super::cost::{WITH_FACTOR, automatic_window, watched_for};
 use super::factor_log::FactorLog;
 use super::gap_field::GapLine;
 use super::plastic::Plastic;
-use super::ranking::{Ranking, rank, survey};
+use super::ranking::{Ranking, rank, rank_yields, survey};
 use super::run::LoadingRun;
 use super::scalars::Rates;
 use super::state::ContactEvent;
 use super::tolerances::ties_until;
-use super::trial::Trial;
-use super::tuning::{BORDERED, MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE, TOLERANCE};
+use super::trial::{Trial, of_nodes};
+use super::tuning::{MULTIPLE, OF_RESIDUAL, RECOGNISED, SQUARE, TOLERANCE};
 use super::walk::{Carried, Walk};
 use super::window::{SUMS, Watched, Window, of_overlap};
 use crate::contact::ContactSequence;
@@ -149,25 +149,9 @@ impl Exact {
             let first = times.fold(f64::INFINITY, f64::min);
             return Ok(Survey { first, beyond: f64::INFINITY, rates });
         }
-        let mut first = rank(run, &mut self.ranking)?;
-        let mut beyond = f64::INFINITY;
-        if let Some(plastic) = &run.plastic {
-            let times = self.ranking.iter().map(|&(time, _)| time);
-            let last = times.filter(|time| time.is_finite()).fold(f64::NEG_INFINITY, f64::max);
-            let hardness = plastic.hardness().values();
-            let pressures = run.field.pressures(&run.contact, run.scalars.approach());
-            for ((node, pressure), rate) in pressures.zip(&run.field.solution().rate) {
-                let time = ((hardness[node] - pressure) / rate).max(0.0);
-                if *rate > 0.0 && time < f64::INFINITY {
-                    if time <= last || last == f64::NEG_INFINITY {
-                        self.ranking.push((time, node));
-                        first = first.min(time);
-                    } else {
-                        beyond = beyond.min(time);
-                    }
-                }
-            }
-        }
+        let touches = rank(run, &mut self.ranking)?;
+        let [yields, beyond] = rank_yields(run, &mut self.ranking);
+        let first = touches.min(yields);
         Ok(Survey { first, beyond, rates: run.scalars.rates() })
     }
 
@@ -273,17 +257,7 @@ impl Exact {
             watched.push(Watched { node, is_elastic: true, hardness, line, sums });
         }
         if positions.is_empty() && !has_yielded {
-            // A pressure is watched only if the node could come to its hardness in the window.
-            let touches = watched.iter().map(|watched| watched.line.touches());
-            let last = touches.filter(|time| time.is_finite()).fold(0.0, f64::max);
-            let end = if horizon < f64::INFINITY { horizon } else { last };
-            for (position, watched) in watched.iter_mut().enumerate() {
-                let GapLine { gap, closing } = watched.line;
-                let most = BORDERED * (end * closing - gap) / schur.entry(position, position);
-                if most < watched.hardness {
-                    watched.hardness = f64::INFINITY;
-                }
-            }
+            Watched::leave_out_pressures(&mut watched, schur, horizon);
         }
         self.window.begin_both((approach, horizon), &watched, order.len());
         run.timings.windows += 1;
@@ -300,10 +274,10 @@ impl Exact {
         // When the first contradiction was is an estimate, which must not make the search long if it keeps
         // failing.
         let mut fewest = 1;
-        while let Some(plastic) = run.plastic.clone().filter(|_| !self.window.is_of_touches()) {
-            let (trial, until) = self.try_end(run, &plastic, updater)?;
+        while !self.window.is_of_touches() {
+            let (trial, until) = self.try_end(run, updater)?;
             if self.take_back(run, until, &mut fewest) == 0 {
-                return self.commit(run, updater, (&plastic, trial));
+                return self.commit(run, updater, trial);
             }
         }
         let begun = run.mark();
@@ -358,7 +332,6 @@ impl Exact {
     fn try_end<U: LinearUpdater>(
         &mut self,
         run: &mut LoadingRun,
-        plastic: &Plastic,
         updater: &mut U,
     ) -> Result<(Trial, Option<f64>), Error> {
         let end = self.end();
@@ -369,14 +342,13 @@ impl Exact {
         // Pressures and rates of nodes that touched, gaps and their rates of nodes that yielded.
         let mut pressed: Vec<(usize, [f64; 2])> = Vec::new();
         let mut values = vec![[0.0; 2]; nodes];
-        let hardness = plastic.hardness().values();
         for (event, answer) in self.window.events().iter().zip(self.window.answers(end)) {
             let node = self.window.node(event.position);
             if event.kind == ContactEvent::Touch {
                 let yields = self.window.events().iter().any(|other| {
                     (other.position, other.kind) == (event.position, ContactEvent::Yield)
                 });
-                pressed.push((node, if yields { [hardness[node], 0.0] } else { answer }));
+                pressed.push((node, if yields { [run.hardness(node), 0.0] } else { answer }));
             } else if run.contact.contains(node) {
                 values[node] = answer.map(|overlap| -overlap);
             }
@@ -405,9 +377,7 @@ impl Exact {
         for (node, value) in pressed {
             values[node] = value;
         }
-        let events = self.window.events().iter();
-        let events = events.map(|event| (self.window.node(event.position), event.kind));
-        let trial = Trial::of(run, plastic, events)?;
+        let trial = Trial::of(run, &of_nodes(&self.window, self.window.events()))?;
         let after = trial.contact.order();
         let solution = Solution {
             pressure: after.iter().map(|&node| values[node][0]).collect(),
@@ -415,9 +385,9 @@ impl Exact {
         };
         run.field.place(&trial.contact, solution, approach)?;
         run.timings.convolution = run.field.time();
-        run.check_closed(&trial.problem, &trial.contact, approach)?;
-        let slack = slack_at(run, trial.set(), approach);
-        let until = contradiction(run, trial.set(), (approach, slack));
+        run.check_closed(trial.problem(&run.problem), &trial.contact, approach)?;
+        let slack = slack_at(run, trial.set(run), approach);
+        let until = contradiction(run, trial.set(run), (approach, slack));
         Ok((trial, until))
     }
 
@@ -426,10 +396,10 @@ impl Exact {
         &mut self,
         run: &mut LoadingRun,
         updater: &mut U,
-        (plastic, trial): (&Plastic, Trial),
+        trial: Trial,
     ) -> Result<(), Error> {
         let step = run.steps();
-        let (problem, contact, _) = trial.set();
+        let (problem, contact) = (trial.problem(&run.problem), &trial.contact);
         // Whatever becomes of the updater, also by a panic: the states so far are known without it.
         let known = run.releases.forget(step);
         let before = run.contact.order();
@@ -448,7 +418,7 @@ impl Exact {
         let places = left.iter().map(|left| left.position);
         self.log.push_yielded(trial.yielded.len(), places, &joined);
         self.is_behind = true;
-        trial.adopt(run, plastic);
+        trial.adopt(run);
         Ok(())
     }
 

@@ -92,16 +92,16 @@ impl Strike {
         work: impl FnOnce() -> Result<T, Error>,
     ) -> Result<(T, Option<Fault>), Error> {
         let call = self.calls.fetch_add(1, Relaxed);
-        let solves = ["advance", "probe", "solve_apart", "advance_behind", "probe_behind"];
-        let solves = solves.contains(&method) || method == "solve_alone";
-        let proposes = ["propose", "propose_both"].contains(&method);
+        let advances = method.starts_with("advance");
+        let solves = advances || ["probe", "solve_apart"].contains(&method);
+        let proposes = method.starts_with("propose");
         let possible = match self.fault {
             Fault::Forget => method == "cut",
             Fault::Each(part, _) | Fault::Last(part, _) => match part {
                 Part::Schur | Part::RowSums | Part::Proposed => proposes,
-                Part::Pressure => solves && method != "probe",
-                Part::Rate => solves && !["probe", "probe_behind"].contains(&method),
-                Part::Field => solves && !["solve_apart", "solve_alone"].contains(&method),
+                Part::Pressure => solves,
+                Part::Rate => solves && method != "probe",
+                Part::Field => solves && method != "solve_apart",
             },
             Fault::Length(_) => solves || proposes,
             Fault::Tolerance(_) => false,
@@ -213,84 +213,14 @@ impl Iterations for Failing {
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<Vec<[f64; 2]>, Error> {
-        let Self { inner, strike, .. } = self;
-        let work = || inner.propose(problem, contact, nodes, schur);
-        let (mut known, fault) = strike.call("propose", work)?;
-        if self.misleads {
-            for (k, &node) in nodes.iter().enumerate() {
-                schur.matrix_mut()[(k, k)] *= 1.5 + libm::sin(node as f64);
-            }
-        }
-        if let Some(fault) = fault {
-            fault.spoil_proposal(schur, &mut known);
-        }
-        Ok(known)
-    }
-
-    fn advance(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        span: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error> {
-        let Self { inner, strike, .. } = self;
-        let work = || inner.advance(problem, contact, approach, span, solved);
-        if let ((), Some(fault)) = strike.call("advance", work)? {
-            fault.spoil_solved(solved);
-        }
-        Ok(())
-    }
-
-    fn probe(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        error: f64,
-    ) -> Result<Vec<f64>, Error> {
-        let Self { inner, strike, .. } = self;
-        let work = || inner.probe(problem, contact, count, approach, error);
-        let (mut displacement, fault) = strike.call("probe", work)?;
-        if let Some(fault) = fault {
-            fault.spoil(Part::Field, &mut displacement);
-        }
-        Ok(displacement)
-    }
-
-    fn solve_apart(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        let Self { inner, strike, .. } = self;
-        let work = || Iterations::solve_apart(inner, problem, contact, count, approach, solution);
-        if let ((), Some(fault)) = strike.call("solve_apart", work)? {
-            fault.spoil(Part::Pressure, &mut solution.pressure);
-            fault.spoil(Part::Rate, &mut solution.rate);
-        }
-        Ok(())
-    }
-
-    fn propose_both(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
         nodes: [&[usize]; 2],
-        beside: &Beside<'_>,
+        beside: Option<&Beside<'_>>,
         schur: &mut Schur,
     ) -> Result<Proposal, Error> {
         let Self { inner, strike, .. } = self;
-        let work = || inner.propose_both(problem, contact, nodes, beside, schur);
-        let (mut proposal, fault) = strike.call("propose_both", work)?;
+        let work = || inner.propose(problem, contact, nodes, beside, schur);
+        let method = if beside.is_some() { "propose beside yielded nodes" } else { "propose" };
+        let (mut proposal, fault) = strike.call(method, work)?;
         if self.misleads {
             for (k, &node) in nodes[0].iter().chain(nodes[1]).enumerate() {
                 schur.matrix_mut()[(k, k)] *= 1.5 + libm::sin(node as f64);
@@ -310,40 +240,41 @@ impl Iterations for Failing {
         Ok(proposal)
     }
 
-    fn advance_behind(
+    fn advance(
         &mut self,
         behind: &Behind<'_>,
         span: f64,
         solved: &mut Solved,
     ) -> Result<(), Error> {
         let Self { inner, strike, .. } = self;
-        let work = || inner.advance_behind(behind, span, solved);
-        if let ((), Some(fault)) = strike.call("advance_behind", work)? {
+        let method = if behind.yielded.is_empty() { "advance" } else { "advance behind yields" };
+        let work = || inner.advance(behind, span, solved);
+        if let ((), Some(fault)) = strike.call(method, work)? {
             fault.spoil_solved(solved);
         }
         Ok(())
     }
 
-    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
+    fn probe(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
         let Self { inner, strike, .. } = self;
-        let (mut solved, fault) =
-            strike.call("probe_behind", || inner.probe_behind(behind, error))?;
+        let (mut solved, fault) = strike.call("probe", || inner.probe(behind, error))?;
         if let Some(fault) = fault {
             fault.spoil_solved(&mut solved);
         }
         Ok(solved)
     }
 
-    fn solve_alone(
+    fn solve_apart(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
+        count: usize,
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error> {
         let Self { inner, strike, .. } = self;
-        let work = || inner.solve_alone(problem, contact, approach, solution);
-        if let ((), Some(fault)) = strike.call("solve_alone", work)? {
+        let work = || Iterations::solve_apart(inner, problem, contact, count, approach, solution);
+        if let ((), Some(fault)) = strike.call("solve_apart", work)? {
             fault.spoil(Part::Pressure, &mut solution.pressure);
             fault.spoil(Part::Rate, &mut solution.rate);
         }

@@ -114,43 +114,21 @@ impl GapField {
         Ok(())
     }
 
-    /// Moves iterations to the contact at an approach, with a rate that serves over a span of it.
+    /// Moves iterations to a state, with a rate that serves over a span of the approach.
     pub(super) fn advance(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        iterations: &mut dyn Iterations,
-        [approach, span]: [f64; 2],
-    ) -> Result<(), Error> {
-        self.revision = None;
-        iterations.advance(problem, contact, approach, span, &mut self.solved)?;
-        self.take(problem, contact, approach)
-    }
-
-    /// Moves iterations to a state behind yields.
-    pub(super) fn advance_behind(
         &mut self,
         behind: &Behind<'_>,
         iterations: &mut dyn Iterations,
         span: f64,
     ) -> Result<(), Error> {
         self.revision = None;
-        iterations.advance_behind(behind, span, &mut self.solved)?;
-        self.take(behind.problem, behind.contact, behind.approach)
-    }
-
-    /// Takes over what iterations have solved.
-    fn take(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-    ) -> Result<(), Error> {
-        check_solution(&self.solved.solution, contact.len())?;
+        iterations.advance(behind, span, &mut self.solved)?;
+        check_solution(&self.solved.solution, behind.contact.len())?;
         for field in &self.solved.displacement {
-            UpdaterError::check_length("displacements", field.len(), problem.grid().nodes())?;
+            let nodes = behind.problem.grid().nodes();
+            UpdaterError::check_length("displacements", field.len(), nodes)?;
         }
-        self.belong_to(contact, approach);
+        self.belong_to(behind.contact, behind.approach);
         Ok(())
     }
 

@@ -73,6 +73,7 @@ mod builder;
 mod complementary;
 mod contradiction;
 mod cost;
+mod estimated;
 mod event_cost;
 mod exact;
 mod factor_log;
@@ -86,7 +87,6 @@ mod limits;
 mod phase;
 mod plastic;
 mod ranking;
-mod refined;
 mod releases;
 mod resume;
 mod rule;
@@ -106,7 +106,6 @@ mod unloading;
 mod walk;
 mod window;
 mod window_end;
-mod yielding;
 
 #[doc(hidden)] // for the programs of this repository
 pub use crate::memory::default_budget;
@@ -118,7 +117,7 @@ pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
 #[cfg(feature = "io")]
-pub(crate) use refined::resumed::RefinedEnd;
+pub(crate) use estimated::resumed::EstimatedEnd;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository

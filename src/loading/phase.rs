@@ -3,7 +3,7 @@
 use super::event_cost::{Rest, greatest_factor};
 use super::factor_log::FactorLog;
 use super::gap_field;
-use super::refined::resumed::RefinedEnd;
+use super::estimated::resumed::EstimatedEnd;
 use super::run::LoadingRun;
 use super::tuning::{LEAST_CONTACT, LEAST_WINDOW};
 use super::window::Window;
@@ -201,7 +201,7 @@ impl<U: LinearUpdater> Phase<U> {
         &mut self,
         run: &LoadingRun,
         contact: &ContactSequence,
-        end: &RefinedEnd,
+        end: &EstimatedEnd,
     ) -> Result<bool, Error> {
         let solved = end.contact(contact)?;
         let mut successor: Option<Box<dyn Iterations>> = None;
@@ -242,7 +242,7 @@ impl<U: LinearUpdater> Phase<U> {
                 let yielded: Vec<usize> = run.releases.yielded_at(step).collect();
                 let (_, problem) = plastic.beside(&yielded)?;
                 let contact = ContactSequence::with_order(grid, nodes.iter().copied())?;
-                iterations.solve_alone(&problem, &contact, approach, solution)?;
+                iterations.solve_apart(&problem, &contact, at.0, approach, solution)?;
                 gap_field::check_solution(solution, at.0)?;
                 return Ok(nodes);
             }

@@ -48,6 +48,31 @@ pub(super) fn fill(
     run.survey(allowed, |node, line| ranking.push((time(&line), node)))
 }
 
+/// Ranks the nodes in contact that would yield before the last of the ranked ones touches. Returns when the first of them would, and
+/// when the first of the others.
+pub(super) fn rank_yields(run: &LoadingRun, ranking: &mut Ranking) -> [f64; 2] {
+    let (mut first, mut beyond) = (f64::INFINITY, f64::INFINITY);
+    let Some(plastic) = &run.plastic else {
+        return [first, beyond];
+    };
+    let times = ranking.iter().map(|&(time, _)| time);
+    let last = times.filter(|time| time.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    let hardness = plastic.hardness().values();
+    let pressures = run.field.pressures(&run.contact, run.scalars.approach());
+    for ((node, pressure), rate) in pressures.zip(&run.field.solution().rate) {
+        let time = ((hardness[node] - pressure) / rate).max(0.0);
+        if *rate > 0.0 && time < f64::INFINITY {
+            if time <= last || last == f64::NEG_INFINITY {
+                ranking.push((time, node));
+                first = first.min(time);
+            } else {
+                beyond = beyond.min(time);
+            }
+        }
+    }
+    [first, beyond]
+}
+
 /// Checks that contact grows, ranks all nodes that may touch or yield, and takes the scalars from the solution. Returns the
 /// rates.
 pub(super) fn survey(

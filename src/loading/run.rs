@@ -13,7 +13,7 @@ use super::state::{ContactEvent, LoadingState};
 use super::sum::Sum;
 use super::window::{BadPivot, Window};
 use crate::contact::{ContactSequence, ContactState};
-use crate::updater::{Iterations, LinearUpdater, Schur, Solution, WindowFactor};
+use crate::updater::{Behind, Iterations, LinearUpdater, Schur, Solution, WindowFactor};
 use crate::{Boundary, Error, Grid, Problem, UpdaterError};
 
 /// Where a path spent its time, besides its updater.
@@ -125,6 +125,16 @@ impl LoadingRun {
         self.contact.len() + self.plastic.as_ref().map_or(0, |plastic| plastic.count())
     }
 
+    /// The pressure at which a node yields.
+    pub(super) fn hardness(&self, node: usize) -> f64 {
+        self.plastic.as_ref().map_or(f64::INFINITY, |plastic| plastic.hardness().values()[node])
+    }
+
+    /// Whether a node has yielded.
+    pub(super) fn has_yielded(&self) -> bool {
+        self.plastic.as_ref().is_some_and(|plastic| plastic.count() > 0)
+    }
+
     /// Whether a node in contact has a hardness that it can come to.
     pub(super) fn may_yield(&self) -> bool {
         self.plastic.as_ref().is_some_and(|plastic| {
@@ -200,7 +210,7 @@ impl LoadingRun {
         approach: f64,
         span: f64,
     ) -> Result<(), Error> {
-        self.field.advance(&self.problem, &self.contact, iterations, [approach, span])
+        self.field.advance(&Behind::on(&self.problem, &self.contact, approach), iterations, span)
     }
 
     /// `Ok` if the solution of an exact updater closes the contact, to rounding: its residual is n rounding errors of

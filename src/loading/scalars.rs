@@ -194,12 +194,12 @@ impl PathScalars {
     pub(super) fn change_rates(&mut self, rates: Rates, [elastic, yielded]: [usize; 2], sum: f64) {
         self.unit_stiffness = rates.unit_stiffness;
         self.closing = rates.closing / self.grid.nodes() as f64;
-        let plastic = self.plastic.get_or_insert_default();
-        plastic.nodes = yielded;
-        plastic.rates = rates.plastic;
+        if let Some(plastic) = &mut self.plastic {
+            plastic.nodes = yielded;
+            // On a plateau by identity.
+            plastic.rates = if elastic == 0 { [yielded as f64, sum] } else { rates.plastic };
+        }
         if elastic == 0 {
-            // By identity.
-            plastic.rates = [yielded as f64, sum];
             self.unit_stiffness = 0.0;
             self.load = self.grid.cell_area() * sum;
             self.closing = (self.grid.nodes() - yielded) as f64 / self.grid.nodes() as f64;

@@ -8,13 +8,12 @@ use super::exact::Exact;
 use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
-use super::refined::Refined;
-use super::refined::leaving::Attempt;
+use super::estimated::Estimated;
+use super::estimated::leaving::Attempt;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
 use super::stepwise::Stepwise;
-use super::yielding::RefinedYielding;
 use crate::contact::ContactTarget;
 use crate::updater::{Handover, LinearUpdater};
 use crate::{Error, Grid, Problem};
@@ -65,12 +64,10 @@ pub struct LoadingSolver<U = Handover> {
 /// How events are found, chosen once.
 #[derive(Debug)]
 pub(super) enum Procedure {
-    /// In windows: exact ones while there is a factor, and refined ones with iterations.
-    Windows(Exact, Refined),
+    /// In windows: exact ones while there is a factor, and estimated ones with iterations.
+    Windows(Exact, Estimated),
     /// One at a time, and with iterations in windows until a node leaves.
-    Stepwise(Stepwise, Refined),
-    /// In windows in which nodes yield as well.
-    Yielding(Box<(Exact, RefinedYielding)>),
+    Stepwise(Stepwise, Estimated),
 }
 
 impl Procedure {
@@ -80,7 +77,6 @@ impl Procedure {
         match self {
             Self::Windows(exact, _) => exact.follow_on(log, is_behind),
             Self::Stepwise(stepwise, _) => stepwise.follow_on(log),
-            Self::Yielding(windows) => windows.0.follow_on(log, is_behind),
         }
     }
 }
@@ -165,10 +161,10 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         let stop = phase.stop(run, end);
         match (&mut self.procedure, phase) {
-            (Procedure::Stepwise(stepwise, refined), phase) => {
+            (Procedure::Stepwise(stepwise, estimated), phase) => {
                 // Whatever the limit, so that a path that goes on behind it is the same.
                 if let Phase::Iterations(iterations) = phase {
-                    let attempt = refined.attempt(run, &mut **iterations)?;
+                    let attempt = estimated.attempt(run, &mut **iterations)?;
                     if attempt != Attempt::NotBegun {
                         stepwise.forget();
                     }
@@ -185,27 +181,16 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 stepwise.produce(run, phase, most_nodes)
             }
             _ if is_enough => Ok(()),
-            (Procedure::Yielding(windows), Phase::Factor { updater, .. }) => {
-                let failure = windows.0.produce(run, updater, limit)?;
-                if let Some(node) = run.waiting().filter(|_| run.queue.is_empty()) {
-                    let stopped = || run.not_monotone("rate of a gap or a pressure", node, 0.0);
-                    return Err(failure.unwrap_or_else(stopped));
-                }
-                self.failure = failure;
-                Ok(())
+            // A whole window, whatever the limit: a path that goes on behind it has the same windows.
+            (Procedure::Windows(_, estimated), Phase::Iterations(iterations)) => {
+                estimated.produce(run, &mut **iterations, nodes)
             }
-            (Procedure::Yielding(windows), Phase::Iterations(iterations)) => {
-                windows.1.produce(run, &mut **iterations, limit)
-            }
-            (Procedure::Windows(_, refined), Phase::Iterations(iterations)) => {
-                // A whole window, whatever the limit: a path that goes on behind it has the same windows.
-                refined.produce(run, &mut **iterations, nodes)
-            }
-            (Procedure::Windows(windowed, _), Phase::Factor { updater, .. }) => {
-                let failure = windowed.produce(run, updater, most_nodes.min(stop))?;
-                if run.queue.is_empty() {
+            (Procedure::Windows(exact, _), Phase::Factor { updater, .. }) => {
+                let most = if run.plastic.is_some() { limit } else { most_nodes.min(stop) };
+                let failure = exact.produce(run, updater, most)?;
+                if run.queue.is_empty() && run.waiting().is_some() {
                     // Nothing came before it, and contact that only grows has events up to the last node.
-                    return Err(failure.unwrap_or_else(|| windowed.growth_stopped(run)));
+                    return Err(failure.unwrap_or_else(|| exact.growth_stopped(run)));
                 }
                 self.failure = failure;
                 Ok(())

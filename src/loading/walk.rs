@@ -10,6 +10,8 @@ use super::state::ContactEvent;
 pub(super) struct Carried {
     /// How many are elastic, and how many have yielded.
     pub(super) nodes: [usize; 2],
+    /// Events so far.
+    step: usize,
     /// The sum of pressures of those that have yielded, and what all could carry: a load beyond these is rounding.
     sum: f64,
     most: f64,
@@ -17,14 +19,14 @@ pub(super) struct Carried {
 
 impl Carried {
     pub(super) fn of(run: &LoadingRun) -> Self {
-        let elastic = run.contact.len();
+        let (elastic, step) = (run.contact.len(), run.steps());
         let Some(plastic) = &run.plastic else {
-            return Self { nodes: [elastic, 0], sum: 0.0, most: f64::INFINITY };
+            return Self { nodes: [elastic, 0], step, sum: 0.0, most: f64::INFINITY };
         };
         let hardness = plastic.hardness().values();
         let carried: f64 = run.contact.order().iter().map(|&node| hardness[node]).sum();
         let sum = plastic.sum();
-        Self { nodes: [elastic, plastic.count()], sum, most: sum + carried }
+        Self { nodes: [elastic, plastic.count()], step, sum, most: sum + carried }
     }
 }
 
@@ -37,14 +39,13 @@ pub(super) struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     pub(super) fn new(plastic: Option<&'a Plastic>, carried: Carried) -> Self {
-        let [elastic, yielded] = carried.nodes;
         let hardness = plastic.map(|plastic| plastic.hardness().values());
-        Self { hardness, step: elastic + 2 * yielded, carried }
+        Self { hardness, step: carried.step, carried }
     }
 
     /// Lets a node touch or yield. Returns the bounds of the load there.
     pub(super) fn pass(&mut self, node: usize, kind: ContactEvent) -> [f64; 2] {
-        let Carried { nodes: [elastic, yielded], sum, most } = &mut self.carried;
+        let Carried { nodes: [elastic, yielded], sum, most, .. } = &mut self.carried;
         let bounds = [*sum, *most];
         let hardness = self.hardness.map_or(f64::INFINITY, |hardness| hardness[node]);
         if kind == ContactEvent::Touch {

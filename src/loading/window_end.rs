@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::factor_log::FactorLog;
 use super::limits::LoadingEnd;
 use super::phase::Phase;
-use super::refined::resumed::RefinedEnd;
+use super::estimated::resumed::EstimatedEnd;
 use super::snapshot::{Snapshot, not_on_path};
 use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};
@@ -24,7 +24,7 @@ use crate::updater::{Left, LinearUpdater, Solution};
 /// |---|---|---|
 /// | `ahead` | the states of the window that are yet to come: the contact at its end | the same |
 /// | `handed_over_at` | | when the factor was given up, which memory may have decided |
-/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events; behind yields the solution of the factor before | [`RefinedEnd`] and [`Kept`](crate::updater::Kept) |
+/// | `next` | [`FactorLog`], the windows so far, or single events: the factor is made again by the same steps, and the last of them tells what was watched and has not touched, whose order the next window keeps; the scalars, which are sums over all events; behind yields the solution of the factor before | [`EstimatedEnd`] and [`Kept`](crate::updater::Kept) |
 ///
 /// Nothing else is remembered from window to window. Timings are not kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub(crate) struct WindowEnd {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum NextWindow {
     Factor(Box<FactorEnd>),
-    Iterations(Box<RefinedEnd>),
+    Iterations(Box<EstimatedEnd>),
 }
 
 /// What the next window with a factor depends on.
@@ -62,7 +62,6 @@ impl<U: LinearUpdater> LoadingSolver<U> {
         }
         let (log, solution) = match &self.procedure {
             Procedure::Windows(exact, _) => (exact.log(), exact.solution(&self.run)),
-            Procedure::Yielding(windows) => (windows.0.log(), windows.0.solution(&self.run)),
             Procedure::Stepwise(stepwise, _) => (stepwise.log(), None),
         };
         let next = match (&self.phase, &self.procedure) {
@@ -70,15 +69,14 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 let (log, scalars) = (log.clone(), self.run.scalars.numbers());
                 NextWindow::Factor(Box::new(FactorEnd { log, scalars, solution }))
             }
-            (Phase::Iterations(iterations), Procedure::Windows(_, refined)) => {
-                let end = refined.end(&self.run, &**iterations, false)?;
+            (Phase::Iterations(iterations), Procedure::Windows(_, estimated)) => {
+                let end = estimated.end(&self.run, &**iterations, false)?;
                 NextWindow::Iterations(Box::new(end))
             }
-            (Phase::Iterations(iterations), Procedure::Stepwise(stepwise, refined)) => {
-                let end = refined.end(&self.run, &**iterations, stepwise.has_begun())?;
+            (Phase::Iterations(iterations), Procedure::Stepwise(stepwise, estimated)) => {
+                let end = estimated.end(&self.run, &**iterations, stepwise.has_begun())?;
                 NextWindow::Iterations(Box::new(end))
             }
-            (Phase::Iterations(_), Procedure::Yielding(_)) => return None,
         };
         let ahead = self.run.queue.iter().copied().collect();
         Some(WindowEnd { ahead, handed_over_at: self.handed_over_at, next })
@@ -141,8 +139,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             }
             (
                 NextWindow::Iterations(end),
-                Procedure::Windows(_, refined) | Procedure::Stepwise(_, refined),
-            ) if refined.can_follow(end) => phase.restore_iterations(run, &contact, end)?,
+                Procedure::Windows(_, estimated) | Procedure::Stepwise(_, estimated),
+            ) if estimated.can_follow(end) => phase.restore_iterations(run, &contact, end)?,
             (NextWindow::Iterations(_), _) => false,
         };
         if !restored {
@@ -161,9 +159,9 @@ impl<U: LinearUpdater> LoadingSolver<U> {
             (
                 NextWindow::Iterations(end),
                 Phase::Iterations(iterations),
-                Procedure::Windows(_, refined) | Procedure::Stepwise(_, refined),
+                Procedure::Windows(_, estimated) | Procedure::Stepwise(_, estimated),
             ) => {
-                refined.follow_on(run, &mut **iterations, end)?;
+                estimated.follow_on(run, &mut **iterations, end)?;
                 end.scalars
             }
             (NextWindow::Factor(end), ..) => Some(end.scalars),
@@ -252,7 +250,7 @@ mod tests {
         Ok(builder.resume(&states.with_window_end(end)).is_err())
     }
 
-    fn iterations(end: &mut WindowEnd) -> &mut RefinedEnd {
+    fn iterations(end: &mut WindowEnd) -> &mut EstimatedEnd {
         match &mut end.next {
             NextWindow::Iterations(end) => end,
             NextWindow::Factor(_) => unreachable!("there is no factor"),

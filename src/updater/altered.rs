@@ -120,33 +120,9 @@ impl Iterations for Altered {
         Ok(())
     }
 
-    fn propose(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: &[usize],
-        schur: &mut Schur,
-    ) -> Result<Vec<[f64; 2]>, Error> {
-        let mut complement = Schur::default();
-        Dense.watch(problem, contact, nodes, &mut complement)?;
-        let [u, rate] = &self.displacement;
-        let known = nodes.iter().map(|&node| [u[node], rate[node]]).collect();
-        let mut proposal = (complement, known);
-        (self.proposal)(&mut proposal);
-        *schur = proposal.0;
-        Ok(proposal.1)
-    }
-
-    fn advance(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        _: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error> {
-        let count = contact.len();
-        self.solve_apart(problem, contact, count, approach, &mut solved.solution)?;
+    fn advance(&mut self, behind: &Behind<'_>, _: f64, solved: &mut Solved) -> Result<(), Error> {
+        let Behind { problem, contact, approach, .. } = *behind;
+        self.solve_apart(problem, contact, contact.len(), approach, &mut solved.solution)?;
         let Solution { pressure, rate } = &solved.solution;
         self.displacement = [pressure, rate].map(|values| Self::displace(problem, contact, values));
         solved.displacement.clone_from(&self.displacement);
@@ -154,14 +130,26 @@ impl Iterations for Altered {
         Ok(())
     }
 
-    fn propose_both(
+    fn propose(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
         [outside, inside]: [&[usize]; 2],
-        beside: &Beside<'_>,
+        beside: Option<&Beside<'_>>,
         schur: &mut Schur,
     ) -> Result<BothProposal, Error> {
+        let Some(beside) = beside else {
+            let mut complement = Schur::default();
+            Dense.watch(problem, contact, outside, &mut complement)?;
+            let [u, rate] = &self.displacement;
+            let known = outside.iter().map(|&node| [u[node], rate[node]]).collect();
+            let mut proposal = (complement, known);
+            (self.proposal)(&mut proposal);
+            let (complement, lines) = proposal;
+            *schur = complement;
+            let sums = schur.row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect();
+            return Ok(BothProposal { lines, sums });
+        };
         let place = |node: &usize| contact.order().iter().position(|other| other == node);
         let places: Vec<usize> = inside.iter().filter_map(place).collect();
         // Positions ascend.
@@ -209,45 +197,13 @@ impl Iterations for Altered {
         Ok(BothProposal { lines: proposal.1, sums })
     }
 
-    fn advance_behind(
-        &mut self,
-        behind: &Behind<'_>,
-        span: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error> {
-        self.advance(behind.problem, behind.contact, behind.approach, span, solved)
-    }
-
-    fn probe_behind(&mut self, behind: &Behind<'_>, _: f64) -> Result<Solved, Error> {
+    fn probe(&mut self, behind: &Behind<'_>, _: f64) -> Result<Solved, Error> {
         let Behind { problem, contact, approach, .. } = *behind;
         let mut solved = Solved::default();
         self.solve_apart(problem, contact, contact.len(), approach, &mut solved.solution)?;
         let values = &solved.solution.pressure;
         solved.displacement[0] = Self::displace(problem, contact, values);
         Ok(solved)
-    }
-
-    fn solve_alone(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        self.solve_apart(problem, contact, contact.len(), approach, solution)
-    }
-
-    fn probe(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        _: f64,
-    ) -> Result<Vec<f64>, Error> {
-        let mut solution = Solution::default();
-        self.solve_apart(problem, contact, count, approach, &mut solution)?;
-        Ok(Self::displace(problem, contact, &solution.pressure))
     }
 
     fn solve_apart(

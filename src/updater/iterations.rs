@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::{Kept, Schur, Solution};
 use crate::contact::ContactSequence;
-use crate::{Error, Problem, UpdaterError};
+use crate::{Error, Problem};
 
 /// How a path uses an updater.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub struct Beside<'a> {
     pub row_sum: Option<f64>,
 }
 
-/// A state behind the last solution, when nodes have joined and others have yielded.
+/// A state behind the last solution, when nodes may have joined and others yielded.
 #[derive(Debug, Clone, Copy)]
 #[doc(hidden)]
 pub struct Behind<'a> {
@@ -50,12 +50,20 @@ pub struct Behind<'a> {
     pub contact: &'a ContactSequence,
     /// Nodes that have yielded since, and their pressure.
     pub yielded: &'a [(usize, f64)],
-    /// What that displaces.
+    /// What that displaces: nothing if it is empty.
     pub load: &'a [f64],
     pub approach: f64,
 }
 
-/// What iterations say of proposed nodes of both kinds.
+impl<'a> Behind<'a> {
+    /// A contact at an approach, where no node has yielded since.
+    #[must_use]
+    pub fn on(problem: &'a Problem, contact: &'a ContactSequence, approach: f64) -> Self {
+        Self { problem, contact, yielded: &[], load: &[], approach }
+    }
+}
+
+/// What iterations say of proposed nodes.
 #[derive(Debug, Default)]
 #[doc(hidden)]
 pub struct Proposal {
@@ -98,15 +106,17 @@ pub trait Iterations: Debug + Send + Sync {
         Ok(false)
     }
 
-    /// Approximates the Schur complement of nodes out of contact, and improves the displacements of these nodes under the last
-    /// solution and under its rate: by what the residual of the solution tells of them.
+    /// Approximates the matrix M of [`LinearUpdater::watch_both`](super::LinearUpdater::watch_both) of nodes out of contact and nodes in
+    /// it, which may yield, and improves what the last solution and its rate say of them: by what the residual of the solution tells.
+    /// Without yielded nodes `beside` and nodes in contact it is a Schur complement.
     fn propose(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        nodes: &[usize],
+        nodes: [&[usize]; 2],
+        beside: Option<&Beside<'_>>,
         schur: &mut Schur,
-    ) -> Result<Vec<[f64; 2]>, Error>;
+    ) -> Result<Proposal, Error>;
 
     /// How the contact answers the nodes that were proposed last, nearly: for each of them nodes in contact near it, and what a unit
     /// pressure takes off them. Nothing if the iterations cannot tell: then no window is made where nodes may leave.
@@ -114,27 +124,18 @@ pub trait Iterations: Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Solves on the whole contact, which nodes may have left since the last time, at an approach, and stays there. The rate is so exact that the solution keeps its tolerance over
-    /// the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
+    /// Solves on the whole contact, which nodes may have left since the last time, and stays there. The rate is so exact that the solution
+    /// keeps its tolerance over the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
     fn advance(
         &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
+        behind: &Behind<'_>,
         span: f64,
         solved: &mut Solved,
     ) -> Result<(), Error>;
 
-    /// The displacements of all nodes when only the first `count` nodes are in contact, those of nodes that have been proposed
-    /// to an error \[m\] or the tolerance, whichever is greater.
-    fn probe(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        error: f64,
-    ) -> Result<Vec<f64>, Error>;
+    /// Pressures, and displacements of all nodes, at a state between the last two solutions: those of nodes that have been proposed to an
+    /// error of gaps \[m\] or the tolerance, whichever is greater. No rates.
+    fn probe(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error>;
 
     /// Solves on the first `count` nodes as exactly as iterations go. The solution that the path goes on with is left as it is.
     fn solve_apart(
@@ -145,51 +146,6 @@ pub trait Iterations: Debug + Send + Sync {
         approach: f64,
         solution: &mut Solution,
     ) -> Result<(), Error>;
-
-    /// The same as [`propose`](Self::propose) for nodes out of contact and nodes in it, which may yield: approximates the matrix M of
-    /// [`LinearUpdater::watch_both`](super::LinearUpdater::watch_both).
-    fn propose_both(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: [&[usize]; 2],
-        beside: &Beside<'_>,
-        schur: &mut Schur,
-    ) -> Result<Proposal, Error> {
-        let _ = (problem, contact, nodes, beside, schur);
-        Err(UpdaterError::HardnessNotSupported.into())
-    }
-
-    /// The same as [`advance`](Self::advance) when nodes have yielded since the last solution.
-    fn advance_behind(
-        &mut self,
-        behind: &Behind<'_>,
-        span: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error> {
-        let _ = (behind, span, solved);
-        Err(UpdaterError::HardnessNotSupported.into())
-    }
-
-    /// Pressures, and displacements of all nodes, at a state between the last two solutions, to an error of gaps \[m\] or the tolerance,
-    /// whichever is greater. No rates.
-    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
-        let _ = (behind, error);
-        Err(UpdaterError::HardnessNotSupported.into())
-    }
-
-    /// Solves on a contact of which nothing is known, as exactly as iterations go. The solution that the path goes on with is left as it
-    /// is.
-    fn solve_alone(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        let _ = (problem, contact, approach, solution);
-        Err(UpdaterError::HardnessNotSupported.into())
-    }
 
     /// Goes back to a contact that has been cut: to the solution before, if that was on it.
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error>;

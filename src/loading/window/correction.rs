@@ -3,7 +3,6 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{Course, Window};
-use crate::loading::run::LoadingRun;
 use crate::loading::tuning::{CERTAIN, LEAST_DETERMINANT, OF_LEFT_OUT};
 use crate::updater::Schur;
 
@@ -14,24 +13,6 @@ pub(in crate::loading) struct AtEnd {
     pub(in crate::loading) pressure: [f64; 2],
     /// Gap and minus its closing rate: 0 if the node is in contact.
     pub(in crate::loading) gap: [f64; 2],
-}
-
-/// The gap lines of the watched nodes by the present solution, at a window's end.
-pub(in crate::loading) fn at_end(window: &Window, run: &LoadingRun) -> Vec<AtEnd> {
-    let solution = run.field.solution();
-    let first = run.contact.len().saturating_sub(window.nodes().len());
-    let joined = &run.contact.order()[first..];
-    let at = |&node: &usize| match joined.iter().position(|other| *other == node) {
-        Some(place) => AtEnd {
-            pressure: [solution.pressure[first + place], solution.rate[first + place]],
-            gap: [0.0; 2],
-        },
-        None => {
-            let line = run.line(node);
-            AtEnd { pressure: [0.0; 2], gap: [line.gap, -line.closing] }
-        }
-    };
-    window.nodes().iter().map(at).collect()
 }
 
 /// A window that explains its end.

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use super::gap_field::GapLine;
 use super::scalars::Rates;
 use super::state::ContactEvent;
-use super::tuning::EXACT_TIE;
+use super::tuning::{BORDERED, EXACT_TIE};
 use crate::updater::{Schur, WindowFactor};
 pub(super) use course::Course;
 
@@ -24,6 +24,22 @@ pub(super) struct Watched {
     /// What a pressure on it, or an overlap of it, adds to sums over all nodes: of gaps that are not closed, of plastic depths, and of
     /// these times the hardness.
     pub(super) sums: [f64; SUMS],
+}
+
+impl Watched {
+    /// Leaves the pressures of nodes out of contact unwatched that cannot come to their hardness in a window in which nodes only touch.
+    pub(super) fn leave_out_pressures(watched: &mut [Self], schur: &Schur, horizon: f64) {
+        let touches = watched.iter().map(|watched| watched.line.touches());
+        let last = touches.filter(|time| time.is_finite()).fold(0.0, f64::max);
+        let end = if horizon < f64::INFINITY { horizon } else { last };
+        for (position, watched) in watched.iter_mut().enumerate() {
+            let GapLine { gap, closing } = watched.line;
+            let most = BORDERED * (end * closing - gap) / schur.entry(position, position);
+            if most < watched.hardness {
+                watched.hardness = f64::INFINITY;
+            }
+        }
+    }
 }
 
 pub(super) const SUMS: usize = 3;

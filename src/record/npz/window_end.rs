@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{COLUMNS, Column, PLASTIC_COLUMNS, code, event, whole};
 use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
-use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, RefinedEnd, WindowEnd};
+use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, EstimatedEnd, WindowEnd};
 use crate::updater::{Kept, KeptField, Solution};
 use crate::{Error, Grid};
 
@@ -259,7 +259,7 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         marks: iterations.marks,
         coarse: nodes("window_coarse")?,
     };
-    let next = NextWindow::Iterations(Box::new(RefinedEnd {
+    let next = NextWindow::Iterations(Box::new(EstimatedEnd {
         settles: iterations.settles,
         joined: nodes("window_joined")?,
         last_span: values[0],

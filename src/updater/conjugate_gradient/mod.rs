@@ -163,25 +163,30 @@ impl Iterations for ConjugateGradient {
 
     /// # Errors
     ///
-    /// [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel is not positive
-    /// definite, and [`Error::OutOfRange`] for periodic cells that are too long.
+    /// [`Error::NoConvergence`], [`Error::FactorizationFailed`] if the kernel
+    /// is not positive definite, and [`Error::OutOfRange`] for periodic cells that are too long.
     fn propose(
         &mut self,
         problem: &Problem,
         contact: &ContactSequence,
-        nodes: &[usize],
+        nodes: [&[usize]; 2],
+        beside: Option<&Beside<'_>>,
         schur: &mut Schur,
-    ) -> Result<Vec<[f64; 2]>, Error> {
-        problem.check_nodes(nodes)?;
+    ) -> Result<Proposal, Error> {
+        nodes.into_iter().try_for_each(|nodes| problem.check_nodes(nodes))?;
         Iterations::check_cells(self, problem)?;
         let criteria = self.criteria;
         let solutions = self.solutions(problem, contact)?;
         check_count(solutions.count(), contact.len())?;
         inside(|| {
-            let (complement, displacements) =
-                solutions.propose(criteria, problem, contact, nodes)?;
+            let (complement, proposal) = match beside {
+                Some(beside) => {
+                    solutions.propose_both(criteria, problem, contact, nodes, beside)?
+                }
+                None => solutions.propose(criteria, problem, contact, nodes[0])?,
+            };
             schur.clone_from(complement);
-            Ok(displacements)
+            Ok(proposal)
         })
     }
 
@@ -192,30 +197,20 @@ impl Iterations for ConjugateGradient {
 
     fn advance(
         &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
+        behind: &Behind<'_>,
         span: f64,
         solved: &mut Solved,
     ) -> Result<(), Error> {
         let criteria = self.criteria;
         let aim = if span < f64::INFINITY { Aim::Span(span) } else { Aim::Exact };
-        let solutions = self.solutions(problem, contact)?;
-        inside(|| solutions.advance(criteria, problem, contact, (approach, aim), solved))
+        let solutions = self.solutions(behind.problem, behind.contact)?;
+        inside(|| solutions.advance(criteria, behind, aim, solved))
     }
 
-    fn probe(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        count: usize,
-        approach: f64,
-        error: f64,
-    ) -> Result<Vec<f64>, Error> {
-        check_prefix(contact, count)?;
+    fn probe(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
         let criteria = self.criteria;
-        let solutions = self.solutions(problem, contact)?;
-        inside(|| solutions.probe(criteria, problem, contact, (count, approach), error))
+        let solutions = self.solutions(behind.problem, behind.contact)?;
+        inside(|| solutions.probe(criteria, behind, error))
     }
 
     fn solve_apart(
@@ -234,60 +229,6 @@ impl Iterations for ConjugateGradient {
         inside(|| solutions.solve_apart(criteria, problem, contact, at, &mut solved))?;
         *solution = solved.solution;
         Ok(())
-    }
-
-    /// # Errors
-    ///
-    /// Those of [`propose`](Iterations::propose).
-    fn propose_both(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        nodes: [&[usize]; 2],
-        beside: &Beside<'_>,
-        schur: &mut Schur,
-    ) -> Result<Proposal, Error> {
-        nodes.into_iter().try_for_each(|nodes| problem.check_nodes(nodes))?;
-        Iterations::check_cells(self, problem)?;
-        let criteria = self.criteria;
-        let solutions = self.solutions(problem, contact)?;
-        check_count(solutions.count(), contact.len())?;
-        inside(|| {
-            let (complement, proposal) =
-                solutions.propose_both(criteria, problem, contact, nodes, beside)?;
-            schur.clone_from(complement);
-            Ok(proposal)
-        })
-    }
-
-    fn advance_behind(
-        &mut self,
-        behind: &Behind<'_>,
-        span: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error> {
-        let criteria = self.criteria;
-        let aim = if span < f64::INFINITY { Aim::Span(span) } else { Aim::Exact };
-        let solutions = self.solutions(behind.problem, behind.contact)?;
-        inside(|| solutions.advance_behind(criteria, behind, aim, solved))
-    }
-
-    fn probe_behind(&mut self, behind: &Behind<'_>, error: f64) -> Result<Solved, Error> {
-        let criteria = self.criteria;
-        let solutions = self.solutions(behind.problem, behind.contact)?;
-        inside(|| solutions.probe_behind(criteria, behind, error))
-    }
-
-    fn solve_alone(
-        &mut self,
-        problem: &Problem,
-        contact: &ContactSequence,
-        approach: f64,
-        solution: &mut Solution,
-    ) -> Result<(), Error> {
-        let mut other = Self { criteria: self.criteria, solutions: None };
-        let count = contact.len();
-        Iterations::solve_apart(&mut other, problem, contact, count, approach, solution)
     }
 
     fn cut(&mut self, problem: &Problem, contact: &ContactSequence) -> Result<(), Error> {
@@ -320,7 +261,8 @@ impl LinearUpdater for ConjugateGradient {
     ) -> Result<(), Error> {
         problem.check_nodes(nodes)?;
         // Solutions begin with this one. Only here it moves, so that no answer depends on what was asked before.
-        self.advance(problem, contact, 0.0, f64::INFINITY, &mut Solved::default())?;
+        let here = Behind::on(problem, contact, 0.0);
+        self.advance(&here, f64::INFINITY, &mut Solved::default())?;
         let criteria = self.criteria;
         let solutions = self.solutions(problem, contact)?;
         schur.resize(nodes.len())?;

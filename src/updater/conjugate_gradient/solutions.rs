@@ -17,7 +17,7 @@ use super::solver::Solver;
 use super::tolerances::{Aim, Criteria, Tolerances};
 use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
-use crate::updater::{Schur, Solution, Solved};
+use crate::updater::{Behind, Proposal, Schur, Solution, Solved};
 use crate::{Boundary, Error, Grid, Problem};
 
 /// The parts that depend on the problem and its contact, made at first use.
@@ -112,7 +112,8 @@ impl Solutions {
         problem: &Problem,
         contact: &ContactSequence,
         nodes: &[usize],
-    ) -> Result<(&Schur, Vec<[f64; 2]>), Error> {
+    ) -> Result<(&Schur, Proposal), Error> {
+        (self.both, self.passage) = (None, None);
         self.solver.choose(contact, contact.len());
         self.solver.complete(&mut self.now.load)?;
         self.solver.complete(&mut self.now.rate)?;
@@ -138,8 +139,10 @@ impl Solutions {
                 self.sums.left_at(problem, local)
             }
         })?;
-        let displacements = self.proposed.improved(problem, &self.now);
-        Ok((self.proposed.complement(), displacements))
+        let lines = self.proposed.improved(problem, &self.now);
+        let complement = self.proposed.complement();
+        let sums = complement.row_sums().iter().map(|&sum| [sum, 0.0, 0.0]).collect();
+        Ok((complement, Proposal { lines, sums }))
     }
 
     /// How the contact answers the proposed nodes.
@@ -147,15 +150,18 @@ impl Solutions {
         self.proposed.answers()
     }
 
-    /// Moves the path's solution to the whole contact at an approach, unless it is there and serves the aim.
+    /// Moves the path's solution to a state, unless it is there and serves the aim.
     pub(super) fn advance(
         &mut self,
         criteria: Criteria,
-        problem: &Problem,
-        contact: &ContactSequence,
-        (approach, aim): (f64, Aim),
+        behind: &Behind<'_>,
+        aim: Aim,
         solved: &mut Solved,
     ) -> Result<(), Error> {
+        let Behind { problem, contact, approach, yielded, .. } = *behind;
+        if self.both.is_some() && (contact.len() != self.now.count || !yielded.is_empty()) {
+            return self.advance_behind(criteria, behind, aim, solved);
+        }
         if self.solved.iter().any(|&node| !contact.contains(node)) {
             // Nodes have left since.
             self.keep(contact);
@@ -189,17 +195,18 @@ impl Solutions {
         Ok(())
     }
 
-    /// Displacements with the first `count` nodes in contact, of which those before the last window are solved. What the path goes on
-    /// with stays as it is.
+    /// Pressures and displacements at a state between the last two. What the path goes on with stays as it is.
     pub(super) fn probe(
         &mut self,
         criteria: Criteria,
-        problem: &Problem,
-        contact: &ContactSequence,
-        at: (usize, f64),
+        behind: &Behind<'_>,
         error: f64,
-    ) -> Result<Vec<f64>, Error> {
-        let before = self.before.take();
+    ) -> Result<Solved, Error> {
+        if self.both.is_some() {
+            return self.probe_behind(criteria, behind, error);
+        }
+        let Behind { problem, contact, approach, .. } = *behind;
+        let (before, at) = (self.before.take(), (contact.len(), approach));
         let aim = Aim::Gaps(error);
         let within = |from: &&Equilibrium| from.count <= at.0 && at.0 <= self.now.count;
         let found = match before.as_ref().filter(within) {
@@ -208,12 +215,13 @@ impl Solutions {
         };
         self.before = before;
         let (equilibrium, _) = found?;
+        let mut solved = Solved::default();
+        equilibrium.write(contact, &mut solved);
         let improvement = self.proposed.improvement(problem, contact, &equilibrium);
-        let mut displacement = equilibrium.load.displacement;
         for (node, [change, _]) in improvement.unwrap_or_default().displacements {
-            displacement[node] += change;
+            solved.displacement[0][node] += change;
         }
-        Ok(displacement)
+        Ok(solved)
     }
 
     /// Solves exactly with the first `count` nodes in contact. The solution that the path goes on with is left as it is.

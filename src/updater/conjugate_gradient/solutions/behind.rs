@@ -12,6 +12,7 @@ use crate::contact::ContactSequence;
 use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::conjugate_gradient::both::{Both, Change};
 use crate::updater::conjugate_gradient::equilibrium::Equilibrium;
+use crate::updater::conjugate_gradient::proposed::Proposed;
 use crate::updater::conjugate_gradient::tolerances::{Aim, Criteria, Tolerances};
 use crate::updater::conjugate_gradient::tuning::OF_PRESSURE;
 use crate::updater::{Behind, Beside, Proposal, Schur, Solved};
@@ -41,6 +42,7 @@ impl Solutions {
         nodes: [&[usize]; 2],
         beside: &Beside<'_>,
     ) -> Result<(&Schur, Proposal), Error> {
+        self.proposed = Proposed::default();
         self.solver.choose(contact, contact.len());
         self.solver.complete(&mut self.now.load)?;
         self.solver.complete(&mut self.now.rate)?;
@@ -67,7 +69,7 @@ impl Solutions {
     }
 
     /// Moves the path's solution to a state behind it.
-    pub(in super::super) fn advance_behind(
+    pub(super) fn advance_behind(
         &mut self,
         criteria: Criteria,
         behind: &Behind<'_>,
@@ -103,7 +105,7 @@ impl Solutions {
     }
 
     /// Pressures and displacements at a state between the last two. What the path goes on with stays as it is.
-    pub(in super::super) fn probe_behind(
+    pub(super) fn probe_behind(
         &mut self,
         criteria: Criteria,
         behind: &Behind<'_>,
@@ -198,7 +200,8 @@ impl Solutions {
         };
         let before = from.load_at(approach);
         // In terms of the problem before, whose nodes were not a load yet.
-        let overlap_before = |node: usize| overlap(node) + behind.load[node];
+        let overlap_before =
+            |node: usize| overlap(node) + behind.load.get(node).copied().unwrap_or(0.0);
         let (mut start, way) = both.carried(problem, &before, passage.change(), overlap_before);
         let is_in_window = way != 0.0 && aim != Aim::Exact;
         let carried = is_in_window.then(|| {

@@ -1,7 +1,7 @@
 //! Events that are settled by solutions.
 
 use super::*;
-use crate::loading::refined::gaps_before;
+use crate::loading::estimated::gaps_before;
 use crate::loading::run::LoadingRun;
 use crate::loading::test_chain::Altered;
 

@@ -1,8 +1,9 @@
 //! Which nodes to watch, and how far their window goes.
 
-use super::Refined;
+use super::{Estimated, closing};
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
+use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{CUT, FEWEST, MOST_TIES, PART};
 use crate::loading::window::WindowEvent;
@@ -12,32 +13,30 @@ use crate::loading::window::WindowEvent;
 pub(super) struct Candidates {
     /// (time, node), in this order.
     pub(super) nodes: Ranking,
-    /// No other node touches before this time.
+    /// Nothing happens to another node before this time.
     pub(super) horizon: f64,
-    /// Set if more nodes touch at this time than can be watched.
+    /// Set if more nodes have their events at this time than can be watched.
     pub(super) group: Option<f64>,
 }
 
-impl Refined {
-    /// Chooses the nodes with the smallest times, and `extra` ones.
-    pub(super) fn choose(
-        &mut self,
-        run: &LoadingRun,
-        tolerances: &WindowTolerances,
-        extra: &[usize],
-    ) -> Candidates {
+impl Estimated {
+    /// Chooses the nodes with the smallest times.
+    pub(super) fn choose(&mut self, run: &LoadingRun, tolerances: &WindowTolerances) -> Candidates {
         let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let wanted = self.most_events().min(run.contact.len() / PART);
-        let ranking = &mut self.ranking;
         let size = self.size.min(wanted.max(FEWEST));
+        let ranking = &mut self.ranking;
         if ranking.len() <= size {
             let mut watched = ranking.clone();
             watched.sort_by(order);
             return Candidates { nodes: watched, horizon: f64::INFINITY, group: None };
         }
+        let places = run.plastic.is_some().then(|| run.contact.places()).unwrap_or_default();
+        let tie_of = |node: usize| {
+            tolerances.tie_of(closing(run, node, places.get(node).copied().flatten()))
+        };
         let (watched, next, others) = ranking.select_nth_unstable_by(size, order);
         let mut watched = watched.to_vec();
-        let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
         let first = watched.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
         let limit = next.0 + tie_of(next.1);
         let mut candidates = Candidates {
@@ -50,17 +49,8 @@ impl Refined {
         if tied.clone().count() < MOST_TIES * self.size {
             watched.push(*next);
             watched.extend(tied);
-            let rest = others.iter().map(|(time, _)| *time);
-            let rest = rest.filter(|time| *time > limit);
+            let rest = others.iter().map(|(time, _)| *time).filter(|time| *time > limit);
             candidates.horizon = rest.fold(f64::INFINITY, f64::min);
-        }
-        if !extra.is_empty() {
-            let is_new = |node: &usize| !watched.iter().any(|(_, other)| other == node);
-            let new: Vec<usize> = extra.iter().copied().filter(is_new).collect();
-            watched.extend(ranking.iter().filter(|(_, node)| new.contains(node)));
-            let rest =
-                ranking.iter().filter(|(_, node)| !watched.iter().any(|(_, other)| other == node));
-            candidates.horizon = rest.map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
         }
         watched.sort_by(order);
         candidates.nodes = watched;
@@ -70,7 +60,7 @@ impl Refined {
 
 /// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
 /// most of them.
-pub(in crate::loading) fn cut(
+pub(super) fn cut(
     events: &[WindowEvent],
     horizon: f64,
     most: usize,
@@ -98,7 +88,7 @@ pub(in crate::loading) fn cut(
 }
 
 /// So many events, and what ties with the last of them.
-pub(in crate::loading) fn with_ties(
+pub(super) fn with_ties(
     events: &[WindowEvent],
     most: usize,
     tolerances: &WindowTolerances,
@@ -106,6 +96,13 @@ pub(in crate::loading) fn with_ties(
     let few = most.clamp(1, events.len());
     let tied = events[few - 1..].windows(2);
     few + tied.take_while(|pair| pair[1].time - pair[0].time <= tolerances.tie).count()
+}
+
+/// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
+pub(super) fn within(events: &[WindowEvent], touches: usize) -> usize {
+    let touching = |(_, event): &(usize, &WindowEvent)| event.kind == ContactEvent::Touch;
+    let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
+    last.map_or(events.len(), |(place, _)| place + 1)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 //! solutions, and what these leave out at the end is added as a cubic in time. What is too close to zero to be told counts as contradicted:
 //! then the window ends before, in the end with single events that have solutions of their own.
 
-use super::Refined;
+use crate::contact::ContactSequence;
 use crate::loading::gap_field::GapLine;
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
@@ -35,16 +35,6 @@ pub(super) struct Before {
     gaps: Vec<(usize, GapLine)>,
 }
 
-/// What contradicts a window between its ends.
-#[derive(Debug)]
-pub(super) enum Between {
-    Nothing,
-    /// Until this time nothing does.
-    Until(f64),
-    /// (when, node) of nodes that touch and were not watched.
-    Outside(Ranking),
-}
-
 /// The watched nodes that have touched, by events and at the end of the window.
 struct Course {
     /// Where they are among the watched ones.
@@ -66,10 +56,10 @@ pub(super) fn first_release(run: &LoadingRun) -> f64 {
 }
 
 impl Before {
-    pub(super) fn of(run: &LoadingRun, refined: &Refined, window: &Window) -> Self {
+    pub(super) fn of(run: &LoadingRun, ranking: &Ranking, window: &Window) -> Self {
         let Solution { pressure, rate } = run.field.solution();
         let furthest = FURTHEST * window.horizon();
-        let near = refined.ranking.iter().filter(|(time, _)| *time <= furthest);
+        let near = ranking.iter().filter(|(time, _)| *time <= furthest);
         let near = near.map(|&(_, node)| node).filter(|&node| window.position(node).is_none());
         Self {
             pressures: pressure.iter().zip(rate).map(|(&p, &rate)| [p, rate]).collect(),
@@ -77,61 +67,63 @@ impl Before {
         }
     }
 
-    /// Until when no pressure was negative, of those that are at the present solution after a time; `None` if none is.
+    /// Until when no pressure was negative, of those that are at the solution on a contact at an approach after a time; `None` if none is.
     pub(super) fn sound_until(
         &self,
         run: &LoadingRun,
         tension: f64,
-        (approach, time): (f64, f64),
+        (contact, approach): (&ContactSequence, f64),
+        time: f64,
     ) -> Option<f64> {
-        let now = run.field.pressures(&run.contact, approach);
+        let now = run.field.pressures(contact, approach);
         let pairs = self.pressures.iter().zip(now);
         let negative = pairs.filter(|(_, (_, now))| *now < -tension);
         let times = negative.map(|([before, _], (_, now))| time * before / (before - now));
         times.reduce(f64::min)
     }
 
-    /// Looks for what contradicts a corrected window and its events between its beginning and its end after `span`, where the present
-    /// solution is.
-    pub(super) fn look_between(
+    /// Until when nothing contradicts a corrected window and its events between its beginning and its end after `span`, where the
+    /// solution on a contact is; `None` if nothing does at all.
+    pub(super) fn sound_between(
         &self,
         run: &LoadingRun,
         iterations: &dyn Iterations,
         tolerances: &WindowTolerances,
         (window, events): (&Window, &[WindowEvent]),
-        span: f64,
-    ) -> Between {
+        (contact, span): (&ContactSequence, f64),
+    ) -> Option<f64> {
         if events.len() < 2 {
-            return Between::Nothing;
+            return None;
         }
-        let overlap = tolerances.overlap(run.scalars.approach());
-        let tension = tolerances.tension(run);
+        let approach = run.scalars.approach() + span;
+        let overlap = tolerances.overlap(approach);
+        let tension = overlap / run.problem.table().self_influence();
         let Some(course) = Course::of(window, events, span) else {
-            return Between::Until(0.5 * span);
+            return Some(0.5 * span);
         };
         let first = events[0].time;
         let of_watched = course.watched_until(window, (first, overlap), tension);
         let answers = iterations.answers();
-        let of_contact = self.contact_until(run, &course, &answers, (first, tension));
+        let of_contact = self.contact_until(run, contact, &course, &answers, (first, tension));
         let until = of_watched.min(of_contact);
         if until < span {
-            return Between::Until(until);
+            return Some(until);
         }
-        let outside = self.outside(run, &course, window.schur(), &answers, (window, overlap));
-        if outside.is_empty() { Between::Nothing } else { Between::Outside(outside) }
+        self.outside_until(run, approach, &course, &answers, (window, overlap))
     }
 
     /// Until when no node that was in contact has lost its pressure; infinity if none does.
     fn contact_until(
         &self,
         run: &LoadingRun,
+        contact: &ContactSequence,
         course: &Course,
         answers: &[(&[u32], &[f64])],
         (first, tension): (f64, f64),
     ) -> f64 {
         // What unit pressures on nodes that touched take off the contact, by its nodes.
         let mut places = vec![usize::MAX; run.problem.grid().nodes()];
-        let before = &run.contact.order()[..self.pressures.len()];
+        let before = &contact.order()[..self.pressures.len()];
         for (place, &node) in before.iter().enumerate() {
             places[node] = place;
         }
@@ -159,21 +151,21 @@ impl Before {
         until
     }
 
-    /// (when, node) of nodes that were not watched and touch.
-    fn outside(
+    /// When the first node touches that was not watched, before the solution at an approach; `None` if none does.
+    fn outside_until(
         &self,
         run: &LoadingRun,
+        approach: f64,
         course: &Course,
-        schur: &Schur,
         answers: &[(&[u32], &[f64])],
         (window, overlap): (&Window, f64),
-    ) -> Ranking {
+    ) -> Option<f64> {
         let table = run.problem.table();
-        let bounds = course.bounds(schur, table.self_influence());
+        let bounds = course.bounds(window.schur(), table.self_influence());
         let span = course.span();
-        let mut outside = Ranking::new();
+        let mut until = None;
         for &(node, GapLine { gap, closing }) in &self.gaps {
-            let end = run.line(node);
+            let end = run.field.line(&run.problem, node, approach);
             let is_safe = course.times.iter().zip(&bounds).all(|(time, bound)| {
                 let way = time / span;
                 gap + way * (end.gap - gap) > bound + overlap
@@ -194,11 +186,10 @@ impl Before {
             let ends = ([gap, -closing], [end.gap, -end.closing]);
             let time = course.sound_until(ends, &terms, (0.0, -overlap));
             if time < span {
-                outside.push((time, node));
+                until = Some(until.map_or(time, |until: f64| until.min(time)));
             }
         }
-        outside.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        outside
+        until
     }
 }
 

@@ -1,7 +1,6 @@
 //! States of a window, pinned to the exact ones at both ends.
 
 use crate::Error;
-use crate::loading::plastic::Plastic;
 use crate::loading::run::LoadingRun;
 use crate::loading::scalars::{PathScalars, Rates};
 use crate::loading::state::ContactEvent;
@@ -88,27 +87,33 @@ fn stiffness_of(elastic: usize, found: f64, alone: f64) -> f64 {
     }
 }
 
-/// Queues the states of the events of a corrected window, which it has gone through, from where it began to the present approach.
+/// Queues the states of the events of a corrected window, which the path has gone through, from where it began to the present approach.
 ///
 /// Rates are those of its matrix, and end where they should; load, mean gap, energies and plastic sums follow by integration, and what
-/// they lack at the end is spread along the way.
+/// they lack at the end, a few parts in a million, is spread along the way.
 pub(super) fn enqueue(
     run: &mut LoadingRun,
-    plastic: &Plastic,
-    (window, settled): (&Window, &Settled),
+    (mut window, settled): (Window, &Settled),
     passed: Passed,
     ([start_rates, exact], tolerances): ([Rates; 2], &WindowTolerances),
 ) -> Result<(), Error> {
     let Passed { start, before, span } = passed;
+    let of_gap = |event| tolerances.time_of_gap(window.closing(event));
+    let of_gaps: Vec<f64> = settled.events.iter().map(of_gap).collect();
+    for event in &settled.events {
+        window.happen(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
+    }
     let events = window.events();
     let mut rates = completed(&start_rates, &window.rates(start_rates), &exact);
-    let mut elastic = before.nodes[0];
+    let [mut elastic, yielded] = before.nodes;
+    let yields = yielded > 0 || !window.is_of_touches();
     let alone = run.problem.table().self_influence().recip();
-    for (event, rates) in events.iter().zip(&mut rates) {
+    for (event, rates) in events.iter().zip(&mut rates).filter(|_| yields) {
         elastic = if event.kind == ContactEvent::Touch { elastic + 1 } else { elastic - 1 };
         rates.unit_stiffness = stiffness_of(elastic, rates.unit_stiffness, alone);
     }
-    let mut walk = Walk::new(Some(plastic), before);
+    let plastic = run.plastic.clone();
+    let mut walk = Walk::new(plastic.as_deref(), before);
     let mut walked = start;
     let mut open = Open::default();
     let mut along = Vec::with_capacity(events.len());
@@ -120,13 +125,15 @@ pub(super) fn enqueue(
         along.push((walked, open));
     }
     open.advance(&mut walked, run.scalars.approach(), walk.carried.nodes[0]);
-    // What the load may be off by: what is spread, what rates are off by, and what the events so far would change of it.
+    // What the load may be off by: what is spread, what rates of nodes that yield are off by, and what the events so far would change of
+    // it.
     let spacing = span / events.len() as f64;
+    let of_rates = if yields { RATE_ERROR } else { 0.0 };
     let mut load_error = run.scalars.load_beyond(&walked).abs()
-        + RATE_ERROR * run.scalars.load_beyond(&start).abs()
+        + of_rates * run.scalars.load_beyond(&start).abs()
         + run.scalars.load_over(OF_END * spacing);
     let mut stiffness = start_rates.unit_stiffness;
-    let mut walk = Walk::new(Some(plastic), before);
+    let mut walk = Walk::new(plastic.as_deref(), before);
     let own = run.scalars;
     for (k, ((mut scalars, so_far), event)) in along.into_iter().zip(events).enumerate() {
         let node = window.node(event.position);
@@ -140,7 +147,7 @@ pub(super) fn enqueue(
         let error = settled.errors[k];
         load_error += scalars.load_of((rates[k].unit_stiffness - stiffness).abs(), error);
         stiffness = rates[k].unit_stiffness;
-        let error = OF_TIME * error + tolerances.time_of_gap(event.closing);
+        let error = OF_TIME * error + of_gaps[k];
         let error = scalars.reported_error(error, OF_LOAD * load_error);
         let event = (walk.step, event.kind, node);
         run.enqueue_at(&scalars, event, walk.contact_nodes(), error)?;
@@ -151,7 +158,6 @@ pub(super) fn enqueue(
 /// Queues the states of events that come together, at the present approach: rates go from the first of two to the other in equal steps.
 pub(super) fn enqueue_together(
     run: &mut LoadingRun,
-    plastic: &Plastic,
     events: &[(usize, ContactEvent)],
     passed: Passed,
     ([first, last], error): ([Rates; 2], f64),
@@ -161,7 +167,8 @@ pub(super) fn enqueue_together(
     scalars.advance(run.scalars.approach());
     let stiffness = (last[0] - first[0]).abs();
     let error = scalars.reported_error(error, scalars.load_of(stiffness, error));
-    let mut walk = Walk::new(Some(plastic), passed.before);
+    let plastic = run.plastic.clone();
+    let mut walk = Walk::new(plastic.as_deref(), passed.before);
     for (k, &(node, kind)) in events.iter().enumerate() {
         let part = (k + 1) as f64 / events.len() as f64;
         let rates = std::array::from_fn(|k| first[k] + part * (last[k] - first[k]));
@@ -172,6 +179,14 @@ pub(super) fn enqueue_together(
         run.enqueue_at(&scalars, (walk.step, kind, node), walk.contact_nodes(), error)?;
     }
     Ok(())
+}
+
+/// What each event of a window adds to stiffness and closing rate, scaled so that all of them add what they should.
+pub(super) fn pinned(window: &Window, all: [f64; 2]) -> Vec<[f64; 2]> {
+    let steps: Vec<[f64; 2]> = window.increments().collect();
+    let total = |k: usize| steps.iter().map(|step| step[k]).sum::<f64>();
+    let scale = [0, 1].map(|k| if total(k) == 0.0 { 0.0 } else { all[k] / total(k) });
+    steps.into_iter().map(|step| [scale[0] * step[0], scale[1] * step[1]]).collect()
 }
 
 #[cfg(test)]

@@ -1,15 +1,16 @@
 //! A path without a factor that goes on at the end of a window.
 
-use super::Refined;
+use super::Estimated;
 use crate::contact::ContactSequence;
 use crate::loading::run::LoadingRun;
+use crate::loading::tolerances::WindowTolerances;
 use crate::updater::{Iterations, Kept};
 use crate::{Error, UpdaterError};
 
 /// Everything on which the next window without a factor depends, besides problem and contact. The gaps, their ranking and the
 /// scalars follow from it, by the same arithmetic as at the end of the window.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RefinedEnd {
+pub(crate) struct EstimatedEnd {
     /// Whether events that were too close were settled.
     pub(crate) settles: bool,
     /// The nodes of the last window in the order in which its end was solved: sums round by it.
@@ -25,7 +26,7 @@ pub(crate) struct RefinedEnd {
     pub(crate) kept: Kept,
 }
 
-impl RefinedEnd {
+impl EstimatedEnd {
     /// The contact in the order in which the end of the window was solved.
     ///
     /// # Errors
@@ -45,21 +46,21 @@ impl RefinedEnd {
     }
 }
 
-impl Refined {
+impl Estimated {
     /// What the next window depends on, behind a window or an event with a solution of its own; `None` if the iterations cannot tell.
     pub(in crate::loading) fn end(
         &self,
         run: &LoadingRun,
         iterations: &dyn Iterations,
         is_single: bool,
-    ) -> Option<RefinedEnd> {
+    ) -> Option<EstimatedEnd> {
         // Nothing has moved since the last window ended.
         let approach = run.scalars.approach();
         if !is_single && self.ranked != Some((run.contact.revision(), approach)) {
             return None;
         }
         let kept = iterations.keep(&run.problem, &run.contact)?;
-        (kept.approach == approach).then(|| RefinedEnd {
+        (kept.approach == approach).then(|| EstimatedEnd {
             settles: self.settles,
             joined: if is_single { Vec::new() } else { self.joined.clone() },
             scalars: is_single.then(|| run.scalars.numbers()),
@@ -71,7 +72,7 @@ impl Refined {
     }
 
     /// Whether such windows were of the same rule.
-    pub(in crate::loading) fn can_follow(&self, end: &RefinedEnd) -> bool {
+    pub(in crate::loading) fn can_follow(&self, end: &EstimatedEnd) -> bool {
         self.settles == end.settles
     }
 
@@ -80,7 +81,7 @@ impl Refined {
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
-        end: &RefinedEnd,
+        end: &EstimatedEnd,
     ) -> Result<(), Error> {
         let spans = [end.last_span, end.rate_span, end.left_out];
         for (quantity, span) in
@@ -101,7 +102,8 @@ impl Refined {
         let count = order.len() - end.joined.len();
         run.advance_field(iterations, approach, self.rate_span)?;
         run.scalars.place_at(approach);
-        self.survey(run)?;
+        let tolerances = WindowTolerances::of(run, iterations.tolerance());
+        self.survey(run, &tolerances)?;
         run.rearrange(count, &order[count..])?;
         self.ranked = Some((run.contact.revision(), approach));
         Ok(())

@@ -1,0 +1,290 @@
+//! Nodes that touch together, too many to be watched: a flat punch, a plateau.
+
+use super::choice::Candidates;
+use super::states::{Passed, enqueue_together, pinned};
+use super::{Estimated, closing, go_to, slacks};
+use crate::Error;
+use crate::loading::contradiction::Slack;
+use crate::loading::run::LoadingRun;
+use crate::loading::state::ContactEvent;
+use crate::loading::tolerances::WindowTolerances;
+use crate::loading::trial::Trial;
+use crate::loading::tuning::{MOST_TIES, PART, TOLERANCE};
+use crate::loading::walk::Carried;
+use crate::updater::{Behind, Iterations};
+
+impl Estimated {
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, up to so many `touches`.
+    pub(super) fn enter(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (time, known): (f64, &[usize]),
+        touches: usize,
+    ) -> Result<(), Error> {
+        let is_near = |&&(other, node): &&(f64, usize)| other <= time || known.contains(&node);
+        let yields = |&(_, node): &(f64, usize)| run.contact.contains(node);
+        if run.has_yielded() || self.ranking.iter().filter(is_near).any(yields) {
+            return self.enter_both(run, iterations, tolerances, (time, known), touches);
+        }
+        self.touch(run, iterations, tolerances, (time, known), touches)
+    }
+
+    /// Lets all nodes that touch at a time join, and those that are known to, up to `most`, in the order of their indices.
+    fn touch(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (time, known): (f64, &[usize]),
+        most: usize,
+    ) -> Result<(), Error> {
+        let mark = run.mark();
+        let approach = mark.scalars.approach() + time;
+        let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
+        let together =
+            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
+        let group = self.ranking.iter().filter(together);
+        let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
+        // What their times cannot be told apart by.
+        let error = group.iter().map(|&node| tie_of(node));
+        let error = error.fold(tolerances.tie, f64::max);
+        group.sort_unstable();
+        group.truncate(most);
+        self.last_span = self.last_span.max(time);
+        let entered = self.join_all(run, iterations, tolerances, (&group, approach));
+        let entered = entered.and_then(|increments| {
+            keeps_growing(run, run.contact.len(), tolerances).map(|()| increments)
+        });
+        let increments = match entered {
+            Ok(increments) => increments,
+            Err(error) => {
+                let _ = run.roll_back(&mark, |problem, contact| iterations.cut(problem, contact));
+                return Err(error);
+            }
+        };
+        let mut walked = mark.scalars;
+        walked.advance(approach);
+        let [stiffness, _] = walked.missing(&run.scalars);
+        let error = walked.reported_error(error, walked.load_of(stiffness, error));
+        self.joined.clone_from(&group);
+        for (k, (node, increment)) in group.into_iter().zip(increments).enumerate() {
+            let contact_nodes = mark.count + k + 1;
+            walked.touch(increment, contact_nodes);
+            walked.clamp_mean_gap();
+            let step = run.releases.steps(contact_nodes);
+            let event = (step, ContactEvent::Touch, node);
+            run.enqueue_at(&walked, event, contact_nodes, error)?;
+        }
+        Ok(())
+    }
+
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices, up to so many
+    /// `touches`. Between them rates change in equal steps.
+    fn enter_both(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (time, known): (f64, &[usize]),
+        touches: usize,
+    ) -> Result<(), Error> {
+        let places = run.contact.places();
+        let tie_of = |node: usize| tolerances.tie_of(closing(run, node, places[node]));
+        let together =
+            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
+        let group = self.ranking.iter().filter(together);
+        let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
+        // What their times cannot be told apart by, and what the solution at hand leaves open of them.
+        let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        let open = group.iter().map(|&node| self.left / closing(run, node, places[node]));
+        let most_late = open.fold(error, f64::max);
+        group.sort_unstable();
+        let kind = |node: usize| match run.contact.contains(node) {
+            true => ContactEvent::Yield,
+            false => ContactEvent::Touch,
+        };
+        let mut touched = 0;
+        let within = |&(_, kind): &(usize, ContactEvent)| {
+            let goes_on = touched < touches;
+            touched += usize::from(kind == ContactEvent::Touch);
+            goes_on
+        };
+        let events: Vec<(usize, ContactEvent)> =
+            group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
+        let approach = run.scalars.approach() + time;
+        let trial = Trial::of(run, &events)?;
+        // However little is left open by so many nodes: rates must be exact.
+        self.rate_span = f64::INFINITY;
+        go_to(run, iterations, &trial, (approach, self.rate_span))?;
+        // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
+        // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
+        let [_, most] = slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
+        let late = lateness(run, &trial, (approach, most));
+        let late = if late <= most_late { late } else { 0.0 };
+        let (time, approach, error) = (time + late, approach + late, error.max(late));
+        if late > 0.0 {
+            let here = Behind::on(trial.problem(&run.problem), &trial.contact, approach);
+            run.field.advance(&here, iterations, self.rate_span)?;
+        }
+        if let Some((node, pressure)) = pulled(run, &trial, tolerances, approach) {
+            iterations.cut(&run.problem, &run.contact)?;
+            return Err(run.not_monotone("pressure", node, pressure));
+        }
+        self.last_span = self.last_span.max(time);
+        let before = Carried::of(run);
+        let passed = Passed { start: run.scalars, before, span: time };
+        let rates = self.rates;
+        trial.adopt(run);
+        run.scalars.place_at(approach);
+        self.survey(run, tolerances)?;
+        enqueue_together(run, &events, passed, ([rates, self.rates], error))
+    }
+
+    /// Lets nodes join at an approach, in windows with a solution behind each. Returns what each adds to stiffness and closing rate: as
+    /// the pivots say, scaled so that they end where the solution is.
+    fn join_all(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (group, approach): (&[usize], f64),
+    ) -> Result<Vec<[f64; 2]>, Error> {
+        let mut increments = Vec::with_capacity(group.len());
+        let mut left = group;
+        while !left.is_empty() {
+            // Where few gaps are open each counts for much of what is left of the closing rate.
+            let open = run.problem.grid().nodes() - run.contact.len();
+            let size = (open / PART).clamp(self.size, MOST_TIES * self.size);
+            let (nodes, others) = left.split_at(size.min(left.len()));
+            left = others;
+            let times = nodes.iter().map(|&node| (0.0, node)).collect();
+            let candidates = Candidates { nodes: times, horizon: 0.0, group: None };
+            let mut window = self.propose(run, iterations, candidates, 0.0)?;
+            for (position, &node) in nodes.iter().enumerate() {
+                window.happen(position, 0.0).map_err(|bad| run.not_positive_definite(bad))?;
+                run.contact.push(node)?;
+            }
+            // The approach goes on from the last of them only. However little is left open by so many nodes: rates must be exact there.
+            self.rate_span = if left.is_empty() { f64::INFINITY } else { 0.0 };
+            let before = run.scalars;
+            run.advance_field(iterations, approach, self.rate_span)?;
+            run.scalars.place_at(approach);
+            self.survey(run, tolerances)?;
+            increments.extend(pinned(&window, before.missing(&run.scalars)));
+        }
+        Ok(increments)
+    }
+}
+
+/// `Ok` if none of the first `count` nodes in contact is pulled at the present solution: where contact grows they keep what they carry.
+fn keeps_growing(
+    run: &LoadingRun,
+    count: usize,
+    tolerances: &WindowTolerances,
+) -> Result<(), Error> {
+    let approach = run.scalars.approach();
+    match run.negative_pressure(count, (approach, tolerances.overlap(approach))) {
+        Some((node, value)) => Err(run.not_monotone("pressure", node, value)),
+        None => Ok(()),
+    }
+}
+
+/// The first node in contact that is pulled at an approach by more than a solution may leave, and its pressure.
+fn pulled(
+    run: &LoadingRun,
+    trial: &Trial,
+    tolerances: &WindowTolerances,
+    approach: f64,
+) -> Option<(usize, f64)> {
+    let (problem, contact, _) = trial.set(run);
+    let [_, slack] = slacks(run, (problem, contact), tolerances, approach);
+    // Rounding of heights pulls at nodes that touch together.
+    let rounding = TOLERANCE * (problem.greatest_gap() + approach);
+    let tension = slack.tension.max(rounding) / problem.table().self_influence();
+    run.field.pressures(contact, approach).find(|(_, pressure)| *pressure < -tension)
+}
+
+/// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
+/// a solution may be off by.
+fn lateness(
+    run: &LoadingRun,
+    trial: &Trial,
+    (approach, slack): (f64, Slack),
+) -> f64 {
+    let (problem, contact, _) = trial.set(run);
+    let plastic = run.plastic.as_deref();
+    let mut yields = vec![false; problem.grid().nodes()];
+    trial.yielded.iter().for_each(|&node| yields[node] = true);
+    let has_yielded = |node: usize| yields[node] || plastic.is_some_and(|p| p.has_yielded(node));
+    let depths = run.field.lines(problem, contact, approach).filter_map(|(node, line)| {
+        let is_short = line.gap > slack.gap && has_yielded(node);
+        (is_short && line.closing > 0.0).then(|| line.gap / line.closing)
+    });
+    let tension = slack.tension / problem.table().self_influence();
+    let pressures = run.field.pressures(contact, approach).zip(&run.field.solution().rate);
+    let pressures = pressures
+        .filter(|&((_, pressure), &rate)| pressure < -tension && rate > 0.0)
+        .map(|((_, pressure), &rate)| -pressure / rate);
+    depths.chain(pressures).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loading::test_chain::{self, Altered};
+
+    /// Node 0 is in contact at the approach 1, and nodes 2, 4 and 6 touch after one metre, nearly; node 8 after three.
+    fn entered(
+        times: [f64; 3],
+        tie: f64,
+        known: &[usize],
+        most: usize,
+    ) -> Result<(LoadingRun, Estimated), Error> {
+        let mut gaps = [9.0; 9];
+        (gaps[0], gaps[2], gaps[4], gaps[6], gaps[8]) = (0.0, 2.0, 2.0, 2.0, 4.0);
+        let mut run = test_chain::surveyed(&gaps, &[0], 1.0)?;
+        let mut estimated = Estimated::new(None, true);
+        estimated.ranking = vec![(3.0, 8), (times[2], 6), (times[0], 2), (times[1], 4)];
+        estimated.last_span = 0.5;
+        let tolerances = test_chain::tolerances(1.0, 0.0, tie);
+        let iterations = &mut Altered::inexact(0.0);
+        run.advance_field(iterations, 1.0, 0.0)?;
+        estimated.enter(&mut run, iterations, &tolerances, (1.0, known), most)?;
+        Ok((run, estimated))
+    }
+
+    /// All that touch within a tie or are known to, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
+    /// the stiffness of 1/2.
+    #[test]
+    fn nodes_that_touch_together_join_together() -> Result<(), Error> {
+        for (times, tie, known, most, order) in [
+            ([1.0; 3], 1e-3, &[][..], 9, &[0, 2, 4, 6][..]),
+            ([1.0, 1.25, 1.3], 0.25, &[], 9, &[0, 2, 4]),
+            ([1.3, 1.0, 0.5], 0.25, &[], 9, &[0, 4, 6]),
+            ([1.0; 3], 1e-3, &[4], 2, &[0, 2, 4]),
+            // Known to touch, although their times seem to be later.
+            ([1.3, 1.0, f64::INFINITY], 0.25, &[6], 9, &[0, 4, 6]),
+            ([1.3, 1.3, f64::INFINITY], 0.25, &[2], 9, &[0, 2]),
+        ] {
+            let (run, estimated) = entered(times, tie, known, most)?;
+            assert_eq!(run.contact.order(), order);
+            assert_eq!(run.scalars.approach(), 2.0);
+            assert_eq!((estimated.last_span, estimated.rate_span), (1.0, f64::INFINITY));
+            assert_eq!(run.queue.len(), order.len() - 1);
+            for (k, state) in run.queue.iter().enumerate() {
+                assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));
+                assert_eq!(state.node, (order[k + 1], 0));
+                // 1/2 N and 1/2 N more on the way.
+                assert_eq!(
+                    (state.contact.approach, state.contact.load, state.approach_error),
+                    (2.0, 1.0, tie)
+                );
+                let stiffness = state.contact.contact_stiffness.unwrap_or_default();
+                assert!((stiffness - (1.0 + 0.5 * k as f64)).abs() < 1e-14, "{stiffness}");
+            }
+        }
+        Ok(())
+    }
+}
