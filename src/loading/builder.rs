@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use super::estimated::Estimated;
 use super::exact::Exact;
 use super::gap_field::GapField;
 use super::history::History;
 use super::limits::Limits;
 use super::phase::Phase;
 use super::plastic::Plastic;
-use super::estimated::Estimated;
 use super::releases::Releases;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings, Memory};

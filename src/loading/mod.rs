@@ -110,14 +110,14 @@ mod window_end;
 #[doc(hidden)] // for the programs of this repository
 pub use crate::memory::default_budget;
 pub use builder::LoadingBuilder;
+#[cfg(feature = "io")]
+pub(crate) use estimated::resumed::EstimatedEnd;
 #[doc(hidden)] // for the program and the tests of this repository
 pub use event_cost::{factor_seconds, greatest_factor, iteration_seconds, last_factor};
 #[cfg(feature = "io")]
 pub(crate) use factor_log::FactorLog;
 pub use history::History;
 pub use limits::LoadingEnd;
-#[cfg(feature = "io")]
-pub(crate) use estimated::resumed::EstimatedEnd;
 pub(crate) use resume::{Replayed, replay};
 pub use rule::ContactRule;
 #[doc(hidden)] // for the studies of this repository

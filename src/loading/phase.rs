@@ -1,9 +1,9 @@
 //! The solver of a path: an updater, and iterations in its place once these are cheaper.
 
+use super::estimated::resumed::EstimatedEnd;
 use super::event_cost::{Rest, greatest_factor};
 use super::factor_log::FactorLog;
 use super::gap_field;
-use super::estimated::resumed::EstimatedEnd;
 use super::run::LoadingRun;
 use super::tuning::{LEAST_CONTACT, LEAST_WINDOW};
 use super::window::Window;

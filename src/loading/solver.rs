@@ -4,12 +4,12 @@ use std::iter::FusedIterator;
 
 use nalgebra::DMatrix;
 
+use super::estimated::Estimated;
+use super::estimated::leaving::Attempt;
 use super::exact::Exact;
 use super::factor_log::FactorLog;
 use super::limits::{Limits, LoadingEnd};
 use super::phase::Phase;
-use super::estimated::Estimated;
-use super::estimated::leaving::Attempt;
 use super::rule::ContactRule;
 use super::run::{LoadingRun, LoadingTimings};
 use super::state::LoadingState;
@@ -181,9 +181,8 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 stepwise.produce(run, phase, most_nodes)
             }
             _ if is_enough => Ok(()),
-            // A whole window, whatever the limit: a path that goes on behind it has the same windows.
             (Procedure::Windows(_, estimated), Phase::Iterations(iterations)) => {
-                estimated.produce(run, &mut **iterations, nodes)
+                estimated.produce(run, &mut **iterations)
             }
             (Procedure::Windows(exact, _), Phase::Factor { updater, .. }) => {
                 let most = if run.plastic.is_some() { limit } else { most_nodes.min(stop) };

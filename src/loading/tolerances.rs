@@ -61,11 +61,6 @@ impl WindowTolerances {
     pub(super) fn overlap(&self, approach: f64) -> f64 {
         UNWATCHED * self.tolerance * approach.max(self.length)
     }
-
-    /// Tension that a solution at the present approach may leave.
-    pub(super) fn tension(&self, run: &LoadingRun) -> f64 {
-        self.overlap(run.scalars.approach()) / run.problem.table().self_influence()
-    }
 }
 
 #[cfg(test)]

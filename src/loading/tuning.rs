@@ -31,10 +31,8 @@ pub(super) const MOST_TIES: usize = 3;
 /// The window ends at its widest spacing behind this part of its events. Half: 1.2 times the convolutions. 1: a tenth fewer, but windows
 /// are taken back, since more of them end between near ties.
 pub(super) const CUT: f64 = 0.85;
-/// How often a contact that contradicts the conditions of contact is mended before the path gives up. No effect.
+/// How many windows are tried where nodes may leave before the next event gets a solution of its own. No effect.
 pub(super) const MOST_TRIES: usize = 10;
-/// What is left of a window in which a node overlapped that was not watched. No effect: rare.
-pub(super) const SHORTER: f64 = 0.7;
 /// Events of a window times the part of a pivot that its Schur complement leaves out: windows have no more. Schur complements of
 /// square domains leave out 10⁻³, so that nothing is limited; those of a periodic strip of two rows 0.5, and each event has a
 /// solution of its own. Half: loads of the strip 1.3 times as wrong. Twice: a twentieth fewer convolutions there, windows are taken

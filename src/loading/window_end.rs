@@ -4,10 +4,10 @@
 use std::mem;
 use std::sync::Arc;
 
+use super::estimated::resumed::EstimatedEnd;
 use super::factor_log::FactorLog;
 use super::limits::LoadingEnd;
 use super::phase::Phase;
-use super::estimated::resumed::EstimatedEnd;
 use super::snapshot::{Snapshot, not_on_path};
 use super::solver::{LoadingSolver, Procedure};
 use super::state::{ContactEvent, LoadingState};

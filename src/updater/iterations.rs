@@ -126,12 +126,8 @@ pub trait Iterations: Debug + Send + Sync {
 
     /// Solves on the whole contact, which nodes may have left since the last time, and stays there. The rate is so exact that the solution
     /// keeps its tolerance over the span \[m\] that the approach goes on with it; an infinite span asks for a rate exact to rounding.
-    fn advance(
-        &mut self,
-        behind: &Behind<'_>,
-        span: f64,
-        solved: &mut Solved,
-    ) -> Result<(), Error>;
+    fn advance(&mut self, behind: &Behind<'_>, span: f64, solved: &mut Solved)
+    -> Result<(), Error>;
 
     /// Pressures, and displacements of all nodes, at a state between the last two solutions: those of nodes that have been proposed to an
     /// error of gaps \[m\] or the tolerance, whichever is greater. No rates.

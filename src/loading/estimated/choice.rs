@@ -3,7 +3,6 @@
 use super::{Estimated, closing};
 use crate::loading::ranking::Ranking;
 use crate::loading::run::LoadingRun;
-use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{CUT, FEWEST, MOST_TIES, PART};
 use crate::loading::window::WindowEvent;
@@ -31,7 +30,7 @@ impl Estimated {
             watched.sort_by(order);
             return Candidates { nodes: watched, horizon: f64::INFINITY, group: None };
         }
-        let places = run.plastic.is_some().then(|| run.contact.places()).unwrap_or_default();
+        let places = if run.plastic.is_some() { run.contact.places() } else { Vec::new() };
         let tie_of = |node: usize| {
             tolerances.tie_of(closing(run, node, places.get(node).copied().flatten()))
         };
@@ -98,13 +97,6 @@ pub(super) fn with_ties(
     few + tied.take_while(|pair| pair[1].time - pair[0].time <= tolerances.tie).count()
 }
 
-/// How many of some events it takes until so many `touches` nodes have touched; all, if these are fewer.
-pub(super) fn within(events: &[WindowEvent], touches: usize) -> usize {
-    let touching = |(_, event): &(usize, &WindowEvent)| event.kind == ContactEvent::Touch;
-    let last = events.iter().enumerate().filter(touching).nth(touches.saturating_sub(1));
-    last.map_or(events.len(), |(place, _)| place + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,16 +109,15 @@ mod tests {
         (size, contact): (usize, usize),
         times: &[f64],
         tie: f64,
-        extra: &[usize],
     ) -> Result<Candidates, Error> {
         let mut run = test_chain::run(&[0.0; 100])?;
         for node in 60..60 + contact {
             run.contact.push(node)?;
         }
-        let mut refined = Refined::new(Some(size), true);
-        refined.ranking = times.iter().copied().zip(0..).collect();
-        refined.ranking.reverse();
-        Ok(refined.choose(&run, &test_chain::tolerances(1.0, 0.0, tie), extra))
+        let mut estimated = Estimated::new(Some(size), true);
+        estimated.ranking = times.iter().copied().zip(0..).collect();
+        estimated.ranking.reverse();
+        Ok(estimated.choose(&run, &test_chain::tolerances(1.0, 0.0, tie)))
     }
 
     fn nodes(candidates: &Candidates) -> Vec<usize> {
@@ -145,13 +136,13 @@ mod tests {
         for (count, watched, horizon) in
             [(7, 7, f64::INFINITY), (8, 8, f64::INFINITY), (9, 9, f64::INFINITY), (12, 9, 9.0)]
         {
-            let candidates = choose((60, 0), &times(count), 1e-9, &[])?;
+            let candidates = choose((60, 0), &times(count), 1e-9)?;
             assert_eq!(nodes(&candidates), (0..watched).collect::<Vec<_>>());
             assert_eq!((candidates.horizon, candidates.group), (horizon, None), "{count}");
         }
         // A quarter of 40 nodes in contact, and of 38, but no more than the size.
         for (contact, size, watched) in [(40, 60, 11), (38, 60, 10), (40, 9, 10)] {
-            let candidates = choose((size, contact), &times(30), 1e-9, &[])?;
+            let candidates = choose((size, contact), &times(30), 1e-9)?;
             assert_eq!(nodes(&candidates).len(), watched, "{contact}");
         }
         Ok(())
@@ -162,7 +153,7 @@ mod tests {
         // At 8.5, as far as a tie behind the next one, which is at 8; not at 8.75.
         let mut near = times(9);
         near.extend([8.75, 8.5, 20.0, 8.25]);
-        let candidates = choose((8, 0), &near, 0.5, &[])?;
+        let candidates = choose((8, 0), &near, 0.5)?;
         assert_eq!(nodes(&candidates), [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 10]);
         assert_eq!((candidates.horizon, candidates.group), (8.75, None));
         // Up to three times the window: 23 of them, not 24.
@@ -170,7 +161,7 @@ mod tests {
             let mut tied = times(9);
             tied.extend(vec![8.0; ties]);
             tied.push(20.0);
-            let candidates = choose((8, 0), &tied, 1e-9, &[])?;
+            let candidates = choose((8, 0), &tied, 1e-9)?;
             assert_eq!((nodes(&candidates).len(), candidates.horizon), (watched, horizon));
             assert_eq!(candidates.group, None);
         }
@@ -192,23 +183,10 @@ mod tests {
         ] {
             let mut times = vec![others; 40];
             times[0] = first;
-            let candidates = choose((8, 0), &times, tie, &[])?;
+            let candidates = choose((8, 0), &times, tie)?;
             assert_eq!(candidates.group, group, "{first} {others}");
             assert_eq!((nodes(&candidates).len(), candidates.horizon), (8, others));
         }
-        Ok(())
-    }
-
-    #[test]
-    fn nodes_that_are_asked_for_are_watched_once() -> Result<(), Error> {
-        // 3 is watched anyway, 9 is the next one behind, 11 is further away.
-        let candidates = choose((8, 0), &times(20), 1e-9, &[11, 3, 9])?;
-        assert_eq!(nodes(&candidates), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11]);
-        assert_eq!(candidates.horizon, 10.0);
-        let all: Vec<usize> = (9..20).collect();
-        let candidates = choose((8, 0), &times(20), 1e-9, &all)?;
-        assert_eq!(nodes(&candidates), (0..20).collect::<Vec<_>>());
-        assert_eq!(candidates.horizon, f64::INFINITY);
         Ok(())
     }
 

@@ -35,7 +35,7 @@ use crate::loading::tuning::{
 };
 use crate::updater::{Beside, Iterations, Proposal, Schur, WindowFactor};
 use crate::{Boundary, Error, Problem, UpdaterError};
-use choice::{Candidates, cut, with_ties, within};
+use choice::{Candidates, cut, with_ties};
 use leaving::{Attempt, Before};
 use states::Passed;
 
@@ -124,7 +124,7 @@ impl Estimated {
             if iterations.answers().len() != window.nodes().len() {
                 return Ok(attempt);
             }
-            match self.follow(run, iterations, &tolerances, &window, nodes - count)? {
+            match self.follow(run, iterations, &tolerances, &window)? {
                 Outcome::Done => return Ok(Attempt::Made),
                 Outcome::TakenBack => run.timings.taken_back += 1,
                 Outcome::Alone => return Ok(attempt),
@@ -133,14 +133,13 @@ impl Estimated {
         Ok(attempt)
     }
 
-    /// Computes a window of states, with no more than `most_nodes` in contact; none if no node is left to touch or to yield.
+    /// Computes a window of states; none if no node is left to touch or to yield. A whole one, wherever the path is to end: one that goes
+    /// on behind that has the same windows.
     pub(super) fn produce(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
-        most_nodes: usize,
     ) -> Result<(), Error> {
-        let touches = most_nodes.saturating_sub(run.contact_nodes());
         loop {
             let tolerances = WindowTolerances::of(run, iterations.tolerance());
             let candidates = self.prepare(run, iterations, &tolerances)?;
@@ -148,10 +147,10 @@ impl Estimated {
                 return Ok(());
             }
             if let Some(time) = candidates.group {
-                return self.enter(run, iterations, &tolerances, (time, &[]), touches);
+                return self.enter(run, iterations, &tolerances, (time, &[]));
             }
             let window = self.propose(run, iterations, candidates, f64::INFINITY)?;
-            match self.follow(run, iterations, &tolerances, &window, touches)? {
+            match self.follow(run, iterations, &tolerances, &window)? {
                 Outcome::Done => return Ok(()),
                 // Only where nodes may leave is a window given up.
                 Outcome::TakenBack | Outcome::Alone => run.timings.taken_back += 1,
@@ -207,11 +206,7 @@ impl Estimated {
     }
 
     /// Takes all scalars from the solution at the present approach, and ranks the nodes.
-    fn survey(
-        &mut self,
-        run: &mut LoadingRun,
-        tolerances: &WindowTolerances,
-    ) -> Result<(), Error> {
+    fn survey(&mut self, run: &mut LoadingRun, tolerances: &WindowTolerances) -> Result<(), Error> {
         self.ranked = None;
         self.beyond = f64::INFINITY;
         let approach = run.scalars.approach();
@@ -300,7 +295,6 @@ impl Estimated {
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
         window: &Window,
-        touches: usize,
     ) -> Result<Outcome, Error> {
         let mut first = window.clone();
         let bad = first.play(usize::MAX);
@@ -317,7 +311,7 @@ impl Estimated {
                 }
             });
         }
-        let most = with_ties(events, self.most_events(), tolerances).min(within(events, touches));
+        let most = with_ties(events, self.most_events(), tolerances);
         let (mut kept, mut time) = cut(events, window.horizon(), most, tolerances);
         let start = run.scalars.approach();
         let before = self.may_leave.then(|| Before::of(run, &self.ranking, window));
@@ -333,7 +327,7 @@ impl Estimated {
                 if has_moved {
                     self.begin(run, iterations, tolerances)?;
                 }
-                self.enter(run, iterations, tolerances, (time, &known), touches)?;
+                self.enter(run, iterations, tolerances, (time, &known))?;
                 return Ok(Outcome::Done);
             }
             let trial = Trial::of(run, &of_nodes(window, &events[..kept]))?;
@@ -356,7 +350,13 @@ impl Estimated {
                 };
                 let events = (&correction.window, &settled.events[..]);
                 let sound = before.as_ref().and_then(|before| {
-                    before.sound_between(run, iterations, tolerances, events, (&trial.contact, time))
+                    before.sound_between(
+                        run,
+                        iterations,
+                        tolerances,
+                        events,
+                        (&trial.contact, time),
+                    )
                 });
                 let Some(sound) = sound else {
                     self.finish(run, trial, (correction.window, &settled, time), tolerances)?;
@@ -570,11 +570,7 @@ pub(super) fn values_before(
 
 /// What has become of the watched nodes by the solution at the window's end: pressures, or overlaps of nodes that were elastic; and
 /// gaps, or pressures of those.
-fn at_end(
-    run: &LoadingRun,
-    window: &Window,
-    (trial, approach): (&Trial, f64),
-) -> Vec<AtEnd> {
+fn at_end(run: &LoadingRun, window: &Window, (trial, approach): (&Trial, f64)) -> Vec<AtEnd> {
     let places = trial.contact.places();
     let solution = run.field.solution();
     let at = |(position, &node): (usize, &usize)| {

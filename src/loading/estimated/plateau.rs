@@ -14,31 +14,29 @@ use crate::loading::walk::Carried;
 use crate::updater::{Behind, Iterations};
 
 impl Estimated {
-    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, up to so many `touches`.
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to.
     pub(super) fn enter(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
         (time, known): (f64, &[usize]),
-        touches: usize,
     ) -> Result<(), Error> {
         let is_near = |&&(other, node): &&(f64, usize)| other <= time || known.contains(&node);
         let yields = |&(_, node): &(f64, usize)| run.contact.contains(node);
         if run.has_yielded() || self.ranking.iter().filter(is_near).any(yields) {
-            return self.enter_both(run, iterations, tolerances, (time, known), touches);
+            return self.enter_both(run, iterations, tolerances, (time, known));
         }
-        self.touch(run, iterations, tolerances, (time, known), touches)
+        self.touch(run, iterations, tolerances, (time, known))
     }
 
-    /// Lets all nodes that touch at a time join, and those that are known to, up to `most`, in the order of their indices.
+    /// Lets all nodes that touch at a time join, and those that are known to, in the order of their indices.
     fn touch(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
         (time, known): (f64, &[usize]),
-        most: usize,
     ) -> Result<(), Error> {
         let mark = run.mark();
         let approach = mark.scalars.approach() + time;
@@ -51,7 +49,6 @@ impl Estimated {
         let error = group.iter().map(|&node| tie_of(node));
         let error = error.fold(tolerances.tie, f64::max);
         group.sort_unstable();
-        group.truncate(most);
         self.last_span = self.last_span.max(time);
         let entered = self.join_all(run, iterations, tolerances, (&group, approach));
         let entered = entered.and_then(|increments| {
@@ -80,15 +77,14 @@ impl Estimated {
         Ok(())
     }
 
-    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices, up to so many
-    /// `touches`. Between them rates change in equal steps.
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices.
+    /// Between them rates change in equal steps.
     fn enter_both(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
         (time, known): (f64, &[usize]),
-        touches: usize,
     ) -> Result<(), Error> {
         let places = run.contact.places();
         let tie_of = |node: usize| tolerances.tie_of(closing(run, node, places[node]));
@@ -105,14 +101,8 @@ impl Estimated {
             true => ContactEvent::Yield,
             false => ContactEvent::Touch,
         };
-        let mut touched = 0;
-        let within = |&(_, kind): &(usize, ContactEvent)| {
-            let goes_on = touched < touches;
-            touched += usize::from(kind == ContactEvent::Touch);
-            goes_on
-        };
         let events: Vec<(usize, ContactEvent)> =
-            group.into_iter().map(|node| (node, kind(node))).take_while(within).collect();
+            group.into_iter().map(|node| (node, kind(node))).collect();
         let approach = run.scalars.approach() + time;
         let trial = Trial::of(run, &events)?;
         // However little is left open by so many nodes: rates must be exact.
@@ -120,7 +110,8 @@ impl Estimated {
         go_to(run, iterations, &trial, (approach, self.rate_span))?;
         // The first of their times is the earliest of so many estimates. Behind the events gaps and depths may change far faster than
         // what these were estimated from, so that depths that are negative then tell the time better: all of them are lines.
-        let [_, most] = slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
+        let [_, most] =
+            slacks(run, (trial.problem(&run.problem), &trial.contact), tolerances, approach);
         let late = lateness(run, &trial, (approach, most));
         let late = if late <= most_late { late } else { 0.0 };
         let (time, approach, error) = (time + late, approach + late, error.max(late));
@@ -208,11 +199,7 @@ fn pulled(
 
 /// How much later than an approach the last plastic depth, or pressure in contact, ceases to be negative, of those that are beyond what
 /// a solution may be off by.
-fn lateness(
-    run: &LoadingRun,
-    trial: &Trial,
-    (approach, slack): (f64, Slack),
-) -> f64 {
+fn lateness(run: &LoadingRun, trial: &Trial, (approach, slack): (f64, Slack)) -> f64 {
     let (problem, contact, _) = trial.set(run);
     let plastic = run.plastic.as_deref();
     let mut yields = vec![false; problem.grid().nodes()];
@@ -240,7 +227,6 @@ mod tests {
         times: [f64; 3],
         tie: f64,
         known: &[usize],
-        most: usize,
     ) -> Result<(LoadingRun, Estimated), Error> {
         let mut gaps = [9.0; 9];
         (gaps[0], gaps[2], gaps[4], gaps[6], gaps[8]) = (0.0, 2.0, 2.0, 2.0, 4.0);
@@ -251,24 +237,23 @@ mod tests {
         let tolerances = test_chain::tolerances(1.0, 0.0, tie);
         let iterations = &mut Altered::inexact(0.0);
         run.advance_field(iterations, 1.0, 0.0)?;
-        estimated.enter(&mut run, iterations, &tolerances, (1.0, known), most)?;
+        estimated.enter(&mut run, iterations, &tolerances, (1.0, known))?;
         Ok((run, estimated))
     }
 
-    /// All that touch within a tie or are known to, in the order of their indices, up to a number of them: each adds a quarter of 2 m² to
+    /// All that touch within a tie or are known to, in the order of their indices: each adds a quarter of 2 m² to
     /// the stiffness of 1/2.
     #[test]
     fn nodes_that_touch_together_join_together() -> Result<(), Error> {
-        for (times, tie, known, most, order) in [
-            ([1.0; 3], 1e-3, &[][..], 9, &[0, 2, 4, 6][..]),
-            ([1.0, 1.25, 1.3], 0.25, &[], 9, &[0, 2, 4]),
-            ([1.3, 1.0, 0.5], 0.25, &[], 9, &[0, 4, 6]),
-            ([1.0; 3], 1e-3, &[4], 2, &[0, 2, 4]),
+        for (times, tie, known, order) in [
+            ([1.0; 3], 1e-3, &[][..], &[0, 2, 4, 6][..]),
+            ([1.0, 1.25, 1.3], 0.25, &[], &[0, 2, 4]),
+            ([1.3, 1.0, 0.5], 0.25, &[], &[0, 4, 6]),
             // Known to touch, although their times seem to be later.
-            ([1.3, 1.0, f64::INFINITY], 0.25, &[6], 9, &[0, 4, 6]),
-            ([1.3, 1.3, f64::INFINITY], 0.25, &[2], 9, &[0, 2]),
+            ([1.3, 1.0, f64::INFINITY], 0.25, &[6], &[0, 4, 6]),
+            ([1.3, 1.3, f64::INFINITY], 0.25, &[2], &[0, 2]),
         ] {
-            let (run, estimated) = entered(times, tie, known, most)?;
+            let (run, estimated) = entered(times, tie, known)?;
             assert_eq!(run.contact.order(), order);
             assert_eq!(run.scalars.approach(), 2.0);
             assert_eq!((estimated.last_span, estimated.rate_span), (1.0, f64::INFINITY));

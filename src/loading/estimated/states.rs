@@ -192,13 +192,91 @@ pub(super) fn pinned(window: &Window, all: [f64; 2]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loading::test_chain;
+
+    const GAPS: [f64; 6] = [0.0, 9.0, 1.5, 9.0, 2.5, 9.0];
+
+    fn tolerances(tolerance: f64) -> WindowTolerances {
+        WindowTolerances { length: 2.0, tolerance, tie: 0.0 }
+    }
+
+    /// The path with some nodes in contact, and all scalars known.
+    fn at(contact: &[usize], approach: f64) -> Result<LoadingRun, Error> {
+        test_chain::surveyed(&GAPS, contact, approach)
+    }
+
+    /// Two metres from here.
+    fn passed(begun: &LoadingRun) -> Passed {
+        Passed { start: begun.scalars, before: Carried::of(begun), span: 2.0 }
+    }
+
+    /// From the approach 1 to 3, nodes 2 and 4 touch at 1.5 and 2.5: states are those of solutions there, if pivots are right and
+    /// if all of them are wrong by one factor.
+    #[test]
+    fn states_between_solutions_are_theirs() -> Result<(), Error> {
+        for factor in [1.0, 2.0] {
+            let begun = at(&[0], 1.0)?;
+            let mut run = at(&[0, 2, 4], 3.0)?;
+            let mut window = test_chain::apart(&[(4, 1.5), (2, 0.5)], 9.0);
+            window.schur_mut().matrix_mut().scale_mut(factor);
+            let settled = Settled {
+                events: test_chain::events(&[(1, 0.5), (0, 1.5)]),
+                errors: vec![1e-3, 2e-3],
+            };
+            let rates = [begun.scalars.rates(), run.scalars.rates()];
+            enqueue(&mut run, (window, &settled), passed(&begun), (rates, &tolerances(1e-6)))?;
+            let found: Vec<_> = run.queue.drain(..).collect();
+            assert_eq!(found.len(), 2);
+            for (k, state) in found.iter().enumerate() {
+                assert_eq!((state.step, state.contact.contact_nodes), (k + 2, k + 2));
+                assert_eq!(state.node, ([2, 4][k], 0));
+                // Twice what was settled, and 30 · 10⁻⁶ of 2 m at a closing rate of 1.
+                let error = [2e-3, 4e-3][k] + 6e-5;
+                assert!((state.approach_error - error).abs() < 1e-15, "{}", state.approach_error);
+                let expected = at(&[0, 2, 4][..k + 2], [1.5, 2.5][k])?.scalars.state(k + 2);
+                let pairs = [
+                    (state.contact.approach, expected.approach),
+                    (state.contact.load, expected.load),
+                    (state.contact.energy, expected.energy),
+                    (state.contact.mean_gap, expected.mean_gap),
+                ];
+                let stiffnesses = [
+                    (state.contact.contact_stiffness, expected.contact_stiffness),
+                    (state.contact.interfacial_stiffness, expected.interfacial_stiffness),
+                ];
+                let stiffnesses =
+                    stiffnesses.map(|(a, b)| (a.unwrap_or(f64::NAN), b.unwrap_or_default()));
+                for (found, expected) in pairs.into_iter().chain(stiffnesses) {
+                    // Rounding errors of numbers up to 10.
+                    assert!((found - expected).abs() < 1e-13, "{k}: {found} {expected}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What is lacking at the end, here twice the load that was walked to, comes in proportion to the way.
+    #[test]
+    fn what_is_lacking_is_spread() -> Result<(), Error> {
+        let begun = at(&[0], 1.0)?;
+        let mut run = at(&[0, 2], 3.0)?;
+        // The event is known to be at 0.5; at 1.0 load and stiffness lack what half a metre of 2/4 N/m gives, 1/4 N.
+        let settled = Settled { events: test_chain::events(&[(0, 1.0)]), errors: vec![0.0] };
+        let window = test_chain::apart(&[(2, 0.5)], 9.0);
+        let rates = [begun.scalars.rates(), run.scalars.rates()];
+        enqueue(&mut run, (window, &settled), passed(&begun), (rates, &tolerances(0.0)))?;
+        let load = run.queue[0].contact.load;
+        // 1/2 N at the beginning and 1/2 N/m, and half of 1/4 N.
+        assert!((load - 1.125).abs() < 1e-14, "{load}");
+        Ok(())
+    }
 
     /// One elastic node, a plateau with one that has yielded, and an elastic one beside it: what the window lacks belongs to the first
     /// and the last third.
     #[test]
     fn plateaus_lack_nothing() -> Result<(), Error> {
         let problem = crate::test_chain::problem(&[0.0, 1.0, 2.0, 5.0])?;
-        let mut scalars = PathScalars::new(&problem);
+        let mut scalars = PathScalars::new(&problem).with_hardness();
         let rates = |depth| Rates { unit_stiffness: 0.5, closing: 3.0, plastic: [depth, 0.0] };
         let mut open = Open::default();
         let mut along = Vec::new();

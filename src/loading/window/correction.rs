@@ -158,7 +158,6 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::Error;
     use crate::loading::test_chain;
 
     const TIME: f64 = 2.0;
@@ -306,33 +305,5 @@ mod tests {
         let correction = corrected(&with_error(&[(1.0, [1.0, 0.0, 0.5]), (1.0, [0.0, 1.0, 1.0])]));
         let left_out = correction.left_out();
         assert!((left_out - 1.25 / 4.25).abs() < 1e-12, "{left_out}");
-    }
-
-    /// Of nodes that joined pressure and rate, of others gap and slope: with nodes 0 and 2 in contact at the approach 3, which
-    /// carry 3/4 and 1/2, node 1 between them has sunk by 5/4 and sinks by a half more for each metre.
-    #[test]
-    fn the_end_of_a_window_is_that_of_its_solution() -> Result<(), Error> {
-        let run = test_chain::solved(&[0.0, 4.0, 1.0, 8.0], &[0, 2], 3.0)?;
-        let of_node = [
-            ([0.75, 0.25], [0.0; 2]),
-            ([0.0; 2], [2.25, -0.5]),
-            ([0.5, 0.25], [0.0; 2]),
-            ([0.0; 2], [5.5, -0.75]),
-        ];
-        for nodes in [&[1, 2, 3][..], &[2], &[3, 2, 1, 0]] {
-            let gaps: Vec<_> = nodes.iter().map(|&node| (node, 0.0)).collect();
-            let window = test_chain::apart(&gaps, 1.0);
-            let ends = at_end(&window, &run);
-            assert_eq!(ends.len(), nodes.len());
-            for (end, &node) in ends.iter().zip(nodes) {
-                let (pressure, gap) = of_node[node];
-                for k in 0..2 {
-                    // Rounding errors of a transform of numbers up to 8.
-                    let errors = [end.pressure[k] - pressure[k], end.gap[k] - gap[k]];
-                    assert!(errors.iter().all(|error| error.abs() < 1e-13), "{node} {end:?}");
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{COLUMNS, Column, PLASTIC_COLUMNS, code, event, whole};
 use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
-use crate::loading::{FactorEnd, FactorLog, LoadingState, NextWindow, EstimatedEnd, WindowEnd};
+use crate::loading::{EstimatedEnd, FactorEnd, FactorLog, LoadingState, NextWindow, WindowEnd};
 use crate::updater::{Kept, KeptField, Solution};
 use crate::{Error, Grid};
 

@@ -52,14 +52,17 @@ fn senseless_numbers_are_survived() -> Result<(), Error> {
     let mut solved = Solved::default();
     for approach in numbers {
         for span in numbers {
-            if updater.advance(&problem, &contact, approach, span, &mut solved).is_ok() {
+            if updater.advance(&Behind::on(&problem, &contact, approach), span, &mut solved).is_ok()
+            {
                 let Solution { pressure, rate } = &solved.solution;
                 assert!(pressure.iter().chain(rate).all(|x| x.is_finite()), "{approach} {span}");
             }
-            let probed = updater.probe(&problem, &contact, 20, approach, span);
+            let mut part = contact.clone();
+            part.truncate(20);
+            let probed = updater.probe(&Behind::on(&problem, &part, approach), span);
             assert!(probed.is_err() || approach.is_finite(), "{approach} {span}");
         }
-        updater.advance(&problem, &contact, 3.0, f64::INFINITY, &mut solved)?;
+        updater.advance(&Behind::on(&problem, &contact, 3.0), f64::INFINITY, &mut solved)?;
         let mut exact = Solution::default();
         Dense.solve(&problem, &contact, 30, 3.0, &mut exact)?;
         // To the tolerance of gaps, times the condition of so few nodes.
@@ -119,19 +122,21 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
     let mut contact = ContactSequence::with_order(problem.grid(), nodes[..60].iter().copied())?;
     let mut updater = ConjugateGradient::new();
     let (mut solved, mut schur) = (Solved::default(), Schur::default());
-    updater.advance(&problem, &contact, approach, span, &mut solved)?;
-    updater.propose(&problem, &contact, &nodes[60..70], &mut schur)?;
+    updater.advance(&Behind::on(&problem, &contact, approach), span, &mut solved)?;
+    updater.propose(&problem, &contact, [&nodes[60..70], &[]], None, &mut schur)?;
     assert_eq!(schur.size(), 10);
     for &node in &nodes[60..66] {
         contact.push(node)?;
     }
     let mut end = Solved::default();
-    updater.advance(&problem, &contact, approach, span, &mut end)?;
+    updater.advance(&Behind::on(&problem, &contact, approach), span, &mut end)?;
     for (count, at) in
         [(63, approach), (60, approach), (30, approach), (66, approach), (66, 2.5), (66, 3.5)]
     {
         let (expected, displacement) = dense(&problem, &contact, (count, at))?;
-        let found = updater.probe(&problem, &contact, count, at, 0.0)?;
+        let mut part = contact.clone();
+        part.truncate(count);
+        let [found, _] = updater.probe(&Behind::on(&problem, &part, at), 0.0)?.displacement;
         // Gaps are exact to some 10⁻⁸ of the approach inside a path.
         let off = error(&found, &displacement);
         assert!(off < 1e-7, "{count} {at}: {off:e}");
@@ -143,7 +148,7 @@ fn any_part_of_the_contact_can_be_asked_for() -> Result<(), Error> {
         assert!(error(&found.rate, &expected.rate) < 1e-7);
     }
     // The path has noticed nothing.
-    updater.advance(&problem, &contact, approach, span, &mut solved)?;
+    updater.advance(&Behind::on(&problem, &contact, approach), span, &mut solved)?;
     assert_eq!(solved.solution, end.solution);
     assert_eq!(solved.displacement, end.displacement);
     Ok(())
@@ -203,7 +208,7 @@ fn nodes_that_touched_are_in_the_contact() -> Result<(), Error> {
     contact.truncate(59);
     assert!(updater.join(&problem, &contact, &WindowFactor::default()).is_err());
     let propose = |updater: &mut ConjugateGradient, contact: &_| {
-        updater.propose(&problem, contact, &[90], &mut Schur::default())
+        updater.propose(&problem, contact, [&[90], &[]], None, &mut Schur::default())
     };
     assert!(propose(&mut updater, &contact).is_err());
     // Told of the cut, and of a node that has left, it goes on from there.
@@ -222,7 +227,7 @@ fn on_long_periodic_cells_nothing_is_proposed() -> Result<(), Error> {
     let problem = Problem::new(&HeightMap::new(heights)?, &Spectral::new(grid, 1.0)?)?;
     let contact = ContactSequence::with_order(grid, (0..30).step_by(3))?;
     let mut updater = ConjugateGradient::new();
-    let refused = updater.propose(&problem, &contact, &[1], &mut Schur::default());
+    let refused = updater.propose(&problem, &contact, [&[1], &[]], None, &mut Schur::default());
     assert!(matches!(refused, Err(Error::OutOfRange { value: 1e4, .. })), "{refused:?}");
     let mut found = Solution::default();
     updater.solve(&problem, &contact, 10, 3.0, &mut found)?;

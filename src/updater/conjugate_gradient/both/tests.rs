@@ -118,12 +118,17 @@ fn proposals_beside_few_nodes_are_exact() -> Result<(), Error> {
         let (outside, inside) = (&nodes[100..112], &nodes[20..32]);
         let mut updater = ConjugateGradient::new();
         let mut solved = Solved::default();
-        updater.advance(&elastic, &contact, 30.0, 1.0, &mut solved)?;
+        updater.advance(&Behind::on(&elastic, &contact, 30.0), 1.0, &mut solved)?;
         let mut schur = Schur::default();
         for hardness in [None, Some(0.5)] {
             let beside = load.beside(&problem, hardness);
-            let found: Proposal =
-                updater.propose_both(&elastic, &contact, [outside, inside], &beside, &mut schur)?;
+            let found: Proposal = updater.propose(
+                &elastic,
+                &contact,
+                [outside, inside],
+                Some(&beside),
+                &mut schur,
+            )?;
             let (exact, sums) = dense(&elastic, &contact, [outside, inside], &load)?;
             let error = apart(&schur, &exact);
             assert!(error < 1e-5, "{error:e}");
@@ -171,10 +176,10 @@ fn proposals_beside_many_nodes_are_of_second_order() -> Result<(), Error> {
         let contact = ContactSequence::with_order(problem.grid(), nodes[..260].iter().copied())?;
         let (outside, inside) = (&nodes[260..280], &nodes[..20]);
         let mut updater = ConjugateGradient::new();
-        updater.advance(&elastic, &contact, 30.0, 1.0, &mut Solved::default())?;
+        updater.advance(&Behind::on(&elastic, &contact, 30.0), 1.0, &mut Solved::default())?;
         let mut schur = Schur::default();
         let beside = load.beside(&problem, Some(1.0));
-        updater.propose_both(&elastic, &contact, [outside, inside], &beside, &mut schur)?;
+        updater.propose(&elastic, &contact, [outside, inside], Some(&beside), &mut schur)?;
         let (exact, _) = dense(&elastic, &contact, [outside, inside], &load)?;
         let error = apart(&schur, &exact);
         assert!(error < 5e-3, "{error:e}");
@@ -202,11 +207,11 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
         let contact = ContactSequence::with_order(problem.grid(), order)?;
         let mut updater = ConjugateGradient::new();
         let mut solved = Solved::default();
-        updater.advance(&elastic, &contact, 12.0, 0.5, &mut solved)?;
+        updater.advance(&Behind::on(&elastic, &contact, 12.0), 0.5, &mut solved)?;
         let mut schur = Schur::default();
         let proposed = [&nodes[60..70], &nodes[4..12]];
         let beside = before.beside(&problem, None);
-        updater.propose_both(&elastic, &contact, proposed, &beside, &mut schur)?;
+        updater.propose(&elastic, &contact, proposed, Some(&beside), &mut schur)?;
         // At the end, and in between.
         let end =
             (vec![nodes[60], nodes[62], nodes[61]], vec![nodes[5], nodes[9], nodes[64]], 12.5);
@@ -240,7 +245,7 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
                 (DVector::from_column_slice(found) - &expected).amax() / expected.amax()
             };
             if approach == 12.25 {
-                let found = updater.probe_behind(&state, 0.0)?;
+                let found = updater.probe(&state, 0.0)?;
                 let [u, _] = displacements;
                 // Gaps are exact to some 10⁻⁸ of the approach inside a path.
                 let errors = [
@@ -250,7 +255,7 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
                 assert!(errors.iter().all(|error| *error < 1e-6), "{errors:?}");
                 continue;
             }
-            updater.advance_behind(&state, 0.5, &mut solved)?;
+            updater.advance(&state, 0.5, &mut solved)?;
             let [u, u_rate] = displacements;
             let errors = [
                 off(&solved.solution.pressure, &exact.pressure),
@@ -262,7 +267,7 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
             assert!(errors[..2].iter().all(|error| *error < 1e-6), "{errors:?}");
             assert!(errors[2..].iter().all(|error| *error < 1e-4), "{errors:?}");
             let mut alone = Solution::default();
-            updater.solve_alone(&behind, &after, approach, &mut alone)?;
+            updater.solve_apart(&behind, &after, after.len(), approach, &mut alone)?;
             assert!(off(&alone.pressure, &exact.pressure) < 1e-8);
             // What sums answer follows.
             let all = Load::of(&problem, &[&before.nodes[..], &load.nodes].concat())?;
@@ -270,7 +275,7 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
             let next = [&nodes[70..75], &nodes[20..25]];
             if updater.solutions.as_ref().is_some_and(|known| known.count() == after.len()) {
                 let mut clone = updater.clone();
-                let found = clone.propose_both(&behind, &after, next, &beside, &mut schur)?;
+                let found = clone.propose(&behind, &after, next, Some(&beside), &mut schur)?;
                 let (_, sums) = dense(&behind, &after, next, &all)?;
                 for which in 0..3 {
                     for part in [0..5, 5..10] {
@@ -285,7 +290,7 @@ fn solutions_behind_yields_are_exact() -> Result<(), Error> {
             }
             updater.cut(&elastic, &contact)?;
             let mut back = Solved::default();
-            updater.advance(&elastic, &contact, 12.0, 0.5, &mut back)?;
+            updater.advance(&Behind::on(&elastic, &contact, 12.0), 0.5, &mut back)?;
             let mut exact = Solution::default();
             Dense.solve(&elastic, &contact, contact.len(), 12.0, &mut exact)?;
             assert!(off(&back.solution.pressure, &exact.pressure) < 1e-6);

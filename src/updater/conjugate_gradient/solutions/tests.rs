@@ -41,13 +41,16 @@ impl Window {
         let (at, mut solved) = ((count, approach), Solved::default());
         match asked {
             Asked::Advance(span) => {
-                let at = (approach, Aim::Span(span));
-                solutions.advance(CRITERIA, problem, contact, at, &mut solved)?;
+                let here = Behind::on(problem, contact, approach);
+                solutions.advance(CRITERIA, &here, Aim::Span(span), &mut solved)?;
             }
             Asked::Apart => solutions.solve_apart(CRITERIA, problem, contact, at, &mut solved)?,
             Asked::Probe => {
-                let displacement = solutions.probe(CRITERIA, problem, contact, at, 0.0)?;
-                assert_eq!(displacement.len(), 240);
+                let mut part = contact.clone();
+                part.truncate(count);
+                let found =
+                    solutions.probe(CRITERIA, &Behind::on(problem, &part, approach), 0.0)?;
+                assert_eq!(found.displacement[0].len(), 240);
                 return Ok(());
             }
         }
