@@ -7,8 +7,8 @@ use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{OF_END, OF_LOAD, OF_TIME, RATE_ERROR};
 use crate::loading::walk::{Carried, Walk};
-use crate::loading::window::Window;
 use crate::loading::window::ties::Settled;
+use crate::loading::window::{Window, WindowEvent};
 
 /// A window that the path has gone through.
 pub(super) struct Passed {
@@ -98,15 +98,18 @@ pub(super) fn enqueue(
     ([start_rates, exact], tolerances): ([Rates; 2], &WindowTolerances),
 ) -> Result<(), Error> {
     let Passed { start, before, span } = passed;
-    let of_gap = |event| tolerances.time_of_gap(window.closing(event));
+    let [mut elastic, yielded] = before.nodes;
+    let yields = yielded > 0 || settled.events.iter().any(|e| e.kind == ContactEvent::Yield);
+    let of_gap = |event: &WindowEvent| {
+        // A node that has just touched, or lost a neighbour, comes to its hardness at another rate than it began with.
+        tolerances.time_of_gap(if yields { event.closing } else { window.closing(event) })
+    };
     let of_gaps: Vec<f64> = settled.events.iter().map(of_gap).collect();
     for event in &settled.events {
         window.happen(event.position, event.time).map_err(|bad| run.not_positive_definite(bad))?;
     }
     let events = window.events();
     let mut rates = completed(&start_rates, &window.rates(start_rates), &exact);
-    let [mut elastic, yielded] = before.nodes;
-    let yields = yielded > 0 || !window.is_of_touches();
     let alone = run.problem.table().self_influence().recip();
     for (event, rates) in events.iter().zip(&mut rates).filter(|_| yields) {
         elastic = if event.kind == ContactEvent::Touch { elastic + 1 } else { elastic - 1 };

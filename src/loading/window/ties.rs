@@ -9,8 +9,8 @@ use crate::Error;
 use crate::loading::state::ContactEvent;
 use crate::loading::tolerances::WindowTolerances;
 use crate::loading::tuning::{
-    BETWEEN_CORRECTIONS, CONTRADICTED, OF_CHANGE, OF_CHANGE_UNCORRECTED, OF_ERROR, OF_SPACING,
-    OF_SPACING_OF_BOTH, OF_WAY, POOR, RATE_ERROR, SAME_GAP, SAME_PIVOT, SAME_RATE,
+    BETWEEN_CORRECTIONS, CONTRADICTED, OF_CHANGE, OF_CHANGE_UNCORRECTED, OF_ERROR, OF_RESIDUAL,
+    OF_SPACING, OF_SPACING_OF_BOTH, OF_WAY, POOR, RATE_ERROR, SAME_GAP, SAME_PIVOT, SAME_RATE,
 };
 
 /// The events of a window in their final order.
@@ -283,12 +283,15 @@ impl Ties<'_> {
             self.order_ties(&mut events);
         }
         let start = events[0].time;
-        let left = error + 2.0 * self.tolerances.tolerance * (self.beginning.approach + time);
+        let solved = self.tolerances.tolerance * (self.beginning.approach + time);
         for (k, event) in events.iter().enumerate() {
             let closing = match positions.iter().position(|&place| place == event.position) {
                 Some(place) => begun.closing(&WindowEvent { position: place, ..*event }),
                 None => event.closing,
             };
+            // A pressure is off by more of what is left of gaps than a gap is.
+            let part = if event.kind == ContactEvent::Yield { OF_RESIDUAL } else { 2.0 };
+            let left = error + part * solved;
             self.settled.errors[first + k] = OF_WAY * (event.time - start) + left / closing;
         }
         self.settled.events[first..=last].copy_from_slice(&events);
