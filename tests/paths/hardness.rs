@@ -8,7 +8,7 @@ use asperity::loading::{History, LoadingBuilder, LoadingEnd};
 #[cfg(feature = "io")]
 use asperity::record::LoadingRecord;
 use asperity::surface::{HeightMap, Paraboloid};
-use asperity::updater::{Dense, Handover, LinearUpdater, RecursiveCholesky};
+use asperity::updater::{ConjugateGradient, Dense, Handover, LinearUpdater, RecursiveCholesky};
 use asperity::{
     Boundary, Boussinesq, ContactEvent, ContactGrowth, ContactTarget, Error, FixedLoadSolver, Grid,
     InfluenceKernel, KernelError, LoadingSolver, LoadingState, PeriodicBoussinesq, Spectral,
@@ -280,29 +280,36 @@ fn two_nodes_by_hand() {
 /// A hardness that no node comes to leaves every bit of the elastic path as it is.
 #[test]
 fn an_unlimited_hardness_is_none() {
-    let elastic_columns = |state: &LoadingState| {
+    fn elastic_columns(state: &LoadingState) -> (ContactEvent, (usize, usize), usize, Vec<u64>) {
         let contact = state.contact;
         let stiffness = [contact.contact_stiffness, contact.interfacial_stiffness];
         let numbers = [contact.approach, contact.load, contact.energy, contact.mean_gap];
         let numbers = numbers.into_iter().chain(stiffness.map(Option::unwrap_or_default));
-        (state.event, state.node, state.step, numbers.map(f64::to_bits).collect::<Vec<_>>())
-    };
+        (state.event, state.node, state.step, numbers.map(f64::to_bits).collect())
+    }
+    fn columns<U: LinearUpdater>(
+        builder: LoadingBuilder<'_, U>,
+        window: Option<usize>,
+    ) -> Vec<(ContactEvent, (usize, usize), usize, Vec<u64>)> {
+        let builder = match window {
+            Some(size) => builder.window_size(size),
+            None => builder,
+        };
+        let path = builder.max_area_fraction(1.0).build().unwrap();
+        path.map(|state| elastic_columns(&state.unwrap())).collect()
+    }
     for (name, kernel) in cases() {
         let heights = surface(name);
-        let builder =
-            || LoadingSolver::builder(&heights, &*kernel).updater(RecursiveCholesky::new());
+        let builder = || LoadingSolver::builder(&heights, &*kernel);
         for window in [None, Some(24)] {
-            let of = |builder: LoadingBuilder<'_, RecursiveCholesky>| {
-                let builder = match window {
-                    Some(size) => builder.window_size(size),
-                    None => builder,
-                };
-                let path = builder.max_area_fraction(1.0).build().unwrap();
-                path.map(|state| elastic_columns(&state.unwrap())).collect::<Vec<_>>()
-            };
-            let elastic = of(builder());
+            let with_factor = || builder().updater(RecursiveCholesky::new());
+            let elastic = columns(with_factor(), window);
             assert_eq!(elastic.len(), 192);
-            assert!(of(builder().hardness(1e30)) == elastic, "{name} {window:?}");
+            assert!(columns(with_factor().hardness(1e30), window) == elastic, "{name} {window:?}");
+            let without = || builder().updater(ConjugateGradient::new());
+            let elastic = columns(without(), window);
+            assert_eq!(elastic.len(), 192);
+            assert!(columns(without().hardness(1e30), window) == elastic, "{name} {window:?}");
         }
     }
 }

@@ -58,10 +58,10 @@ impl Estimated {
 }
 
 /// How many events a window keeps, up to `most`, and where it ends: in the middle of the widest spacing behind
-/// most of them.
+/// most of them; a little behind the last one where that is the last of all that are ranked.
 pub(super) fn cut(
     events: &[WindowEvent],
-    horizon: f64,
+    (horizon, is_last): (f64, bool),
     most: usize,
     tolerances: &WindowTolerances,
 ) -> (usize, f64) {
@@ -70,8 +70,8 @@ pub(super) fn cut(
         let last = events[events_kept - 1].time;
         match events.get(events_kept) {
             Some(event) => event.time,
-            None if horizon < f64::INFINITY => horizon.max(last),
-            None => 1.05 * last + 1e-12 * tolerances.length,
+            None if is_last => horizon.max(last).min(1.05 * last + 1e-12 * tolerances.length),
+            None => horizon.max(last),
         }
     };
     let spacing = |kept: &usize| next(*kept) - events[*kept - 1].time;
@@ -193,7 +193,8 @@ mod tests {
     fn cut_of(times: &[f64], horizon: f64, most: usize) -> (usize, f64) {
         let events: Vec<(usize, f64)> = times.iter().copied().enumerate().collect();
         let tolerances = test_chain::tolerances(1e9, 0.0, 0.25);
-        cut(&test_chain::events(&events), horizon, most, &tolerances)
+        let is_last = horizon == f64::INFINITY;
+        cut(&test_chain::events(&events), (horizon, is_last), most, &tolerances)
     }
 
     /// Ends in the middle of the widest spacing behind 85 of 100 events, the first of the widest.

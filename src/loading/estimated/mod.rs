@@ -312,7 +312,8 @@ impl Estimated {
             });
         }
         let most = with_ties(events, self.most_events(), tolerances);
-        let (mut kept, mut time) = cut(events, window.horizon(), most, tolerances);
+        let horizon = (window.horizon(), window.nodes().len() == self.ranking.len());
+        let (mut kept, mut time) = cut(events, horizon, most, tolerances);
         let start = run.scalars.approach();
         let before = self.may_leave.then(|| Before::of(run, &self.ranking, window));
         let mut has_moved = false;
@@ -375,7 +376,7 @@ impl Estimated {
             if kept > 1 {
                 // What joined or yielded without need says nothing of when that was.
                 let fewer = sooner.clamp(1, kept - 1);
-                (kept, time) = cut(events, window.horizon(), fewer, tolerances);
+                (kept, time) = cut(events, horizon, fewer, tolerances);
             } else if !is_shortest {
                 time = own;
             } else {
