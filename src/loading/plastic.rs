@@ -16,6 +16,8 @@ pub(super) struct Plastic {
     surface: Arc<Problem>,
     has_yielded: Vec<bool>,
     count: usize,
+    /// How many of them yielded in each window: their displacements are sums over windows.
+    groups: Vec<usize>,
     /// Sum of the pressures of these nodes \[Pa\].
     sum: f64,
     /// What they displace. The gap of the elastic problem contains it as well, but to rounding of heights.
@@ -50,6 +52,7 @@ impl Plastic {
             surface: Arc::new(problem),
             has_yielded,
             count: 0,
+            groups: Vec::new(),
             sum: 0.0,
             displaced: Displaced { load: nothing.clone(), unit: nothing },
         };
@@ -74,6 +77,11 @@ impl Plastic {
     /// Number of nodes that have yielded.
     pub(super) fn count(&self) -> usize {
         self.count
+    }
+
+    /// How many of them yielded in each window.
+    pub(super) fn groups(&self) -> &[usize] {
+        &self.groups
     }
 
     /// Sum of their pressures \[Pa\].
@@ -140,6 +148,7 @@ impl Plastic {
             surface: Arc::clone(&self.surface),
             has_yielded,
             count: self.count + nodes.len(),
+            groups: [&self.groups[..], &[nodes.len()]].concat(),
             sum,
             displaced: Displaced {
                 load: add(&before.load, &displaced.load),
@@ -172,6 +181,7 @@ impl Plastic {
             surface: Arc::clone(&self.surface),
             has_yielded: vec![false; nothing.len()],
             count: 0,
+            groups: Vec::new(),
             sum: 0.0,
             displaced: Displaced { load: nothing.clone(), unit: nothing },
         };

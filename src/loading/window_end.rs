@@ -52,8 +52,8 @@ pub(crate) struct FactorEnd {
 }
 
 impl<U: LinearUpdater> LoadingSolver<U> {
-    /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, behind an error,
-    /// and without a factor on paths on which nodes yield, of which it is not known.
+    /// The end of the last window behind the state that was yielded last; `None` before the first one, in full contact, and behind an
+    /// error.
     pub(crate) fn window_end(&self) -> Option<WindowEnd> {
         use LoadingEnd::{Failed, FullContact, Memory};
         let is_over = matches!(self.end, Some(FullContact | Failed | Memory));
@@ -123,28 +123,29 @@ impl<U: LinearUpdater> LoadingSolver<U> {
                 ));
             }
         }
+        let counts: Vec<usize> = match &end.next {
+            NextWindow::Factor(end) => end.log.yielded.iter().map(|[_, count]| *count).collect(),
+            NextWindow::Iterations(end) => end.yielded.clone(),
+        };
+        let plastic = run.plastic.as_ref();
+        let after = plastic.map(|plastic| plastic.after(groups(&counts, &yielded)));
+        let before = after.transpose()?.map(|(plastic, problem)| {
+            let plastic = run.plastic.replace(Arc::new(plastic));
+            (plastic, mem::replace(&mut run.problem, problem))
+        });
         let restored = match (&end.next, &mut self.procedure) {
-            (NextWindow::Factor(end), _) => {
-                let plastic = run.plastic.as_ref();
-                let after = plastic.map(|plastic| plastic.after(groups(&end.log, &yielded)));
-                let before = after.transpose()?.map(|(plastic, problem)| {
-                    let plastic = run.plastic.replace(Arc::new(plastic));
-                    (plastic, mem::replace(&mut run.problem, problem))
-                });
-                let restored = phase.restore_factor(run, &contact, &end.log)?;
-                if let Some(before) = before.filter(|_| !restored) {
-                    (run.plastic, run.problem) = before;
-                }
-                restored
-            }
+            (NextWindow::Factor(end), _) => phase.restore_factor(run, &contact, &end.log),
             (
                 NextWindow::Iterations(end),
                 Procedure::Windows(_, estimated) | Procedure::Stepwise(_, estimated),
-            ) if estimated.can_follow(end) => phase.restore_iterations(run, &contact, end)?,
-            (NextWindow::Iterations(_), _) => false,
+            ) if estimated.can_follow(end) => phase.restore_iterations(run, &contact, end),
+            (NextWindow::Iterations(_), _) => Ok(false),
         };
-        if !restored {
-            return Ok(false);
+        if !matches!(restored, Ok(true)) {
+            if let Some(before) = before {
+                (run.plastic, run.problem) = before;
+            }
+            return restored;
         }
         run.contact = contact;
         for (step, event, left) in left {
@@ -211,11 +212,11 @@ impl<U: LinearUpdater> LoadingSolver<U> {
     }
 }
 
-/// The nodes that yielded in each window of a log, and before it what the log knows nothing of.
-fn groups<'a>(log: &'a FactorLog, yielded: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
-    let known: usize = log.yielded.iter().map(|[_, count]| *count).sum();
+/// The nodes that yielded in each window, so many each, and before these what is not known by windows.
+fn groups<'a>(counts: &'a [usize], yielded: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
+    let known = counts.iter().fold(0, |sum: usize, count| sum.saturating_add(*count));
     let (before, mut rest) = yielded.split_at(yielded.len().saturating_sub(known));
-    let groups = log.yielded.iter().map(move |[_, count]| {
+    let groups = counts.iter().map(move |count| {
         let (own, others) = rest.split_at((*count).min(rest.len()));
         rest = others;
         own

@@ -35,6 +35,25 @@ pub struct Kept {
     pub marks: [usize; 2],
     /// The contact for which the coarse matrix of the preconditioner was computed: it serves until enough has changed.
     pub coarse: Vec<usize>,
+    /// Where nodes in contact were proposed as well, or nodes have yielded.
+    pub beside: Option<KeptBeside>,
+}
+
+/// What iterations go on from beside nodes that have yielded.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[doc(hidden)]
+pub struct KeptBeside {
+    /// How many of the proposed nodes, the first ones, were out of contact.
+    pub outside: usize,
+    /// The nodes that have yielded since they were proposed, and their pressures \[Pa\].
+    pub yielded: Vec<usize>,
+    pub pressures: Vec<f64>,
+    /// What sums over all nodes answer on the contact and these nodes, by node index: gaps out of contact, plastic depths, and these times
+    /// the hardness.
+    pub sums: [KeptField; 3],
+    /// The displacements that these belong to: under a pressure of 1 on all nodes that had yielded then \[m/Pa\], and under their hardness
+    /// \[m\].
+    pub under: [Vec<f64>; 2],
 }
 
 /// Pressures on the contact, the displacements of all nodes, and their error by single precision.

@@ -40,7 +40,7 @@ pub use handover::Handover;
 pub use iterations::Method;
 pub(crate) use iterations::{Behind, Beside, Iterations, Proposal, Solved};
 pub(crate) use join::join_all;
-pub(crate) use kept::{Kept, KeptField};
+pub(crate) use kept::{Kept, KeptBeside, KeptField};
 pub use schur::Schur;
 pub use solution::Solution;
 pub(crate) use tuning::JOINED;

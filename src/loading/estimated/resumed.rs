@@ -20,6 +20,8 @@ pub(crate) struct EstimatedEnd {
     pub(crate) rate_span: f64,
     /// What windows are shortened by.
     pub(crate) left_out: f64,
+    /// How many nodes yielded in each window so far.
+    pub(crate) yielded: Vec<usize>,
     /// Behind an event with a solution of its own, which no window ends with: the scalars, sums over all events.
     pub(crate) scalars: Option<[f64; 6]>,
     /// The solution, and what iterations go on from besides.
@@ -67,6 +69,7 @@ impl Estimated {
             last_span: self.last_span,
             rate_span: self.rate_span,
             left_out: self.left_out,
+            yielded: run.plastic.as_ref().map_or(Vec::new(), |plastic| plastic.groups().to_vec()),
             kept,
         })
     }

@@ -9,13 +9,22 @@ use super::{COLUMNS, Column, PLASTIC_COLUMNS, code, event, whole};
 use crate::contact::{ContactState, PlasticState};
 use crate::io::archive::{Archive, ArchiveWriter};
 use crate::loading::{EstimatedEnd, FactorEnd, FactorLog, LoadingState, NextWindow, WindowEnd};
-use crate::updater::{Kept, KeptField, Solution};
+use crate::updater::{Kept, KeptBeside, KeptField, Solution};
 use crate::{Error, Grid};
 
 /// Whole numbers of a state before the columns.
 const WHOLE: usize = 5;
 /// Numbers of a state on what has yielded.
 const PLASTIC: usize = 1 + PLASTIC_COLUMNS.len();
+
+/// What sums answer beside nodes that have yielded, and its displacements.
+const BESIDE: [[&str; 2]; 3] = [
+    ["window_gap_sums", "window_gap_sums_displacement"],
+    ["window_depth_sums", "window_depth_sums_displacement"],
+    ["window_work_sums", "window_work_sums_displacement"],
+];
+/// What nodes that had yielded displaced then.
+const UNDER: [&str; 2] = ["window_unit_displacement", "window_load_displacement"];
 
 /// What is not an array.
 #[derive(Debug, Serialize, Deserialize)]
@@ -27,7 +36,7 @@ pub(super) struct Numbers {
     /// With a factor: the nodes that have left it.
     #[serde(default)]
     left: usize,
-    /// With a factor: the windows in which nodes yielded, and the nodes of the solution that is kept behind them.
+    /// The windows in which nodes yielded; and with a factor the nodes of the solution that is kept behind them.
     #[serde(default)]
     yielded: usize,
     #[serde(default)]
@@ -46,6 +55,9 @@ struct IterationNumbers {
     sums_of: usize,
     directions: usize,
     marks: [usize; 2],
+    /// Of the proposed nodes those that were out of contact, where nodes in it were proposed as well, and the nodes that have yielded since.
+    #[serde(default)]
+    beside: Option<[usize; 2]>,
 }
 
 impl Numbers {
@@ -56,7 +68,7 @@ impl Numbers {
                 let nodes = solution.map_or(0, |solution| solution.pressure.len());
                 [end.log.left.len(), end.log.yielded.len(), nodes]
             }
-            NextWindow::Iterations(_) => [0; 3],
+            NextWindow::Iterations(end) => [0, end.yielded.len(), 0],
         };
         let iterations = match &end.next {
             NextWindow::Factor(_) => None,
@@ -67,6 +79,7 @@ impl Numbers {
                 sums_of: end.kept.sums_of,
                 directions: end.kept.directions.len(),
                 marks: end.kept.marks,
+                beside: end.kept.beside.as_ref().map(|of| [of.outside, of.yielded.len()]),
             }),
         };
         let handed_over_at = end.handed_over_at;
@@ -124,8 +137,14 @@ pub(super) fn write(
     nodes("window_joined", &end.joined)?;
     nodes("window_proposed", &kept.proposed)?;
     nodes("window_coarse", &kept.coarse)?;
+    if !end.yielded.is_empty() {
+        nodes("window_yielded", &end.yielded)?;
+    }
     if let Some(scalars) = &end.scalars {
         archive.numbers("window_scalars", scalars.len(), scalars.iter().copied())?;
+    }
+    if let Some(beside) = &kept.beside {
+        write_beside(beside, grid, archive)?;
     }
     let numbers = [
         end.last_span,
@@ -162,6 +181,55 @@ pub(super) fn write(
         }
     }
     Ok(())
+}
+
+/// Writes what iterations go on from beside nodes that have yielded.
+fn write_beside(
+    beside: &KeptBeside,
+    grid: &Grid,
+    archive: &mut ArchiveWriter<impl Write + Seek>,
+) -> std::io::Result<()> {
+    let (nx, ny) = grid.shape();
+    let yielded = beside.yielded.iter().map(|&node| node as i64);
+    archive.integers("window_beside_nodes", beside.yielded.len(), yielded)?;
+    let pressures = beside.pressures.iter().copied();
+    archive.numbers("window_beside_pressures", beside.pressures.len(), pressures)?;
+    for ([sums, displacement], field) in BESIDE.iter().zip(&beside.sums) {
+        archive.numbers(sums, field.pressure.len(), field.pressure.iter().copied())?;
+        if !field.displacement.is_empty() {
+            let values = DMatrix::from_column_slice(nx, ny, &field.displacement);
+            archive.matrix(displacement, &values)?;
+        }
+    }
+    let drifts = beside.sums.iter().map(|field| field.drift);
+    archive.numbers("window_beside_errors", BESIDE.len(), drifts)?;
+    for (name, under) in UNDER.iter().zip(&beside.under) {
+        archive.matrix(name, &DMatrix::from_column_slice(nx, ny, under))?;
+    }
+    Ok(())
+}
+
+/// Reads what [`write_beside`] has written.
+fn read_beside(archive: &Archive, [outside, yielded]: [usize; 2]) -> Result<KeptBeside, Error> {
+    let nodes = archive.vector("window_beside_nodes", Some(yielded))?;
+    let drifts = archive.vector("window_beside_errors", Some(BESIDE.len()))?;
+    let mut beside = KeptBeside {
+        outside,
+        yielded: nodes.into_iter().map(whole).collect(),
+        pressures: archive.vector("window_beside_pressures", Some(yielded))?,
+        ..KeptBeside::default()
+    };
+    for (([sums, displacement], field), drift) in BESIDE.iter().zip(&mut beside.sums).zip(drifts) {
+        let pressure = archive.vector(sums, None)?;
+        if !pressure.is_empty() {
+            let displacement = archive.matrix(displacement)?.data.into();
+            *field = KeptField { pressure, displacement, drift };
+        }
+    }
+    for (name, under) in UNDER.iter().zip(&mut beside.under) {
+        *under = archive.matrix(name)?.data.into();
+    }
+    Ok(beside)
 }
 
 /// Reads what [`write`] has written; whether it is the end of a window of a path turns out when the path goes on.
@@ -258,6 +326,7 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
             .collect(),
         marks: iterations.marks,
         coarse: nodes("window_coarse")?,
+        beside: iterations.beside.map(|counts| read_beside(archive, counts)).transpose()?,
     };
     let next = NextWindow::Iterations(Box::new(EstimatedEnd {
         settles: iterations.settles,
@@ -265,6 +334,12 @@ pub(super) fn read(archive: &Archive, grid: &Grid, numbers: Numbers) -> Result<W
         last_span: values[0],
         rate_span: values[1],
         left_out: values[2],
+        yielded: if numbers.yielded == 0 {
+            Vec::new()
+        } else {
+            let counts = archive.vector("window_yielded", Some(numbers.yielded))?;
+            counts.into_iter().map(whole).collect()
+        },
         scalars: if iterations.is_single { Some(scalars()?) } else { None },
         kept,
     }));

@@ -68,6 +68,11 @@ impl Both {
         &self.complement
     }
 
+    /// How many of the proposed nodes are out of contact.
+    pub(super) fn outside(&self) -> usize {
+        self.outside
+    }
+
     /// The proposed nodes.
     pub(super) fn locals(&self) -> &[Local] {
         &self.locals

@@ -40,6 +40,17 @@ fn needed(beside: &Beside<'_>) -> [bool; SUMS] {
 }
 
 impl PlasticSums {
+    /// Fields, and the right-hand sides that they belong to.
+    pub(super) fn of_parts(fields: [Field; SUMS], under: [Vec<f64>; 2]) -> Self {
+        Self { fields, under }
+    }
+
+    /// What [`Self::of_parts`] makes it again of; `None` where it is only a start.
+    pub(super) fn parts(&self) -> Option<(&[Field; SUMS], &[Vec<f64>; 2])> {
+        let are_known = self.under.iter().all(|under| !under.is_empty());
+        are_known.then_some((&self.fields, &self.under))
+    }
+
     /// Solves for the fields, after a change since the last time; `open` says what part of the grid still closes.
     pub(super) fn follow(
         &mut self,

@@ -87,6 +87,7 @@ impl Solutions {
         self.sums = RowSums::start(contact.len(), vec![0.0; self.now.rate.pressure.len()]);
         self.solved = contact.order().to_vec();
         (self.both, self.passage) = (None, None);
+        self.plastic_sums = PlasticSums::default();
     }
 
     /// The grid of the problem.
@@ -189,7 +190,10 @@ impl Solutions {
         }
         self.now.write(contact, solved);
         if aim != Aim::Exact {
-            self.proposed.improve(problem, contact, &self.now, solved);
+            match &self.passage {
+                Some(passage) => self.improve_behind(behind, &self.now, passage, solved),
+                None => self.proposed.improve(problem, contact, &self.now, solved),
+            }
             self.now.scale(problem, contact, &mut solved.solution);
         }
         Ok(())

@@ -13,6 +13,7 @@ use crate::krylov::{Directions, Equation, Field, greatest};
 use crate::updater::conjugate_gradient::both::{Both, Change};
 use crate::updater::conjugate_gradient::equilibrium::Equilibrium;
 use crate::updater::conjugate_gradient::proposed::Proposed;
+use crate::updater::conjugate_gradient::row_sums::RowSums;
 use crate::updater::conjugate_gradient::tolerances::{Aim, Criteria, Tolerances};
 use crate::updater::conjugate_gradient::tuning::OF_PRESSURE;
 use crate::updater::{Behind, Beside, Proposal, Schur, Solved};
@@ -43,6 +44,7 @@ impl Solutions {
         beside: &Beside<'_>,
     ) -> Result<(&Schur, Proposal), Error> {
         self.proposed = Proposed::default();
+        self.sums = RowSums::start(0, vec![0.0; problem.grid().nodes()]);
         self.solver.choose(contact, contact.len());
         self.solver.complete(&mut self.now.load)?;
         self.solver.complete(&mut self.now.rate)?;
@@ -138,7 +140,7 @@ impl Solutions {
         is_in
     }
 
-    fn improve_behind(
+    pub(super) fn improve_behind(
         &self,
         behind: &Behind<'_>,
         equilibrium: &Equilibrium,

@@ -1,13 +1,15 @@
 //! Solutions as plain numbers, and made again of these.
 
-use super::{Equilibrium, Solutions};
+use super::{Equilibrium, Passage, Solutions};
 use crate::contact::ContactSequence;
 use crate::krylov::{Field, NodeSet, greatest};
+use crate::updater::conjugate_gradient::both::Both;
+use crate::updater::conjugate_gradient::plastic_sums::PlasticSums;
 use crate::updater::conjugate_gradient::proposed::Proposed;
 use crate::updater::conjugate_gradient::row_sums::RowSums;
 use crate::updater::conjugate_gradient::tolerances::{Aim, Criteria, Tolerances};
 use crate::updater::conjugate_gradient::tuning::{SUMS_TOLERANCE, UNSPOILT};
-use crate::updater::{Kept, KeptField, check_count};
+use crate::updater::{Kept, KeptBeside, KeptField, check_count};
 use crate::{Boundary, Error, Problem, UpdaterError};
 
 impl Solutions {
@@ -20,15 +22,15 @@ impl Solutions {
     ) -> Option<Kept> {
         let now = &self.now;
         let is_whole = now.count == contact.len() && now.load.is_known() && now.rate.is_known();
-        if !is_whole || self.both.is_some() {
+        if !is_whole {
             return None;
         }
-        let set = whole(contact);
-        let kept = |field: &Field| KeptField {
-            pressure: on(&set, &field.pressure),
-            displacement: field.displacement.clone(),
-            drift: field.drift,
+        let beside = match &self.both {
+            Some(both) => Some(self.keep_beside(both, contact)?),
+            None => None,
         };
+        let set = whole(contact);
+        let kept = |field: &Field| kept_field(&set, field);
         let mut all = Kept {
             tolerance: criteria.tolerance,
             approach: now.approach,
@@ -41,16 +43,39 @@ impl Solutions {
             coarse: self.solver.coarse_nodes().iter().map(|&node| node as usize).collect(),
             ..Kept::default()
         };
+        if let (Some(both), Some(passage)) = (&self.both, &self.passage) {
+            all.proposed = both.locals().iter().map(|local| local.node).collect();
+            all.proposed_beside = contact.len().saturating_sub(passage.joined.len());
+            all.row_sums = vec![0.0; all.proposed.len()];
+            all.beside = beside;
+        }
         // Elsewhere no one asks for them.
+        if has_directions(problem, &all) {
+            all.directions = self.directions.values().map(<[f32]>::to_vec).collect();
+            all.marks = self.directions.marks();
+        }
         if problem.boundary() != Boundary::Periodic {
             let (field, start) = self.sums.parts();
             all.sums_of = self.sums.count();
             all.sums = kept(field);
             all.sums_start = on(&set, start);
-            all.directions = self.directions.values().map(<[f32]>::to_vec).collect();
-            all.marks = self.directions.marks();
         }
         Some(all)
+    }
+
+    /// The same of what has yielded; `None` unless the window was proposed.
+    fn keep_beside(&self, both: &Both, contact: &ContactSequence) -> Option<KeptBeside> {
+        let passage = self.passage.as_ref()?;
+        let (fields, under) = self.plastic_sums.parts()?;
+        let (yielded, pressures): (Vec<usize>, Vec<f64>) = passage.fixed.iter().copied().unzip();
+        let set = with_yielded(contact, &yielded);
+        Some(KeptBeside {
+            outside: both.outside(),
+            yielded,
+            pressures,
+            sums: fields.each_ref().map(|field| kept_field(&set, field)),
+            under: under.clone(),
+        })
     }
 
     /// What they were, on a contact.
@@ -87,19 +112,27 @@ impl Solutions {
 
         // The local solutions of what was proposed beside an earlier contact.
         let Self { solver, neighbourhood, .. } = &mut restored;
-        solver.choose(contact, kept.proposed_beside);
-        for &node in &kept.proposed {
-            if solver.set().contains(node) {
-                let (ix, iy) = problem.grid().coordinates(node);
-                return Err(Error::AlreadyInContact { ix, iy });
+        let (mut proposed, mut both) = (Proposed::default(), None);
+        if let Some(beside) = &kept.beside {
+            let before = before_yields(problem, contact, kept, beside)?;
+            solver.choose(&before, before.len());
+            let (outside, inside) = kept.proposed.split_at(beside.outside);
+            both = Some(Both::new(problem, (neighbourhood, solver), [outside, inside])?);
+        } else {
+            solver.choose(contact, kept.proposed_beside);
+            for &node in &kept.proposed {
+                if solver.set().contains(node) {
+                    let (ix, iy) = problem.grid().coordinates(node);
+                    return Err(Error::AlreadyInContact { ix, iy });
+                }
             }
+            let mut sums = kept.row_sums.iter().copied();
+            let nodes = (&kept.proposed[..], kept.proposed_beside);
+            proposed = Proposed::new(problem, (neighbourhood, solver), nodes, |_| {
+                // One for each node, in their order.
+                sums.next().unwrap_or_default()
+            })?;
         }
-        let mut sums = kept.row_sums.iter().copied();
-        let nodes = (&kept.proposed[..], kept.proposed_beside);
-        let proposed = Proposed::new(problem, (neighbourhood, solver), nodes, |_| {
-            // One for each node, in their order.
-            sums.next().unwrap_or_default()
-        })?;
         let mut coarse = NodeSet::new(problem.grid().nodes());
         let is_in = membership(problem.grid().nodes(), &kept.coarse);
         coarse.assign(|node| is_in[node]);
@@ -127,13 +160,90 @@ impl Solutions {
             let most = greatest(sums.len(), 0.0, |i| sums[i]);
             restored.solver.check(&field, SUMS_TOLERANCE * most)?;
             restored.sums = RowSums::of(kept.sums_of, field, start);
+        }
+        if has_directions(problem, kept) {
             let values = kept.directions.iter().cloned();
             restored.directions = restored.solver.recall_directions(values, kept.marks)?;
         }
+        if let Some(beside) = &kept.beside {
+            let set = with_yielded(contact, &beside.yielded);
+            let nodes = problem.grid().nodes();
+            for under in &beside.under {
+                UpdaterError::check_length("displacements", under.len(), nodes)?;
+            }
+            let [a, b, c] = &beside.sums;
+            let of = |field: &KeptField| match field.displacement.is_empty() {
+                true => Ok(Field::default()),
+                false => restored_field(problem, &set, field),
+            };
+            let fields = [of(a)?, of(b)?, of(c)?];
+            for field in &fields {
+                let most = greatest(field.displacement.len(), 0.0, |i| field.displacement[i].abs());
+                restored.solver.check(field, SUMS_TOLERANCE * most)?;
+            }
+            restored.plastic_sums = PlasticSums::of_parts(fields, beside.under.clone());
+            let joined = contact.order()[kept.proposed_beside..].to_vec();
+            let fixed = beside.yielded.iter().copied().zip(beside.pressures.iter().copied());
+            restored.passage = Some(Passage { joined, fixed: fixed.collect() });
+        }
+        restored.both = both;
         restored.proposed = proposed;
         restored.solved = contact.order().to_vec();
         restored.now = Equilibrium { count, approach, serves: kept.serves, load, rate };
         Ok(restored)
+    }
+}
+
+/// Whether the search directions of the last solution serve sums.
+fn has_directions(problem: &Problem, kept: &Kept) -> bool {
+    problem.boundary() != Boundary::Periodic || kept.beside.is_some()
+}
+
+/// The contact beside which nodes were proposed.
+fn before_yields(
+    problem: &Problem,
+    contact: &ContactSequence,
+    kept: &Kept,
+    beside: &KeptBeside,
+) -> Result<ContactSequence, Error> {
+    let KeptBeside { outside, yielded, pressures, .. } = beside;
+    check_count(yielded.len(), pressures.len())?;
+    check_count(0, outside.saturating_sub(kept.proposed.len()))?;
+    problem.check_nodes(yielded)?;
+    let is_finite = pressures.iter().all(|pressure| pressure.is_finite());
+    let quantity = "pressure of a node that has yielded";
+    let first = pressures.iter().copied().find(|p| !p.is_finite()).unwrap_or_default();
+    Error::require(quantity, first, is_finite, "finite")?;
+    let (outside, inside) = kept.proposed.split_at(*outside);
+    let had_touched = |node: &&usize| !outside.contains(node);
+    let left = yielded.iter().filter(had_touched).copied();
+    let stayed = contact.order()[..kept.proposed_beside].iter().copied();
+    let before = ContactSequence::with_order(problem.grid(), stayed.chain(left))?;
+    let is_beside = |node: &usize, inside: bool| before.contains(*node) == inside;
+    let fits = outside.iter().all(|node| is_beside(node, false))
+        && inside.iter().all(|node| is_beside(node, true));
+    if !fits {
+        let node = kept.proposed.first().copied().unwrap_or_default();
+        let (ix, iy) = problem.grid().coordinates(node);
+        return Err(Error::NotInContact { ix, iy });
+    }
+    Ok(before)
+}
+
+/// A contact and nodes that have yielded.
+fn with_yielded(contact: &ContactSequence, yielded: &[usize]) -> NodeSet {
+    let is_in = membership(contact.grid().nodes(), yielded);
+    let mut set = NodeSet::new(contact.grid().nodes());
+    set.assign(|node| is_in[node] || contact.contains(node));
+    set
+}
+
+/// A field as plain numbers, with pressures on a set.
+fn kept_field(set: &NodeSet, field: &Field) -> KeptField {
+    KeptField {
+        pressure: on(set, &field.pressure),
+        displacement: field.displacement.clone(),
+        drift: field.drift,
     }
 }
 
