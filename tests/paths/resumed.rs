@@ -101,10 +101,19 @@ fn on_threads(threads: usize, work: impl FnOnce() + Send) {
 /// factor before nodes yielded, on plateaus, and in windows that watch one node.
 #[test]
 fn with_a_factor_and_a_hardness() {
+    with_a_hardness(&RecursiveCholesky::new());
+}
+
+/// The same without a factor: matrices, sums and loads beside nodes that have yielded are those of the windows before.
+#[test]
+fn without_a_factor_and_with_a_hardness() {
+    with_a_hardness(&ConjugateGradient::new());
+}
+
+fn with_a_hardness<U: LinearUpdater + Clone>(updater: &U) {
     let heights = rough(&grid(), 5);
     for (k, (name, kernel)) in half_spaces(grid()).into_iter().enumerate() {
-        let builder =
-            || LoadingSolver::builder(&heights, &*kernel).updater(RecursiveCholesky::new());
+        let builder = || LoadingSolver::builder(&heights, &*kernel).updater(updater.clone());
         let full = whole(builder()).last().unwrap().contact;
         let hardness = 0.4 * full.load / (full.contact_area / full.contact_area_fraction);
         let (nx, ny) = grid().shape();

@@ -104,11 +104,9 @@ impl Estimated {
         run.contact = end.contact(&run.contact)?;
         let count = order.len() - end.joined.len();
         run.advance_field(iterations, approach, self.rate_span)?;
+        run.rearrange(count, &order[count..])?;
         run.scalars.place_at(approach);
         let tolerances = WindowTolerances::of(run, iterations.tolerance());
-        self.survey(run, &tolerances)?;
-        run.rearrange(count, &order[count..])?;
-        self.ranked = Some((run.contact.revision(), approach));
-        Ok(())
+        self.survey(run, &tolerances)
     }
 }
