@@ -12,7 +12,7 @@
 //!   or more, in windows as well: each ends before a node leaves, and is checked at its end and at each event in it.
 //!
 //! With a [hardness](LoadingBuilder::hardness) elastic nodes *yield* as well. `Exact` then watches nodes of both kinds, and checks a
-//! window in which nodes yield at its end before the updater learns of it. Without a factor it is `RefinedYielding`.
+//! window in which nodes yield at its end before the updater learns of it.
 //!
 //! # How a window is made
 //!
@@ -31,8 +31,8 @@
 //! # Without a factor
 //!
 //! With [`ConjugateGradient`](crate::updater::ConjugateGradient), and once the default updater costs more than iterations, Schur
-//! complements are nearly exact. `Refined` then takes the place of `Exact`: it plays a `Window` of such a complement, solves at
-//! its end, corrects it by that solution, plays the same events a second time, and settles neighbours that are still too close by a
+//! complements are nearly exact. `Estimated` then takes the place of `Exact`: it plays a `Window` of such a complement, solves at
+//! its end, plays fewer events where that contradicts them, corrects it by that solution, plays the same events a second time, and settles neighbours that are still too close by a
 //! solution of their own (`docs/theory.md`, section 11).
 //!
 //! * *The same events*: the order is that of a factor but for ties, events closer than 10⁻⁹ of the approach. On a periodic
@@ -51,7 +51,7 @@
 //!   initial one. On cells 10 times as long as wide loads of a periodic half-space are off by up to 10⁻⁴, and longer ones
 //!   [are refused](crate::updater::ConjugateGradient::MAX_ASPECT); on a free half-space cells may be of any shape.
 //!
-//! With a hardness `RefinedYielding` does the same with events of both kinds: its matrices are those of
+//! With a hardness it does the same with events of both kinds, once a node may yield: its matrices are those of
 //! [`LinearUpdater::watch_both`](crate::updater::LinearUpdater::watch_both), from local solutions for nodes that may touch and for nodes
 //! that may yield. All that is said above holds for its states; what nodes that touch and nodes that yield make of the error of a matrix may
 //! cancel at a window's end, so that estimates are ten times as great, a fiftieth of the mean spacing of events at least. Nodes that yield
