@@ -15,13 +15,14 @@ type Done = Result<(), Box<dyn Error>>;
 type Names = BTreeSet<String>;
 
 /// Paths that have all there is: yields, releases and a limit; with a factor, and without one on both half-spaces; with bodies.
-const PATHS: [&str; 7] = [
+const PATHS: [&str; 8] = [
     "--hardness 2.5e9",
     "--hardness 2.5e9 --max-load 1e3",
     "--max-load 100 --material steel --against glass",
     "--layer steel,3e-4 --base 3e9,0.3 --max-area-fraction 0.3",
     "--updater iterative --max-area-fraction 0.3",
     "--updater iterative --max-area-fraction 0.3 --periodic love",
+    "--updater iterative --max-area-fraction 0.3 --hardness 2.5e9",
     "--resume r.npz --max-area-fraction 0.4",
 ];
 
