@@ -19,7 +19,7 @@ pub(crate) struct Circumstances {
     pub(crate) tolerance: Option<f64>,
     /// Nodes that touch or leave together at the last state.
     pub(crate) on_the_edge: usize,
-    /// Mean hardness of the nodes, infinite without one.
+    /// Mean hardness of the nodes \[Pa\], infinite without one.
     pub(crate) bears: f64,
 }
 
@@ -33,7 +33,9 @@ impl Circumstances {
             budget: false,
             tolerance: None,
             on_the_edge: 0,
-            bears: dense.hardness().map_or(f64::INFINITY, |hardness| hardness.mean()),
+            bears: dense
+                .hardness()
+                .map_or(f64::INFINITY, |all| all.mean() / dense.own_pressure(1.0)),
         }
     }
 

@@ -48,6 +48,12 @@ impl Trial {
         }
     }
 
+    /// The nodes that have joined and not yielded since.
+    pub(super) fn joined(&self, run: &LoadingRun) -> Vec<usize> {
+        let nodes = self.contact.order().iter();
+        nodes.filter(|&&node| !run.contact.contains(node)).copied().collect()
+    }
+
     /// The problem there, where it was `own` before.
     pub(super) fn problem<'a>(&'a self, own: &'a Problem) -> &'a Problem {
         self.yields.as_ref().map_or(own, |(problem, _)| problem)

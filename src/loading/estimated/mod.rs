@@ -474,8 +474,7 @@ impl Estimated {
         tolerances: &WindowTolerances,
     ) -> Result<(), Error> {
         self.last_span = time;
-        let joined = trial.contact.order().iter().filter(|&&node| !run.contact.contains(node));
-        let joined = joined.copied().collect();
+        let joined = trial.joined(run);
         trial.reorder(run, &of_nodes(&window, &settled.events))?;
         let passed = Passed { start: run.scalars, before: Carried::of(run), span: time };
         let approach = passed.start.approach() + time;

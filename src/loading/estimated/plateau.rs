@@ -127,6 +127,7 @@ impl Estimated {
         let before = Carried::of(run);
         let passed = Passed { start: run.scalars, before, span: time };
         let rates = self.rates;
+        self.joined = trial.joined(run);
         trial.adopt(run);
         run.scalars.place_at(approach);
         self.survey(run, tolerances)?;

@@ -163,8 +163,8 @@ impl Solutions {
         if self.both.is_some() && (contact.len() != self.now.count || !yielded.is_empty()) {
             return self.advance_behind(criteria, behind, aim, solved);
         }
-        if self.solved.iter().any(|&node| !contact.contains(node)) {
-            // Nodes have left since.
+        if !yielded.is_empty() || self.solved.iter().any(|&node| !contact.contains(node)) {
+            // Nodes have left since, or have come and left.
             self.keep(contact);
         }
         let now = &self.now;
