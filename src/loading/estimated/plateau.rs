@@ -14,7 +14,7 @@ use crate::loading::walk::Carried;
 use crate::updater::{Behind, Iterations};
 
 impl Estimated {
-    /// Lets all nodes whose event is at a time touch or yield, and those that are known to.
+    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices.
     pub(super) fn enter(
         &mut self,
         run: &mut LoadingRun,
@@ -22,33 +22,36 @@ impl Estimated {
         tolerances: &WindowTolerances,
         (time, known): (f64, &[usize]),
     ) -> Result<(), Error> {
-        let is_near = |&&(other, node): &&(f64, usize)| other <= time || known.contains(&node);
-        let yields = |&(_, node): &(f64, usize)| run.contact.contains(node);
-        if run.has_yielded() || self.ranking.iter().filter(is_near).any(yields) {
-            return self.enter_both(run, iterations, tolerances, (time, known));
-        }
-        self.touch(run, iterations, tolerances, (time, known))
-    }
-
-    /// Lets all nodes that touch at a time join, and those that are known to, in the order of their indices.
-    fn touch(
-        &mut self,
-        run: &mut LoadingRun,
-        iterations: &mut dyn Iterations,
-        tolerances: &WindowTolerances,
-        (time, known): (f64, &[usize]),
-    ) -> Result<(), Error> {
-        let mark = run.mark();
-        let approach = mark.scalars.approach() + time;
-        let tie_of = |node: usize| tolerances.tie_of(run.line(node).closing);
+        let places = if run.plastic.is_some() { run.contact.places() } else { Vec::new() };
+        let rate_of = |node: usize| closing(run, node, places.get(node).copied().flatten());
+        let tie_of = |node: usize| tolerances.tie_of(rate_of(node));
         let together =
             |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
         let group = self.ranking.iter().filter(together);
         let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
         // What their times cannot be told apart by.
-        let error = group.iter().map(|&node| tie_of(node));
-        let error = error.fold(tolerances.tie, f64::max);
+        let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
+        // The same with what the solution at hand leaves open of them.
+        let open = group.iter().map(|&node| self.left / rate_of(node));
+        let most_late = open.fold(error, f64::max);
         group.sort_unstable();
+        if run.has_yielded() || group.iter().any(|&node| run.contact.contains(node)) {
+            return self.yield_all(run, iterations, tolerances, (&group, time), [error, most_late]);
+        }
+        self.touch_all(run, iterations, tolerances, (group, time), error)
+    }
+
+    /// Lets nodes that touch at a time join, in their order. Their times may be off by an error.
+    fn touch_all(
+        &mut self,
+        run: &mut LoadingRun,
+        iterations: &mut dyn Iterations,
+        tolerances: &WindowTolerances,
+        (group, time): (Vec<usize>, f64),
+        error: f64,
+    ) -> Result<(), Error> {
+        let mark = run.mark();
+        let approach = mark.scalars.approach() + time;
         self.last_span = self.last_span.max(time);
         let entered = self.join_all(run, iterations, tolerances, (&group, approach));
         let entered = entered.and_then(|increments| {
@@ -77,32 +80,22 @@ impl Estimated {
         Ok(())
     }
 
-    /// Lets all nodes whose event is at a time touch or yield, and those that are known to, in the order of their indices.
-    /// Between them rates change in equal steps.
-    fn enter_both(
+    /// Lets nodes whose event is at a time touch or yield, in their order. Between them rates change in equal steps. Their times may be off
+    /// by an error, and the first of their events be so much later.
+    fn yield_all(
         &mut self,
         run: &mut LoadingRun,
         iterations: &mut dyn Iterations,
         tolerances: &WindowTolerances,
-        (time, known): (f64, &[usize]),
+        (group, time): (&[usize], f64),
+        [error, most_late]: [f64; 2],
     ) -> Result<(), Error> {
-        let places = run.contact.places();
-        let tie_of = |node: usize| tolerances.tie_of(closing(run, node, places[node]));
-        let together =
-            |&&(other, node): &&(f64, usize)| other <= time + tie_of(node) || known.contains(&node);
-        let group = self.ranking.iter().filter(together);
-        let mut group: Vec<usize> = group.map(|&(_, node)| node).collect();
-        // What their times cannot be told apart by, and what the solution at hand leaves open of them.
-        let error = group.iter().map(|&node| tie_of(node)).fold(tolerances.tie, f64::max);
-        let open = group.iter().map(|&node| self.left / closing(run, node, places[node]));
-        let most_late = open.fold(error, f64::max);
-        group.sort_unstable();
         let kind = |node: usize| match run.contact.contains(node) {
             true => ContactEvent::Yield,
             false => ContactEvent::Touch,
         };
         let events: Vec<(usize, ContactEvent)> =
-            group.into_iter().map(|node| (node, kind(node))).collect();
+            group.iter().map(|&node| (node, kind(node))).collect();
         let approach = run.scalars.approach() + time;
         let trial = Trial::of(run, &events)?;
         // However little is left open by so many nodes: rates must be exact.
