@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use asperity::io::{
-    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_vti, write_x3p,
+    self, LengthUnit, MeasuredSurface, ReadOptions, TextLayout, write_gsf, write_npy, write_vti,
+    write_x3p,
 };
 use asperity::nalgebra::DMatrix;
 use asperity::{FileError, Grid};
@@ -29,6 +30,9 @@ use crate::warnings::warn;
 ///     Sides ``(x, y)`` [m] in place of what the file says; one number is the side along x, with square cells.
 /// height_unit, lateral_unit : str, optional
 ///     Units in place of those in the file.
+/// layout : {"matrix", "x-row", "y-column", "axes", "points"}, optional
+///     How the numbers of a text are arranged, where it does not say: heights only, with positions along x in the first
+///     row, along y in the first column, or both, or a point x, y, z in each line.
 /// ignore_mask : bool
 ///     Keep the heights of nodes that a mask in the file marks.
 /// name : str, optional
@@ -37,7 +41,7 @@ use crate::warnings::warn;
 /// Returns
 /// -------
 /// Surface
-///     Missing nodes are NaN. What was assumed is in `Surface.notes`, and is given as a warning.
+///     Missing nodes are NaN. How a text was understood is in `Surface.understood`. What was assumed is in `Surface.notes`, and is given as a warning.
 ///
 /// Raises
 /// ------
@@ -49,7 +53,7 @@ use crate::warnings::warn;
 /// The rows of a file are those of an image. Only a ``.npy`` file holds ``[ix, iy]``, as the program and the Rust library
 /// have it: an image has to be saved by ``numpy.save(name, z.T)``, or by `Surface.save`.
 #[pyfunction]
-#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, ignore_mask=false, name=None))]
+#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, layout=None, ignore_mask=false, name=None))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn read(
     py: Python<'_>,
@@ -58,6 +62,7 @@ fn read(
     size: Option<Lengths>,
     height_unit: Option<&str>,
     lateral_unit: Option<&str>,
+    layout: Option<&str>,
     ignore_mask: bool,
     name: Option<PathBuf>,
 ) -> Fallible<Surface> {
@@ -78,6 +83,9 @@ fn read(
     if let Some(unit) = lateral_unit {
         options = options.lateral_unit(unit.parse::<LengthUnit>()?);
     }
+    if let Some(layout) = layout {
+        options = options.layout(layout.parse::<TextLayout>()?);
+    }
     if ignore_mask {
         options = options.ignore_mask();
     }
@@ -96,8 +104,8 @@ fn read(
 
 fn surface(measured: MeasuredSurface) -> Fallible<Surface> {
     let grid = measured.grid()?;
-    let MeasuredSurface { heights, title, notes, .. } = measured;
-    Ok(Surface { title, notes, ..Surface::new(grid, heights)? })
+    let MeasuredSurface { heights, title, understood, notes, .. } = measured;
+    Ok(Surface { title, understood, notes, ..Surface::new(grid, heights)? })
 }
 
 /// The names of the maps in a file.

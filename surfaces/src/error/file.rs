@@ -70,6 +70,13 @@ pub enum FileError {
         unit: String,
     },
 
+    /// A text that names no layout.
+    #[error("'{layout}' is no layout of a text: matrix, x-row, y-column, axes and points are")]
+    NoLayout {
+        /// The text.
+        layout: String,
+    },
+
     /// A surface of unknown size.
     #[error("the file does not give the size of the surface; give it with `ReadOptions::side`")]
     NoSide,

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::raw::Parsed;
+use super::text::TextLayout;
 use super::{al3d, gsf, gwy, npy, sdf, sur, text, vk4, x3p};
 
 /// A format of files with heights.
@@ -30,8 +31,14 @@ pub enum Format {
     Text,
 }
 
-/// Finds all maps in a file; its name decides only what its bytes leave open.
-type Parse = fn(&[u8], &Path) -> Parsed;
+/// What decides what the bytes of a text leave open.
+pub(super) struct Besides<'a> {
+    pub(super) path: &'a Path,
+    pub(super) layout: Option<TextLayout>,
+}
+
+/// Finds all maps in a file.
+type Parse = fn(&[u8], &Besides<'_>) -> Parsed;
 
 impl Format {
     const ALL: [Self; 9] = [
@@ -63,7 +70,9 @@ impl Format {
             }
             Self::Alicona => ("Alicona", &[b"AliconaImaging\0"], |file, _| al3d::parse(file)),
             Self::Keyence => ("Keyence VK4", &[b"VK4_"], |file, _| vk4::parse(file)),
-            Self::Text => ("text", &[], text::parse),
+            Self::Text => {
+                ("text", &[], |file, besides| text::parse(file, besides.path, besides.layout))
+            }
         }
     }
 
@@ -74,9 +83,9 @@ impl Format {
         Self::ALL.into_iter().find(is_it).or_else(text)
     }
 
-    /// All maps in a file of this format; its name decides only what its bytes leave open.
-    pub(super) fn parse(self, bytes: &[u8], path: &Path) -> Parsed {
-        self.known().2(bytes, path)
+    /// All maps in a file of this format.
+    pub(super) fn parse(self, bytes: &[u8], besides: &Besides<'_>) -> Parsed {
+        self.known().2(bytes, besides)
     }
 
     /// Its name.

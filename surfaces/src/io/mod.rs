@@ -43,7 +43,9 @@
 //!
 //! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may be
 //! absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the extension
-//! `.xyz`, or by having three columns where no header gives the sides of a matrix.
+//! `.xyz`, or by coordinates that are those of most of a grid. Positions in the first row or column of a matrix are known by even
+//! steps. Where numbers can be read in several ways, [`TextLayout`] says which is meant; [`MeasuredSurface::understood`] tells
+//! how a text was read.
 //!
 //! # What a file may ask for
 //!
@@ -107,6 +109,7 @@ pub use self::{
     gsf::write_gsf,
     measured::MeasuredSurface,
     options::{ReadOptions, channels, read_surface},
+    text::TextLayout,
     unit::LengthUnit,
     x3p::write_x3p,
 };

@@ -1,6 +1,7 @@
 //! Files of heights: our own small ones, real ones beside what other readers say of them, and broken ones.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+mod dialects;
 mod hostile;
 mod refusals;
 mod stated;
