@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -64,6 +65,22 @@ def test_masks_and_channels() -> None:
         asp.read(FILES / "masked.gwy", channel="nonsense")
     assert refused.value.kind == "WhichChannel" and refused.value.channels == names
     assert refused.value.wanted == "nonsense"
+
+
+def test_a_text_says_how_it_was_understood() -> None:
+    list_of_points = FILES.parent / "text_files" / "index_column.csv"
+    with pytest.warns(asp.AsperityWarning, match="of 4 columns 2, 3 and 4 are read"):
+        surface = asp.read(list_of_points)
+    assert surface.understood.startswith("108 points, columns x [um], y [um], z [um] by name")
+    assert pickle.loads(pickle.dumps(surface)).understood == surface.understood
+    plane = b"".join(b"%d %d %d %d %d\n" % tuple(range(k, k + 5)) for k in range(5))
+    with pytest.raises(FileError, match="`layout=`"):
+        asp.read(plane, size=1.0, height_unit="m")
+    with pytest.warns(asp.AsperityWarning, match="square"):
+        below = asp.read(plane, size=1.0, height_unit="m", layout="x-row")
+    assert below.shape == (4, 5)
+    with pytest.raises(FileError, match="'rows' is no layout"):
+        asp.read(plane, layout="rows")  # type: ignore[arg-type]
 
 
 def test_what_a_file_leaves_open_is_asked_for() -> None:

@@ -600,12 +600,13 @@ impl Surface {
 fn _restore_surface(
     z: &Bound<'_, PyAny>,
     cell: (f64, f64),
-    (title, understood, notes): (String, String, Vec<String>),
+    words: (String, String, Vec<String>),
     periodic: Option<bool>,
 ) -> Fallible<Surface> {
     let found = arrays::Found::of(z, "z", arrays::Kind::Real)?;
     let (rows, columns) = found.rows_and_columns()?;
     let grid = Grid::new(columns, rows, cell.0, cell.1)?;
+    let (title, understood, notes) = words;
     Ok(Surface { title, understood, notes, periodic, ..Surface::new(grid, found.on(&grid)?)? })
 }
 
