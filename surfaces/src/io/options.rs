@@ -1,12 +1,13 @@
 //! Reading a surface: what a file says, and what the user adds to it.
 
+use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
 use super::bytes::{read_all, read_file};
-use super::format::{Besides, Format};
+use super::format::{Besides, Format, not_read};
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::text::TextLayout;
@@ -293,6 +294,22 @@ impl ReadOptions {
     }
 }
 
+/// Maps whose names occur more than once get numbers, so that each can be chosen.
+fn told_apart(mut channels: Vec<Channel>) -> Vec<Channel> {
+    let names = names(&channels);
+    let mut times: HashMap<&str, usize> = HashMap::new();
+    names.iter().for_each(|name| *times.entry(name).or_default() += 1);
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for (channel, name) in channels.iter_mut().zip(&names) {
+        if times.get(name.as_str()).is_some_and(|times| *times > 1) {
+            let number = seen.entry(name).or_default();
+            *number += 1;
+            channel.name = format!("{name} [{number}]");
+        }
+    }
+    channels
+}
+
 fn names(channels: &[Channel]) -> Vec<String> {
     channels.iter().map(|channel| channel.name.clone()).collect()
 }
@@ -322,10 +339,11 @@ fn parse(
     let format = Format::of(bytes).ok_or_else(|| FileError::UnknownFormat {
         path: path.to_path_buf(),
         begins: bytes.iter().take(8).copied().collect(),
+        what: not_read(bytes),
     })?;
     let channels = format.parse(bytes, &Besides { path, layout }).and_then(|channels| {
         ensure!(!channels.is_empty(), "there is no map in it");
-        Ok(channels)
+        Ok(told_apart(channels))
     });
     Ok((format, channels.map_err(|fault| fault.in_file(path, format.name()))?))
 }

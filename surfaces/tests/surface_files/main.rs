@@ -7,6 +7,7 @@ mod refusals;
 mod stated;
 mod third_party;
 mod third_party_archives_and_text;
+mod third_party_instruments;
 mod truth;
 
 use std::path::{Path, PathBuf};
