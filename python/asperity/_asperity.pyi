@@ -44,6 +44,7 @@ __all__ = [
     "creep",
     "cylinder",
     "example_surface",
+    "formats",
     "gap_distribution",
     "hardness",
     "influence",
@@ -720,6 +721,7 @@ def read(
     name: _Path | None = None,
 ) -> Surface: ...
 def channels(path: _Path) -> list[str]: ...
+def formats() -> dict[str, list[str]]: ...
 def report(
     path: LoadingPath,
     other: LoadingPath | None = None,

@@ -427,10 +427,10 @@ fn of_file(error: &FileError) -> Described {
             }
             (class, "Io", numbers)
         }
-        FileError::UnknownFormat { path, begins } => {
+        FileError::UnknownFormat { path, begins, what } => {
             let filename = path;
             let begins = begins.iter().map(|byte| usize::from(*byte)).collect::<Vec<_>>();
-            ("FileError", "UnknownFormat", numbers![filename, begins])
+            ("FileError", "UnknownFormat", numbers![filename, begins, what])
         }
         FileError::BadFile { path, format, offset, reason } => {
             let filename = path;
@@ -444,6 +444,7 @@ fn of_file(error: &FileError) -> Described {
             let filename = path;
             ("FileError", "NoUnit", numbers![filename, quantity, found, option])
         }
+        FileError::NoLayout { layout } => (VALUE, "NoLayout", numbers![layout]),
         FileError::NoLength { unit } => (VALUE, "NoLength", numbers![unit]),
         FileError::NoSide => ("FileError", "NoSide", Vec::new()),
         _ => ("FileError", "File", Vec::new()),

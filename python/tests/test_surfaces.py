@@ -25,12 +25,15 @@ OPEN: dict[str, dict[str, object]] = {
     ".asc": {"size": (14e-6, 15e-6), "height_unit": "m"},
     ".csv": {"size": (14e-6, 15e-6), "height_unit": "m"},
     ".xyz": {"height_unit": "m", "lateral_unit": "m"},
+    # Their pixels are square, or not the same in float32.
+    ".dat": {"size": (14e-6, 15e-6)},
+    ".opd": {"size": (14e-6, 15e-6)},
 }
 
 
 def expected(name: str) -> NDArray[np.float64]:
     z = NANOMETRES * 1e-9
-    z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9}.get(name, 0.0)
+    z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9, "missing_u32.vk6": 300e-9}.get(name, 0.0)
     if name.startswith(("missing", "masked")):
         z[1, 2] = z[4, 6] = np.nan
     return z
@@ -52,6 +55,13 @@ def test_every_format(name: str) -> None:
     with (FILES / name).open("rb") as file:
         from_file = asp.read(file, **options)
     assert surface == from_bytes == from_object == from_file
+
+
+def test_formats_are_listed_with_their_endings() -> None:
+    formats = asp.formats()
+    assert formats["Keyence"] == ["vk4", "vk6", "vk7"] and formats["text"] == ["txt", "asc", "csv", "xyz"]
+    endings = {ending for of in formats.values() for ending in of}
+    assert {Path(file).suffix[1:] for file in FILES.iterdir()} <= endings
 
 
 def test_masks_and_channels() -> None:
@@ -79,7 +89,7 @@ def test_a_text_says_how_it_was_understood() -> None:
     with pytest.warns(asp.AsperityWarning, match="square"):
         below = asp.read(plane, size=1.0, height_unit="m", layout="x-row")
     assert below.shape == (4, 5)
-    with pytest.raises(FileError, match="'rows' is no layout"):
+    with pytest.raises(ValueError, match="'rows' is no layout"):
         asp.read(plane, layout="rows")  # type: ignore[arg-type]
 
 

@@ -30,7 +30,7 @@ const HIGHEST_HURST: f64 = 1.2;
 /// inverted if the options say so. Warnings concern units, tilt, and wavelengths that the grid does not resolve.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// File with heights (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
+    /// File with heights (`asperity formats` lists what is read)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 

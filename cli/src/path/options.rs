@@ -41,7 +41,7 @@ fn generated(arg: Arg, value: &str) -> Arg {
 #[command(group(ArgGroup::new("kept").multiple(true)))]
 #[command(mut_arg("side", |arg| generated(arg, "1e-2")), mut_arg("material", |arg| generated(arg, "steel")))]
 pub(crate) struct Options {
-    /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
+    /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
     /// an image are y; a NumPy array is [ix, iy]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use asperity::io::{
-    self, LengthUnit, MeasuredSurface, ReadOptions, TextLayout, write_gsf, write_npy, write_vti,
-    write_x3p,
+    self, Format, LengthUnit, MeasuredSurface, ReadOptions, TextLayout, write_gsf, write_npy,
+    write_vti, write_x3p,
 };
 use asperity::nalgebra::DMatrix;
 use asperity::{FileError, Grid};
@@ -22,8 +22,7 @@ use crate::warnings::warn;
 /// Parameters
 /// ----------
 /// source : str, os.PathLike, bytes or file object
-///     ``.npy``, ``.gsf``, ``.gwy``, ``.sdf``, ``.x3p``, ``.sur``, ``.al3d``, ``.vk4`` or text; the format is known by the
-///     content. A file object is one with ``read()`` that returns bytes.
+///     A file of one of the `formats`; which one is known by the content. A file object is one with ``read()`` that returns bytes.
 /// channel : str, optional
 ///     Name of the map, in a file with several.
 /// size : (float, float) or float, optional
@@ -106,6 +105,27 @@ fn surface(measured: MeasuredSurface) -> Fallible<Surface> {
     let grid = measured.grid()?;
     let MeasuredSurface { heights, title, understood, notes, .. } = measured;
     Ok(Surface { title, understood, notes, ..Surface::new(grid, heights)? })
+}
+
+/// The formats of files that `read` reads.
+///
+/// Returns
+/// -------
+/// dict of str to list of str
+///     What names of files of each format end with; a file is known by its content all the same.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> asp.formats()["Keyence"]
+/// ['vk4', 'vk6', 'vk7']
+#[pyfunction]
+fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let formats = PyDict::new(py);
+    for format in Format::ALL {
+        formats.set_item(format.name(), format.endings().to_vec())?;
+    }
+    Ok(formats)
 }
 
 /// The names of the maps in a file.
@@ -238,5 +258,6 @@ fn save_fields(
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(read, module)?)?;
     module.add_function(wrap_pyfunction!(channels, module)?)?;
+    module.add_function(wrap_pyfunction!(formats, module)?)?;
     module.add_function(wrap_pyfunction!(save_fields, module)?)
 }

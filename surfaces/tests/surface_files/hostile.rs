@@ -76,7 +76,7 @@ fn read(bytes: &[u8], target: &mut Target, what: impl Fn() -> String) {
     });
     let name = target.path.0.display();
     assert!(!panicked, "{name}, {}: the reader panicked", what());
-    let inflates = ["sur", "x3p"].map(OsStr::new).map(Some);
+    let inflates = ["sur", "x3p", "vk6"].map(OsStr::new).map(Some);
     let fixed = if inflates.contains(&target.path.0.extension()) {
         BYTES_OF_INFLATER
     } else {

@@ -3,6 +3,7 @@
 
 mod dialects;
 mod hostile;
+mod instruments;
 mod refusals;
 mod stated;
 mod third_party;
