@@ -43,11 +43,6 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
             vec!["can be read in 4 ways", "'y-column', 2 rows of 1 heights", "`--layout`"],
             vec!["ReadOptions"],
         ),
-        (
-            "info map.txt --layout rows",
-            vec!["'rows' is no layout of a text: matrix, x-row"],
-            vec![],
-        ),
         ("info points.xyz --height-unit um", vec!["`--lateral-unit` or `--side`"], vec![]),
         (
             "path --surface nan.txt --side 1e-3 --height-unit um --material steel",
