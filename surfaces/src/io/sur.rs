@@ -10,6 +10,8 @@
 //!
 //! Compressed heights are zlib streams. Deflate makes at most 1032 bytes of one: a stream that claims more is not
 //! read, so the memory for a file is bounded by its length, if by a larger multiple than in other formats.
+//!
+//! A surface with colours, with intensities or with both has them in further objects behind it, which are not read.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -148,7 +150,7 @@ impl Header {
         if x == y {
             return ((dx, dy), x.clone());
         }
-        let length = |unit: &Option<String>| unit.as_ref()?.parse::<LengthUnit>().ok();
+        let length = |unit: &Option<String>| LengthUnit::in_file(unit.as_ref()?);
         match (length(x), length(y)) {
             (Some(x), Some(y)) => {
                 let metre = LengthUnit::METRE.symbol().to_string();

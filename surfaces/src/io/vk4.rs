@@ -20,7 +20,9 @@ use super::raw::{Channel, Parsed};
 
 const MAGIC: &[u8] = b"VK4_";
 
-pub(super) const BEGINS: &[&[u8]] = &[MAGIC, b"VK6", b"VK7"];
+const ARCHIVES: [&[u8]; 2] = [b"VK6", b"VK7"];
+
+pub(super) const BEGINS: &[&[u8]] = &[MAGIC, ARCHIVES[0], ARCHIVES[1]];
 
 /// The member of the archive behind `VK6`, the length of a picture, and the picture.
 const MEMBER: &str = "Vk4File";
@@ -40,7 +42,7 @@ const PALETTE: usize = 768;
 const PICOMETRE: f64 = 1e-12;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
-    if file.starts_with(MAGIC) {
+    if !ARCHIVES.iter().any(|begin| file.starts_with(begin)) {
         return images(file);
     }
     images(&inflated(file, MEMBER)?)

@@ -101,12 +101,17 @@ fn generic(
         "each line has one comma: two numbers, or one with a decimal comma; part columns by ';', or write decimal points"
     );
     let is_list = is_xyz || header.lateral_unit.is_some();
+    let is_asked = layout.is_some();
     let layout = layout.map_or_else(|| layout::of(header, &table, is_list), Ok)?;
     if layout == TextLayout::Points {
         return list(header, &layout::columns_without_names(&table)?, &table);
     }
-    let axes = axes::take(&mut table, layout)?;
-    matrix::channel(header, axes, table)
+    let mut axes = axes::take(&mut table, layout)?;
+    // What the user has said need not be noticed, but may be told.
+    let told = if is_asked { std::mem::take(&mut axes.notes) } else { Vec::new() };
+    let channel = matrix::channel(header, axes, table)?;
+    let understood = std::iter::once(channel.understood.clone()).chain(told).collect::<Vec<_>>();
+    Ok(Channel { understood: understood.join("; "), ..channel })
 }
 
 /// The map of a list of points.
