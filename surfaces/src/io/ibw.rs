@@ -96,21 +96,29 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     };
     let unit =
         |place: usize| Ok::<_, Fault>(Some(text(place, UNIT)?).filter(|unit| !unit.is_empty()));
-    let (height_unit, x, y) = (unit(UNITS)?, unit(UNITS + UNIT)?, unit(UNITS + 2 * UNIT)?);
+    let (mut height_unit, x, y) = (unit(UNITS)?, unit(UNITS + UNIT)?, unit(UNITS + 2 * UNIT)?);
     ensure!(x == y, at(UNITS), "x is in {x:?}, but y in {y:?}");
 
     let mut data = at(HEADERS)?;
     let layer = (nx * ny).saturating_mul(number.size());
     let all = data.elements(layers as usize, layer)?;
-    // Behind the numbers: a formula, a note, long units, and labels of the third dimension behind those of two others.
+    // Behind the numbers: a formula, a note, long units of the numbers and of four dimensions, labels of as many.
     let mut lengths = at(LENGTHS)?;
-    let mut before = 0_usize;
-    for _ in 0..7 {
-        before = before.saturating_add(lengths.u32()? as usize);
+    let mut behind = HEADERS.saturating_add(all.len());
+    let mut part = || {
+        let (place, length) = (behind, lengths.u32()? as usize);
+        behind = behind.saturating_add(length);
+        Ok::<_, Fault>((place, length))
+    };
+    let (_formula, _note, long_unit) = (part()?, part()?, part()?);
+    for _ in 0..6 {
+        part()?;
     }
-    let of_others = (lengths.u32()? as usize).saturating_add(lengths.u32()? as usize);
-    let labels = HEADERS.saturating_add(all.len()).saturating_add(before).saturating_add(of_others);
-    let has_labels = lengths.u32()? as usize >= LABEL.saturating_mul(1 + layers as usize);
+    let (labels, length_of_labels) = part()?;
+    if long_unit.1 > 0 {
+        height_unit = Some(text(long_unit.0, long_unit.1)?);
+    }
+    let has_labels = length_of_labels >= LABEL.saturating_mul(1 + layers as usize);
     let whole = text(NAME, LABEL)?;
     all.chunks_exact(layer)
         .enumerate()

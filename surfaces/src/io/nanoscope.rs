@@ -25,8 +25,11 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let end = find(file, END).ok_or_else(|| fault!("the header has no end, '\\*File list end'"))?;
     let header = file.get(..end).unwrap_or_default();
     let sections = Section::all(header, &STYLE);
-    let images: Vec<&Section> =
-        sections.iter().filter(|section| section.name.ends_with(b"image list")).collect();
+    // Curves of forces are listed in the same way.
+    let is_image = |section: &&Section| {
+        section.name.ends_with(b"image list") && find(section.name, b"force").is_none()
+    };
+    let images: Vec<&Section> = sections.iter().filter(is_image).collect();
     ensure!(images.len() <= MOST, "there are {} images, more than {MOST}", images.len());
     images.into_iter().map(|image| channel(file, image, &sections)).collect()
 }
@@ -47,13 +50,13 @@ fn channel(file: &[u8], image: &Section, sections: &[Section]) -> Result<Channel
     let mut bytes = Bytes::from(file, image.number("Data offset")?)?;
     let data = bytes.elements(nx * ny, number.size())?;
     let scale = image
-        .find(|key| key.ends_with("Z scale"))
+        .find(|key| key.starts_with('@') && key.ends_with("Z scale"))
         .map(|text| Scale::parse(&text, sections))
         .transpose()?;
-    // Without a scale the integers have no unit.
-    let (factor, unit) = scale.map_or((1.0, None), |scale| {
-        (scale.range / 2_f64.powi(8 * number.size() as i32), scale.unit)
-    });
+    // Without a scale, as in versions before 4.3, the integers are steps of the converter.
+    let steps = (1.0, Some("LSB".to_string()));
+    let (factor, unit) = scale
+        .map_or(steps, |scale| (scale.range / 2_f64.powi(8 * number.size() as i32), scale.unit));
     let (cell, lateral_unit) = cell(image, sections, (nx, ny))?;
     let name = image.find(|key| key.ends_with("Image Data") || key == "Image data");
     let channel = Channel {

@@ -37,14 +37,14 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
             };
             let section = sections.iter().find(|section| section.name == name.as_bytes());
             let section = section.ok_or_else(|| fault!("there is no section '{name}'"))?;
-            channels.push(image(section, &mut bytes)?);
+            channels.extend(image(section, &mut bytes)?);
         }
     }
     Ok(channels)
 }
 
-/// The image that begins here.
-fn image(section: &Section, bytes: &mut Bytes) -> Result<Channel, Fault> {
+/// The image that begins here, `None` if its lines are no lengths: curves of spectroscopy.
+fn image(section: &Section, bytes: &mut Bytes) -> Result<Option<Channel>, Fault> {
     let (nx, ny) = shape(section.number::<u64>("Points")?, section.number::<u64>("Lines")?)?;
     let mode = section.need("SaveMode")?;
     ensure!(mode == "Binary", "the numbers are saved as '{mode}', but 'Binary' was expected");
@@ -75,9 +75,11 @@ fn image(section: &Section, bytes: &mut Bytes) -> Result<Channel, Fault> {
     let all = 2_f64.powi(8 * number.size() as i32);
     let below = if is_signed { all / 2.0 } else { 0.0 };
     let data = bytes.elements(nx * ny, number.size())?;
-    let values = number.decode_ordered(data, order, |value| least + (value + below) / all * lz)?;
     let (x, y) = (unit(0), unit(1));
-    ensure!(x == y, "x is in {x:?}, but y in {y:?}");
+    if x != y {
+        return Ok(None);
+    }
+    let values = number.decode_ordered(data, order, |value| least + (value + below) / all * lz)?;
     let (frame, name) = (section.get("Frame"), section.get(&axis(2, "Name")));
     let channel = Channel {
         name: format!("{} ({})", frame.unwrap_or_default(), name.unwrap_or_default()),
@@ -85,5 +87,5 @@ fn image(section: &Section, bytes: &mut Bytes) -> Result<Channel, Fault> {
         lateral_unit: x,
         ..Channel::in_metres((nx, ny), values, Some((lx / nx as f64, ly / ny as f64)))
     };
-    Ok(channel.turned())
+    Ok(Some(channel.turned()))
 }

@@ -24,6 +24,9 @@ const SAME: f64 = 4.0 * TOLERANCE;
 const MAX_NODES: usize = 16;
 const MAX_COLUMNS: usize = 2;
 
+/// So many points of a grid are points for sure, however large the grid is.
+const MANY: usize = 100;
+
 /// What a list gives, be it a profile.
 pub(super) struct Map {
     channel: Channel,
@@ -42,10 +45,11 @@ impl Map {
         Ok(self.channel)
     }
 
-    /// Whether its coordinates are those of most of a grid: no other numbers are.
+    /// Whether its coordinates are those of most of a grid, or of many nodes of one: no other numbers are.
     pub(super) fn is_for_sure(&self) -> bool {
         let (nx, ny) = self.channel.shape;
-        nx > 1 && ny > 1 && 2 * self.points > nx * ny && 2 * self.in_company > self.points
+        let is_most = 2 * self.points > nx * ny || self.points >= MANY;
+        nx > 1 && ny > 1 && is_most && 2 * self.in_company > self.points
     }
 }
 
