@@ -103,15 +103,24 @@ pub(super) const FEW_ROWS: usize = 3;
 const UNDECLARED: &str = "three columns are taken for points x, y, z unless lines '# Width: 1 mm' and \
     '# Height: 1 mm' or `ReadOptions::layout` say that they are a matrix: ";
 
-/// The layout of a table whose columns have no names; `is_list` if anything else says that it has points.
-pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<TextLayout, Fault> {
+/// What a table is.
+pub(super) enum Found {
+    Matrix(TextLayout),
+    Points(List),
+}
+
+/// Which columns have the points, and the map that they make.
+pub(super) type List = Box<(Columns, points::Map)>;
+
+/// What a table is whose columns have no names, `is_list` if anything else says that it has points.
+pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<Found, Fault> {
     let matrices = || axes::plausible(header, table);
     ensure!(table.values.len() > 1 || header.counts(), "one number is no surface");
     if header.is_of_matrix() {
         return choose(table, &matrices()?);
     }
     if is_list {
-        return Ok(TextLayout::Points);
+        return points(table).map(Found::Points);
     }
     let columns = table.columns;
     ensure!(
@@ -122,7 +131,7 @@ pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<TextLa
     );
     match looks(table) {
         // No heights are coordinates of most of a grid, each once, by chance.
-        Looks::Points => Ok(TextLayout::Points),
+        Looks::Points(list) => Ok(Found::Points(list)),
         Looks::Anything => choose(table, &[matrices()?, vec![TextLayout::Points]].concat()),
         Looks::NoPoints(fault) if columns == 3 => Err(fault.prefixed(UNDECLARED)),
         Looks::NoPoints(_) => choose(table, &matrices()?),
@@ -130,9 +139,9 @@ pub(super) fn of(header: &Header, table: &Table, is_list: bool) -> Result<TextLa
 }
 
 /// The only way to read a table, or a refusal that names them all.
-fn choose(table: &Table, layouts: &[TextLayout]) -> Result<TextLayout, Fault> {
+fn choose(table: &Table, layouts: &[TextLayout]) -> Result<Found, Fault> {
     if let [only] = layouts {
-        return Ok(*only);
+        return Ok(Found::Matrix(*only));
     }
     let ways: Vec<String> = layouts.iter().map(|layout| layout.told(table)).collect();
     Err(fault!(
@@ -145,7 +154,7 @@ fn choose(table: &Table, layouts: &[TextLayout]) -> Result<TextLayout, Fault> {
 /// Whether numbers look like points.
 enum Looks {
     /// Nothing else looks so.
-    Points,
+    Points(List),
     /// They might be.
     Anything,
     NoPoints(Fault),
@@ -159,7 +168,7 @@ fn looks(table: &Table) -> Looks {
             continue;
         }
         match points::map(&columns, table) {
-            Ok(map) if map.is_for_sure() => return Looks::Points,
+            Ok(map) if map.is_for_sure() => return Looks::Points(Box::new((columns, map))),
             Ok(map) => {
                 // Three columns in many rows are nothing else, and a profile is refused.
                 let fault = map.channel().err();
@@ -180,15 +189,15 @@ fn unnamed(table: &Table) -> impl Iterator<Item = Columns> {
     std::iter::once(Columns::behind(0, "in the first three columns")).chain(behind)
 }
 
-/// The columns of a list without names.
-pub(super) fn columns_without_names(table: &Table) -> Result<Columns, Fault> {
-    let may_be = |columns: &Columns| points::map(columns, table).is_ok();
-    let mut fitting = unnamed(table).filter(may_be);
-    let first = fitting.next();
+/// The points of a list without names.
+pub(super) fn points(table: &Table) -> Result<List, Fault> {
+    let map = |columns: Columns| points::map(&columns, table).map(|map| Box::new((columns, map)));
+    let mut found: Vec<Result<List, Fault>> = unnamed(table).map(map).collect();
     ensure!(
-        fitting.next().is_none(),
+        found.len() < 2 || found.iter().any(Result::is_err),
         "the first column counts the rows, but may be x as well: name the columns in a line above them, such as 'n x y z'"
     );
     // Of the first three the reason is told why they are none.
-    Ok(first.unwrap_or_else(|| Columns::behind(0, "in the first three columns")))
+    let place = found.iter().position(Result::is_ok).unwrap_or_default();
+    found.swap_remove(place)
 }

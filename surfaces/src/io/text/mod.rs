@@ -29,6 +29,7 @@ use std::path::Path;
 
 use self::header::Header;
 pub use self::layout::TextLayout;
+use self::layout::{Found, List};
 use self::names::Columns;
 use self::table::Table;
 use super::fault::Fault;
@@ -87,7 +88,8 @@ fn generic(
         if let Some(columns) =
             names.map(|names| Columns::named(names, &table)).transpose()?.flatten()
         {
-            return list(header, &columns, &table);
+            let map = points::map(&columns, &table)?;
+            return list(header, Box::new((columns, map)), &table);
         }
         ensure!(
             !header.ends_with_names,
@@ -102,10 +104,15 @@ fn generic(
     );
     let is_list = is_xyz || header.lateral_unit.is_some();
     let is_asked = layout.is_some();
-    let layout = layout.map_or_else(|| layout::of(header, &table, is_list), Ok)?;
-    if layout == TextLayout::Points {
-        return list(header, &layout::columns_without_names(&table)?, &table);
-    }
+    let found = match layout {
+        None => layout::of(header, &table, is_list)?,
+        Some(TextLayout::Points) => Found::Points(layout::points(&table)?),
+        Some(matrix) => Found::Matrix(matrix),
+    };
+    let layout = match found {
+        Found::Points(points) => return list(header, points, &table),
+        Found::Matrix(layout) => layout,
+    };
     let mut axes = axes::take(&mut table, layout)?;
     // What the user has said need not be noticed, but may be told.
     let told = if is_asked { std::mem::take(&mut axes.notes) } else { Vec::new() };
@@ -115,8 +122,9 @@ fn generic(
 }
 
 /// The map of a list of points.
-fn list(header: &Header, columns: &Columns, table: &Table) -> Result<Channel, Fault> {
-    let mut channel = points::map(columns, table)?.channel()?;
+fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
+    let (columns, map) = *list;
+    let mut channel = map.channel()?;
     let [x, y, z] = &columns.units;
     for (of, name, head) in [("heights", z, &header.value_unit), ("x", x, &header.lateral_unit)] {
         if let (Some(name), Some(head)) = (name, head) {
