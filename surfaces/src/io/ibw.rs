@@ -29,6 +29,9 @@ const UNITS: usize = FIRST + 148;
 const LABEL: usize = 32;
 const UNIT: usize = 4;
 
+/// Most layers of a wave: there are a dozen signals, forwards and backwards.
+const MOST: u32 = 256;
+
 /// Units of what the names of layers begin with, and are no lengths although the wave says so.
 const OTHERS: [(&str, &str); 9] = [
     ("Phase", "deg"),
@@ -75,6 +78,7 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let (layers, more) = (numbers.u32()?.max(1), numbers.u32()?);
     ensure!(ny > 0, at(SHAPE), "it has one dimension: a profile is no surface");
     ensure!(more == 0, at(SHAPE), "it has four dimensions, but two or three were expected");
+    ensure!(layers <= MOST, at(SHAPE + 8), "it has {layers} layers, more than {MOST}");
     let (nx, ny) = shape(nx, ny)?;
     let kind = at(TYPE)?.u16()?;
     let number = match kind {

@@ -31,6 +31,15 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     };
     let images: Vec<&Section> = sections.iter().filter(is_image).collect();
     ensure!(images.len() <= MOST, "there are {} images, more than {MOST}", images.len());
+    let mut claimed = 0_usize;
+    for image in &images {
+        claimed = claimed.saturating_add(image.number("Data length")?);
+    }
+    let length = file.len();
+    ensure!(
+        claimed <= length,
+        "the images are said to take {claimed} bytes, more than the file has, {length}"
+    );
     images.into_iter().map(|image| channel(file, image, &sections)).collect()
 }
 

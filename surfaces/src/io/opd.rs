@@ -38,11 +38,11 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut place = VERSION.saturating_add(length);
     let mut directory = Bytes::new(bytes.elements(count.saturating_sub(1), ENTRY)?);
     let mut blocks: HashMap<String, Block> = HashMap::new();
-    let mut heights: Vec<(String, usize)> = Vec::new();
+    let mut heights: Vec<(String, Block)> = Vec::new();
     while directory.left() > 0 {
         let (name, kind, length) = entry(&mut directory)?;
         if HEIGHTS.contains(&name.as_str()) && length > 0 {
-            heights.push((name, place));
+            heights.push((name, Block { kind, place, length }));
         } else if KNOWN.contains(&name.as_str()) {
             blocks.insert(name, Block { kind, place, length });
         }
@@ -57,8 +57,8 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     let scale = Scale { wavelength, mult: number("Mult")? };
     heights
         .into_iter()
-        .map(|(name, place)| {
-            let (shape, values) = scale.image(&mut Bytes::from(file, place)?)?;
+        .map(|(name, block)| {
+            let (shape, values) = scale.image(&block, file)?;
             let channel = Channel {
                 name: if title.is_empty() { name } else { format!("{title} ({name})") },
                 height_unit: Some(if wavelength.is_some() { "mm" } else { "waves" }.to_string()),
@@ -113,9 +113,10 @@ struct Scale {
 }
 
 impl Scale {
-    /// Shape and heights of the image that begins here: in mm, or in waves.
-    fn image(&self, bytes: &mut Bytes) -> Result<((usize, usize), Vec<f64>), Fault> {
-        let at = bytes.offset();
+    /// Shape and heights of the image in a block: in mm, or in waves.
+    fn image(&self, block: &Block, file: &[u8]) -> Result<((usize, usize), Vec<f64>), Fault> {
+        let at = block.place;
+        let mut bytes = Bytes::new(block.bytes(file)?);
         let (nx, ny) = shape(bytes.u16()?, bytes.u16()?)?;
         let size = bytes.u16()?;
         let (number, missing, parts) = match size {

@@ -114,6 +114,31 @@ fn scales_of_nanoscope_need_their_sensitivity() -> TestResult {
     Ok(())
 }
 
+/// Many images of the same bytes would take a multiple of the memory of the file.
+#[test]
+fn no_byte_belongs_to_two_images() {
+    let file = bytes("plain_i16.spm");
+    let place = |word: &[u8], from: usize| {
+        let found = file[from..].windows(word.len()).position(|window| window == word);
+        from + found.unwrap_or_else(|| panic!("no {word:?}"))
+    };
+    let start = place(b"\\*Ciao image list", 0);
+    let end = place(b"\\*", start + 2);
+    let image = String::from_utf8_lossy(&file[start..end])
+        .replace("Data offset: 4096", "Data offset: 0")
+        .replace("Data length: 70", "Data length: 70000")
+        .replace("Samps/line: 7", "Samps/line: 7000");
+    // 100 000 bytes hold one image of 70 000 bytes, but not two.
+    for (count, reason) in [(1, None), (2, Some("more than the file has"))] {
+        let images = image.repeat(count).into_bytes();
+        let mut file = [&file[..start], &images, b"\\*File list end\r\n"].concat();
+        file.resize(100_000, 0);
+        let error = read(&file).err().map(|error| error.to_string());
+        assert_eq!(error.is_some(), reason.is_some(), "{error:?}");
+        assert!(reason.is_none_or(|reason| error.is_some_and(|error| error.contains(reason))));
+    }
+}
+
 #[test]
 fn waves_of_igor_are_checked() {
     // The sum of the headers: any other bytes that begin so are no wave.
@@ -126,6 +151,7 @@ fn waves_of_igor_are_checked() {
         (80, 3, "numbers have the type 3"),
         (136, 0, "a profile is no surface"),
         (144, 2, "it has four dimensions"),
+        (140, 257, "257 layers"),
         (0, 2, "a wave of version 2"),
     ] {
         let mut file = bytes("missing_f32.ibw");
