@@ -30,7 +30,7 @@ use crate::values::{bytes, positive};
 /// one, without friction and adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
+    /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
     /// an image are y; a NumPy array is [ix, iy]
     #[arg(long, value_name = "FILE")]
     surface: PathBuf,

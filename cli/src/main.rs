@@ -6,6 +6,7 @@ mod contact_map;
 mod creep;
 mod elasticity;
 mod ensemble;
+mod formats;
 mod gather;
 mod hardness;
 mod info;
@@ -62,6 +63,7 @@ enum Command {
     Path(Box<path::Options>),
     Load(Box<load::Options>),
     Info(info::Options),
+    Formats(formats::Options),
     Gather(gather::Options),
     Report(report::Options),
     Patches(patches::Options),
@@ -94,6 +96,7 @@ fn main() -> ExitCode {
         }
         Some(Command::Load(options)) => load::run(&options),
         Some(Command::Info(options)) => info::run(&options),
+        Some(Command::Formats(options)) => formats::run(&options),
         Some(Command::Gather(options)) => gather::run(&options),
         Some(Command::Report(options)) => report::run(&options),
         Some(Command::Patches(options)) => patches::run(&options),

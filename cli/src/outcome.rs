@@ -1,5 +1,6 @@
 //! What went wrong, and what was written nevertheless.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -72,22 +73,25 @@ impl Failure {
 /// Words of the library in those of the command line.
 #[must_use]
 pub fn of_program(text: &str) -> String {
-    const WORDS: [(&str, &str); 6] = [
+    const WORDS: [(&str, &str); 7] = [
         ("`surface::fill_missing`", "`--fill`"),
         ("`ReadOptions::height_unit`", "`--height-unit`"),
         ("`ReadOptions::lateral_unit`", "`--lateral-unit`"),
         ("`ReadOptions::side`", "`--side`"),
         ("`ReadOptions::channel`", "`--channel`"),
+        ("`ReadOptions::layout`", "`--layout`"),
         ("`Topography::level`", "`--level plane`"),
     ];
     WORDS.iter().fold(text.to_string(), |text, (rust, option)| text.replace(rust, option))
 }
 
 /// A cause that begins with the name of a file, without it where what failed has named the file already.
-fn without_name<'a>(cause: &'a str, what: &str) -> &'a str {
-    match cause.split_once(": ") {
-        Some((name, rest)) if !name.is_empty() && what.ends_with(&format!(" {name}")) => rest,
-        _ => cause,
+fn without_name<'a>(cause: &'a str, what: &str) -> Cow<'a, str> {
+    let is_named = |name: &str| !name.is_empty() && what.ends_with(&format!(" {name}"));
+    match (cause.split_once(": "), cause.split_once(" is ")) {
+        (Some((name, rest)), _) if is_named(name) => rest.into(),
+        (_, Some((name, rest))) if is_named(name) => format!("it is {rest}").into(),
+        _ => cause.into(),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::SurfaceError;
-use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions};
+use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions, TextLayout};
 use asperity::surface::{Topography, Trend, Warning};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
@@ -11,7 +11,7 @@ use asperity_cli::outcome::Failure;
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value};
 
-use crate::values::{positive, unit};
+use crate::values::{layout, positive, unit};
 
 /// What a file does not say of itself, and how its surface is prepared.
 #[derive(Debug, Clone, Args)]
@@ -35,6 +35,11 @@ pub(crate) struct Reading {
     /// Name of the map, if the file contains several
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
+
+    /// How the numbers of a text are arranged, where it does not say: matrix (heights only), x-row (positions along x in the
+    /// first row), y-column (positions along y in the first column), axes (both), points (x, y, z in each line)
+    #[arg(long, value_name = "LAYOUT", value_parser = layout)]
+    layout: Option<TextLayout>,
 
     /// Use heights that a mask in the file marks as missing
     #[arg(long)]
@@ -81,6 +86,7 @@ impl Reading {
             ("height-unit", text(self.height_unit.map(|unit| unit.to_string()))),
             ("lateral-unit", text(self.lateral_unit.map(|unit| unit.to_string()))),
             ("channel", text(self.channel.clone())),
+            ("layout", text(self.layout.map(|layout| layout.to_string()))),
             ("ignore-mask", flag(self.ignore_mask)),
             ("fill", flag(self.fill)),
             ("level", text(level.map(|level| level.get_name().to_string()))),
@@ -118,6 +124,9 @@ impl Reading {
         if let Some(name) = &self.channel {
             options = options.channel(name);
         }
+        if let Some(layout) = self.layout {
+            options = options.layout(layout);
+        }
         if self.ignore_mask {
             options = options.ignore_mask();
         }
@@ -131,6 +140,9 @@ impl Reading {
         let failed = |error| Failure::new(format!("cannot use {}", file.display()), error);
         let mut measured = self.measured(file)?;
         note!("file       {measured}");
+        if !measured.understood.is_empty() {
+            note!("understood {}", measured.understood);
+        }
         for note in &measured.notes {
             note!("note: {note}");
         }

@@ -44,6 +44,11 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_string())
 }
 
+/// How the numbers of a text are arranged.
+pub(crate) fn layout(text: &str) -> Result<asperity::io::TextLayout, asperity::SurfaceError> {
+    text.parse()
+}
+
 /// A unit of length.
 pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::SurfaceError> {
     text.parse()

@@ -37,7 +37,12 @@ fn errors_name_options() -> Result<(), Box<dyn Error>> {
             vec!["8 heights are infinite, the first -inf at node (0, 0)", "`--fill`"],
             vec!["NaN"],
         ),
-        ("info map.txt", vec!["`--height-unit`"], vec![]),
+        ("info map.txt --layout matrix", vec!["`--height-unit`"], vec![]),
+        (
+            "info map.txt --height-unit um",
+            vec!["can be read in 4 ways", "'y-column', 2 rows of 1 heights", "`--layout`"],
+            vec!["ReadOptions"],
+        ),
         ("info points.xyz --height-unit um", vec!["`--lateral-unit` or `--side`"], vec![]),
         (
             "path --surface nan.txt --side 1e-3 --height-unit um --material steel",

@@ -85,6 +85,33 @@ fn quiet_is_quiet() -> Done {
     Ok(())
 }
 
+/// Every format with its endings, to people and to programs.
+#[test]
+fn formats_are_listed() -> Done {
+    let folder = Scratch::new("formats")?;
+    let text = String::from_utf8(output(&folder.0, "formats")?.stdout)?;
+    assert_eq!(text.lines().count(), 16, "{text}");
+    for (name, ending) in [
+        ("NumPy", ".npy"),
+        ("Digital Surf", ".sur"),
+        ("Keyence", ".vk4 .vk6 .vk7"),
+        ("Nanoscope", ".spm .di .000"),
+        ("Igor", ".ibw"),
+        ("Nanosurf", ".nid"),
+        ("Wyko", ".opd"),
+        ("Vision64", ".opdx"),
+        ("MetroPro", ".dat"),
+        ("Sensofar", ".plu"),
+        ("text", ".txt .asc .csv .xyz"),
+    ] {
+        let line = text.lines().find(|line| line.starts_with(name)).ok_or(name)?;
+        assert!(line.ends_with(ending), "{line}");
+    }
+    let json = answer(&folder.0, "formats --json")?;
+    assert_eq!(json["Wyko"][0], "opd");
+    Ok(())
+}
+
 #[test]
 fn shells_and_manuals() -> Done {
     let folder = Scratch::new("shells")?;

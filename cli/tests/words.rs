@@ -191,17 +191,32 @@ fn advice_names_an_option() -> Done {
         &["2 heights are missing", "can be filled by `--fill`"],
     )?;
     refused(
-        &format!("load --surface tilted.txt {load}"),
+        &format!("load --surface tilted.txt --layout matrix {load}"),
         &["the heights have no unit", "give it with `--height-unit`"],
     )?;
     refused(
-        &format!("load --surface tilted.txt --height-unit nm {load}"),
+        &format!("load --surface tilted.txt --layout matrix --height-unit nm {load}"),
         &["give it with `--side`"],
     )?;
-    let tilted = "info tilted.txt --height-unit nm --side 1e-3";
+    let tilted = "info tilted.txt --layout matrix --height-unit nm --side 1e-3";
     let words = printed(&run(&folder.0, tilted)?);
     let advice = "level it (`--level plane`) unless the tilt is meant";
     assert!(words.contains(advice), "{words}");
+    Ok(())
+}
+
+/// What a text was taken for is said, to people and to programs.
+#[test]
+fn info_says_how_a_text_was_understood() -> Done {
+    let folder = with_surface("understood")?;
+    fs::copy(data("text_files/index_column.csv"), folder.join("list.csv"))?;
+    let words = printed(&run(&folder.0, "info list.csv")?);
+    assert!(
+        words.contains("understood    108 points, columns x [um], y [um], z [um] by name"),
+        "{words}"
+    );
+    let words = printed(&run(&folder.0, "info list.csv --json")?);
+    assert!(words.contains("\"understood\":\"108 points, columns"), "{words}");
     Ok(())
 }
 

@@ -8,7 +8,7 @@ macro_rules! file {
 }
 
 /// One file of each format and kind.
-pub(crate) const FILES: [&[u8]; 16] = [
+pub(crate) const FILES: [&[u8]; 28] = [
     file!("missing.npy"),
     file!("missing.gsf"),
     file!("masked.gwy"),
@@ -25,10 +25,22 @@ pub(crate) const FILES: [&[u8]; 16] = [
     file!("missing_matrix.asc"),
     file!("plain_gwyddion.txt"),
     file!("missing.xyz"),
+    file!("missing_i16_colours.sur"),
+    file!("missing_u32.vk6"),
+    file!("plain_i16.spm"),
+    file!("plain_i32.spm"),
+    file!("missing_f32.ibw"),
+    file!("missing_f64_big.ibw"),
+    file!("plain_i16.nid"),
+    file!("missing_i16.opd"),
+    file!("missing_f32.opd"),
+    file!("missing_f32.opdx"),
+    file!("missing_i32.dat"),
+    file!("missing_f32.plu"),
 ];
 
 /// How files of each format begin.
-pub(crate) const BEGINNINGS: [&[u8]; 13] = [
+pub(crate) const BEGINNINGS: [&[u8]; 20] = [
     b"\x93NUMPY\x01\x00",
     b"Gwyddion Simple Field 1.0\n",
     b"GWYPGwyContainer\0",
@@ -42,4 +54,11 @@ pub(crate) const BEGINNINGS: [&[u8]; 13] = [
     b"AliconaImaging\0",
     b"VK4_",
     b"x y z\n",
+    b"VK6",
+    b"\\*File list\r\n",
+    b"[DataSet]\r\n",
+    b"\x01\x00Directory\0",
+    b"VCA DATA\x01\x00\x00\x55",
+    b"\x88\x1b\x03\x6f",
+    b"\x05\x00",
 ];

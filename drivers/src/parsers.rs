@@ -3,7 +3,8 @@
 use allocation_counter::measure;
 use asperity::Grid;
 use asperity::io::{
-    LengthUnit, MeasuredSurface, ReadOptions, channels, read_npy, write_gsf, write_npy, write_x3p,
+    LengthUnit, MeasuredSurface, ReadOptions, TextLayout, channels, read_npy, write_gsf, write_npy,
+    write_x3p,
 };
 use nalgebra::DMatrix;
 
@@ -37,6 +38,7 @@ pub fn parsers(bytes: &[u8]) -> Verdict {
     let kind = draw.whole(0, 3);
     let options = options(&mut draw)?;
     let scratch = Scratch::new()?;
+    let mut layout_of_text = None;
     let file = match kind {
         0 => draw.rest().to_vec(),
         1 => {
@@ -44,6 +46,7 @@ pub fn parsers(bytes: &[u8]) -> Verdict {
             [beginning, draw.rest()].concat()
         }
         2 => {
+            layout_of_text = layout(&mut draw);
             let mut file = draw.one_of(FILES[0], &FILES).to_vec();
             edit(&mut draw, &mut file, LONGEST);
             file
@@ -54,7 +57,10 @@ pub fn parsers(bytes: &[u8]) -> Verdict {
             file
         }
     };
-    read(&file, &options, &scratch)
+    let with_layout = layout_of_text.is_some();
+    let options =
+        layout_of_text.map_or_else(|| options.clone(), |layout| options.clone().layout(layout));
+    read(&file, &options, with_layout, &scratch)
 }
 
 /// What is asked of a reader: nothing, mostly, and otherwise whatever there is.
@@ -76,6 +82,12 @@ fn options(draw: &mut Draw<'_>) -> Result<ReadOptions, Violation> {
     })
 }
 
+/// How a text is to be read, now and then.
+fn layout(draw: &mut Draw<'_>) -> Option<TextLayout> {
+    let place = draw.whole(0, 4 * TextLayout::ALL.len());
+    TextLayout::ALL.get(place).copied()
+}
+
 /// A file that the library has written, of heights that are drawn: any numbers.
 fn written(draw: &mut Draw<'_>, scratch: &Scratch) -> Result<Vec<u8>, Violation> {
     let (nx, ny) = (draw.whole(1, 6), draw.whole(1, 6));
@@ -95,11 +107,11 @@ fn written(draw: &mut Draw<'_>, scratch: &Scratch) -> Result<Vec<u8>, Violation>
 }
 
 /// Reads a file and looks at what was found.
-fn read(file: &[u8], options: &ReadOptions, scratch: &Scratch) -> Verdict {
+fn read(file: &[u8], options: &ReadOptions, with_layout: bool, scratch: &Scratch) -> Verdict {
     let path = scratch.file("file", file)?;
     let mut outcome = None;
     let memory = measure(|| outcome = Some(options.read(&path)));
-    let inflates = [&b"PK"[..], b"DSCOMPRESSED"];
+    let inflates = [&b"PK"[..], b"DSCOMPRESSED", b"VK6", b"VK7"];
     let inflates = inflates.iter().any(|magic| file.starts_with(magic));
     let limit = ANYWAY + file.len() as u64 * if inflates { INFLATED } else { MEMORY };
     ensure!(
@@ -111,7 +123,8 @@ fn read(file: &[u8], options: &ReadOptions, scratch: &Scratch) -> Verdict {
     let names = channels(&path);
     match outcome {
         Some(Ok(surface)) => {
-            let known = names.is_ok_and(|names| names == surface.channels);
+            // Without a layout a text may be refused.
+            let known = with_layout || names.is_ok_and(|names| names == surface.channels);
             ensure!(known, "a map was read, but not the names of all maps");
             look_at(&surface)?;
             write_again(&surface, scratch)?;

@@ -34,10 +34,12 @@ fn inputs(target: &str) -> Result<Vec<(String, Vec<u8>)>, Violation> {
     let lines = text.lines().map(|line| Ok((line.to_string(), from_hex(line)?)));
     let mut inputs = lines.collect::<Result<Vec<_>, Violation>>()?;
     if target == "parsers" {
-        // Files that other programs wrote: two zero bytes say that the rest is a file, read with default options.
-        for file in entries("tests/data/surface_files")? {
-            let bytes = fs::read(&file).map_err(failed(&file))?;
-            inputs.push((file.display().to_string(), [vec![0, 0], bytes].concat()));
+        // Files of every format: two zero bytes say that the rest is a file, read with default options.
+        for folder in ["tests/data/surface_files", "tests/data/text_files"] {
+            for file in entries(folder)? {
+                let bytes = fs::read(&file).map_err(failed(&file))?;
+                inputs.push((file.display().to_string(), [vec![0, 0], bytes].concat()));
+            }
         }
     }
     Ok(inputs)

@@ -44,6 +44,7 @@ __all__ = [
     "creep",
     "cylinder",
     "example_surface",
+    "formats",
     "gap_distribution",
     "hardness",
     "influence",
@@ -120,6 +121,8 @@ class Surface:
     def missing(self) -> int: ...
     @property
     def title(self) -> str: ...
+    @property
+    def understood(self) -> str: ...
     @property
     def notes(self) -> list[str]: ...
     @property
@@ -713,10 +716,12 @@ def read(
     size: _Lengths | None = None,
     height_unit: str | None = None,
     lateral_unit: str | None = None,
+    layout: Literal["matrix", "x-row", "y-column", "axes", "points"] | None = None,
     ignore_mask: bool = False,
     name: _Path | None = None,
 ) -> Surface: ...
 def channels(path: _Path) -> list[str]: ...
+def formats() -> dict[str, list[str]]: ...
 def report(
     path: LoadingPath,
     other: LoadingPath | None = None,
@@ -865,7 +870,7 @@ def threads() -> int: ...
 def set_threads(count: int) -> None: ...
 def _panic_for_tests(way: str) -> None: ...
 def _restore_surface(
-    z: ArrayLike, cell: tuple[float, float], title: str, notes: list[str], periodic: bool | None
+    z: ArrayLike, cell: tuple[float, float], words: tuple[str, str, list[str]], periodic: bool | None
 ) -> Surface: ...
 def _restore_half_space(
     boundary: str,

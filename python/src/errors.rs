@@ -125,12 +125,13 @@ fn raise(
 
 /// Words of the library in those of this package.
 pub(crate) fn in_python(text: &str) -> String {
-    const WORDS: [(&str, &str); 10] = [
+    const WORDS: [(&str, &str); 11] = [
         ("`surface::fill_missing`", "`Surface.fill_missing()`"),
         ("`ReadOptions::height_unit`", "`height_unit=`"),
         ("`ReadOptions::lateral_unit`", "`lateral_unit=`"),
         ("`ReadOptions::side`", "`size=`"),
         ("`ReadOptions::channel`", "`channel=`"),
+        ("`ReadOptions::layout`", "`layout=`"),
         ("`Topography::level`", "`Surface.level(\"plane\")`"),
         ("`kernel::check`", "`check_half_space`"),
         ("The model is elastic", "The model is elastic unless a `hardness=` is given"),
@@ -426,10 +427,10 @@ fn of_file(error: &FileError) -> Described {
             }
             (class, "Io", numbers)
         }
-        FileError::UnknownFormat { path, begins } => {
+        FileError::UnknownFormat { path, begins, what } => {
             let filename = path;
             let begins = begins.iter().map(|byte| usize::from(*byte)).collect::<Vec<_>>();
-            ("FileError", "UnknownFormat", numbers![filename, begins])
+            ("FileError", "UnknownFormat", numbers![filename, begins, what])
         }
         FileError::BadFile { path, format, offset, reason } => {
             let filename = path;
@@ -443,6 +444,7 @@ fn of_file(error: &FileError) -> Described {
             let filename = path;
             ("FileError", "NoUnit", numbers![filename, quantity, found, option])
         }
+        FileError::NoLayout { layout } => (VALUE, "NoLayout", numbers![layout]),
         FileError::NoLength { unit } => (VALUE, "NoLength", numbers![unit]),
         FileError::NoSide => ("FileError", "NoSide", Vec::new()),
         _ => ("FileError", "File", Vec::new()),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,12 +25,15 @@ OPEN: dict[str, dict[str, object]] = {
     ".asc": {"size": (14e-6, 15e-6), "height_unit": "m"},
     ".csv": {"size": (14e-6, 15e-6), "height_unit": "m"},
     ".xyz": {"height_unit": "m", "lateral_unit": "m"},
+    # Their pixels are square, or not the same in float32.
+    ".dat": {"size": (14e-6, 15e-6)},
+    ".opd": {"size": (14e-6, 15e-6)},
 }
 
 
 def expected(name: str) -> NDArray[np.float64]:
     z = NANOMETRES * 1e-9
-    z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9}.get(name, 0.0)
+    z += {"plain_i32_offset.sur": 500e-9, "missing_u32.vk4": 300e-9, "missing_u32.vk6": 300e-9}.get(name, 0.0)
     if name.startswith(("missing", "masked")):
         z[1, 2] = z[4, 6] = np.nan
     return z
@@ -53,6 +57,13 @@ def test_every_format(name: str) -> None:
     assert surface == from_bytes == from_object == from_file
 
 
+def test_formats_are_listed_with_their_endings() -> None:
+    formats = asp.formats()
+    assert formats["Keyence"] == ["vk4", "vk6", "vk7"] and formats["text"] == ["txt", "asc", "csv", "xyz"]
+    endings = {ending for of in formats.values() for ending in of}
+    assert {Path(file).suffix[1:] for file in FILES.iterdir()} <= endings
+
+
 def test_masks_and_channels() -> None:
     with pytest.warns(asp.AsperityWarning, match="2 nodes that a mask marks"):
         masked = asp.read(FILES / "masked.gwy")
@@ -64,6 +75,22 @@ def test_masks_and_channels() -> None:
         asp.read(FILES / "masked.gwy", channel="nonsense")
     assert refused.value.kind == "WhichChannel" and refused.value.channels == names
     assert refused.value.wanted == "nonsense"
+
+
+def test_a_text_says_how_it_was_understood() -> None:
+    list_of_points = FILES.parent / "text_files" / "index_column.csv"
+    with pytest.warns(asp.AsperityWarning, match="of 4 columns 2, 3 and 4 are read"):
+        surface = asp.read(list_of_points)
+    assert surface.understood.startswith("108 points, columns x [um], y [um], z [um] by name")
+    assert pickle.loads(pickle.dumps(surface)).understood == surface.understood
+    plane = b"".join(b"%d %d %d %d %d\n" % tuple(range(k, k + 5)) for k in range(5))
+    with pytest.raises(FileError, match="`layout=`"):
+        asp.read(plane, size=1.0, height_unit="m")
+    with pytest.warns(asp.AsperityWarning, match="square"):
+        below = asp.read(plane, size=1.0, height_unit="m", layout="x-row")
+    assert below.shape == (4, 5)
+    with pytest.raises(ValueError, match="'rows' is no layout"):
+        asp.read(plane, layout="rows")  # type: ignore[arg-type]
 
 
 def test_what_a_file_leaves_open_is_asked_for() -> None:

@@ -30,14 +30,14 @@ const HIGHEST_HURST: f64 = 1.2;
 /// inverted if the options say so. Warnings concern units, tilt, and wavelengths that the grid does not resolve.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// File with heights (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text)
+    /// File with heights (`asperity formats` lists what is read)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
     #[command(flatten)]
     reading: Reading,
 
-    /// Print one JSON object with format, title, nx, ny, side_x, side_y, missing (in the file), min, max, mean, sa, sq, sz,
+    /// Print one JSON object with format, title, understood, nx, ny, side_x, side_y, missing (in the file), min, max, mean, sa, sq, sz,
     /// rms_gradient, notes and warnings (metres; null where the file does not say), and draw nothing unless --out is given
     #[arg(long)]
     json: bool,
@@ -91,6 +91,7 @@ fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
     json!({
         "format": measured.format.name(),
         "title": measured.title,
+        "understood": measured.understood,
         "nx": nx,
         "ny": ny,
         "side_x": measured.cell.map(|(dx, _)| side(nx, dx)),
@@ -113,6 +114,9 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
     let length = |value: f64| quantity(value, "m", 5);
     say!("file          {}", options.file.display());
     say!("found         {measured}");
+    if !measured.understood.is_empty() {
+        say!("understood    {}", measured.understood);
+    }
     if measured.channels.len() > 1 {
         say!("maps          {}", measured.channels.join(", "));
     }

@@ -41,7 +41,7 @@ fn generated(arg: Arg, value: &str) -> Arg {
 #[command(group(ArgGroup::new("kept").multiple(true)))]
 #[command(mut_arg("side", |arg| generated(arg, "1e-2")), mut_arg("material", |arg| generated(arg, "steel")))]
 pub(crate) struct Options {
-    /// File with heights, positive towards the half-space (.npy, .gsf, .gwy, .sdf, .x3p, .sur, .al3d, .vk4, text): the rows of
+    /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
     /// an image are y; a NumPy array is [ix, iy]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
@@ -107,7 +107,7 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use asperity::io::{
-    self, LengthUnit, MeasuredSurface, ReadOptions, write_gsf, write_npy, write_vti, write_x3p,
+    self, Format, LengthUnit, MeasuredSurface, ReadOptions, TextLayout, write_gsf, write_npy,
+    write_vti, write_x3p,
 };
 use asperity::nalgebra::DMatrix;
 use asperity::{FileError, Grid};
@@ -21,14 +22,16 @@ use crate::warnings::warn;
 /// Parameters
 /// ----------
 /// source : str, os.PathLike, bytes or file object
-///     ``.npy``, ``.gsf``, ``.gwy``, ``.sdf``, ``.x3p``, ``.sur``, ``.al3d``, ``.vk4`` or text; the format is known by the
-///     content. A file object is one with ``read()`` that returns bytes.
+///     A file of one of the `formats`; which one is known by the content. A file object is one with ``read()`` that returns bytes.
 /// channel : str, optional
 ///     Name of the map, in a file with several.
 /// size : (float, float) or float, optional
 ///     Sides ``(x, y)`` [m] in place of what the file says; one number is the side along x, with square cells.
 /// height_unit, lateral_unit : str, optional
 ///     Units in place of those in the file.
+/// layout : {"matrix", "x-row", "y-column", "axes", "points"}, optional
+///     How the numbers of a text are arranged, where it does not say: heights only, with positions along x in the first
+///     row, along y in the first column, or both, or a point x, y, z in each line.
 /// ignore_mask : bool
 ///     Keep the heights of nodes that a mask in the file marks.
 /// name : str, optional
@@ -37,7 +40,7 @@ use crate::warnings::warn;
 /// Returns
 /// -------
 /// Surface
-///     Missing nodes are NaN. What was assumed is in `Surface.notes`, and is given as a warning.
+///     Missing nodes are NaN. How a text was understood is in `Surface.understood`. What was assumed is in `Surface.notes`, and is given as a warning.
 ///
 /// Raises
 /// ------
@@ -49,7 +52,7 @@ use crate::warnings::warn;
 /// The rows of a file are those of an image. Only a ``.npy`` file holds ``[ix, iy]``, as the program and the Rust library
 /// have it: an image has to be saved by ``numpy.save(name, z.T)``, or by `Surface.save`.
 #[pyfunction]
-#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, ignore_mask=false, name=None))]
+#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, layout=None, ignore_mask=false, name=None))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn read(
     py: Python<'_>,
@@ -58,6 +61,7 @@ fn read(
     size: Option<Lengths>,
     height_unit: Option<&str>,
     lateral_unit: Option<&str>,
+    layout: Option<&str>,
     ignore_mask: bool,
     name: Option<PathBuf>,
 ) -> Fallible<Surface> {
@@ -78,6 +82,9 @@ fn read(
     if let Some(unit) = lateral_unit {
         options = options.lateral_unit(unit.parse::<LengthUnit>()?);
     }
+    if let Some(layout) = layout {
+        options = options.layout(layout.parse::<TextLayout>()?);
+    }
     if ignore_mask {
         options = options.ignore_mask();
     }
@@ -96,8 +103,29 @@ fn read(
 
 fn surface(measured: MeasuredSurface) -> Fallible<Surface> {
     let grid = measured.grid()?;
-    let MeasuredSurface { heights, title, notes, .. } = measured;
-    Ok(Surface { title, notes, ..Surface::new(grid, heights)? })
+    let MeasuredSurface { heights, title, understood, notes, .. } = measured;
+    Ok(Surface { title, understood, notes, ..Surface::new(grid, heights)? })
+}
+
+/// The formats of files that `read` reads.
+///
+/// Returns
+/// -------
+/// dict of str to list of str
+///     What names of files of each format end with; a file is known by its content all the same.
+///
+/// Examples
+/// --------
+/// >>> import asperity as asp
+/// >>> asp.formats()["Keyence"]
+/// ['vk4', 'vk6', 'vk7']
+#[pyfunction]
+fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let formats = PyDict::new(py);
+    for format in Format::ALL {
+        formats.set_item(format.name(), format.endings().to_vec())?;
+    }
+    Ok(formats)
 }
 
 /// The names of the maps in a file.
@@ -230,5 +258,6 @@ fn save_fields(
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(read, module)?)?;
     module.add_function(wrap_pyfunction!(channels, module)?)?;
+    module.add_function(wrap_pyfunction!(formats, module)?)?;
     module.add_function(wrap_pyfunction!(save_fields, module)?)
 }

@@ -58,6 +58,8 @@ pub(crate) struct Surface {
     heights: Heights,
     /// Name of the map in its file, empty if it has none.
     title: String,
+    /// How its text was understood, empty for other formats.
+    understood: String,
     /// What was noticed in reading.
     notes: Vec<String>,
     /// Whether it was said to repeat.
@@ -79,7 +81,14 @@ impl Surface {
         } else {
             Heights::Holed(heights.map(|z| if z.is_finite() { z } else { f64::NAN }))
         };
-        Ok(Self { grid, heights, title: String::new(), notes: Vec::new(), periodic: None })
+        Ok(Self {
+            grid,
+            heights,
+            title: String::new(),
+            understood: String::new(),
+            notes: Vec::new(),
+            periodic: None,
+        })
     }
 
     fn of(topography: Topography) -> Self {
@@ -87,6 +96,7 @@ impl Surface {
             grid: *topography.grid(),
             heights: Heights::Whole(topography),
             title: String::new(),
+            understood: String::new(),
             notes: Vec::new(),
             periodic: None,
         }
@@ -194,6 +204,12 @@ impl Surface {
     #[getter]
     fn title(&self) -> &str {
         &self.title
+    }
+
+    /// How a text was understood: which numbers are heights, and what parts them; empty for other formats.
+    #[getter]
+    fn understood(&self) -> &str {
+        &self.understood
     }
 
     /// What was noticed in reading, and what was assumed.
@@ -563,7 +579,8 @@ impl Surface {
     fn __reduce__<'py>(&self, py: Python<'py>) -> Fallible<Bound<'py, PyTuple>> {
         let restore = py.import("asperity._asperity")?.getattr("_restore_surface")?;
         let (cell, z) = ((self.grid.dx(), self.grid.dy()), self.z(py)?);
-        let state = (z, cell, self.title.clone(), self.notes.clone(), self.periodic);
+        let words = (self.title.clone(), self.understood.clone(), self.notes.clone());
+        let state = (z, cell, words, self.periodic);
         Ok((restore, state).into_pyobject(py)?)
     }
 
@@ -579,18 +596,18 @@ impl Surface {
 
 /// A surface that was pickled.
 #[pyfunction]
-#[pyo3(signature = (z, cell, title, notes, periodic))]
+#[pyo3(signature = (z, cell, words, periodic))]
 fn _restore_surface(
     z: &Bound<'_, PyAny>,
     cell: (f64, f64),
-    title: String,
-    notes: Vec<String>,
+    words: (String, String, Vec<String>),
     periodic: Option<bool>,
 ) -> Fallible<Surface> {
     let found = arrays::Found::of(z, "z", arrays::Kind::Real)?;
     let (rows, columns) = found.rows_and_columns()?;
     let grid = Grid::new(columns, rows, cell.0, cell.1)?;
-    Ok(Surface { title, notes, periodic, ..Surface::new(grid, found.on(&grid)?)? })
+    let (title, understood, notes) = words;
+    Ok(Surface { title, understood, notes, periodic, ..Surface::new(grid, found.on(&grid)?)? })
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

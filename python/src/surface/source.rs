@@ -47,6 +47,7 @@ fn copy(surface: &Surface) -> Surface {
         grid: surface.grid,
         heights,
         title: surface.title.clone(),
+        understood: surface.understood.clone(),
         notes: surface.notes.clone(),
         periodic: surface.periodic,
     }

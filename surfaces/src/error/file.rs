@@ -18,12 +18,14 @@ pub enum FileError {
     },
 
     /// A file that has none of the formats this crate reads.
-    #[error("{}: the format of this file is unknown: it begins with {begins:02x?}", path.display())]
+    #[error("{}: the format of this file is unknown: it begins with {begins:02x?}{what}", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
         /// Its first bytes.
         begins: Vec<u8>,
+        /// What it is, and what to do, if it is of a known format that is not read.
+        what: &'static str,
     },
 
     /// A file that does not hold what its format asks for.
@@ -68,6 +70,13 @@ pub enum FileError {
     NoLength {
         /// The text.
         unit: String,
+    },
+
+    /// A text that names no layout.
+    #[error("'{layout}' is no layout of a text: matrix, x-row, y-column, axes and points are")]
+    NoLayout {
+        /// The text.
+        layout: String,
     },
 
     /// A surface of unknown size.

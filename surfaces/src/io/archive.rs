@@ -30,6 +30,29 @@ pub(super) fn incomplete(error: ZipError) -> Fault {
     }
 }
 
+/// How many times longer than the whole archive a member of an instrument's file may be.
+///
+/// Measured heights hardly shrink to a hundredth; even an image with a few grey levels does not to 1/256. Deflate could
+/// reach 1/1032, which is what archives are made of that only want to fill a memory. Heights of 16 bits take four times as
+/// much again as double numbers.
+pub(super) const MAX_GROWTH: usize = 256;
+
+/// The member of an archive whose path is, or ends with, this name; anything may stand before the archive.
+pub(super) fn inflated(file: &[u8], name: &str) -> Result<Vec<u8>, Fault> {
+    let mut zip = ZipArchive::new(Cursor::new(file)).map_err(incomplete)?;
+    let is_it = |path: &str| path.rsplit(['/', '\\']).next() == Some(name);
+    let found = zip.file_names().filter_map(|path| Some(path.ok()?.to_string()));
+    let path = found.into_iter().find(|path| is_it(path));
+    let path = path.ok_or_else(|| fault!("the archive has no member '{name}'"))?;
+    let most = file.len().saturating_mul(MAX_GROWTH);
+    let mut bytes = Vec::new();
+    let member = zip.by_name(&path).map_err(incomplete)?;
+    let read = member.take(most as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|error| fault!("'{name}' is damaged: {error}"))?;
+    ensure!(bytes.len() <= most, "'{name}' is more than {MAX_GROWTH} times as large as the file");
+    Ok(bytes)
+}
+
 /// Writes one array after the other, uncompressed and without a date: the same arrays make the same file.
 pub struct ArchiveWriter<W: Write + Seek> {
     zip: ZipWriter<Output<W>>,

@@ -33,18 +33,31 @@ pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, Fault> {
     Ok(values)
 }
 
+/// Which byte of a number comes first: the least significant, or the most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    Little,
+    #[cfg_attr(not(feature = "io"), expect(dead_code, reason = "NumPy's header is little-endian"))]
+    Big,
+}
+
 /// A place in the bytes of a file.
 #[derive(Debug, Clone)]
 pub(super) struct Bytes<'a> {
     all: &'a [u8],
     at: usize,
+    order: Order,
 }
 
 macro_rules! numbers {
     ($($name:ident: $type:ty),*) => {$(
-        /// The next number, little-endian.
+        /// The next number.
         pub(super) fn $name(&mut self) -> Result<$type, Fault> {
-            self.array().map(<$type>::from_le_bytes)
+            let bytes = self.array()?;
+            Ok(match self.order {
+                Order::Little => <$type>::from_le_bytes(bytes),
+                Order::Big => <$type>::from_be_bytes(bytes),
+            })
         }
     )*};
 }
@@ -52,7 +65,12 @@ macro_rules! numbers {
 #[cfg_attr(not(feature = "io"), expect(dead_code, reason = "NumPy's format needs few of these"))]
 impl<'a> Bytes<'a> {
     pub(super) fn new(all: &'a [u8]) -> Self {
-        Self { all, at: 0 }
+        Self { all, at: 0, order: Order::Little }
+    }
+
+    /// The same bytes, whose numbers have this order.
+    pub(super) fn ordered(self, order: Order) -> Self {
+        Self { order, ..self }
     }
 
     /// The bytes from a place in the file on.
@@ -125,7 +143,13 @@ impl<'a> Bytes<'a> {
         self.take(N)?.try_into().map_err(|_| fault!(at(at), "the file ends"))
     }
 
-    numbers!(u8: u8, u16: u16, u32: u32, i32: i32, f32: f32, f64: f64);
+    numbers!(u8: u8, u16: u16, i16: i16, u32: u32, i32: i32, i64: i64, u64: u64, f32: f32, f64: f64);
+}
+
+/// Where a word begins in bytes.
+#[cfg(feature = "io")]
+pub(super) fn find(bytes: &[u8], word: &[u8]) -> Option<usize> {
+    bytes.windows(word.len()).position(|window| window == word)
 }
 
 /// A shape that a grid can have.

@@ -11,9 +11,16 @@
 //! | Gwyddion | `.gwy` | all maps, masks | |
 //! | ISO 25178-71 and BCR | `.sdf` | ASCII and binary, 1.0 and 2.0 | |
 //! | ISO 25178-72 | `.x3p` | all four types of number, missing points | float64 |
-//! | Digital Surf | `.sur` | plain and compressed | |
+//! | Digital Surf | `.sur` | plain and compressed; of a surface with colours, the surface | |
 //! | Alicona | `.al3d` | depth image | |
-//! | Keyence | `.vk4` | height image | |
+//! | Keyence | `.vk4`, `.vk6`, `.vk7` | height images | |
+//! | Nanoscope (Bruker, Veeco) | `.spm`, `.di`, `.000` | all images | |
+//! | Igor (Asylum Research) | `.ibw` | all layers of a wave of version 5 | |
+//! | Nanosurf | `.nid` | all images | |
+//! | Wyko (Vision) | `.opd` | heights | |
+//! | Vision64, Dektak | `.opdx` | maps | |
+//! | MetroPro (Zygo) | `.dat` | heights | |
+//! | Sensofar | `.plu` | heights | |
 //! | text | `.txt`, `.asc`, `.csv`, `.xyz` | matrices, and lists of points | |
 //!
 //! A file is known by its first bytes, not by its name.
@@ -21,7 +28,8 @@
 //! # Which index is x
 //!
 //! Everywhere in this crate x is the first index, `[(ix, iy)]`. In all formats but `.npy` the rows of the file are
-//! those of an image: row `iy`, and within it column `ix`. No row is turned round:
+//! those of an image: row `iy`, and within it column `ix`. Rows are turned round only where the file has them from below
+//! (Nanoscope, Igor, Nanosurf, Wyko):
 //!
 //! ```text
 //!   the file (an image)               the matrix                on the half-space
@@ -43,7 +51,9 @@
 //!
 //! A list has a point x, y, z in each row, in any order. The points have to lie on a regular grid, from which some may be
 //! absent: they are missing. A list is known by names of its columns, `x y z`, perhaps with units, `x (µm)`, by the extension
-//! `.xyz`, or by having three columns where no header gives the sides of a matrix.
+//! `.xyz`, or by coordinates that are those of most of a grid. Positions in the first row or column of a matrix are known by even
+//! steps. Where numbers can be read in several ways, [`TextLayout`] says which is meant; [`MeasuredSurface::understood`] tells
+//! how a text was read.
 //!
 //! # What a file may ask for
 //!
@@ -72,17 +82,33 @@ mod gsf;
 #[cfg(feature = "io")]
 mod gwy;
 #[cfg(feature = "io")]
+mod ibw;
+#[cfg(feature = "io")]
 mod lines;
 #[cfg(feature = "io")]
 mod measured;
+#[cfg(feature = "io")]
+mod metropro;
+#[cfg(feature = "io")]
+mod nanoscope;
+#[cfg(feature = "io")]
+mod nid;
+#[cfg(feature = "io")]
+mod opd;
+#[cfg(feature = "io")]
+mod opdx;
 #[cfg(feature = "io")]
 mod options;
 #[cfg(feature = "io")]
 mod output;
 #[cfg(feature = "io")]
+mod plu;
+#[cfg(feature = "io")]
 mod raw;
 #[cfg(feature = "io")]
 mod sdf;
+#[cfg(feature = "io")]
+mod sections;
 #[cfg(feature = "io")]
 mod sur;
 #[cfg(all(test, feature = "io"))]
@@ -107,6 +133,7 @@ pub use self::{
     gsf::write_gsf,
     measured::MeasuredSurface,
     options::{ReadOptions, channels, read_surface},
+    text::TextLayout,
     unit::LengthUnit,
     x3p::write_x3p,
 };

@@ -1,7 +1,7 @@
 //! How numbers lie in a file.
 
 #[cfg(feature = "io")]
-use super::bytes::reserved;
+use super::bytes::{Order, reserved};
 #[cfg(feature = "io")]
 use super::fault::Fault;
 
@@ -52,9 +52,25 @@ impl Number {
         bytes: &[u8],
         map: impl Fn(f64) -> f64,
     ) -> Result<Vec<f64>, Fault> {
+        self.decode_ordered(bytes, Order::Little, map)
+    }
+
+    /// The same in any order.
+    #[cfg(feature = "io")]
+    pub(super) fn decode_ordered(
+        self,
+        bytes: &[u8],
+        order: Order,
+        map: impl Fn(f64) -> f64,
+    ) -> Result<Vec<f64>, Fault> {
         let mut values = reserved(bytes.len() / self.size())?;
         let numbers = bytes.chunks_exact(self.size());
-        values.extend(numbers.map(|number| map(self.decode(number.iter().rev()))));
+        values.extend(numbers.map(|number| {
+            map(match order {
+                Order::Little => self.decode(number.iter().rev()),
+                Order::Big => self.decode(number.iter()),
+            })
+        }));
         Ok(values)
     }
 }

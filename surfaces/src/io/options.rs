@@ -1,14 +1,16 @@
 //! Reading a surface: what a file says, and what the user adds to it.
 
+use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
 use nalgebra::DMatrix;
 
 use super::bytes::{read_all, read_file};
-use super::format::Format;
+use super::format::{Besides, Format, not_read};
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
+use super::text::TextLayout;
 use super::unit::LengthUnit;
 use crate::number::quantity;
 use crate::{Error, FileError};
@@ -43,7 +45,7 @@ pub fn read_surface(path: impl AsRef<Path>) -> Result<MeasuredSurface, Error> {
 pub fn channels(path: impl AsRef<Path>) -> Result<Vec<String>, Error> {
     let path = path.as_ref();
     let bytes = read_file(path).map_err(|fault| fault.in_file(path, UNREAD))?;
-    Ok(names(&parse(&bytes, path)?.1))
+    Ok(names(&parse(&bytes, path, None)?.1))
 }
 
 /// What to read from a file, and what it does not say of itself.
@@ -68,6 +70,7 @@ pub struct ReadOptions {
     height_unit: Option<LengthUnit>,
     lateral_unit: Option<LengthUnit>,
     ignore_mask: bool,
+    layout: Option<TextLayout>,
 }
 
 impl ReadOptions {
@@ -110,6 +113,12 @@ impl ReadOptions {
     /// Keeps the heights of nodes that are marked in the file; otherwise they are missing.
     pub fn ignore_mask(mut self) -> Self {
         self.ignore_mask = true;
+        self
+    }
+
+    /// How the numbers of a text are arranged, where it can be read in several ways, or in place of what it says.
+    pub fn layout(mut self, layout: TextLayout) -> Self {
+        self.layout = Some(layout);
         self
     }
 
@@ -172,7 +181,7 @@ impl ReadOptions {
 
     /// The surface in the bytes of a file.
     fn of(&self, bytes: &[u8], path: &Path) -> Result<MeasuredSurface, Error> {
-        let (format, channels) = parse(bytes, path)?;
+        let (format, channels) = parse(bytes, path, self.layout)?;
         let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
         let unit = channel.height_unit.take();
@@ -197,6 +206,9 @@ impl ReadOptions {
             if marked > 0 {
                 notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
             }
+        }
+        if let (Some(layout), true) = (self.layout, format != Format::Text) {
+            notes.push(format!("the layout '{layout}' is for texts: a file of {format} says itself how it is laid out"));
         }
         // What neither the file nor the options say, in words.
         if format == Format::Npy && self.height_unit.is_none() {
@@ -282,6 +294,22 @@ impl ReadOptions {
     }
 }
 
+/// Maps whose names occur more than once get numbers, so that each can be chosen.
+fn told_apart(mut channels: Vec<Channel>) -> Vec<Channel> {
+    let names = names(&channels);
+    let mut times: HashMap<&str, usize> = HashMap::new();
+    names.iter().for_each(|name| *times.entry(name).or_default() += 1);
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for (channel, name) in channels.iter_mut().zip(&names) {
+        if times.get(name.as_str()).is_some_and(|times| *times > 1) {
+            let number = seen.entry(name).or_default();
+            *number += 1;
+            channel.name = format!("{name} [{number}]");
+        }
+    }
+    channels
+}
+
 fn names(channels: &[Channel]) -> Vec<String> {
     channels.iter().map(|channel| channel.name.clone()).collect()
 }
@@ -303,14 +331,19 @@ fn replacement(of: &str, given: Option<LengthUnit>, found: Option<&str>) -> Opti
 const UNREAD: &str = "surface";
 
 /// The format of a file, and all maps in it.
-fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Vec<Channel>), Error> {
+fn parse(
+    bytes: &[u8],
+    path: &Path,
+    layout: Option<TextLayout>,
+) -> Result<(Format, Vec<Channel>), Error> {
     let format = Format::of(bytes).ok_or_else(|| FileError::UnknownFormat {
         path: path.to_path_buf(),
         begins: bytes.iter().take(8).copied().collect(),
+        what: not_read(bytes),
     })?;
-    let channels = format.parse(bytes, path).and_then(|channels| {
+    let channels = format.parse(bytes, &Besides { path, layout }).and_then(|channels| {
         ensure!(!channels.is_empty(), "there is no map in it");
-        Ok(channels)
+        Ok(told_apart(channels))
     });
     Ok((format, channels.map_err(|fault| fault.in_file(path, format.name()))?))
 }

@@ -46,5 +46,20 @@ impl Channel {
     }
 }
 
+impl Channel {
+    /// The map of a file whose first row is the lowest of the image.
+    pub(super) fn turned(mut self) -> Self {
+        let (nx, ny) = self.shape;
+        let mut rows = self.values.as_mut_slice();
+        for _ in 0..ny / 2 {
+            let (first, rest) = rows.split_at_mut(nx);
+            let (between, last) = rest.split_at_mut(rest.len() - nx);
+            first.swap_with_slice(last);
+            rows = between;
+        }
+        self
+    }
+}
+
 /// What a reader makes of the bytes of a file: all maps in it.
 pub(super) type Parsed = Result<Vec<Channel>, Fault>;

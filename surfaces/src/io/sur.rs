@@ -10,6 +10,8 @@
 //!
 //! Compressed heights are zlib streams. Deflate makes at most 1032 bytes of one: a stream that claims more is not
 //! read, so the memory for a file is bounded by its length, if by a larger multiple than in other formats.
+//!
+//! A surface with colours, with intensities or with both has them in further objects behind it, which are not read.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -28,6 +30,11 @@ const HEADER: usize = 512;
 /// Bytes that deflate makes of one, at most: 258 of two bits.
 const MAX_EXPANSION: u64 = 1032;
 
+pub(super) const BEGINS: &[&[u8]] = &[b"DIGITAL SURF", b"DSCOMPRESSED"];
+
+/// Types of studies whose first object is a surface, and other objects images of it.
+const WITH_IMAGES: [u16; 3] = [11, 13, 16];
+
 pub(super) fn parse(file: &[u8]) -> Parsed {
     let mut bytes = Bytes::new(file);
     let compressed = bytes.take(HEADER)?.starts_with(b"DSCOMPRESSED");
@@ -40,13 +47,19 @@ pub(super) fn parse(file: &[u8]) -> Parsed {
     } else {
         Cow::Borrowed(bytes.take(length)?)
     };
-    bytes.end(format_args!("{nx} x {ny} heights"))?;
+    let mut notes = Vec::new();
+    if header.has_images {
+        notes.push("the colours or intensities behind the heights are not read".to_string());
+    } else {
+        bytes.end(format_args!("{nx} x {ny} heights"))?;
+    }
     let values = header.number.decode_all(&data, |value| header.height(value))?;
     let (cell, lateral_unit) = header.cell();
     Ok(vec![Channel {
         name: header.name,
         height_unit: header.units.2,
         lateral_unit,
+        notes,
         ..Channel::in_metres((nx, ny), values, Some(cell))
     }])
 }
@@ -57,6 +70,8 @@ struct Header {
     /// Name of the z axis.
     name: String,
     shape: (usize, usize),
+    /// Whether images follow the heights.
+    has_images: bool,
     number: Number,
     /// Bytes between header and heights.
     comments: usize,
@@ -82,10 +97,12 @@ impl Header {
             "the format is 257, big-endian, but only files in little-endian order are read"
         );
         let (nx, ny) = (field(108)?.u32()?, field(112)?.u32()?);
-        require_surface(count(18)?, ny)?;
+        let kind = count(18)?;
+        require_surface(kind, ny)?;
+        let has_images = WITH_IMAGES.contains(&kind);
         let objects = count(14)?;
         ensure!(
-            objects <= 1,
+            objects <= 1 || has_images,
             at(14),
             "there are {objects} objects in the file, but only files with one are read"
         );
@@ -112,6 +129,7 @@ impl Header {
         Ok(Self {
             name: text(164)?,
             shape: shape(nx, ny)?,
+            has_images,
             number,
             comments: usize::from(count(334)?) + usize::from(count(336)?),
             missing: special_points.then_some(least - 2.0),
@@ -132,7 +150,7 @@ impl Header {
         if x == y {
             return ((dx, dy), x.clone());
         }
-        let length = |unit: &Option<String>| unit.as_ref()?.parse::<LengthUnit>().ok();
+        let length = |unit: &Option<String>| LengthUnit::in_file(unit.as_ref()?);
         match (length(x), length(y)) {
             (Some(x), Some(y)) => {
                 let metre = LengthUnit::METRE.symbol().to_string();
@@ -154,7 +172,7 @@ const TYPES: &str = "something unknown|a profile|a surface|a binary image|a seri
 
 fn require_surface(kind: u16, ny: u32) -> Result<(), Fault> {
     // Gwyddion calls the maps that it writes profiles.
-    if kind == 2 || (kind == 1 && ny > 1) {
+    if kind == 2 || (kind == 1 && ny > 1) || WITH_IMAGES.contains(&kind) {
         return Ok(());
     }
     let name = TYPES.split('|').nth(kind.into()).unwrap_or("something unknown");

@@ -1,4 +1,4 @@
-//! Keyence, `.vk4`: the height images.
+//! Keyence, `.vk4`: the height images; `.vk6` and `.vk7`: an archive with a `.vk4` in it.
 //!
 //! Sources: Gwyddion's `keyence.c`, SurfaceTopography's `VK.py`, surfalize's `vk.py`, itom's `DataObjectIO`, and the
 //! `vk4-python-driver` of Torkian and Gunn (OSTI 1419732), which agree on the layout. No file of an instrument was at
@@ -12,12 +12,20 @@
 //! Nodes of value zero are marked, and so are missing unless the caller ignores the mask: to itom they are nodes
 //! without a measurement, to the other readers heights.
 
+use super::archive::inflated;
 use super::bytes::{Bytes, shape};
 use super::fault::Fault;
 use super::number::{Number, positive};
 use super::raw::{Channel, Parsed};
 
 const MAGIC: &[u8] = b"VK4_";
+
+const ARCHIVES: [&[u8]; 2] = [b"VK6", b"VK7"];
+
+pub(super) const BEGINS: &[&[u8]] = &[MAGIC, ARCHIVES[0], ARCHIVES[1]];
+
+/// The member of the archive behind `VK6`, the length of a picture, and the picture.
+const MEMBER: &str = "Vk4File";
 
 /// Where the table of places begins, and the place of the first height image in it.
 const TABLE: usize = 12;
@@ -34,6 +42,14 @@ const PALETTE: usize = 768;
 const PICOMETRE: f64 = 1e-12;
 
 pub(super) fn parse(file: &[u8]) -> Parsed {
+    if !ARCHIVES.iter().any(|begin| file.starts_with(begin)) {
+        return images(file);
+    }
+    images(&inflated(file, MEMBER)?)
+        .map_err(|fault| fault.prefixed(&format!("member '{MEMBER}': ")))
+}
+
+fn images(file: &[u8]) -> Parsed {
     let mut bytes = Bytes::new(file);
     ensure!(bytes.take(MAGIC.len())? == MAGIC, at(0), "the file does not begin with 'VK4_'");
     bytes.seek(TABLE)?;

@@ -76,7 +76,7 @@ fn read(bytes: &[u8], target: &mut Target, what: impl Fn() -> String) {
     });
     let name = target.path.0.display();
     assert!(!panicked, "{name}, {}: the reader panicked", what());
-    let inflates = ["sur", "x3p"].map(OsStr::new).map(Some);
+    let inflates = ["sur", "x3p", "vk6"].map(OsStr::new).map(Some);
     let fixed = if inflates.contains(&target.path.0.extension()) {
         BYTES_OF_INFLATER
     } else {
@@ -147,7 +147,7 @@ fn consistent_lies_cost_no_memory() {
     // Nodes of the compressed file take two bytes each.
     const DATA: [u8; 4] = (1_u32 << 31).to_le_bytes();
     type Lie = (&'static str, &'static [(usize, &'static [u8])]);
-    const LIES: [Lie; 5] = [
+    const LIES: [Lie; 9] = [
         ("missing_iso2_f8.sdf", &[(42, &SIDE), (46, &SIDE)]),
         ("missing_i16.sur", &[(108, &SIDE), (112, &SIDE), (116, &NODES)]),
         (
@@ -156,6 +156,11 @@ fn consistent_lies_cost_no_memory() {
         ),
         ("missing_f32.al3d", &[(141, b"32768"), (193, b"32768")]),
         ("missing_u32.vk4", &[(388, &HALF), (392, &HALF), (404, &NODES)]),
+        ("missing_f32.plu", &[(500, &SIDE), (504, &SIDE)]),
+        ("missing_i16.opd", &[(244, &[0, 0x80]), (246, &[0, 0x80])]),
+        ("missing_f32.opdx", &[(78, &SIDE), (82, &SIDE)]),
+        // Most significant byte first: 2^28 heights of four bytes.
+        ("missing_i32.dat", &[(68, &[0x40, 0, 0x40, 0, 0x40, 0, 0, 0])]),
     ];
     with_each_file("lie", |whole, target| {
         let name = target.path.0.to_string_lossy().into_owned();

@@ -1,11 +1,14 @@
 //! Files of heights: our own small ones, real ones beside what other readers say of them, and broken ones.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
+mod dialects;
 mod hostile;
+mod instruments;
 mod refusals;
 mod stated;
 mod third_party;
 mod third_party_archives_and_text;
+mod third_party_instruments;
 mod truth;
 
 use std::path::{Path, PathBuf};

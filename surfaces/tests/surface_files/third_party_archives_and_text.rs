@@ -9,7 +9,7 @@ use asperity_surfaces::{Error, FileError};
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
 /// A file of other people, if it is there.
-fn path(name: &str) -> Option<PathBuf> {
+pub(super) fn path(name: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("ASPERITY_SURFACE_FILES").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference/surface_files"),
         PathBuf::from,

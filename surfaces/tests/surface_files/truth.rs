@@ -23,7 +23,10 @@ const SINGLE: f64 = 0.51 * f32::EPSILON as f64;
 const CLOSE: f64 = 5e-16;
 const CLOSE_SINGLE: f64 = 6e-8;
 
-/// What lacks in a file without lengths.
+/// Of a sum with -33 µm, which rounds to half a unit in 2^53 of it; the least height is 6 nm.
+const SUM: f64 = 33e3 / 6.0 * f64::EPSILON;
+
+/// What lacks in a file without lengths, or whose pixels are square.
 fn sides() -> ReadOptions {
     ReadOptions::new().side(14e-6).side_y(15e-6)
 }
@@ -65,6 +68,18 @@ const FILES: &[File] = &[
     ("missing_i16_mask.x3p",       0.0,   CLOSE,  ReadOptions::new),
     ("missing_f64_scaled_folder_stored.x3p", 0.0, CLOSE, ReadOptions::new),
     ("masked.gwy",                 0.0,   EXACT,  ReadOptions::new),
+    ("missing_i16_colours.sur",    0.0,   EXACT,  ReadOptions::new),
+    ("missing_u32.vk6",            300.0, EXACT,  ReadOptions::new),
+    ("plain_i16.spm",              0.0,   EXACT,  ReadOptions::new),
+    ("plain_i32.spm",              0.0,   EXACT,  ReadOptions::new),
+    ("missing_f32.ibw",            0.0,   SINGLE, ReadOptions::new),
+    ("missing_f64_big.ibw",        0.0,   EXACT,  ReadOptions::new),
+    ("plain_i16.nid",              0.0,   SUM,    ReadOptions::new),
+    ("missing_i16.opd",            0.0,   EXACT,  sides),
+    ("missing_f32.opd",            0.0,   EXACT,  sides),
+    ("missing_f32.opdx",           0.0,   EXACT,  ReadOptions::new),
+    ("missing_i32.dat",            0.0,   SINGLE, sides),
+    ("missing_f32.plu",            0.0,   SINGLE, ReadOptions::new),
     ("plain_gwyddion.txt",         0.0,   CLOSE,  ReadOptions::new),
     ("missing_matrix.asc",         0.0,   CLOSE,  in_metres),
     ("plain_semicolon_comma.csv",  0.0,   CLOSE,  in_metres),

@@ -1,19 +1,24 @@
 //! Positions and running numbers in the first row and the first column of a matrix: they are no heights.
 //!
-//! A row of heights is never evenly spaced while its neighbours are not. Where the heights themselves are, as on a plane,
-//! the first row goes on like the others; if it does not, nothing can be told, and the file is refused.
+//! Positions are evenly spaced. A row of measured heights never is while its neighbours are not. Where there are few numbers, or
+//! the heights are those of a plane, several ways of reading are left.
 
+use super::header::Header;
+use super::layout::TextLayout;
 use super::table::Table;
 use crate::io::fault::Fault;
 
-/// Fewest numbers that can be seen to be evenly spaced, and fewest where both a row and a column are.
+/// Fewest numbers that cannot be evenly spaced by chance, and fewest where both a row and a column are.
 const FEWEST: usize = 4;
 const FEWEST_OF_BOTH: usize = 3;
 
-/// How far a position may be from even spacing, in spacings, among many and among few.
+/// How far a position may be from even spacing, in spacings: at all, and if few numbers are to be positions for sure.
 const UNEVEN: f64 = 0.02;
 const UNEVEN_OF_FEW: f64 = 1e-3;
 const MANY: usize = 8;
+
+/// What rounding leaves of a difference that is zero, relative to the numbers.
+const ROUNDING: f64 = 1e-9;
 
 /// Evenly spaced numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,17 +28,6 @@ struct Run {
     count: usize,
 }
 
-/// What the first of several lines of numbers is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum First {
-    /// One like the others.
-    Heights,
-    /// Positions.
-    Axis(Run),
-    /// Something else, and then positions.
-    AfterCorner(Run),
-}
-
 /// What was found in place of heights.
 #[derive(Debug, Default)]
 pub(super) struct Axes {
@@ -41,52 +35,27 @@ pub(super) struct Axes {
     pub(super) cell: Option<(f64, f64)>,
     /// What the first row and the first column were taken for.
     pub(super) notes: Vec<String>,
-    /// Whether the first row is no row of heights.
-    pub(super) is_matrix: bool,
 }
 
 /// Takes positions and running numbers away from a table.
-pub(super) fn take(table: &mut Table) -> Result<Axes, Fault> {
-    let (columns, rows) = (table.columns, table.rows());
-    let row = |k: usize| table.values.iter().skip(k * columns).take(columns).copied().collect();
-    let column = |k: usize| table.values.iter().skip(k).step_by(columns).copied().collect();
-    let (first_row, first_column): (Vec<f64>, Vec<f64>) = (row(0), column(0));
-    let along_x = first("row", rows, row)?;
-    let along_y = first("column", columns, column)?;
-    let after_corner = |line: &[f64], fewest| Run::of(line.get(1..)?, fewest);
-    let both = || {
-        Some((
-            after_corner(&first_row, FEWEST_OF_BOTH)?,
-            after_corner(&first_column, FEWEST_OF_BOTH)?,
-        ))
+pub(super) fn take(table: &mut Table, layout: TextLayout) -> Result<Axes, Fault> {
+    let (along_x, along_y) = layout.positions();
+    let corner = usize::from(along_x && along_y);
+    let columns = table.columns;
+    let run = |numbers: Vec<f64>, line: &str| {
+        let run = numbers.get(corner..).and_then(|numbers| Run::of(numbers, UNEVEN));
+        run.ok_or_else(|| {
+            fault!("the first {line} is not evenly spaced, as positions on a grid are")
+        })
     };
-    let (x, y) = match (along_x, along_y) {
-        (First::Heights, First::Heights) => {
-            let corner = |(x, y)| (!goes_on(table)).then_some((Some(x), Some(y)));
-            both().and_then(corner).unwrap_or_default()
-        }
-        (First::Axis(x), First::Heights) => (Some(x), None),
-        (First::Heights, First::Axis(y)) => (None, Some(y)),
-        // Both have a corner in common, whatever is in it.
-        _ => {
-            let x = after_corner(&first_row, 1);
-            let y = after_corner(&first_column, 1);
-            ensure!(
-                x.is_some() && y.is_some(),
-                "the first {} is evenly spaced but for its first number, as positions are; the first {} is not: which numbers are \
-                 heights cannot be told",
-                if x.is_some() { "row" } else { "column" },
-                if x.is_some() { "column" } else { "row" }
-            );
-            (x, y)
-        }
-    };
-    let mut axes = Axes { is_matrix: x.is_some(), ..Axes::default() };
+    let x = along_x.then(|| run(row(table, 0), "row")).transpose()?;
+    let y = along_y.then(|| run(column(table, 0), "column")).transpose()?;
+    let mut axes = Axes::default();
     axes.notes.extend(x.map(|run| run.told("row", "x")));
     axes.notes.extend(y.map(|run| run.told("column", "y")));
     let positions = x.zip(y).filter(|(x, y)| !x.counts() && !y.counts());
     axes.cell = positions.map(|(x, y)| (x.step.abs(), y.step.abs()));
-    let (skipped_rows, skipped_columns) = (usize::from(x.is_some()), usize::from(y.is_some()));
+    let (skipped_rows, skipped_columns) = (usize::from(along_x), usize::from(along_y));
     let mut place = 0;
     table.values.retain(|_| {
         let keep = place / columns >= skipped_rows && place % columns >= skipped_columns;
@@ -97,68 +66,157 @@ pub(super) fn take(table: &mut Table) -> Result<Axes, Fault> {
     Ok(axes)
 }
 
-/// Whether the second row is evenly spaced as the first.
-fn goes_on(table: &Table) -> bool {
-    let columns = table.columns;
-    let row: Vec<f64> = table.values.iter().skip(columns + 1).take(columns - 1).copied().collect();
-    Run::with_gaps(&row).is_some()
+/// The ways in which a table can be a matrix: at least one.
+pub(super) fn plausible(header: &Header, table: &Table) -> Result<Vec<TextLayout>, Fault> {
+    use TextLayout::{Axes, ColumnOfY, Matrix, RowOfX};
+    let (columns, rows) = (table.columns, table.rows());
+    let x = Side::of(
+        rows,
+        |k| row(table, k),
+        |run, n| header.may_be_axis(n, true, run.step),
+        header.has_sides(),
+    );
+    let y = Side::of(
+        columns,
+        |k| column(table, k),
+        |run, n| header.may_be_axis(n, false, run.step),
+        header.has_sides(),
+    );
+    let both = x.few_tail && y.few_tail;
+    let ways = [
+        // Layout, whether it is possible, and whether something evenly spaced would be heights.
+        (Matrix, true, x.sure || x.sure_tail || y.sure || y.sure_tail || both),
+        (RowOfX, x.whole && rows > 1, y.sure_tail || x.goes_on),
+        (ColumnOfY, y.whole && columns > 1, x.sure_tail || y.goes_on),
+        (Axes, x.tail && y.tail && rows > 1 && columns > 1, x.goes_on || y.goes_on),
+    ];
+    let fits = |layout: TextLayout| {
+        let (along_x, along_y) = layout.positions();
+        header.has_counts(columns - usize::from(along_y), rows - usize::from(along_x))
+    };
+    let possible = || ways.into_iter().filter(|(_, possible, _)| *possible);
+    let stated: Vec<TextLayout> =
+        possible().map(|way| way.0).filter(|layout| header.counts() && fits(*layout)).collect();
+    if let [only] = stated.as_slice() {
+        return Ok(vec![*only]);
+    }
+    let mut found: Vec<TextLayout> =
+        possible().filter(|(.., strange)| !strange).map(|way| way.0).collect();
+    if !stated.is_empty() {
+        found.retain(|layout| stated.contains(layout));
+    }
+    ensure!(
+        !found.is_empty(),
+        "the first {} is evenly spaced but for its first number, as positions are; the first {} is not: which numbers are \
+         heights cannot be told; choose with `ReadOptions::layout`",
+        if x.sure_tail { "row" } else { "column" },
+        if x.sure_tail { "column" } else { "row" }
+    );
+    Ok(found)
 }
 
-/// What the first of `count` lines is.
-fn first(name: &str, count: usize, line: impl Fn(usize) -> Vec<f64>) -> Result<First, Fault> {
-    let numbers = line(0);
-    // The next lines in which enough was measured to compare them.
-    let is_known = |line: &[f64]| line.iter().filter(|z| z.is_finite()).count() >= FEWEST_OF_BOTH;
-    let known = (1..count).map(|k| (k, line(k))).filter(|(_, line)| is_known(line));
-    let known: Vec<(usize, Vec<f64>)> = known.take(2).collect();
-    let [(k, second), rest @ ..] = known.as_slice() else {
-        return Ok(First::Heights);
-    };
-    if let Some(run) = Run::of(&numbers, FEWEST) {
-        let Some(next) = Run::with_gaps(second) else {
-            return Ok(First::Axis(run));
+fn row(table: &Table, k: usize) -> Vec<f64> {
+    table.values.iter().skip(k * table.columns).take(table.columns).copied().collect()
+}
+
+fn column(table: &Table, k: usize) -> Vec<f64> {
+    table.values.iter().skip(k).step_by(table.columns).copied().collect()
+}
+
+/// What the first row, or the first column, can be: all of it, or what is behind the corner.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    /// Whether it can be positions.
+    whole: bool,
+    tail: bool,
+    /// Whether it is nothing else by chance.
+    sure: bool,
+    sure_tail: bool,
+    /// The same of what is behind the corner, if it is so of the other side.
+    few_tail: bool,
+    /// Whether it goes on like the lines next to it, which are those of a surface that is curved across them.
+    goes_on: bool,
+}
+
+impl Side {
+    /// Of `count` lines of numbers; `may_be` says whether the header leaves it open that a run is one of positions.
+    fn of(
+        count: usize,
+        line: impl Fn(usize) -> Vec<f64>,
+        may_be: impl Fn(Run, usize) -> bool,
+        has_sides: bool,
+    ) -> Self {
+        let first = line(0);
+        let tail = first.get(1..).unwrap_or_default();
+        // Of short lines it has to be the next, whatever is known of it.
+        let fewest = if tail.len() < MANY { 0 } else { FEWEST_OF_BOTH };
+        let is_known = |line: &Vec<f64>| line.iter().filter(|z| z.is_finite()).count() >= fewest;
+        let behind = |k: usize| line(k).get(1..).map(<[f64]>::to_vec).unwrap_or_default();
+        let next = (1..count).map(behind).find(is_known);
+        // Nothing to compare with shows nothing.
+        let is_apart = next.is_some_and(|next| !is_straight(&next));
+        let run = |numbers: &[f64]| Run::of(numbers, UNEVEN);
+        let is_sure = |numbers: &[f64], fewest| {
+            let allowed = if numbers.len() < MANY { UNEVEN_OF_FEW } else { UNEVEN };
+            is_apart && numbers.len() >= fewest && Run::of(numbers, allowed).is_some()
         };
-        // A plane, or a surface of straight lines whose slope changes evenly.
-        let after = rest.first().and_then(|(j, third)| Some((*j, Run::with_gaps(third)?)));
-        let slope = after.map_or(0.0, |(j, after)| (after.step - next.step) / (j - k) as f64);
-        let expected = next.step - slope * *k as f64;
-        let scale = run.step.abs().max(next.step.abs());
-        ensure!(
-            (run.step - expected).abs() <= 0.1 * scale,
-            "the first {name}s are evenly spaced, the first in steps of {}, the next of {}: whether the first has positions or \
-             heights cannot be told",
-            run.step,
-            next.step
-        );
-        return Ok(First::Heights);
+        let (sure, sure_tail) = (is_sure(&first, FEWEST), is_sure(tail, FEWEST));
+        let possible = |numbers: &[f64], sure: bool| {
+            run(numbers).is_some_and(|run| sure || may_be(run, numbers.len()))
+        };
+        let few_tail = is_sure(tail, FEWEST_OF_BOTH);
+        // Steps as the header gives them, and running numbers, are no coincidence.
+        let is_stated = has_sides || [&first, tail].into_iter().filter_map(run).any(Run::counts);
+        Self {
+            whole: possible(&first, sure),
+            tail: possible(tail, few_tail),
+            sure,
+            sure_tail,
+            few_tail,
+            goes_on: !sure
+                && !is_stated
+                && goes_on([0, 1, 2, 3].map(|k| if k < count { line(k) } else { Vec::new() })),
+        }
     }
-    let Some(run) = numbers.get(1..).and_then(|tail| Run::of(tail, FEWEST)) else {
-        return Ok(First::Heights);
-    };
-    let next = second.get(1..).and_then(Run::with_gaps);
-    let is_same = next.is_some_and(|next| (next.step - run.step).abs() <= 0.1 * run.step.abs());
-    Ok(if is_same { First::Heights } else { First::AfterCorner(run) })
+}
+
+/// Whether four lines are those of a surface of second degree across them, and of none of first degree.
+fn goes_on(lines: [Vec<f64>; 4]) -> bool {
+    let [a, b, c, d] = &lines;
+    let finite = lines.iter().flatten().filter(|z| z.is_finite());
+    let rounding = ROUNDING * finite.fold(0.0_f64, |most, z| most.max(z.abs()));
+    let across = a.iter().zip(b).zip(c).zip(d);
+    let differences = across.map(|(((a, b), c), d)| (a - 3.0 * b + 3.0 * c - d, b - 2.0 * c + d));
+    let known: Vec<(f64, f64)> = differences.filter(|(third, _)| third.is_finite()).collect();
+    known.len() >= FEWEST_OF_BOTH
+        && known.iter().all(|(third, second)| third.abs() <= rounding && second.abs() > rounding)
+}
+
+/// Whether numbers are evenly spaced, or all the same.
+fn is_straight(numbers: &[f64]) -> bool {
+    let mut known = numbers.iter().filter(|number| number.is_finite());
+    let first = known.next();
+    known.all(|number| Some(number) == first) || Run::with_gaps(numbers, UNEVEN).is_some()
 }
 
 impl Run {
-    /// At least so many numbers, if they grow, or fall, by even steps.
-    fn of(numbers: &[f64], fewest: usize) -> Option<Self> {
-        let is_whole = numbers.len() >= fewest && numbers.iter().all(|number| number.is_finite());
-        Self::with_gaps(numbers).filter(|_| is_whole)
+    /// Numbers that grow, or fall, by even steps; one is even.
+    fn of(numbers: &[f64], allowed: f64) -> Option<Self> {
+        let is_whole = !numbers.is_empty() && numbers.iter().all(|number| number.is_finite());
+        Self::with_gaps(numbers, allowed).filter(|_| is_whole)
     }
 
-    /// Numbers that grow, or fall, by even steps, whatever is missing between them.
-    fn with_gaps(numbers: &[f64]) -> Option<Self> {
+    /// The same, whatever is missing between them.
+    fn with_gaps(numbers: &[f64], allowed: f64) -> Option<Self> {
         let known = || numbers.iter().enumerate().filter(|(_, number)| number.is_finite());
         let ((first, start), (last, end)) = (known().next()?, known().next_back()?);
         let step = if last > first { (end - start) / (last - first) as f64 } else { 1.0 };
-        let count = numbers.len();
-        let allowed = step.abs() * if count < MANY { UNEVEN_OF_FEW } else { UNEVEN };
+        let allowed = step.abs() * allowed;
         let is_even = |(k, number): (usize, &f64)| {
             (number - start - (k - first) as f64 * step).abs() <= allowed
         };
         let is_run = step.is_finite() && step != 0.0 && known().all(is_even);
-        is_run.then_some(Self { start: *start, step, count })
+        is_run.then_some(Self { start: *start, step, count: numbers.len() })
     }
 
     /// Whether it counts from 0 or 1.

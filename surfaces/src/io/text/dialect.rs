@@ -12,6 +12,8 @@ use crate::io::lines::{Line, Lines};
 pub(super) struct Dialect {
     pub(super) separator: Option<u8>,
     decimal_comma: bool,
+    /// Whether every line is digits, a comma, digits: a decimal comma would look the same.
+    pub(super) has_one_comma: bool,
 }
 
 /// The longest number that is read: a double in full takes 1079 digits, but nobody writes them.
@@ -19,7 +21,8 @@ const LONGEST: usize = 128;
 
 impl Dialect {
     /// Numbers with decimal points between blanks.
-    pub(super) const BLANKS: Self = Self { separator: None, decimal_comma: false };
+    pub(super) const BLANKS: Self =
+        Self { separator: None, decimal_comma: false, has_one_comma: false };
 
     /// The dialect of the lines of numbers in a file.
     pub(super) fn of(lines: &Lines) -> Self {
@@ -31,12 +34,16 @@ impl Dialect {
             Some(b';')
         } else if comma && !decimal_comma {
             Some(b',')
-        } else if has(b'\t') && !rows().any(|line| is_parted_by_blanks(line.bytes)) {
+        } else if rows().any(|line| line.bytes.trim_ascii().contains(&b'\t'))
+            && !rows().any(|line| is_parted_by_blanks(line.bytes))
+        {
             Some(b'\t')
         } else {
             None
         };
-        Self { separator, decimal_comma }
+        let has_one_comma = separator == Some(b',')
+            && rows().filter(|line| !line.bytes.trim_ascii().is_empty()).all(is_one_comma);
+        Self { separator, decimal_comma, has_one_comma }
     }
 
     /// How a text is written.
@@ -110,7 +117,7 @@ fn means_missing(word: &[u8]) -> bool {
 pub(super) fn is_row(line: &[u8]) -> bool {
     let dialect = Dialect::BLANKS;
     let mut numbers = false;
-    for word in line.split(|byte| matches!(byte, b' ' | b'\t' | b';' | b',')) {
+    for word in line.split(|byte| PARTS.contains(byte)) {
         if word.is_empty() {
             continue;
         }
@@ -120,6 +127,28 @@ pub(super) fn is_row(line: &[u8]) -> bool {
         numbers |= word.iter().any(u8::is_ascii_alphanumeric);
     }
     numbers
+}
+
+/// What parts words.
+const PARTS: &[u8] = b" \t;,";
+
+/// Whether a line has empty cells and stars only, as many as the row below it: then all heights in it are missing.
+pub(super) fn is_row_without_numbers(line: &[u8], below: &[u8]) -> bool {
+    let count = |line: &[u8], sign: u8| line.iter().filter(|byte| **byte == sign).count();
+    let words =
+        |line: &[u8]| line.split(|byte| PARTS.contains(byte)).filter(|w| !w.is_empty()).count();
+    let is_same = |sign: &u8| count(line, *sign) > 0 && count(line, *sign) == count(below, *sign);
+    line.iter().all(|byte| *byte == b'*' || PARTS.contains(byte))
+        && (b";,\t".iter().any(is_same) || words(line) > 0 && words(line) == words(below))
+}
+
+/// Whether a line has one comma, between two digits.
+fn is_one_comma(line: Line) -> bool {
+    let mut parts = line.bytes.split(|byte| *byte == b',');
+    let (Some(before), Some(after), None) = (parts.next(), parts.next(), parts.next()) else {
+        return false;
+    };
+    before.last().is_some_and(u8::is_ascii_digit) && after.first().is_some_and(u8::is_ascii_digit)
 }
 
 /// Whether a line has several words without a tab between any of them.

@@ -38,6 +38,9 @@ pub(super) struct Header {
 const SHOWN: usize = 3;
 const SHOWN_LETTERS: usize = 40;
 
+/// How far a step may be from the cell that a header gives, relative to it: both are rounded.
+const SAME_STEP: f64 = 0.05;
+
 /// A number and what is written behind it.
 #[derive(Debug, Clone, PartialEq)]
 struct Length {
@@ -178,9 +181,43 @@ impl Header {
         numbers.iter_mut().for_each(|number| *number *= factor);
     }
 
-    /// Whether it gives the sides of a matrix.
+    /// Whether it says that there is a matrix: it gives sides, or numbers of columns and rows.
+    pub(super) fn is_of_matrix(&self) -> bool {
+        self.has_sides() || self.counts()
+    }
+
     pub(super) fn has_sides(&self) -> bool {
         self.pixel.is_some() || self.width.is_some() && self.height.is_some()
+    }
+
+    /// Whether it gives a number of columns, or of rows.
+    pub(super) fn counts(&self) -> bool {
+        self.columns.is_some() || self.rows.is_some()
+    }
+
+    /// The number of columns that it gives.
+    pub(super) fn stated_columns(&self) -> Option<usize> {
+        self.columns
+    }
+
+    /// Whether these are the numbers of columns and rows, as far as it gives them.
+    pub(super) fn has_counts(&self, columns: usize, rows: usize) -> bool {
+        self.columns.is_none_or(|stated| stated == columns)
+            && self.rows.is_none_or(|stated| stated == rows)
+    }
+
+    /// Whether `count` numbers in such steps can be positions: any can unless there is a side, with which they have to agree,
+    /// be they those of cells or those of nodes from edge to edge.
+    pub(super) fn may_be_axis(&self, count: usize, along_x: bool, step: f64) -> bool {
+        if count < 2 || !self.has_sides() {
+            return true;
+        }
+        let Ok((Some((dx, dy)), _)) = self.cell((count, count)) else {
+            return true;
+        };
+        let cell = if along_x { dx } else { dy };
+        let edges = cell * count as f64 / (count - 1) as f64;
+        [cell, edges].iter().any(|cell| (step.abs() - cell).abs() <= SAME_STEP * cell)
     }
 
     /// The cell of a matrix, and its unit: that of the side along x.

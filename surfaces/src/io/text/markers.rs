@@ -22,6 +22,9 @@ const USUAL: [f64; 10] = [
 ];
 const HUGE: f64 = 1e30;
 
+/// Fewest other numbers beside which a repeated one is far away.
+const ENOUGH: usize = 16;
+
 /// Most different marks in a file: below the heights, above, for what was too dark and what was too bright.
 const MOST: usize = 4;
 
@@ -52,7 +55,8 @@ fn find(values: &[f64]) -> Option<f64> {
         let extent = rest_high - rest_low;
         let distance = (rest_low - mark).max(mark - rest_high);
         let is_usual = mark.abs() >= HUGE || USUAL.contains(&mark.abs());
-        let is_repeated = || values.iter().filter(|value| *value == mark).nth(1).is_some();
+        let count = |is_it: bool| values.iter().filter(|value| (*value == mark) == is_it).count();
+        let is_repeated = || count(true) > 1 && count(false) >= ENOUGH;
         // Heights of two values only are steps.
         extent > 0.0
             && (is_usual && distance > FAR * extent

@@ -22,13 +22,14 @@ pub(super) fn channel(header: &Header, axes: Axes, table: Table) -> Result<Chann
     if cell.is_none() {
         (cell, lateral_unit) = (axes.cell, header.side_unit.clone());
     }
+    let told = table.told();
     let mut values = table.values;
     let mut notes = axes.notes;
     header.apply(&mut values, &mut notes);
     Ok(Channel {
         height_unit: header.value_unit.clone(),
         lateral_unit,
-        understood: format!("{rows} rows of {columns} heights, {}", table.dialect.told()),
+        understood: format!("{rows} rows of {columns} heights, {}", told),
         notes,
         ..Channel::in_metres(shape, values, cell)
     })

@@ -8,11 +8,13 @@
 //! Empty cells, `NaN`, `BAD`, `***` and the like are missing. Of the header those lines are understood that Gwyddion writes
 //! over a matrix or a list, in the languages it speaks, and names of columns with units.
 //!
-//! A list is told from a matrix of three columns by the header, by the extension `.xyz`, or by its coordinates.
+//! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row and column
+//! of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is meant.
 
 mod axes;
 mod dialect;
 mod header;
+mod layout;
 mod markers;
 mod matrix;
 mod names;
@@ -25,16 +27,14 @@ mod zygo;
 
 use std::path::Path;
 
-use self::axes::Axes;
 use self::header::Header;
+pub use self::layout::TextLayout;
+use self::layout::{Found, List};
 use self::names::Columns;
 use self::table::Table;
 use super::fault::Fault;
 use super::lines::Lines;
 use super::raw::{Channel, Parsed};
-
-/// Most rows of a matrix with fewer than four columns that nothing but its looks says to be one.
-const FEW_ROWS: usize = 3;
 
 /// Whether bytes could be text: no zeros, and hardly any other control characters, in the first 64 KiB.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
@@ -51,7 +51,7 @@ fn is_utf16(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
 }
 
-pub(super) fn parse(file: &[u8], path: &Path) -> Parsed {
+pub(super) fn parse(file: &[u8], path: &Path, layout: Option<TextLayout>) -> Parsed {
     ensure!(!is_utf16(file), "it is encoded as UTF-16: save it as UTF-8");
     let mark = "\u{feff}".as_bytes();
     let skipped = if file.starts_with(mark) { mark.len() } else { 0 };
@@ -65,63 +65,66 @@ pub(super) fn parse(file: &[u8], path: &Path) -> Parsed {
     }
     let (header, table) = table::read(lines)?;
     let is_xyz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xyz"));
-    let channel = generic(&header, table, is_xyz)?;
+    let channel = generic(&header, table, is_xyz, layout)?;
     let understood = channel.understood + &header.unread();
     Ok(vec![Channel { name: header.title, understood, ..channel }])
 }
 
-/// The map in a table: a list of points if anything says so, otherwise a matrix.
-fn generic(header: &Header, mut table: Table, is_xyz: bool) -> Result<Channel, Fault> {
-    let names = header.names.as_deref();
-    if let Some(columns) = names.map(|names| Columns::named(names, &table)).transpose()?.flatten() {
-        return list(header, &columns, &table);
-    }
+/// The map in a table: as the user says, as the names of its columns do, or as its numbers do.
+fn generic(
+    header: &Header,
+    mut table: Table,
+    is_xyz: bool,
+    layout: Option<TextLayout>,
+) -> Result<Channel, Fault> {
     ensure!(
-        !header.ends_with_names,
-        "the line '{}' above the numbers names columns, but not the {} that there are",
-        names.unwrap_or_default(),
-        table.columns
+        layout.is_some() || !table.has_margins || table.rows() > layout::FEW_ROWS,
+        "all of its {} lines begin or end with an empty cell: whether that is a node without a height cannot be told from so few; \
+         without such cells, or with `ReadOptions::layout`, it is read",
+        table.rows()
     );
-    let is_matrix = header.has_sides();
-    let mut axes = Axes::default();
-    if table.columns > 3 || is_matrix {
-        axes = axes::take(&mut table)?;
-    }
-    if is_matrix || axes.is_matrix {
-        return matrix::channel(header, axes, table);
-    }
-    let first = Columns::first("in the first three columns");
-    let with_axes = |channel: Channel| Channel {
-        notes: axes.notes.iter().cloned().chain(channel.notes).collect(),
-        ..channel
-    };
-    if header.lateral_unit.is_some() || is_xyz {
-        return list(header, &first, &table).map(with_axes);
-    }
-    if table.columns == 3 && table.rows() > FEW_ROWS {
-        let found = list(header, &first, &table).map(with_axes);
-        return found.map_err(|fault| fault.prefixed(UNDECLARED));
-    }
-    // No heights are coordinates of a grid, each once, by chance.
-    if (4..=MOST_COLUMNS).contains(&table.columns) && table.rows() > table.columns {
-        let found = list(header, &first, &table).ok();
-        if let Some(found) = found.filter(|found| found.values.len() == table.rows()) {
-            return Ok(with_axes(found));
+    if layout.is_none_or(|layout| layout == TextLayout::Points) {
+        let names = header.names.as_deref();
+        if let Some(columns) =
+            names.map(|names| Columns::named(names, &table)).transpose()?.flatten()
+        {
+            let map = points::map(&columns, &table)?;
+            return list(header, Box::new((columns, map)), &table);
         }
+        ensure!(
+            !header.ends_with_names,
+            "the line '{}' above the numbers names columns, but not the {} that there are",
+            names.unwrap_or_default(),
+            table.columns
+        );
     }
     ensure!(
-        table.columns > 3 || table.rows() <= FEW_ROWS,
-        "{} rows of {} numbers are a profile; a surface is a matrix of at least four columns, or a list of points \
-         x, y, z; lines '# Width: 1 mm' and '# Height: 1 mm' make it a matrix",
-        table.rows(),
-        table.columns
+        layout.is_some() || !table.dialect.has_one_comma || table.columns != 2,
+        "each line has one comma: two numbers, or one with a decimal comma; part columns by ';', or write decimal points"
     );
-    matrix::channel(header, axes, table)
+    let is_list = is_xyz || header.lateral_unit.is_some();
+    let is_asked = layout.is_some();
+    let found = match layout {
+        None => layout::of(header, &table, is_list)?,
+        Some(TextLayout::Points) => Found::Points(layout::points(&table)?),
+        Some(matrix) => Found::Matrix(matrix),
+    };
+    let layout = match found {
+        Found::Points(points) => return list(header, points, &table),
+        Found::Matrix(layout) => layout,
+    };
+    let mut axes = axes::take(&mut table, layout)?;
+    // What the user has said need not be noticed, but may be told.
+    let told = if is_asked { std::mem::take(&mut axes.notes) } else { Vec::new() };
+    let channel = matrix::channel(header, axes, table)?;
+    let understood = std::iter::once(channel.understood.clone()).chain(told).collect::<Vec<_>>();
+    Ok(Channel { understood: understood.join("; "), ..channel })
 }
 
 /// The map of a list of points.
-fn list(header: &Header, columns: &Columns, table: &Table) -> Result<Channel, Fault> {
-    let mut channel = points::channel(columns, table)?;
+fn list(header: &Header, list: List, table: &Table) -> Result<Channel, Fault> {
+    let (columns, map) = *list;
+    let mut channel = map.channel()?;
     let [x, y, z] = &columns.units;
     for (of, name, head) in [("heights", z, &header.value_unit), ("x", x, &header.lateral_unit)] {
         if let (Some(name), Some(head)) = (name, head) {
@@ -148,13 +151,6 @@ fn list(header: &Header, columns: &Columns, table: &Table) -> Result<Channel, Fa
     header.apply(&mut channel.values, &mut channel.notes);
     Ok(channel)
 }
-
-/// Most columns of a list of points without a name.
-const MOST_COLUMNS: usize = 8;
-
-/// What is said of three columns with a defect, of which nothing says that they are points.
-const UNDECLARED: &str = "three columns are taken for points x, y, z unless lines '# Width: 1 mm' and \
-    '# Height: 1 mm' say that they are a matrix: ";
 
 #[cfg(test)]
 mod tests;

@@ -18,9 +18,9 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// The first three columns.
-    pub(super) fn first(how: &str) -> Self {
-        Self { y: 1, z: 2, how: how.to_string(), ..Self::default() }
+    /// Three columns, behind so many others.
+    pub(super) fn behind(others: usize, how: &str) -> Self {
+        Self { x: others, y: others + 1, z: others + 2, how: how.to_string(), ..Self::default() }
     }
 
     /// The columns of a table below a line of names; `None` if it cannot be one of this table.

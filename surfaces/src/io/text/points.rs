@@ -24,8 +24,37 @@ const SAME: f64 = 4.0 * TOLERANCE;
 const MAX_NODES: usize = 16;
 const MAX_COLUMNS: usize = 2;
 
+/// So many points of a grid are points for sure, however large the grid is.
+const MANY: usize = 100;
+
+/// What a list gives, be it a profile.
+pub(super) struct Map {
+    channel: Channel,
+    axes: [Axis; 2],
+    points: usize,
+    /// How many of them are alone neither in their column of the grid nor in their row.
+    in_company: usize,
+}
+
+impl Map {
+    /// The map, if it is one of a surface.
+    pub(super) fn channel(self) -> Result<Channel, Fault> {
+        for Axis { name, start, nodes, .. } in &self.axes {
+            ensure!(*nodes > 1, "all points have {name} = {start}: a profile is no surface");
+        }
+        Ok(self.channel)
+    }
+
+    /// Whether its coordinates are those of most of a grid, or of many nodes of one: no other numbers are.
+    pub(super) fn is_for_sure(&self) -> bool {
+        let (nx, ny) = self.channel.shape;
+        let is_most = 2 * self.points > nx * ny || self.points >= MANY;
+        nx > 1 && ny > 1 && is_most && 2 * self.in_company > self.points
+    }
+}
+
 /// The map of which a table gives the points, in the units of its numbers.
-pub(super) fn channel(columns: &Columns, table: &Table) -> Result<Channel, Fault> {
+pub(super) fn map(columns: &Columns, table: &Table) -> Result<Map, Fault> {
     let count = table.columns;
     ensure!(count >= 3, "a list of points x, y, z has three columns, but there are {count}");
     let (x, y) = (Axis::find("x", table, columns.x)?, Axis::find("y", table, columns.y)?);
@@ -39,6 +68,7 @@ pub(super) fn channel(columns: &Columns, table: &Table) -> Result<Channel, Fault
     let mut values = reserved(nx * ny)?;
     values.resize(nx * ny, f64::NAN);
     let mut filled = vec![false; nx * ny];
+    let mut in_line = [vec![0_usize; nx], vec![0; ny]];
     let mut worst = 0.0_f64;
     for (k, point) in (1..).zip(table.values.chunks_exact(table.columns)) {
         let place = |column: usize| point.get(column).copied().unwrap_or(f64::NAN);
@@ -57,6 +87,9 @@ pub(super) fn channel(columns: &Columns, table: &Table) -> Result<Channel, Fault
             y.spacing
         );
         *value = z;
+        for (line, k) in in_line.iter_mut().zip([ix, iy]) {
+            line.get_mut(k).into_iter().for_each(|count| *count += 1);
+        }
     }
     let mut notes = Vec::new();
     if worst > NOTED {
@@ -65,11 +98,19 @@ pub(super) fn channel(columns: &Columns, table: &Table) -> Result<Channel, Fault
              those of the nodes"
         ));
     }
-    Ok(Channel {
-        understood: format!("{}, {}", counted(count, "point"), columns.how),
+    let channel = Channel {
+        understood: format!("{}, {}, {}", counted(count, "point"), columns.how, table.told()),
         notes,
         ..Channel::in_metres((nx, ny), values, Some((x.spacing, y.spacing)))
-    })
+    };
+    let [in_column, in_row] = &in_line;
+    let is_in_company = |node: &usize| {
+        let counts = [in_column.get(node % nx), in_row.get(node / nx)];
+        counts.iter().all(|count| count.is_some_and(|count| *count > 1))
+    };
+    let nodes = filled.iter().enumerate().filter(|(_, filled)| **filled).map(|(node, _)| node);
+    let in_company = nodes.filter(is_in_company).count();
+    Ok(Map { channel, axes: [x, y], points: count, in_company })
 }
 
 /// Evenly spaced coordinates.
@@ -96,7 +137,9 @@ impl Axis {
             _ => (0.0, 0.0),
         };
         let extent = end - start;
-        ensure!(extent != 0.0, "all points have {name} = {start}: a profile is no surface");
+        if extent == 0.0 {
+            return Ok(Self { name, start, spacing: 1.0, nodes: 1 });
+        }
         let count = sorted.len();
         let (least, columns) = spacing(sorted, extent).ok_or_else(|| {
             fault!(

@@ -2,7 +2,7 @@
 
 use crate::io::fault::Fault;
 
-use super::dialect::{Dialect, is_row};
+use super::dialect::{Dialect, is_row, is_row_without_numbers};
 use super::header::Header;
 use crate::io::lines::{Line, Lines};
 
@@ -14,23 +14,41 @@ pub(super) struct Table {
     pub(super) dialect: Dialect,
     /// The line after the first empty one between rows, unless there is one between any two.
     pub(super) second_block: Option<usize>,
+    /// Whether empty cells at the beginning or at the end of all lines were left out.
+    pub(super) has_margins: bool,
 }
 
 impl Table {
     /// Points x, y, z.
     pub(super) fn of_points(values: Vec<f64>) -> Self {
-        Self { columns: 3, values, dialect: Dialect::BLANKS, second_block: None }
+        Self {
+            columns: 3,
+            values,
+            dialect: Dialect::BLANKS,
+            second_block: None,
+            has_margins: false,
+        }
     }
 
     /// The numbers in the next lines, and in no others.
     pub(super) fn of_lines(lines: Lines, count: usize) -> Result<Self, Fault> {
-        let mut table = Self::read(lines, Some(count))?;
+        let mut table = Self::read(lines, Some(count), None)?;
         table.second_block = None;
         Ok(table)
     }
 
     pub(super) fn rows(&self) -> usize {
         self.values.len() / self.columns.max(1)
+    }
+
+    /// How the text is written.
+    pub(super) fn told(&self) -> String {
+        let margins = if self.has_margins {
+            "; empty cells at the beginning or the end of all lines are no nodes"
+        } else {
+            ""
+        };
+        self.dialect.told() + margins
     }
 
     /// Whether the first column counts the rows.
@@ -42,9 +60,15 @@ impl Table {
         (1..).zip(numbers).all(|(k, number)| *number == start + f64::from(k))
     }
 
-    fn read(lines: Lines, most: Option<usize>) -> Result<Self, Fault> {
+    fn read(lines: Lines, most: Option<usize>, stated: Option<usize>) -> Result<Self, Fault> {
         let dialect = Dialect::of(&lines);
-        let mut table = Self { columns: 0, values: Vec::new(), dialect, second_block: None };
+        let mut table = Self {
+            columns: 0,
+            values: Vec::new(),
+            dialect,
+            second_block: None,
+            has_margins: false,
+        };
         let (mut first, mut leading_of_first) = (0, 0);
         // Whether every row begins, or ends, with an empty cell: the separator belongs to the margin then.
         let (mut begins_empty, mut ends_empty) = (true, true);
@@ -105,7 +129,9 @@ impl Table {
                 table.columns
             );
         }
-        drop_margins(&mut table, begins_empty, ends_empty);
+        if stated != Some(table.columns) {
+            drop_margins(&mut table, begins_empty, ends_empty);
+        }
         table.second_block = table.second_block.filter(|_| has_neighbours);
         Ok(table)
     }
@@ -114,17 +140,35 @@ impl Table {
 /// The header of a file, and the numbers below.
 pub(super) fn read(mut lines: Lines) -> Result<(Header, Table), Fault> {
     let mut header = Header::default();
+    // Lines right above the numbers that may belong to them.
+    let mut above: Vec<Lines> = Vec::new();
     loop {
         let ahead = lines.clone();
         let line = lines
             .next()
             .ok_or_else(|| fault!("there is no line in it that consists of numbers only"))?;
         if !line.is_comment() && is_row(line.bytes) {
-            return Ok((header, Table::read(ahead, None)?));
+            let belongs = |above: &&Lines| {
+                let mut above = (*above).clone();
+                above.next().is_some_and(|above| is_row_without_numbers(above.bytes, line.bytes))
+            };
+            let count = above.iter().rev().take_while(belongs).count();
+            let first = above.get(above.len() - count).unwrap_or(&ahead).clone();
+            let table = Table::read(first, None, header.stated_columns())?;
+            return Ok((header, table));
+        }
+        let is_empty = |byte: &u8| !byte.is_ascii_alphanumeric();
+        if line.bytes.iter().all(is_empty) && above.len() < MOST_ABOVE {
+            above.push(ahead);
+        } else {
+            above.clear();
         }
         header.add(&line.text());
     }
 }
+
+/// Most lines without numbers that are taken for rows of missing heights above the others: more nodes than there are in a grid.
+const MOST_ABOVE: usize = crate::Grid::MAX_SIDE;
 
 /// Appends the numbers of a line. Returns how many empty cells are before the first number, and whether the last is empty.
 fn row(line: &Line, dialect: Dialect, values: &mut Vec<f64>) -> Result<(usize, bool), Fault> {
@@ -172,7 +216,7 @@ fn is_blank(line: &Line, dialect: Dialect, columns: usize) -> bool {
         return false;
     }
     let tabs = line.bytes.iter().filter(|byte| **byte == b'\t').count();
-    dialect.separator != Some(b'\t') || tabs == 0 || tabs + 1 != columns
+    dialect.separator != Some(b'\t') || tabs == 0 || columns > 0 && tabs + 1 != columns
 }
 
 /// Takes away the first and the last column if no row has anything in them.
@@ -189,4 +233,5 @@ fn drop_margins(table: &mut Table, first: bool, last: bool) {
         keep
     });
     table.columns = kept;
+    table.has_margins = true;
 }

@@ -18,8 +18,8 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
 
 pub(super) fn kind(word: &str) -> Option<Kind> {
     match word.to_lowercase().as_str() {
-        "x" => Some(Kind::X),
-        "y" => Some(Kind::Y),
+        "x" | "column" | "col" | "ix" => Some(Kind::X),
+        "y" | "row" | "iy" => Some(Kind::Y),
         "z" | "height" | "heights" | "value" | "values" | "topography" | "elevation" => {
             Some(Kind::Z)
         }

@@ -59,7 +59,7 @@ pub(super) fn parse(lines: Lines) -> Parsed {
     let stated = shape(number(4, 2)? as u64, number(4, 3)? as u64)?;
     let pixel = number(8, 6)?;
     let table = Table::of_points(points);
-    let found = points::channel(&Columns::first("x and y in pixels"), &table)?;
+    let found = points::map(&Columns::behind(0, "x and y in pixels"), &table)?.channel()?;
     ensure!(
         found.shape == stated,
         "the header says {} x {} pixels, but the points make {} x {}",

@@ -88,5 +88,6 @@ fn defects_are_named() {
         put(&mut file, place, number.to_le_bytes());
         assert!(matches!(parse(&file), Err(Fault::Refused(_))), "{place}");
     }
-    assert_refused(parse(b"VK6\0 and more of it"), "does not begin with 'VK4_'");
+    assert_refused(parse(b"VK3_ and more of it"), "does not begin with 'VK4_'");
+    assert_refused(parse(b"VK6\0 and more of it"), "no complete zip archive");
 }

@@ -5,18 +5,11 @@ use std::io::{Cursor, Read};
 use md5::{Digest, Md5};
 use zip::ZipArchive;
 
-use crate::io::archive::incomplete;
+use crate::io::archive::{MAX_GROWTH, incomplete};
 use crate::io::bytes::reserved;
 use crate::io::fault::Fault;
 
-/// How many times longer than the whole archive a member may be.
-///
-/// Measured heights hardly shrink to a hundredth; even an image with a few grey levels does not to 1/256. Deflate could
-/// reach 1/1032, which is what archives are made of that only want to fill a memory. Heights of 16 bits take four times as
-/// much again as double numbers.
-pub(super) const MAX_GROWTH: usize = 256;
-
-/// The same for the description, whose tree takes many times the memory of its text.
+/// How many times longer the description may be, whose tree takes many times the memory of its text.
 const MAX_GROWTH_OF_DESCRIPTION: usize = 64;
 
 /// What the description is called, somewhere in the archive.

@@ -9,28 +9,43 @@ use super::*;
 use crate::Error;
 use crate::io::testing::{self, MISSING, TestResult, only, shown};
 
-fn parsed_as(name: &str, text: impl AsRef<[u8]>) -> Result<Channel, Error> {
+/// Most texts here are so short that only the user can know what they are.
+const MATRIX: Option<TextLayout> = Some(TextLayout::Matrix);
+
+fn parsed_with(
+    layout: Option<TextLayout>,
+    name: &str,
+    text: impl AsRef<[u8]>,
+) -> Result<Channel, Error> {
     let path = Path::new(name);
-    only(parse(text.as_ref(), path)).map_err(|fault| fault.in_file(path, "text"))
+    only(parse(text.as_ref(), path, layout)).map_err(|fault| fault.in_file(path, "text"))
+}
+
+fn parsed_as(name: &str, text: impl AsRef<[u8]>) -> Result<Channel, Error> {
+    parsed_with(None, name, text)
 }
 
 fn parsed(text: impl AsRef<[u8]>) -> Result<Channel, Error> {
     parsed_as("test.txt", text)
 }
 
+fn matrix(text: impl AsRef<[u8]>) -> Result<Channel, Error> {
+    parsed_with(MATRIX, "test.txt", text)
+}
+
 /// Shape and values.
 fn numbers(text: impl AsRef<[u8]>) -> Result<((usize, usize), Vec<f64>), Error> {
-    let channel = parsed(text)?;
+    let channel = matrix(text)?;
     Ok((channel.shape, shown(&channel, |value| value)))
 }
 
 fn assert_refused(text: impl AsRef<[u8]>, expected: &str) {
-    testing::assert_refused(parse(text.as_ref(), Path::new("test.txt")), expected);
+    testing::assert_refused(parse(text.as_ref(), Path::new("test.txt"), None), expected);
 }
 
 #[test]
 fn rows_of_the_text_are_rows_of_the_map() -> TestResult {
-    let channel = parsed("1 2 3 4\n5 6 7 8\n")?;
+    let channel = matrix("1 2 3 4\n5 6 7 8\n")?;
     assert_eq!(channel.shape, (4, 2));
     assert_eq!(channel.values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
     assert_eq!((channel.cell, channel.height_unit), (None, None));
@@ -69,7 +84,7 @@ fn missing_values_have_many_names() -> TestResult {
         -nan(ind) #N/A";
     for word in words.split(' ') {
         let text = format!("1 2 {word} 4\n{word} 6 7 8\n");
-        let channel = parsed(&text)?;
+        let channel = matrix(&text)?;
         assert_eq!(channel.shape, (4, 2), "{word}");
         for (k, value) in channel.values.iter().enumerate() {
             assert_eq!(!value.is_finite(), k == 2 || k == 4, "{word}: {value}");
@@ -111,12 +126,12 @@ fn the_header_of_gwyddion_is_understood() -> TestResult {
         // A ratio of two units rounds.
         assert!(dx == 2.0 && (dy - 2.5).abs() < 1e-14, "{header}: {dx} {dy}");
     }
-    let latin1 = b"# Width: 8 \xb5m\n# Height: 4 \xb5m\n# Value units: \xc5\n1 2 3 4\n5 6 7 8\n";
+    let latin1 = b"# Width: 8 \xb5m\n# Height: 7 \xb5m\n# Value units: \xc5\n1 2 3 4\n5 6 7 8\n";
     let channel = parsed(latin1)?;
     assert_eq!(channel.lateral_unit.as_deref(), Some("µm"));
     assert_eq!(channel.height_unit.as_deref(), Some("Å"));
     assert_refused(
-        "# Width: 8 V\n# Height: 4 A\n1 2 3 4\n",
+        "# Width: 8 V\n# Height: 4 A\n3 1 4 1 5\n9 2 6 5 3\n5 8 9 7 9\n2 3 8 4 6\n",
         "the width in 'V', but the height in 'A'",
     );
     Ok(())
@@ -155,7 +170,37 @@ fn defects_are_named_with_their_line() {
     let long = format!("1;2;3;4\n5;6;7;{}\n", "8,".repeat(1000));
     assert_refused(long, "in line 2 is no number");
     let wide = "1 ".repeat(40_000);
-    assert!(matches!(parsed(wide), Err(Error::GridTooLarge { .. })));
+    assert!(matches!(matrix(wide), Err(Error::GridTooLarge { .. })));
+}
+
+/// A plane, a few rows, a column that may be one of positions, or one comma a line: nobody can tell but the user.
+#[test]
+fn what_can_be_read_in_two_ways_is_refused_with_both() -> TestResult {
+    let plane = "0 1 2 3 4\n1 2 3 4 5\n2 3 4 5 6\n3 4 5 6 7\n4 5 6 7 8\n";
+    assert_refused(
+        plane,
+        "'matrix', 5 rows of 5 heights; 'x-row', 4 rows of 5 heights below a row of positions",
+    );
+    assert_refused(plane, "choose one with `ReadOptions::layout`");
+    assert_refused("3 1 4 1 5\n9 2 6 5 3\n", "'y-column', 2 rows of 4 heights beside a column");
+    assert_refused("# Width: 1 m\n# Height: 2 m\n0,5\n1,5\n", "one with a decimal comma");
+    assert_refused("7", "one number is no surface");
+    let shapes = [
+        (TextLayout::Matrix, (5, 5), 0.0),
+        (TextLayout::RowOfX, (5, 4), 1.0),
+        (TextLayout::ColumnOfY, (4, 5), 1.0),
+        (TextLayout::Axes, (4, 4), 2.0),
+    ];
+    for (layout, shape, first) in shapes {
+        let channel = parsed_with(Some(layout), "plane.txt", plane)?;
+        assert_eq!((channel.shape, channel.values[0]), (shape, first), "{layout}");
+    }
+    let points = parsed_with(Some(TextLayout::Points), "a.txt", "0 0 5\n1 0 6\n0 1 7\n")?;
+    assert_eq!(shown(&points, |z| z), [5.0, 6.0, 7.0, MISSING]);
+    // The header says how many columns there are: then the first is one of positions.
+    let counted = parsed("nx = 4\nny = 2\n3 1 4 1 5\n9 2 6 5 3\n")?;
+    assert_eq!(counted.values, [1.0, 4.0, 1.0, 5.0, 2.0, 6.0, 5.0, 3.0]);
+    Ok(())
 }
 
 #[test]

@@ -41,6 +41,11 @@ fn names_of_columns_tell_a_list_and_its_units() -> TestResult {
     let coloured = parsed("X Y Z R G B\n0 0 7 1 1 1\n0 1 8 1 1 1\n1 0 9 1 1 1\n1 1 6 1 1 1\n")?;
     assert_eq!(coloured.values, [7.0, 9.0, 8.0, 6.0]);
     assert_eq!(coloured.notes.len(), 1);
+    // Rows of an image are y.
+    for names in ["row,col,value", "Row;Column;Z", "iy ix height"] {
+        let of_image = parsed(format!("{names}\n0 0 7\n0 1 8\n0 2 4\n1 0 9\n1 1 6\n1 2 5\n"))?;
+        assert_eq!((of_image.shape, of_image.values[1]), ((3, 2), 8.0), "{names}");
+    }
     // Sides belong to a matrix, of however few columns.
     let sides = "# Width: 3 m\n# Height: 4 m\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
     assert_eq!(parsed(sides)?.shape, (3, 4));

@@ -1,0 +1,154 @@
+//! Igor's binary waves, `.ibw`, as Asylum Research's microscopes write them: the layers of a wave.
+//!
+//! Sources: WaveMetrics' technical note 003, SurfaceTopography's `IBW.py`; a file of an instrument and one of Gwyddion.
+//!
+//! Version 5 has a header of 64 bytes, which gives the lengths of what follows the numbers, and one of 320 bytes with type,
+//! shape, steps and units of the wave. Layers, the third dimension, are maps, whose names are labels of that dimension. The unit of
+//! the wave is the metre even if some layers are phases: these are known by their names. The first row is the lowest.
+
+use super::bytes::{Bytes, Order, latin1, shape};
+use super::fault::Fault;
+use super::number::Number;
+use super::raw::{Channel, Parsed};
+
+pub(super) const BEGINS: &[&[u8]] = &[b"\x05\x00", b"\x00\x05", b"\x02\x00", b"\x00\x02"];
+
+/// The headers of version 5.
+const FIRST: usize = 64;
+const HEADERS: usize = FIRST + 320;
+
+/// Places of fields in them.
+const LENGTHS: usize = 8;
+const TYPE: usize = FIRST + 16;
+const NAME: usize = FIRST + 28;
+const SHAPE: usize = FIRST + 68;
+const STEPS: usize = FIRST + 84;
+const UNITS: usize = FIRST + 148;
+
+/// Bytes of a label, and of a unit in the header.
+const LABEL: usize = 32;
+const UNIT: usize = 4;
+
+/// Most layers of a wave: there are a dozen signals, forwards and backwards.
+const MOST: u32 = 256;
+
+/// Units of what the names of layers begin with, and are no lengths although the wave says so.
+const OTHERS: [(&str, &str); 9] = [
+    ("Phase", "deg"),
+    ("NapPhase", "deg"),
+    ("Potential", "V"),
+    ("NapPotential", "V"),
+    ("Current", "A"),
+    ("Frequency", "Hz"),
+    ("Drive", "V"),
+    ("Dissipation", "W"),
+    ("UserIn", "V"),
+];
+
+/// Whether these are the headers of a wave: their sum in whole numbers of 16 bits is zero.
+pub(super) fn looks_like(file: &[u8]) -> bool {
+    let begins = BEGINS.iter().any(|begin| file.starts_with(begin));
+    begins && file.get(..HEADERS).is_some_and(|headers| checksum(headers, order(file)) == 0)
+}
+
+fn order(file: &[u8]) -> Order {
+    if file.first() == Some(&0) { Order::Big } else { Order::Little }
+}
+
+fn checksum(headers: &[u8], order: Order) -> u16 {
+    let numbers = headers.chunks_exact(2).filter_map(|pair| pair.try_into().ok());
+    let number = |pair| match order {
+        Order::Little => u16::from_le_bytes(pair),
+        Order::Big => u16::from_be_bytes(pair),
+    };
+    numbers.map(number).fold(0, u16::wrapping_add)
+}
+
+pub(super) fn parse(file: &[u8]) -> Parsed {
+    let order = order(file);
+    let at = |place: usize| Ok::<_, Fault>(Bytes::from(file, place)?.ordered(order));
+    let version = at(0)?.u16()?;
+    ensure!(
+        version == 5,
+        at(0),
+        "it is a wave of version {version}, which has one dimension; maps are those of version 5"
+    );
+    let mut numbers = at(SHAPE)?;
+    let (nx, ny) = (numbers.u32()?, numbers.u32()?);
+    let (layers, more) = (numbers.u32()?.max(1), numbers.u32()?);
+    ensure!(ny > 0, at(SHAPE), "it has one dimension: a profile is no surface");
+    ensure!(more == 0, at(SHAPE), "it has four dimensions, but two or three were expected");
+    ensure!(layers <= MOST, at(SHAPE + 8), "it has {layers} layers, more than {MOST}");
+    let (nx, ny) = shape(nx, ny)?;
+    let kind = at(TYPE)?.u16()?;
+    let number = match kind {
+        2 => Number::F32,
+        4 => Number::F64,
+        8 => Number::I8,
+        16 => Number::I16,
+        32 => Number::I32,
+        72 => Number::U8,
+        80 => Number::U16,
+        96 => Number::U32,
+        _ => bail!(at(TYPE), "its numbers have the type {kind}, but real numbers were expected"),
+    };
+    let mut steps = at(STEPS)?;
+    let cell = (steps.f64()?.abs(), steps.f64()?.abs());
+    let text = |place: usize, length: usize| {
+        let bytes = at(place)?.take(length)?;
+        Ok::<_, Fault>(latin1(bytes.split(|byte| *byte == 0).next().unwrap_or_default()))
+    };
+    let unit =
+        |place: usize| Ok::<_, Fault>(Some(text(place, UNIT)?).filter(|unit| !unit.is_empty()));
+    let (mut height_unit, x, y) = (unit(UNITS)?, unit(UNITS + UNIT)?, unit(UNITS + 2 * UNIT)?);
+    ensure!(x == y, at(UNITS), "x is in {x:?}, but y in {y:?}");
+
+    let mut data = at(HEADERS)?;
+    let layer = (nx * ny).saturating_mul(number.size());
+    let all = data.elements(layers as usize, layer)?;
+    // Behind the numbers: a formula, a note, long units of the numbers and of four dimensions, labels of as many.
+    let mut lengths = at(LENGTHS)?;
+    let mut behind = HEADERS.saturating_add(all.len());
+    let mut part = || {
+        let (place, length) = (behind, lengths.u32()? as usize);
+        behind = behind.saturating_add(length);
+        Ok::<_, Fault>((place, length))
+    };
+    let (_formula, _note, long_unit) = (part()?, part()?, part()?);
+    for _ in 0..6 {
+        part()?;
+    }
+    let (labels, length_of_labels) = part()?;
+    if long_unit.1 > 0 {
+        height_unit = Some(text(long_unit.0, long_unit.1)?);
+    }
+    let has_labels = length_of_labels >= LABEL.saturating_mul(1 + layers as usize);
+    let whole = text(NAME, LABEL)?;
+    all.chunks_exact(layer)
+        .enumerate()
+        .map(|(k, bytes)| {
+            let name = if has_labels {
+                // The first label is that of the dimension.
+                text(labels.saturating_add((1 + k) * LABEL), LABEL)?
+            } else if layers == 1 {
+                whole.clone()
+            } else {
+                format!("{whole} {}", k + 1)
+            };
+            let other = OTHERS.iter().find(|(begin, _)| name.starts_with(begin));
+            let unit =
+                other.map_or_else(|| height_unit.clone(), |(_, unit)| Some((*unit).to_string()));
+            let channel = Channel {
+                name,
+                height_unit: unit,
+                lateral_unit: x.clone(),
+                ..Channel::in_metres(
+                    (nx, ny),
+                    number.decode_ordered(bytes, order, |z| z)?,
+                    Some(cell),
+                )
+            };
+            Ok(channel.turned())
+        })
+        .collect()
+}
