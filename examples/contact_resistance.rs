@@ -94,7 +94,7 @@ fn resistances(history: &History, copper: &Conduction) -> Result<Vec<(f64, f64)>
     let mut resistances = Vec::new();
     for state in LOADS.iter().filter_map(|&load| history.at_load(load)) {
         // From the contact stiffness if there is one, which is on a free half-space.
-        let conductance = copper.of(&state.contact)?.unwrap_or(0.0);
+        let conductance = copper.of(&state.contact, history.layering())?.unwrap_or(0.0);
         resistances.push((1.0 / conductance, state.contact.contact_area_fraction));
     }
     Ok(resistances)

@@ -108,9 +108,6 @@ impl<'a> InterfaceTableBuilder<'a> {
             Error::require_positive("coefficient of friction", friction.coefficient)?;
             Error::require_positive("compliance ratio", friction.compliance_ratio)?;
         }
-        if self.conduction.is_some() {
-            self.history.layering().check(Theory::Conductance)?;
-        }
         if self.friction.is_some() {
             self.history.layering().check(Theory::TangentialStiffness)?;
         }
@@ -155,7 +152,9 @@ impl<'a> InterfaceTableBuilder<'a> {
         let area = contact.contact_area / contact.contact_area_fraction;
         let pressure = contact.mean_pressure();
         let conductance = match &self.conduction {
-            Some(conduction) => conduction.of_interface(contact)?.map(|whole| whole / area),
+            Some(conduction) => {
+                conduction.of_interface(contact, self.history.layering())?.map(|whole| whole / area)
+            }
             None => None,
         };
         let tangential_stiffness = match self.friction {

@@ -205,7 +205,9 @@ fn stiffnesses(
         }
         let Some(value) = value else { continue };
         // Under a layer gaps may open as the load grows.
-        let may_fall_below = quantity == "interfacial stiffness" && layering != Layering::HalfSpace;
+        let is_half_space =
+            matches!(layering, Layering::HalfSpace | Layering::SemiPeriodicHalfSpace);
+        let may_fall_below = quantity == "interfacial stiffness" && !is_half_space;
         let is_one = if state.contact.is_plateau() {
             // Infinite in full contact.
             value == 0.0 || value == f64::INFINITY

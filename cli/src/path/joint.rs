@@ -182,7 +182,7 @@ impl Joint {
         directory: &Path,
     ) -> Result<Vec<PathBuf>, Failure> {
         let conductions = self.conductions(pair.e_star)?;
-        let history: History = states.iter().copied().collect();
+        let history = states.iter().copied().collect::<History>().on(pair.layering);
         let mut files = Vec::new();
         if let Some(roughness) = self.unresolved_roughness {
             let name = directory.join("conductance.csv");
@@ -226,7 +226,7 @@ fn bounds(
         // Writing to a text cannot fail.
         let _ = write!(text, "{},{:e},{:e}", state.step, contact.load, contact.mean_pressure());
         for (conduction, bounds) in &columns {
-            let value = conduction.of(contact)?.unwrap_or(f64::NAN);
+            let value = conduction.of(contact, history.layering())?.unwrap_or(f64::NAN);
             let _ = write!(text, ",{value:e},{:e},{:e}", bounds[k].lower, bounds[k].upper);
         }
         text.push('\n');
