@@ -274,7 +274,7 @@ fn between(rows: &[InterfaceRow], x: Column, y: Column, at: f64) -> f64 {
 /// pressure: there the table is right on one side or the other of the 10⁻¹¹ by which it raises pressures from row to row.
 #[test]
 fn tables_reproduce_paths_that_yield() {
-    let mut plateaus = 0;
+    let (mut plateaus, mut widest) = (0, 0.0_f64);
     for (nodes, hardness, periodic) in
         [(64, 2.5e9, true), (32, 1e9, true), (32, 0.3e9, false), (32, 2.5e9, false)]
     {
@@ -290,6 +290,13 @@ fn tables_reproduce_paths_that_yield() {
         let is_plateau = |s: &&LoadingState| s.contact.interfacial_stiffness == Some(0.0);
         plateaus += states.iter().filter(is_plateau).count();
         let history: History = states.iter().copied().collect();
+        let of = |s: &LoadingState| {
+            heat().of_interface(&s.contact, Layering::HalfSpace).unwrap().unwrap()
+        };
+        for group in states.chunk_by(|a, b| (a.contact.load / b.contact.load - 1.0).abs() < 1e-11) {
+            let [low, high] = [of(&group[0]), of(group.last().unwrap())];
+            widest = widest.max(1.0 - low / high);
+        }
         for tolerance in [0.1, 0.01, 0.001] {
             let table = InterfaceTable::builder(&history).conduction(heat()).friction(0.25, 1.2);
             let table = table.tolerance(tolerance).build().unwrap();
@@ -321,6 +328,13 @@ fn tables_reproduce_paths_that_yield() {
                         between(rows, |r| r.pressure, column, pressure * (1.0 + off)) / expected
                             - 1.0
                     });
+                    // By way of the pressure that the overclosure gives, whose rounding is some 10⁻⁵ of the 10⁻¹¹ between the rows of a jump.
+                    let chained = between(rows, |r| r.pressure, column, found) / expected - 1.0;
+                    assert!(
+                        chained.abs() <= tolerance * (1.0 + 1e-6) + 1e-4,
+                        "{nodes}² {hardness:e}, tolerance {tolerance}, state {}: {chained} over overclosure",
+                        state.step
+                    );
                     // At a jump it passes through all values from one side to the other.
                     let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = sides.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -342,4 +356,6 @@ fn tables_reproduce_paths_that_yield() {
         }
     }
     assert!(plateaus > 20, "{plateaus}");
+    // What the page says of the pressure of a plateau.
+    assert!((widest - 0.365).abs() < 5e-3, "{widest}");
 }
