@@ -291,6 +291,8 @@ fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
         (&["--conductivity", "50"][..], "conductance"),
         (&["--resistivity", "1e-7"], "conductance"),
         (&["--fe-table", "csv", "--friction", "0.2", "--compliance-ratio", "1.2"], "tangential"),
+        // And before it is asked for what would be missing.
+        (&["--fe-table", "csv", "--friction", "0.2"], "tangential"),
     ] {
         let refused = run(&folder, &[&path[..], options].concat())?;
         is_refused(&refused, &[word, "layers", "Right"]);
@@ -302,6 +304,7 @@ fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
     assert!(table.starts_with("pressure,overclosure\n"), "{table}");
     let slip = ["slip", "p.npz", "--friction", "0.3", "--material", "steel"];
     is_refused(&run(&folder, &slip)?, &["slip", "layers", "Right"]);
+    is_refused(&run(&folder, &slip[..4])?, &["slip", "layers", "Right"]);
     let creep = ["creep", "p.npz", "--prony", "1,0.5", "--time", "10", "--load", "1"];
     is_refused(&run(&folder, &creep)?, &["creep", "layers", "Right"]);
     Ok(())

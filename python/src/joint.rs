@@ -173,6 +173,9 @@ fn interface_table(
         (None, None) => Arc::clone(&increments.history),
         _ => increments.with_unloading_stiffness(py)?,
     };
+    if friction.is_some() {
+        history.layering().check(Theory::TangentialStiffness)?;
+    }
     let mut builder = joint::InterfaceTable::builder(&history).tolerance(tolerance);
     if let Some(resistivity) = resistivity {
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;

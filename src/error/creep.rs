@@ -66,8 +66,9 @@ pub enum CreepError {
 
     /// The most cycles that were allowed did not lead to the steady one.
     #[error(
-        "after {cycles} cycles it is an estimated {distance} to the steady one, relative to the amplitudes, where at most \
-         {tolerance} was asked for"
+        "after {} it is an estimated {distance} to the steady one, relative to the amplitudes, where at most \
+         {tolerance} was asked for",
+        crate::number::counted(cycles, "cycle")
     )]
     NotSteady {
         /// How many cycles were run.

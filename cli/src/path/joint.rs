@@ -153,9 +153,6 @@ impl Joint {
 
     /// What cannot be done, before the work.
     pub(super) fn check(&self, pair: &Pair<'_>) -> Result<Vec<Named>, Failure> {
-        if self.friction.is_some() {
-            self.compliance_ratio(pair.e_star, pair.elastic)?;
-        }
         if self.unresolved_roughness.is_some() && pair.has_hardness {
             return Err(Failure::request(
                 "--unresolved-roughness needs an elastic path: the approach of a contact that yields is not that of one shape. What is left of it \
@@ -170,6 +167,7 @@ impl Joint {
         }
         if self.friction.is_some() {
             layering.check(Theory::TangentialStiffness).map_err(failed)?;
+            self.compliance_ratio(pair.e_star, pair.elastic)?;
         }
         Ok(conductions)
     }

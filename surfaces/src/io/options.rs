@@ -10,7 +10,7 @@ use super::format::Format;
 use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::unit::LengthUnit;
-use crate::number::quantity;
+use crate::number::{counted, quantity};
 use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
@@ -195,7 +195,11 @@ impl ReadOptions {
             let nodes = channel.values.iter_mut().zip(&mask).filter(|(_, marked)| **marked);
             let marked = nodes.map(|(value, _)| *value = f64::NAN).count();
             if marked > 0 {
-                notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
+                let are = if marked == 1 { "marks is" } else { "marks are" };
+                notes.push(format!(
+                    "{} that a mask {are} taken as missing",
+                    counted(marked, "node")
+                ));
             }
         }
         // What neither the file nor the options say, in words.
@@ -214,7 +218,7 @@ impl ReadOptions {
             || channel.values.iter().enumerate().filter(|(_, value)| value.is_infinite());
         if let Some((first, value)) = infinite().next() {
             notes.push(format!(
-                "{} {value} at node ({}, {}) and count as missing, as in files of several makers; a node that is never to touch \
+                "{} {value} at node ({}, {}), and taken as missing, as in files of several makers; a node that is never to touch \
                  needs a finite height far below the others",
                 match infinite().count() {
                     1 => "1 height is infinite,".to_string(),
