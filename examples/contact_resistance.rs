@@ -34,11 +34,12 @@
 //!
 //! ** interface law of a rough surface by asperity 0.1.0, in SI units
 //! ** overclosure: what the mean gap has closed since first touch; all quantities per nominal area
-//! ** 13 rows; pressures between them err by at most 1e-1 of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs
+//! ** 14 rows; pressures between them err by at most 1e-1 of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs
 //! *SURFACE INTERACTION, NAME=ROUGH_INTERFACE
 //! *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR
 //! 0.000000000000e0, 0.000000000000e0
 //! 8.273215569071e4, 1.736529026698e-7
+//! 9.940795785854e4, 1.961993469403e-7
 //! 1.222964256588e5, 2.196936884460e-7
 //! 2.581360342645e5, 3.122514109417e-7
 //! 3.435643685612e5, 3.581618455985e-7
@@ -54,6 +55,7 @@
 //! *GAP CONDUCTANCE
 //! 4.130863606563e8, 0.000000000000e0
 //! 6.412940876849e8, 8.273215569071e4
+//! 8.446990505547e8, 9.940795785854e4
 //! 1.253236164004e9, 1.222964256588e5
 //! 1.613389016793e9, 2.581360342645e5
 //! 2.034492387152e9, 3.435643685612e5
@@ -94,7 +96,7 @@ fn resistances(history: &History, copper: &Conduction) -> Result<Vec<(f64, f64)>
     let mut resistances = Vec::new();
     for state in LOADS.iter().filter_map(|&load| history.at_load(load)) {
         // From the contact stiffness if there is one, which is on a free half-space.
-        let conductance = copper.of(&state.contact)?.unwrap_or(0.0);
+        let conductance = copper.of(&state.contact, history.layering())?.unwrap_or(0.0);
         resistances.push((1.0 / conductance, state.contact.contact_area_fraction));
     }
     Ok(resistances)

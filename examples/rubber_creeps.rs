@@ -26,9 +26,9 @@
 //! after 61 s 44.849 % in contact
 //! after 62 s 28.571 % in contact
 //! after 122 s 28.735 % in contact
-//! at    10 Hz a cycle loses 1.556e-11 J, loss factor 0.045
-//! at     1 Hz a cycle loses 7.465e-11 J, loss factor 0.173
-//! at   0.1 Hz a cycle loses 6.584e-11 J, loss factor 0.133
+//! at    10 Hz a cycle loses 1.594e-11 J, loss factor 0.046
+//! at     1 Hz a cycle loses 7.479e-11 J, loss factor 0.173
+//! at   0.1 Hz a cycle loses 6.600e-11 J, loss factor 0.133
 //! at  0.01 Hz a cycle loses 4.368e-10 J, loss factor 0.534
 //! at 0.001 Hz a cycle loses 2.399e-10 J, loss factor 0.151
 //! ```

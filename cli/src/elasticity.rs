@@ -159,7 +159,7 @@ impl Elasticity {
     /// The bodies, `None` if nothing was said of them.
     fn given(&self) -> Result<Option<Bodies>, Failure> {
         if let Some(BaseArgument(base)) = self.base {
-            let layers: Vec<_> = self.layer.iter().map(|layer| layer.0).collect();
+            let layers: Vec<_> = self.layer.iter().map(LayerArgument::layer).collect();
             let other = self.against.map(|other| plane_strain_modulus(other.e, other.nu));
             let body =
                 LayeredBody::new(&layers, base).and_then(|body| match other.transpose()? {
@@ -167,7 +167,11 @@ impl Elasticity {
                     None => Ok(body),
                 });
             let body = body.map_err(|error| Failure::new("invalid layers", error))?;
-            return Ok(Some(Bodies::of_layers(body)));
+            // What bears the pressure: the uppermost layer, and what it is pressed against.
+            let bear =
+                self.layer.first().map(|layer| layer.material).into_iter().chain(self.against);
+            let hardness = bear.filter_map(|material| material.hardness).reduce(f64::min);
+            return Ok(Some(Bodies { hardness, ..Bodies::of_layers(body) }));
         }
         if self.against.is_some() && self.material.is_none() {
             return Err(Failure::request("--against needs --material, or --layer and --base"));

@@ -9,7 +9,17 @@ use crate::material::Material;
 
 /// A layer: `210e9,0.3,20e-6` or `gold,2e-6`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LayerArgument(pub(crate) Layer);
+pub(crate) struct LayerArgument {
+    pub(crate) material: Material,
+    thickness: f64,
+}
+
+impl LayerArgument {
+    pub(crate) fn layer(&self) -> Layer {
+        let (young, poisson) = self.material.elastic();
+        Layer { young, poisson, thickness: self.thickness }
+    }
+}
 
 impl FromStr for LayerArgument {
     type Err = String;
@@ -18,8 +28,8 @@ impl FromStr for LayerArgument {
         let expected = "neither 'E,NU,H' nor 'NAME,H', with the thickness H in metres";
         let (material, thickness) = text.rsplit_once(',').ok_or(expected)?;
         let thickness: f64 = thickness.trim().parse().map_err(|_| expected)?;
-        let (young, poisson) = material.parse::<Material>().map_err(|_| expected)?.elastic();
-        Ok(Self(Layer { young, poisson, thickness }))
+        let material = material.parse::<Material>().map_err(|_| expected)?;
+        Ok(Self { material, thickness })
     }
 }
 
@@ -66,7 +76,7 @@ mod tests {
 
     #[test]
     fn layers_are_named_or_given_in_numbers() {
-        let layer = |text: &str| text.parse::<LayerArgument>().map(|found| found.0);
+        let layer = |text: &str| text.parse::<LayerArgument>().map(|found| found.layer());
         let expected = Layer { young: 210e9, poisson: 0.3, thickness: 20e-6 };
         assert_eq!(layer("210e9,0.3,20e-6"), Ok(expected));
         assert_eq!(layer("steel, 20e-6"), Ok(expected));

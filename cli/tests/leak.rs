@@ -160,6 +160,57 @@ fn joints_are_tabulated() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Where the body repeats along one side it is the interfacial stiffness that counts, in every file and behind a record too.
+#[test]
+fn joints_of_rows_conduct_by_the_interface() -> Result<(), Box<dyn Error>> {
+    let folder = Scratch::new("joint-row")?;
+    let path =
+        "path --nodes 32 --max-area-fraction 0.3 --conductivity 50 --unresolved-roughness 1e-9 -q";
+    for axis in ["x", "y"] {
+        let begun = format!("{path} --periodic {axis} --record r.npz --out begun");
+        let again = "path --resume r.npz --conductivity 50 --unresolved-roughness 1e-9 --fe-table csv --out again -q";
+        for line in [begun.as_str(), again] {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            assert!(run(&folder, &words)?.status.success(), "{line}");
+        }
+        let column = |file: &str, name: &str| -> Result<Vec<f64>, Box<dyn Error>> {
+            let text = fs::read_to_string(folder.join(file))?;
+            let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+            let names = lines.next().ok_or("empty")?;
+            let place = names.iter().position(|other| *other == name).ok_or("no column")?;
+            lines.map(|line| Ok(line[place].parse()?)).collect()
+        };
+        for folder in ["begun", "again"] {
+            let table = format!("{folder}/path.csv");
+            let stiffness = column(&table, "interfacial_stiffness")?;
+            let expected =
+                stiffness.iter().map(|stiffness| 2.0 * stiffness / (210e9 / 0.91 * 0.02));
+            let bounds = format!("{folder}/conductance.csv");
+            let [found, same, lower, upper] = [
+                column(&table, "thermal_conductance")?,
+                column(&bounds, "thermal_conductance")?,
+                column(&bounds, "thermal_conductance_lower")?,
+                column(&bounds, "thermal_conductance_upper")?,
+            ];
+            for (k, expected) in expected.enumerate() {
+                assert!(
+                    (found[k] / expected - 1.0).abs() < 1e-12,
+                    "{axis}: {} {expected}",
+                    found[k]
+                );
+                assert_eq!(found[k], same[k]);
+                assert!(lower[k] <= found[k] && found[k] <= upper[k]);
+            }
+        }
+        let last = column("again/interface.csv", "thermal_conductance")?.last().copied();
+        let whole = column("again/path.csv", "thermal_conductance")?.last().copied();
+        let area = whole.ok_or("none")? / last.ok_or("none")?;
+        // Of the surface of the example, to the digits of the table.
+        assert!((area / 1e-4 - 1.0).abs() < 1e-9, "{area}");
+    }
+    Ok(())
+}
+
 /// One record of a periodic half-space whose last channel from end to end closes later than the last one around the grid: `leak`,
 /// `patches` with and without corners, and `creep` say the same.
 #[test]
@@ -240,6 +291,8 @@ fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
         (&["--conductivity", "50"][..], "conductance"),
         (&["--resistivity", "1e-7"], "conductance"),
         (&["--fe-table", "csv", "--friction", "0.2", "--compliance-ratio", "1.2"], "tangential"),
+        // And before it is asked for what would be missing.
+        (&["--fe-table", "csv", "--friction", "0.2"], "tangential"),
     ] {
         let refused = run(&folder, &[&path[..], options].concat())?;
         is_refused(&refused, &[word, "layers", "Right"]);
@@ -251,6 +304,7 @@ fn joints_of_layers_are_refused() -> Result<(), Box<dyn Error>> {
     assert!(table.starts_with("pressure,overclosure\n"), "{table}");
     let slip = ["slip", "p.npz", "--friction", "0.3", "--material", "steel"];
     is_refused(&run(&folder, &slip)?, &["slip", "layers", "Right"]);
+    is_refused(&run(&folder, &slip[..4])?, &["slip", "layers", "Right"]);
     let creep = ["creep", "p.npz", "--prony", "1,0.5", "--time", "10", "--load", "1"];
     is_refused(&run(&folder, &creep)?, &["creep", "layers", "Right"]);
     Ok(())

@@ -101,6 +101,20 @@ fn only_metals_are_said_to_yield_like_metals() -> Done {
         assert!(expected.is_none_or(|text| told.contains(text)), "{told}");
         assert!(!told.contains("metals") || material == "210e9,0.3", "{told}");
     }
+    // A coat has the name of its material too, and what it is pressed against.
+    for (body, expected) in [
+        ("--layer glass,1e-4 --base steel", "times the typical hardness of the material, 5.5 GPa"),
+        ("--layer glass,1e-4 --base steel --against copper", "material, 900 MPa"),
+        (
+            "--layer 70e9,0.22,1e-4 --base steel",
+            "metals yield at some 0.01 to 0.03 of E*, glass and",
+        ),
+    ] {
+        for (command, load) in [("path", "--max-load 8000"), ("load", "--load 8000")] {
+            let told = words(folder, &format!("{command} {BALL} {body} {load}"))?;
+            assert!(told.contains(expected), "{command} {body}: {told}");
+        }
+    }
     Ok(())
 }
 

@@ -666,7 +666,7 @@ def steady_cycle(
     period: float,
     steps: int = 96,
     tolerance: float = 1e-5,
-    most: int = 1000,
+    most: int = 10_000,
 ) -> results.Cycle: ...
 def steady_cycles(
     path: LoadingPath | History,
@@ -677,7 +677,7 @@ def steady_cycles(
     periods: ArrayLike,
     steps: int = 96,
     tolerance: float = 1e-5,
-    most: int = 1000,
+    most: int = 10_000,
 ) -> list[results.Cycle]: ...
 def conductance(
     path: LoadingPath | History,

@@ -29,9 +29,10 @@ pub(crate) const BOUNDARIES: [(&str, Boundary); 4] = [
     ("y", Boundary::PeriodicY),
 ];
 
-pub(crate) const LAYERINGS: [(&str, Layering); 4] = [
+pub(crate) const LAYERINGS: [(&str, Layering); 5] = [
     ("unknown", Layering::Unknown),
     ("half-space", Layering::HalfSpace),
+    ("half-space in a row", Layering::SemiPeriodicHalfSpace),
     ("one material", Layering::OneMaterial),
     ("several", Layering::Several),
 ];

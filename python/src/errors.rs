@@ -348,6 +348,9 @@ fn of_creep(error: &CreepError) -> Described {
         }
         CreepError::BedEnds { time, path_ends } => (VALUE, "BedEnds", numbers![time, path_ends]),
         CreepError::StepFails { time, step } => (CONVERGENCE, "StepFails", numbers![time, step]),
+        CreepError::NotSteady { cycles, distance, tolerance } => {
+            (CONVERGENCE, "NotSteady", numbers![cycles, distance, tolerance])
+        }
         CreepError::NoSteadyCycle { fluidity } => (VALUE, "NoSteadyCycle", numbers![fluidity]),
         _ => (VALUE, "Creep", Vec::new()),
     }

@@ -76,9 +76,11 @@ fn conductance<'py>(
 ) -> Fallible<Bound<'py, PyArray1<f64>>> {
     let increments = Increments::of(path)?;
     let conduction = conduction(py, &increments, resistivity, carrier, e_star, gap)?;
-    increments.history.layering().check(Theory::Conductance)?;
-    let of = |contact: &ContactState| {
-        if interface { conduction.of_interface(contact) } else { conduction.of(contact) }
+    let body = increments.history.layering();
+    body.check(Theory::Conductance)?;
+    let of = |contact: &ContactState| match interface {
+        true => conduction.of_interface(contact, body),
+        false => conduction.of(contact, body),
     };
     let history = increments.with_unloading_stiffness(py)?;
     let states = history.states().iter();
@@ -171,6 +173,9 @@ fn interface_table(
         (None, None) => Arc::clone(&increments.history),
         _ => increments.with_unloading_stiffness(py)?,
     };
+    if friction.is_some() {
+        history.layering().check(Theory::TangentialStiffness)?;
+    }
     let mut builder = joint::InterfaceTable::builder(&history).tolerance(tolerance);
     if let Some(resistivity) = resistivity {
         let made = conduction(py, &increments, resistivity, carrier, e_star, gap)?;

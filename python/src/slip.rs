@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use asperity::Error;
 use asperity::bed::Bed;
+use asperity::kernel::Theory;
 use asperity::slip::{self, Friction, SlipCycle, SlipHistory, SlipState, SlipZone};
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -73,6 +74,7 @@ fn shear(
     check: bool,
 ) -> Fallible<PartialSlip> {
     let increments = Increments::of(path)?;
+    increments.history.layering().check(Theory::Slip)?;
     let known = || increments.bodies(py).filter(|_| compliance_ratio.is_none());
     let bodies = bodies.or_else(known);
     let law = match (&bodies, compliance_ratio) {

@@ -168,6 +168,13 @@ def test_cycles(path: asp.LoadingPath) -> None:
     with pytest.raises(errors.AsperityError) as info:
         asp.steady_cycle(path, asp.Prony.shares([(1.0, 1.0)]), mean_load=load, amplitude=0.1 * load, period=1.0)
     assert info.value.kind == "NoSteadyCycle"
+    slow = asp.Prony.shares([(1.0, 0.3), (1000.0, 0.3)])
+    settings = {"mean_load": load, "amplitude": 0.5 * load, "period": 1.0, "steps": 16}
+    cycle = asp.steady_cycle(path.history[::8], slow, **settings)
+    assert cycle.distance <= 1e-5 and cycle.cycles < 100
+    with pytest.raises(errors.ConvergenceError) as few:
+        asp.steady_cycle(path.history[::8], slow, most=3, **settings)
+    assert few.value.kind == "NotSteady" and few.value.cycles == 3 and few.value.distance > few.value.tolerance
 
 
 def csv(file: Path) -> dict[str, np.ndarray]:

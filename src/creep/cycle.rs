@@ -1,5 +1,6 @@
 //! Steady cycles of load, and the energy that they cost.
 
+use super::prony::Prony;
 use super::viscoelastic_bed::{Control, ViscoelasticBed};
 use crate::{CreepError, Error};
 
@@ -26,8 +27,8 @@ pub struct Cycle {
     pub path: Vec<(f64, f64)>,
     /// How many cycles were run.
     pub cycles: usize,
-    /// How far the energy lost is from that of the steady cycle, over the product of amplitudes: an estimate, from how fast the changes from cycle to
-    /// cycle die out. Infinite after one cycle.
+    /// How far the energy lost is from that of the steady cycle, over the product of amplitudes, or the amplitude of the approach, over itself: the greater
+    /// one, an estimate from how fast the changes from cycle to cycle die out.
     pub distance: f64,
 }
 
@@ -45,35 +46,53 @@ pub struct CycleSettings {
 impl Default for CycleSettings {
     /// Half a percent of the energy that an elastic solid with tan φ = 0.1 would lose comes of the steps.
     fn default() -> Self {
-        Self { steps: 96, tolerance: 1e-5, most: 1000 }
+        Self { steps: 96, tolerance: 1e-5, most: 10_000 }
     }
 }
 
-/// How the energy lost comes nearer to that of the steady cycle.
+/// How a number comes nearer to that of the steady cycle.
 #[derive(Debug, Default)]
 struct Approach {
     before: Option<f64>,
-    change: Option<f64>,
-    ratio: Option<f64>,
+    change: f64,
 }
 
 impl Approach {
-    /// What is still to come after a cycle: a geometric series whose ratio is the greater one of the last two, and no greater than that of the longest
-    /// retardation time, `slowest`. A single small change says nothing: a slow mode changes little in a cycle that is much shorter than its time.
-    fn distance(&mut self, dissipated: f64, slowest: f64) -> f64 {
-        let change = self.before.map(|before| dissipated - before);
-        let ratio = match (self.change, change) {
-            (Some(earlier), Some(change)) => Some((change / earlier).abs()),
-            _ => None,
+    /// What is still to come after a cycle: a geometric series with the ratio of the slowest mode, from the greatest change so far as that mode would have
+    /// faded. The last changes alone, and their ratio, say too little: modes hide and cancel each other.
+    fn distance(&mut self, number: f64, slowest: f64) -> f64 {
+        let Some(before) = self.before.replace(number) else {
+            return f64::INFINITY;
         };
-        let greatest = match (self.ratio, ratio) {
-            (Some(earlier), Some(ratio)) => earlier.max(ratio).min(slowest),
-            _ => slowest,
-        };
-        let left = greatest / (1.0 - greatest);
-        *self = Self { before: Some(dissipated), change, ratio };
+        self.change = (number - before).abs().max(slowest * self.change);
         // The last change itself where nothing is to come: rounding.
-        change.map_or(f64::INFINITY, |change| change.abs() * left.max(f64::EPSILON))
+        self.change * (slowest / (1.0 - slowest)).max(f64::EPSILON)
+    }
+}
+
+/// How many changes of a cycle each term of creep goes at once, so that slow ones come to the steady cycle too.
+///
+/// The strain s of a term changes in a cycle by `(1 − e^(−T/τ)) (f − s)`, f being a mean of the force on its element. In the steady cycle s = f. As
+/// strains grow, forces on elements in full contact fall: f − s as a function of the strains has slopes from −1, for an element whose force is given, to
+/// −J(∞)/J(0), for one whose compression is. Hence a step of `J(0)/J(∞)` times f − s never overshoots, and leaves at most `1 − J(0)/J(∞)` of what was left.
+/// A cycle by itself is such a step for the terms that it changes by more.
+struct Ahead {
+    /// For each term, at least 1.
+    changes: Vec<f64>,
+    /// How much of the slowest mode is left after a cycle and this step.
+    slowest: f64,
+}
+
+impl Ahead {
+    fn new(prony: &Prony, period: f64) -> Self {
+        let step = prony.equilibrium_modulus() / prony.instantaneous_modulus();
+        let terms = prony.creep_terms().iter();
+        let by_itself: Vec<f64> = terms.map(|term| -(-period / term.time).exp_m1()).collect();
+        let least = by_itself.iter().copied().fold(1.0, f64::min);
+        Self {
+            changes: by_itself.iter().map(|change| (step / change).max(1.0)).collect(),
+            slowest: 1.0 - least.max(step),
+        }
     }
 }
 
@@ -103,11 +122,15 @@ impl ViscoelasticBed<'_> {
         Ok(())
     }
 
-    /// Cycles the load around a mean until the energy that a cycle costs is that of the steady one, within the tolerance. The bed goes on from its present state, so that
+    /// Cycles the load around a mean until the cycle is the steady one, within the tolerance. The bed goes on from its present state, so that
     /// [`settle`](Self::settle) before, or a sweep from period to period, saves cycles.
+    ///
+    /// A term that is much slower than the period goes many cycles ahead after each that is run: it takes some `J(∞)/J(0)` cycles to come nearer by the
+    /// factor e, however slow it is. The time of the bed counts the cycles that were run.
     ///
     /// # Errors
     ///
+    /// [`CreepError::NotSteady`] if the cycle is not as near to the steady one as the tolerance asks for after the most cycles;
     /// [`CreepError::NoSteadyCycle`] for bodies that flow; [`Error::NotPositive`] for amplitudes and periods that are not;
     /// [`Error::OutOfRange`] for a mean load below the amplitude, fewer than 8 steps or more than a million, and no cycles; those of
     /// [`step`](Self::step).
@@ -131,12 +154,11 @@ impl ViscoelasticBed<'_> {
         if self.state().load != mean_load {
             self.step(0.0, Control::Load(mean_load))?;
         }
-        let longest = self.prony().creep_terms().last().map_or(0.0, |term| term.time);
-        // How much of the slowest mode is left after a cycle.
-        let slowest = (-period / longest).exp();
-        let mut approach = Approach::default();
+        let ahead = Ahead::new(self.prony(), period);
+        let (mut energy, mut amplitudes) = (Approach::default(), Approach::default());
         let mut cycles = 0;
         loop {
+            let before = self.strains().to_vec();
             let path = self.round(mean_load, amplitude, period, steps)?;
             cycles += 1;
             let lost = path.windows(2).map(|pair| {
@@ -149,8 +171,9 @@ impl ViscoelasticBed<'_> {
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             let approach_amplitude = 0.5 * (high - low);
             let scale = amplitude * approach_amplitude;
-            let distance = approach.distance(dissipated, slowest) / scale;
-            if distance <= tolerance || cycles >= most {
+            let distance = (energy.distance(dissipated, ahead.slowest) / scale)
+                .max(amplitudes.distance(approach_amplitude, ahead.slowest) / approach_amplitude);
+            if distance <= tolerance {
                 return Ok(Cycle {
                     period,
                     mean_load,
@@ -164,6 +187,10 @@ impl ViscoelasticBed<'_> {
                     distance,
                 });
             }
+            if cycles >= most {
+                return Err(CreepError::NotSteady { cycles, distance, tolerance }.into());
+            }
+            self.go_ahead(&before, &ahead.changes);
         }
     }
 

@@ -161,6 +161,26 @@ impl<'a> ViscoelasticBed<'a> {
         &self.prony
     }
 
+    /// The internal variables, those of all terms of an element together.
+    pub(super) fn strains(&self) -> &[f64] {
+        &self.strains
+    }
+
+    /// Takes each internal variable as many times as far from what it was `before` as its term says, under the present load; not where
+    /// pressures would become negative.
+    pub(super) fn go_ahead(&mut self, before: &[f64], times: &[f64]) {
+        let present = self.memory();
+        let earlier = before.iter().copied().chain(std::iter::repeat(0.0));
+        for ((strain, before), times) in
+            self.strains.iter_mut().zip(earlier).zip(times.iter().cycle())
+        {
+            *strain += (times - 1.0) * (*strain - before);
+        }
+        if !matches!(self.attempt(0.0, Control::Load(present.state.load)), Ok(true)) {
+            self.restore(present);
+        }
+    }
+
     /// In the time `duration` \[s\] to a load or an approach; in no time at all it is a jump. Returns the state there.
     ///
     /// # Errors

@@ -64,6 +64,21 @@ pub enum CreepError {
         step: f64,
     },
 
+    /// The most cycles that were allowed did not lead to the steady one.
+    #[error(
+        "after {} it is an estimated {distance} to the steady one, relative to the amplitudes, where at most \
+         {tolerance} was asked for",
+        crate::number::counted(cycles, "cycle")
+    )]
+    NotSteady {
+        /// How many cycles were run.
+        cycles: usize,
+        /// Estimated [distance](crate::creep::Cycle::distance) from the steady cycle.
+        distance: f64,
+        /// The distance that was asked for.
+        tolerance: f64,
+    },
+
     /// Bodies that flow have no steady cycles: under any mean load the contact grows without end.
     #[error(
         "bodies that flow (fluidity {fluidity} 1/(Pa s)) have no steady cycle: the contact grows for ever"

@@ -86,9 +86,9 @@ pub enum KernelError {
 
     /// A kernel does not keep a promise, as [`kernel::check`](crate::kernel::check()) has found.
     #[error(
-        "the kernel is not what it promises to be, {promise}: with {} nodes in contact the \
+        "the kernel is not what it promises to be, {promise}: with {} in contact the \
          {quantity} at node {node:?} is {value}",
-        contact.len()
+        crate::number::counted(contact.len(), "node")
     )]
     BrokenPromise {
         /// The promise.

@@ -7,7 +7,7 @@ mod kernel;
 mod slip;
 mod updater;
 
-use asperity_surfaces::number::quantity;
+use asperity_surfaces::number::{counted, quantity};
 use asperity_surfaces::{Error as SurfaceError, FileError};
 use thiserror::Error;
 
@@ -186,7 +186,7 @@ pub enum Error {
     },
 
     /// A path that ended with an error cannot go on.
-    #[error("the path ended with an error after {steps} events, and cannot go on")]
+    #[error("the path ended with an error after {}, and cannot go on", counted(steps, "event"))]
     CannotContinue {
         /// Number of events up to there.
         steps: usize,
@@ -284,8 +284,8 @@ pub enum Error {
 
     /// The memory budget would be exceeded by going on.
     #[error(
-        "{} of memory are needed, but the budget is {}, which is enough for {nodes_that_fit} nodes in contact",
-        bytes(*needed, *budget), bytes(*budget, *needed)
+        "{} of memory are needed, but the budget is {}, which is enough for {} in contact",
+        bytes(*needed, *budget), bytes(*budget, *needed), counted(nodes_that_fit, "node")
     )]
     MemoryBudget {
         /// Bytes needed to go on.
@@ -298,7 +298,8 @@ pub enum Error {
 
     /// An iteration did not reach its tolerance.
     #[error(
-        "no convergence: relative residual {residual} after {iterations} iterations, tolerance {tolerance}"
+        "no convergence: relative residual {residual} after {}, tolerance {tolerance}",
+        counted(iterations, "iteration")
     )]
     NoConvergence {
         /// Smallest relative residual reached.

@@ -19,8 +19,9 @@ pub enum UpdaterError {
 
     /// An updater answered something else than a dense solution: what `updater::check` reports.
     #[error(
-        "the updater is wrong: with {contact_nodes} nodes in contact {quantity} differs from the dense \
-         answer by {error}, more than {tolerance}"
+        "the updater is wrong: with {} in contact {quantity} differs from the dense \
+         answer by {error}, more than {tolerance}",
+        crate::number::counted(contact_nodes, "node")
     )]
     UpdaterWrong {
         /// The quantity compared.

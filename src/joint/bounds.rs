@@ -1,7 +1,8 @@
 //! Bounds of the conductance when the surface has more roughness than the grid.
 
 use super::Conduction;
-use crate::kernel::Theory;
+use super::conduction::has_distant_point;
+use crate::kernel::{Layering, Theory};
 use crate::loading::History;
 use crate::{Error, JointError, LoadingState};
 
@@ -25,7 +26,9 @@ impl Conduction {
     /// ```math
     /// \max_{W_2 > W} \frac{\delta(W_2) - \delta(W) - s}{W_2 - W} \le \delta_r'(W) \le \min_{W_1 < W} \frac{\delta(W) + s - \delta(W_1)}{W - W_1} ,
     /// ```
-    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has closed. Without s
+    /// and the slope is ρE\*/2 times the conductance's reciprocal. On a periodic half-space δ is what the mean gap has closed. So it is on one that
+    /// repeats along one side, with 2 s in place of s: as the mean displacement depends on where the load is, the mean gap of the rougher surface is between
+    /// those of the known curve at approaches of s less and s more. Without s
     /// both bounds are the stiffness before and behind the event. The upper one needs a path well beyond the load. Between two events, those of the earlier one
     /// are no bounds. The gap is as at the state.
     ///
@@ -44,6 +47,8 @@ impl Conduction {
         let is_one = (0.0..f64::INFINITY).contains(&unresolved);
         Error::require("unresolved roughness", unresolved, is_one, "finite and not negative")?;
         history.layering().check(Theory::Conductance)?;
+        let body = history.layering();
+        let apart = if has_distant_point(body) { unresolved } else { 2.0 * unresolved };
         let states = history.states();
         let has_yielded = |state: &LoadingState| {
             state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0)
@@ -51,13 +56,13 @@ impl Conduction {
         if let Some(state) = states.iter().find(|state| has_yielded(state)) {
             return Err(JointError::BoundsWithYielding { step: state.step }.into());
         }
-        let points: Vec<(f64, f64)> = states.iter().map(compression).collect();
+        let points: Vec<(f64, f64)> = states.iter().map(|state| compression(state, body)).collect();
         let stiffness = |slope: f64| if slope > 0.0 { 1.0 / slope } else { f64::INFINITY };
         let bounds = states.iter().enumerate().map(|(k, state)| {
             let (load, depth) = points[k];
             // Slopes of chords from an earlier point, and to a later one.
-            let before = |i: usize| (depth + unresolved - points[i].1) / (load - points[i].0);
-            let after = |i: usize| (points[i].1 - depth - unresolved) / (points[i].0 - load);
+            let before = |i: usize| (depth + apart - points[i].1) / (load - points[i].0);
+            let after = |i: usize| (points[i].1 - depth - apart) / (points[i].0 - load);
             let first = points.partition_point(|point| point.0 < load);
             let next = points.partition_point(|point| point.0 <= load);
             // There is no earlier point at first touch, and no later one at the end.
@@ -79,11 +84,11 @@ impl Conduction {
 }
 
 /// Load and compression: the approach where it is that of a distant point, else what the mean gap has closed, up to a constant.
-fn compression(state: &LoadingState) -> (f64, f64) {
+fn compression(state: &LoadingState, body: Layering) -> (f64, f64) {
     let contact = &state.contact;
     let depth = match contact.contact_stiffness {
-        Some(_) => contact.approach,
-        None => -contact.mean_gap,
+        Some(_) if has_distant_point(body) => contact.approach,
+        _ => -contact.mean_gap,
     };
     (contact.load, depth)
 }

@@ -1,5 +1,6 @@
 //! The conductance of a contact, and of the gap beside it.
 
+use crate::kernel::{Layering, Theory};
 use crate::reference::contact_conductance;
 use crate::{ContactState, Error, JointError};
 
@@ -27,17 +28,18 @@ impl Carrier {
 /// Conduction through a joint: Barber's constriction conductance of the contact, `1/R = 2 K / (ρ E*)`, and optionally the gap in parallel.
 ///
 /// See [`contact_conductance`] for what the formula assumes, and which stiffness K it takes: the contact stiffness on a free
-/// half-space and the interfacial one on a periodic one.
+/// half-space, and the interfacial one on those that repeat along both sides or one.
 ///
 /// ```
 /// use asperity::joint::Conduction;
+/// use asperity::kernel::Layering;
 /// use asperity::{ContactState, Grid};
 ///
 /// # fn main() -> Result<(), asperity::Error> {
 /// let mut contact = ContactState::new(&Grid::square(64, 1e-3)?, 100, 1e-7, 5.0, 2e-6);
 /// contact.contact_stiffness = Some(2e7);
 /// let copper = Conduction::electrical(70e9, 1.7e-8 + 1.7e-8)?;
-/// let conductance = copper.of(&contact)?.unwrap_or_default();
+/// let conductance = copper.of(&contact, Layering::HalfSpace)?.unwrap_or_default();
 /// assert!((conductance - 2.0 * 2e7 / (70e9 * 3.4e-8)).abs() < 1e-9 * conductance);
 /// # Ok(())
 /// # }
@@ -108,8 +110,9 @@ impl Conduction {
     /// Conductance \[S, W/K\] at a state; `None` without a stiffness. In full contact of a periodic half-space, which adds nothing to the bodies, it is
     /// infinite.
     ///
-    /// It holds on a homogeneous half-space: [`History::layering`](crate::loading::History::layering) and
-    /// [`KernelOrigin::layering`](crate::kernel::KernelOrigin::layering) say whether a body is one.
+    /// It holds on homogeneous half-spaces, and takes another stiffness where these repeat along one side:
+    /// [`History::layering`](crate::loading::History::layering) and
+    /// [`KernelOrigin::layering`](crate::kernel::KernelOrigin::layering) say which body it is.
     ///
     /// Nodes that have yielded conduct as well: with a hardness it takes the stiffness on *unloading*, of all nodes in contact, which
     /// [`LoadingSolver::add_unloading_stiffness`](crate::LoadingSolver::add_unloading_stiffness) and
@@ -117,14 +120,11 @@ impl Conduction {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a stiffness that is negative or NaN; [`JointError::NoUnloadingStiffness`](crate::JointError) if nodes have
-    /// yielded and that stiffness is missing.
-    pub fn of(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
+    /// [`Error::NotHomogeneous`] on layers; [`Error::OutOfRange`] for a stiffness that is negative or NaN;
+    /// [`JointError::NoUnloadingStiffness`](crate::JointError) if nodes have yielded and that stiffness is missing.
+    pub fn of(&self, contact: &ContactState, body: Layering) -> Result<Option<f64>, Error> {
         let [of_contact, interfacial] = stiffnesses(contact)?;
-        match of_contact.or(interfacial) {
-            Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
-            None => Ok(None),
-        }
+        self.by(of_contact.filter(|_| has_distant_point(body)).or(interfacial), contact, body)
     }
 
     /// Conductance of the interface \[S, W/K\]: what it adds to bodies with a uniform current, by the interfacial stiffness on either
@@ -133,12 +133,23 @@ impl Conduction {
     /// # Errors
     ///
     /// Those of [`Self::of`].
-    pub fn of_interface(&self, contact: &ContactState) -> Result<Option<f64>, Error> {
+    pub fn of_interface(
+        &self,
+        contact: &ContactState,
+        body: Layering,
+    ) -> Result<Option<f64>, Error> {
         let [_, interfacial] = stiffnesses(contact)?;
-        match interfacial {
-            Some(stiffness) => self.at_stiffness(stiffness, contact).map(Some),
-            None => Ok(None),
-        }
+        self.by(interfacial, contact, body)
+    }
+
+    fn by(
+        &self,
+        stiffness: Option<f64>,
+        contact: &ContactState,
+        body: Layering,
+    ) -> Result<Option<f64>, Error> {
+        body.check(Theory::Conductance)?;
+        stiffness.map(|stiffness| self.at_stiffness(stiffness, contact)).transpose()
     }
 
     /// The conductance that a stiffness has, with the gap.
@@ -162,6 +173,11 @@ impl Conduction {
             _ => 0.0,
         }
     }
+}
+
+/// Whether the approach of a body is that of a distant point, and no convention.
+pub(super) fn has_distant_point(body: Layering) -> bool {
+    body != Layering::SemiPeriodicHalfSpace
 }
 
 /// Stiffnesses of the nodes in contact: that of a distant point, if there is one, and the interfacial one. Those of a path are of the

@@ -9,6 +9,9 @@ use crate::{Error, JointError, LoadingState};
 /// Below this part of the greatest pressure errors are absolute.
 const SMALL: f64 = 1e-3;
 
+/// The quantity whose small values have an absolute error.
+const PRESSURE: &str = "pressure";
+
 /// By which part of itself a number of a table rises at least from row to row: it prints as another one in thirteen digits.
 const RISE: f64 = 1e-11;
 
@@ -30,9 +33,18 @@ pub struct InterfaceRow {
 }
 
 impl InterfaceRow {
-    /// The quantities that are interpolated: pressure over overclosure, the others over pressure.
-    fn values(&self) -> [Option<f64>; 3] {
-        [Some(self.pressure), self.conductance, self.tangential_stiffness]
+    /// What is interpolated, with its name and over what: pressure over overclosure; the others over the pressure, and over the overclosure too, which
+    /// is how they follow from a pressure that is interpolated itself.
+    fn values(&self) -> [(&'static str, f64, Option<f64>); 5] {
+        let [over_gap, over_pressure] = [self.overclosure, self.pressure];
+        let (conductance, tangential) = ("conductance", "tangential stiffness");
+        [
+            (PRESSURE, over_gap, Some(self.pressure)),
+            (conductance, over_pressure, self.conductance),
+            (conductance, over_gap, self.conductance),
+            (tangential, over_pressure, self.tangential_stiffness),
+            (tangential, over_gap, self.tangential_stiffness),
+        ]
     }
 }
 
@@ -52,6 +64,9 @@ struct Friction {
 /// that have all yielded, it is raised by 10⁻¹¹ of itself. Of all states so many are left out that linear interpolation between the rows is wrong by no
 /// more than the tolerance at any of them: relative to the value, and for pressures below a thousandth of the greatest one relative to that. In full
 /// contact, where the interface is rigid, the table ends.
+///
+/// That holds for conductances and tangential stiffnesses over the pressure, and over the overclosure by way of the pressure that the table gives. Only at
+/// exactly the pressure of a plateau they are those of any place on it.
 ///
 /// Conductance and tangential stiffness are those of all nodes in contact, also of those that have yielded: see [`Conduction::of`].
 #[derive(Debug, Clone, PartialEq)]
@@ -108,9 +123,6 @@ impl<'a> InterfaceTableBuilder<'a> {
             Error::require_positive("coefficient of friction", friction.coefficient)?;
             Error::require_positive("compliance ratio", friction.compliance_ratio)?;
         }
-        if self.conduction.is_some() {
-            self.history.layering().check(Theory::Conductance)?;
-        }
         if self.friction.is_some() {
             self.history.layering().check(Theory::TangentialStiffness)?;
         }
@@ -155,7 +167,9 @@ impl<'a> InterfaceTableBuilder<'a> {
         let area = contact.contact_area / contact.contact_area_fraction;
         let pressure = contact.mean_pressure();
         let conductance = match &self.conduction {
-            Some(conduction) => conduction.of_interface(contact)?.map(|whole| whole / area),
+            Some(conduction) => {
+                conduction.of_interface(contact, self.history.layering())?.map(|whole| whole / area)
+            }
             None => None,
         };
         let tangential_stiffness = match self.friction {
@@ -251,23 +265,25 @@ fn on_line((x0, y0): (f64, f64), (x1, y1): (f64, f64), x: f64) -> f64 {
     y0 + (y1 - y0) * ((x - x0) / (x1 - x0))
 }
 
+/// What a number of a table is divided by for its relative error.
+fn scale(quantity: &str, value: f64, greatest: f64) -> f64 {
+    if quantity == PRESSURE { value.max(SMALL * greatest) } else { value }
+}
+
 /// The error of interpolation at a row between two others, over the one that is allowed.
 fn error(
     before: &InterfaceRow,
     row: &InterfaceRow,
     after: &InterfaceRow,
-    allowed: [f64; 2],
+    [tolerance, greatest]: [f64; 2],
 ) -> f64 {
-    let [tolerance, greatest] = allowed;
     let ends = before.values().into_iter().zip(after.values());
-    let errors = ends.zip(row.values()).enumerate().map(|(k, ((y0, y1), y))| {
+    let errors = ends.zip(row.values()).map(|(((_, x0, y0), (_, x1, y1)), (quantity, x, y))| {
         let (Some(y0), Some(y1), Some(y)) = (y0, y1, y) else {
             return 0.0;
         };
-        let x = |row: &InterfaceRow| if k == 0 { row.overclosure } else { row.pressure };
-        let found = on_line((x(before), y0), (x(after), y1), x(row));
-        let scale = if k == 0 { y.max(SMALL * greatest) } else { y };
-        (found - y).abs() / (tolerance * scale)
+        let found = on_line((x0, y0), (x1, y1), x);
+        (found - y).abs() / (tolerance * scale(quantity, y, greatest))
     });
     errors.fold(0.0, f64::max)
 }
@@ -280,18 +296,15 @@ fn check_between(
     tolerance: f64,
 ) -> Result<(), Error> {
     let greatest = rows.last().map_or(0.0, |row| row.pressure);
-    for (k, quantity) in ["pressure", "conductance", "tangential stiffness"].into_iter().enumerate()
-    {
-        let x = |row: &InterfaceRow| if k == 0 { row.overclosure } else { row.pressure };
-        let after = rows.partition_point(|other| x(other) < x(row)).clamp(1, rows.len() - 1);
-        let ends = [&rows[after - 1], &rows[after]].map(|end| (x(end), end.values()[k]));
-        let ([(x0, Some(y0)), (x1, Some(y1))], Some(value)) = (ends, row.values()[k]) else {
+    for (k, (quantity, x, value)) in row.values().into_iter().enumerate() {
+        let after = rows.partition_point(|other| other.values()[k].1 < x).clamp(1, rows.len() - 1);
+        let ends = [&rows[after - 1], &rows[after]].map(|end| end.values()[k]);
+        let ([(_, x0, Some(y0)), (_, x1, Some(y1))], Some(value)) = (ends, value) else {
             continue;
         };
-        let interpolated = on_line((x0, y0), (x1, y1), x(row));
-        let scale = if k == 0 { value.max(SMALL * greatest) } else { value };
+        let interpolated = on_line((x0, y0), (x1, y1), x);
         // NaN as well.
-        let is_near = (interpolated - value).abs() <= tolerance * scale;
+        let is_near = (interpolated - value).abs() <= tolerance * scale(quantity, value, greatest);
         if !is_near {
             return Err(
                 JointError::NoFunction { step, quantity, value, interpolated, tolerance }.into()

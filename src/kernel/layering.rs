@@ -13,6 +13,8 @@ pub enum Layering {
     Unknown,
     /// Homogeneous half-spaces.
     HalfSpace,
+    /// Homogeneous half-spaces under a row of images along one side: what their approach is counted from is a convention.
+    SemiPeriodicHalfSpace,
     /// Layers of one material on a rigid base, against a rigid body: every displacement goes with 1/E of that material.
     OneMaterial,
     /// Layers of several materials, with an elastic base or body against them among these.
@@ -62,7 +64,7 @@ impl Layering {
             ),
         };
         let holds = match self {
-            Self::Unknown | Self::HalfSpace => true,
+            Self::Unknown | Self::HalfSpace | Self::SemiPeriodicHalfSpace => true,
             Self::OneMaterial => theory == Theory::Creep,
             Self::Several => false,
         };
@@ -94,10 +96,10 @@ impl KernelOrigin {
     #[must_use]
     pub fn layering(&self) -> Layering {
         match self {
-            Self::Boussinesq { .. }
-            | Self::PeriodicBoussinesq { .. }
-            | Self::SemiPeriodicBoussinesq { .. }
-            | Self::Spectral { .. } => Layering::HalfSpace,
+            Self::Boussinesq { .. } | Self::PeriodicBoussinesq { .. } | Self::Spectral { .. } => {
+                Layering::HalfSpace
+            }
+            Self::SemiPeriodicBoussinesq { .. } => Layering::SemiPeriodicHalfSpace,
             Self::Layered { body }
             | Self::PeriodicLayered { body }
             | Self::SpectralLayered { body } => body.layering(),
@@ -145,6 +147,7 @@ mod tests {
         for theory in [Conductance, TangentialStiffness, Slip, Creep] {
             assert!(Layering::Unknown.check(theory).is_ok());
             assert!(Layering::HalfSpace.check(theory).is_ok());
+            assert!(Layering::SemiPeriodicHalfSpace.check(theory).is_ok());
             assert_eq!(Layering::OneMaterial.check(theory).is_ok(), theory == Creep);
             let refused = Layering::Several.check(theory).err().map(|error| error.to_string());
             assert!(refused.is_some_and(|told| told.contains("layers") && told.contains("Right")));

@@ -6,9 +6,10 @@
 
 use nalgebra::DMatrix;
 
+use super::stiffnesses::{SAME_STIFFNESS, Stiffnesses};
 use crate::contact::ContactState;
-use crate::kernel::Layering;
-use crate::loading::{ContactEvent, LoadingState};
+use crate::kernel::KernelOrigin;
+use crate::loading::LoadingState;
 use crate::surface::HeightMap;
 use crate::{Error, Grid};
 
@@ -17,22 +18,20 @@ use crate::{Error, Grid};
 const ROUNDING: f64 = 1e-9;
 /// Products and sums of the numbers of nodes and cells.
 const FEW_ROUNDINGS: f64 = 1e-14;
-/// Without a factor stiffnesses are estimates, from one window to the next to 10⁻⁴ or better.
-const SAME_STIFFNESS: f64 = 1e-3;
 /// The greatest part of the approach that a state may be off by and still say something.
 const GREATEST_ERROR: f64 = 0.1;
 
 /// A quantity of a state: its value, what it should be, and by how much it may be off.
-struct Found {
-    quantity: &'static str,
-    value: f64,
-    expected: f64,
-    tolerance: f64,
-    reason: &'static str,
+pub(super) struct Found {
+    pub(super) quantity: &'static str,
+    pub(super) value: f64,
+    pub(super) expected: f64,
+    pub(super) tolerance: f64,
+    pub(super) reason: &'static str,
 }
 
 impl Found {
-    fn at(self, state: &LoadingState) -> Result<(), Error> {
+    pub(super) fn at(self, state: &LoadingState) -> Result<(), Error> {
         let Self { quantity, value, expected, tolerance, reason } = self;
         if (value - expected).abs() <= tolerance {
             return Ok(());
@@ -42,7 +41,7 @@ impl Found {
 }
 
 /// The error of a state whose quantity has a value in place of another one.
-fn inconsistent(
+pub(super) fn inconsistent(
     state: &LoadingState,
     quantity: &'static str,
     [value, expected]: [f64; 2],
@@ -57,7 +56,7 @@ fn inconsistent(
 pub(super) fn check(
     grid: &Grid,
     heights: &HeightMap,
-    (layering, hardness): (Layering, Option<&DMatrix<f64>>),
+    (origin, hardness): (&KernelOrigin, Option<&DMatrix<f64>>),
     states: &[LoadingState],
 ) -> Result<(), Error> {
     let (Some(first), Some(last)) = (states.first(), states.last()) else {
@@ -87,7 +86,8 @@ pub(super) fn check(
             return Err(inconsistent(state, quantity, [state.approach_error, most], reason));
         }
     }
-    stiffnesses(None, first, layering)?;
+    let stiffnesses = Stiffnesses::new(grid, origin);
+    stiffnesses.check(None, first)?;
     if let Some(hardness) = hardness {
         for state in states {
             plastic(state, hardness, length)?;
@@ -95,7 +95,7 @@ pub(super) fn check(
     }
     for (before, state) in states.iter().zip(&states[1..]) {
         increments(before, state, length)?;
-        stiffnesses(Some(before), state, layering)?;
+        stiffnesses.check(Some(before), state)?;
     }
     Ok(())
 }
@@ -179,57 +179,6 @@ fn plastic(state: &LoadingState, hardness: &DMatrix<f64>, length: f64) -> Result
             let expected = if value < low { low } else { high };
             let reason = "is what its volume and the hardness allow";
             return Err(inconsistent(state, quantity, [value, expected], reason));
-        }
-    }
-    Ok(())
-}
-
-/// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on a half-space, and
-/// 0 on a plateau alone.
-fn stiffnesses(
-    before: Option<&LoadingState>,
-    state: &LoadingState,
-    layering: Layering,
-) -> Result<(), Error> {
-    let of = |state: &LoadingState| {
-        let ContactState { contact_stiffness, interfacial_stiffness, .. } = state.contact;
-        [("contact stiffness", contact_stiffness), ("interfacial stiffness", interfacial_stiffness)]
-    };
-    let earlier = before.map_or([("", None); 2], of);
-    let has_yielded = state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0);
-    for ((quantity, value), (_, earlier)) in of(state).into_iter().zip(earlier) {
-        if before.is_some() && earlier.is_some() != value.is_some() {
-            let [value, expected] = [value, earlier].map(|value| value.unwrap_or(f64::NAN));
-            let reason = "is what the state before has, of a body that has one or none";
-            return Err(inconsistent(state, quantity, [value, expected], reason));
-        }
-        let Some(value) = value else { continue };
-        // Under a layer gaps may open as the load grows.
-        let may_fall_below = quantity == "interfacial stiffness" && layering != Layering::HalfSpace;
-        let is_one = if state.contact.is_plateau() {
-            // Infinite in full contact.
-            value == 0.0 || value == f64::INFINITY
-        } else {
-            value > 0.0
-        };
-        let wrong =
-            |expected, reason| Err(inconsistent(state, quantity, [value, expected], reason));
-        if !is_one && (value == 0.0 || !may_fall_below) {
-            return wrong(0.0, "is what a plateau has, and no other state");
-        }
-        // Where nodes have yielded, part of the approach is lost to their depth, and the rest may be stiffer.
-        let is_bounded = quantity == "contact stiffness" || !(may_fall_below || has_yielded);
-        let Some(earlier) = earlier.filter(|_| is_bounded) else { continue };
-        let (least, most) = match state.event {
-            ContactEvent::Touch => (earlier, f64::INFINITY),
-            ContactEvent::Limit => (earlier, earlier),
-            ContactEvent::Release | ContactEvent::Yield => (0.0, earlier),
-        };
-        if value < least * (1.0 - SAME_STIFFNESS) {
-            return wrong(least, "is the least behind the state before");
-        }
-        if value > most * (1.0 + SAME_STIFFNESS) {
-            return wrong(most, "is the most behind the state before");
         }
     }
     Ok(())

@@ -37,6 +37,7 @@ mod kernel;
 mod npz;
 #[cfg(feature = "serde")]
 mod parts;
+mod stiffnesses;
 
 pub use kernel::KernelRecord;
 
@@ -178,7 +179,7 @@ impl LoadingRecord {
         let states: Vec<LoadingState> = history.states().iter().chain(ahead).copied().collect();
         let hardness =
             settings.hardness.as_ref().map(|hardness| hardness.map(&grid)).transpose()?;
-        increments::check(&grid, &heights, (layering, hardness.as_ref()), &states)?;
+        increments::check(&grid, &heights, (&kernel.origin, hardness.as_ref()), &states)?;
         let history = history.on(layering);
         Ok(Self { grid, heights, kernel, settings, history, end, bodies: Vec::new() })
     }

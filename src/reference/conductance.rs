@@ -28,7 +28,11 @@ use crate::Error;
 ///   bodies with a uniform current, for one period of the surface. In full contact it adds nothing, and the
 ///   conductance is infinite.
 ///
-/// `contact.contact_stiffness.or(contact.interfacial_stiffness)` is the right one on either. A layer, or a graded
+/// * *Half-space that repeats along one side* ([`SemiPeriodicBoussinesq`](crate::SemiPeriodicBoussinesq)): `interfacial_stiffness`, and the same meaning.
+///   A row of contacts without end has no resistance to a distant point: it grows with the logarithm of the distance, and dW/dδ with the convention
+///   of the approach.
+///
+/// `contact.contact_stiffness.or(contact.interfacial_stiffness)` is the right one on the first two. A layer, or a graded
 /// body, has no such analogy: current and displacement solve different problems there.
 ///
 /// ```

@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::DMatrix;
 
 use crate::kernel::{Base, LayeredBody};
-use crate::number::{quantity, significant};
+use crate::number::{counted, quantity, significant};
 use crate::patches::ContactEdge;
 use crate::surface::{self, Topography};
 use crate::{Boundary, Error, Grid};
@@ -207,8 +207,9 @@ impl fmt::Display for Warning {
             ),
             Self::SmallPatches { contact_nodes, excess } => write!(
                 f,
-                "the contact is not resolved: the area of its {contact_nodes} cells is some {:.0} % too large. Contact area \
+                "the contact is not resolved: the area of its {} is some {:.0} % too large. Contact area \
                  and greatest pressure depend on the mesh; use the corrected area, or a finer grid",
+                counted(contact_nodes, "cell"),
                 100.0 * excess
             ),
             Self::EdgePeak { pressure, inside } => write!(
@@ -257,7 +258,7 @@ impl fmt::Display for Warning {
                 significant(pressure / e_star, 2),
                 pascals(e_star),
                 if e_star >= SOFTEST_METAL {
-                    "metals yield at some 0.01 to 0.03 of E*"
+                    "metals yield at some 0.01 to 0.03 of E*, glass and ceramics at some 0.03 to 0.12"
                 } else {
                     "polymers yield at some 0.05 of E*"
                 }

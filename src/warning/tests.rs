@@ -134,6 +134,13 @@ fn maps_of_other_grids_are_refused() -> Result<(), Error> {
 }
 
 #[test]
+fn one_cell_is_one() {
+    let told = |contact_nodes| Warning::SmallPatches { contact_nodes, excess: 0.9 }.to_string();
+    assert!(told(1).contains("the area of its 1 cell is some 90 % too large"), "{}", told(1));
+    assert!(told(2).contains("the area of its 2 cells is some 90 % too large"), "{}", told(2));
+}
+
+#[test]
 fn pressures_that_solids_do_not_bear_are_noticed() {
     let told = |pressure, e_star, hardness| {
         Warning::of_pressure(pressure, e_star, hardness).map(|warning| warning.to_string())
@@ -142,6 +149,8 @@ fn pressures_that_solids_do_not_bear_are_noticed() {
         (2e9, 115e9, None, None),
         (2.5e9, 115e9, None, Some("2.5 GPa, 0.022 of E*")),
         (2.5e9, 115e9, None, Some("metals yield")),
+        // Nothing but a modulus is known: it may be that of glass.
+        (2.5e9, 115e9, None, Some("glass and ceramics")),
         // Polymers bear more of their modulus, and rubber does not yield.
         (0.14e9, 3e9, None, None),
         (0.16e9, 3e9, None, Some("polymers yield")),

@@ -402,7 +402,10 @@ impl Pressed<'_> {
 pub(super) fn conductance(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let name = pressed.row.name;
     let history = pressed.conducting()?;
-    history.layering().check(Theory::Conductance)?;
+    let body = history.layering();
+    body.check(Theory::Conductance)?;
+    // Of one that repeats along one side the approach is counted from where one likes.
+    let in_a_row = pressed.row.kernel.boundary().repeats() != [false; 2];
     let heat = Conduction::thermal(E_STAR, RESISTIVITY)?;
     let dense = Dense::of(pressed.row);
     let events = history.states().iter().filter(|state| state.event == ContactEvent::Touch);
@@ -412,8 +415,8 @@ pub(super) fn conductance(pressed: &mut Pressed<'_>) -> Result<(), Error> {
         let scale = 2.0 / (RESISTIVITY * E_STAR);
         let tolerance = pressed.row.tolerance();
         for (found, stiffness) in [
-            (heat.of(&state.contact)?, contact.or(interfacial)),
-            (heat.of_interface(&state.contact)?, interfacial),
+            (heat.of(&state.contact, body)?, contact.filter(|_| !in_a_row).or(interfacial)),
+            (heat.of_interface(&state.contact, body)?, interfacial),
         ] {
             let expected = scale * stiffness.unwrap();
             near(found.unwrap(), expected, tolerance * expected, &context);

@@ -187,6 +187,7 @@ fn rows_are_what_they_are_called() {
         let expected = match name {
             "sheet" => Layering::OneMaterial,
             "soft layer" | "stiff layer" => Layering::Several,
+            "periodic x" | "periodic y" => Layering::SemiPeriodicHalfSpace,
             _ => Layering::HalfSpace,
         };
         assert_eq!(history.layering(), expected, "{name}");

@@ -1,6 +1,7 @@
 //! Conductance of contacts and gaps, and Barber's bounds.
 
 use asperity::joint::{Carrier, Conduction};
+use asperity::kernel::Layering;
 use asperity::reference::contact_conductance;
 use asperity::surface::{HeightMap, Paraboloid};
 use asperity::{Boussinesq, ContactState, Error, Grid, InfluenceKernel, PeriodicBoussinesq};
@@ -25,13 +26,16 @@ fn conduction_takes_the_stiffness_of_the_half_space() {
             let interfacial = contact.interfacial_stiffness.unwrap();
             let stiffness = contact.contact_stiffness.unwrap_or(interfacial);
             let expected = |k| Some(contact_conductance(k, E_STAR, 2.0 * COPPER).unwrap());
-            assert_eq!(current.of(contact).unwrap(), expected(stiffness));
-            assert_eq!(current.of_interface(contact).unwrap(), expected(interfacial));
+            assert_eq!(current.of(contact, Layering::HalfSpace).unwrap(), expected(stiffness));
+            assert_eq!(
+                current.of_interface(contact, Layering::HalfSpace).unwrap(),
+                expected(interfacial)
+            );
         }
     }
     let without = ContactState::new(&grid, 3, 1.0, 1.0, 1.0);
-    assert_eq!(current.of(&without).unwrap(), None);
-    assert_eq!(current.of_interface(&without).unwrap(), None);
+    assert_eq!(current.of(&without, Layering::Unknown).unwrap(), None);
+    assert_eq!(current.of_interface(&without, Layering::Unknown).unwrap(), None);
 }
 
 /// By hand: 20 nodes of 1 m², 5 in contact, a mean gap of 3 m, so that the gap of the open 15 m² is 4 m on average.
@@ -42,15 +46,18 @@ fn the_gap_conducts_in_parallel() {
     contact.interfacial_stiffness = Some(7.0);
     let solid = Conduction::thermal(2.0, 0.5).unwrap();
     assert_eq!(solid.carrier(), Carrier::Heat);
-    assert_eq!(solid.of(&contact).unwrap(), Some(14.0));
+    assert_eq!(solid.of(&contact, Layering::Unknown).unwrap(), Some(14.0));
     let with_gap = solid.with_gap(0.1, 2.0).unwrap();
-    assert_eq!(with_gap.of(&contact).unwrap(), Some(14.0 + 0.1 * 15.0 / 6.0));
+    assert_eq!(with_gap.of(&contact, Layering::Unknown).unwrap(), Some(14.0 + 0.1 * 15.0 / 6.0));
     // In full contact there is no gap.
     let mut full = ContactState::new(&grid, 20, 1.0, 1.0, 0.0);
     full.interfacial_stiffness = Some(f64::INFINITY);
-    assert_eq!(with_gap.of(&full).unwrap(), Some(f64::INFINITY));
+    assert_eq!(with_gap.of(&full, Layering::Unknown).unwrap(), Some(f64::INFINITY));
     full.interfacial_stiffness = Some(1.0);
-    assert_eq!(with_gap.of(&full).unwrap(), solid.of(&full).unwrap());
+    assert_eq!(
+        with_gap.of(&full, Layering::Unknown).unwrap(),
+        solid.of(&full, Layering::Unknown).unwrap()
+    );
 }
 
 #[test]
@@ -68,7 +75,7 @@ fn what_conducts_nothing_is_refused() {
     }
     let mut contact = ContactState::new(&Grid::square(4, 1.0).unwrap(), 5, 1.0, 1.0, 3.0);
     contact.contact_stiffness = Some(f64::NAN);
-    assert!(Conduction::thermal(1.0, 1.0).unwrap().of(&contact).is_err());
+    assert!(Conduction::thermal(1.0, 1.0).unwrap().of(&contact, Layering::HalfSpace).is_err());
 }
 
 /// Without unresolved roughness the bounds are the stiffnesses on both sides of an event; with more of it they widen, and the conductance
@@ -82,8 +89,11 @@ fn bounds_enclose_the_conductance_and_widen_with_the_roughness() {
     let kernels: [&dyn InfluenceKernel; 2] = [&free, &periodic];
     for kernel in kernels {
         let history = history(&rough(), kernel, 0.5);
-        let conductances: Vec<f64> =
-            history.states().iter().map(|s| conduction.of(&s.contact).unwrap().unwrap()).collect();
+        let conductances: Vec<f64> = history
+            .states()
+            .iter()
+            .map(|s| conduction.of(&s.contact, Layering::HalfSpace).unwrap().unwrap())
+            .collect();
         let none = conduction.bounds(&history, 0.0).unwrap();
         // Loads and approaches are sums of some hundred increments, each right to rounding of the whole.
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
@@ -127,7 +137,7 @@ fn a_rougher_surface_conducts_within_the_bounds() {
     let mut compared = 0;
     for (state, bound) in first.states().iter().zip(&bounds) {
         if let Some(other) = second.at_load(state.contact.load) {
-            let found = conduction.of(&other.contact).unwrap().unwrap();
+            let found = conduction.of(&other.contact, Layering::HalfSpace).unwrap().unwrap();
             assert!(bound.lower <= found && found <= bound.upper, "{found} {bound:?}");
             compared += 1;
         }

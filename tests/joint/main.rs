@@ -4,6 +4,7 @@
 mod conductance;
 mod hardness;
 mod layers;
+mod semi_periodic;
 mod tables;
 
 use asperity::loading::History;

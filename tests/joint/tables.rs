@@ -74,6 +74,12 @@ fn interpolation_errs_by_no_more_than_the_tolerance() {
                 let tangential = |r: &InterfaceRow| r.tangential_stiffness.unwrap();
                 let found = interpolated(rows, |r| r.pressure, tangential, pressure);
                 assert!((found / (stiffness / 1.2) - 1.0).abs() <= tolerance * (1.0 + 1e-6));
+                // As a program does it that has the overclosure: by way of the pressure.
+                let by_pressure =
+                    interpolated(rows, |r| r.overclosure, |r| r.pressure, overclosure);
+                let found = interpolated(rows, |r| r.pressure, conductance, by_pressure);
+                let error = found / (2.0 * stiffness / (0.04 * E_STAR)) - 1.0;
+                assert!(error.abs() <= tolerance * (1.0 + 1e-6), "{error} over overclosure");
             }
             assert!(worst > 0.5 * tolerance, "{worst} {tolerance}");
         }

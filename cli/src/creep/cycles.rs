@@ -49,7 +49,7 @@ impl Sweep {
         let bed = Bed::new(&thinned)?;
         let mut contact = ViscoelasticBed::new(&bed, &task.prony)?;
         contact.settle(cycles.mean)?;
-        let settings = CycleSettings { steps: 64, tolerance: 1e-4, most: 1000 };
+        let settings = CycleSettings { steps: 64, tolerance: 1e-4, most: 10_000 };
         let mut found = Vec::new();
         for frequency in frequencies(task) {
             let period = 1.0 / frequency;

@@ -7,6 +7,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use asperity::kernel::Layering;
 use asperity::patches::ContactEdge;
 use asperity::{ContactEvent, LoadingState};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -124,8 +125,9 @@ fn in_words(event: ContactEvent) -> &'static str {
 pub(super) struct PathFile {
     /// The edge of the contact, for its corrected area.
     edge: ContactEdge,
-    /// The conductances that were asked for.
+    /// The conductances that were asked for, and of which body.
     conductions: Vec<Named>,
+    body: Layering,
     name: PathBuf,
     part: PathBuf,
     output: File,
@@ -139,7 +141,7 @@ impl PathFile {
     pub(super) fn create(
         directory: &Path,
         edge: ContactEdge,
-        conductions: Vec<Named>,
+        (conductions, body): (Vec<Named>, Layering),
     ) -> Result<Self, Failure> {
         let (name, part) = (directory.join("path.csv"), directory.join("path.csv.part"));
         let begin = || {
@@ -157,14 +159,14 @@ impl PathFile {
             lines += &format!(",{name}");
         }
         lines.push('\n');
-        Ok(Self { edge, conductions, name, part, output, lines, waiting: 0 })
+        Ok(Self { edge, conductions, body, name, part, output, lines, waiting: 0 })
     }
 
     /// The whole file at once, in place of the one that is there.
     pub(super) fn write_whole(
         directory: &Path,
         edge: ContactEdge,
-        conductions: Vec<Named>,
+        conductions: (Vec<Named>, Layering),
         states: &[LoadingState],
     ) -> Result<(), Failure> {
         let mut file = Self::create(directory, edge, conductions)?;
@@ -200,7 +202,7 @@ impl PathFile {
             state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction),
         );
         for (_, conduction) in &self.conductions {
-            let conductance = conduction.of(&state.contact);
+            let conductance = conduction.of(&state.contact, self.body);
             let conductance = conductance.map_err(|error| Failure::writing(&self.part, error))?;
             let _ = write!(self.lines, ",{}", printed(conductance));
         }

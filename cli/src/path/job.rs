@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use asperity::kernel::{LayeredBody, Layering};
+use asperity::kernel::Layering;
 use asperity::loading::History;
 use asperity::record::LoadingRecord;
 use asperity::surface::{HeightMap, Topography};
@@ -248,7 +248,13 @@ impl Job {
 
     /// What they are made of.
     pub(super) fn layering(&self) -> Layering {
-        self.bodies.layered.as_ref().map_or(Layering::HalfSpace, LayeredBody::layering)
+        match &self.bodies.layered {
+            Some(body) => body.layering(),
+            None => match self.boundary() {
+                Boundary::PeriodicX | Boundary::PeriodicY => Layering::SemiPeriodicHalfSpace,
+                Boundary::Free | Boundary::Periodic => Layering::HalfSpace,
+            },
+        }
     }
 
     /// What a joint needs to know of the bodies.

@@ -153,9 +153,6 @@ impl Joint {
 
     /// What cannot be done, before the work.
     pub(super) fn check(&self, pair: &Pair<'_>) -> Result<Vec<Named>, Failure> {
-        if self.friction.is_some() {
-            self.compliance_ratio(pair.e_star, pair.elastic)?;
-        }
         if self.unresolved_roughness.is_some() && pair.has_hardness {
             return Err(Failure::request(
                 "--unresolved-roughness needs an elastic path: the approach of a contact that yields is not that of one shape. What is left of it \
@@ -170,6 +167,7 @@ impl Joint {
         }
         if self.friction.is_some() {
             layering.check(Theory::TangentialStiffness).map_err(failed)?;
+            self.compliance_ratio(pair.e_star, pair.elastic)?;
         }
         Ok(conductions)
     }
@@ -182,7 +180,7 @@ impl Joint {
         directory: &Path,
     ) -> Result<Vec<PathBuf>, Failure> {
         let conductions = self.conductions(pair.e_star)?;
-        let history: History = states.iter().copied().collect();
+        let history = states.iter().copied().collect::<History>().on(pair.layering);
         let mut files = Vec::new();
         if let Some(roughness) = self.unresolved_roughness {
             let name = directory.join("conductance.csv");
@@ -226,7 +224,7 @@ fn bounds(
         // Writing to a text cannot fail.
         let _ = write!(text, "{},{:e},{:e}", state.step, contact.load, contact.mean_pressure());
         for (conduction, bounds) in &columns {
-            let value = conduction.of(contact)?.unwrap_or(f64::NAN);
+            let value = conduction.of(contact, history.layering())?.unwrap_or(f64::NAN);
             let _ = write!(text, ",{value:e},{:e},{:e}", bounds[k].lower, bounds[k].upper);
         }
         text.push('\n');

@@ -147,7 +147,7 @@ fn follow_one(
     // The stiffness on unloading, by which a contact conducts that yields, is computed at the end for all states at once.
     let conducts_at_end = job.has_hardness() && options.joint.needs_stiffness(&conductions);
     let columns = if conducts_at_end { Vec::new() } else { conductions.clone() };
-    let file = PathFile::create(&options.out, edge, columns)?;
+    let file = PathFile::create(&options.out, edge, (columns, job.layering()))?;
 
     let start = Instant::now();
     let mut followed = Followed::new(&job, file, options.save_every)?;
@@ -178,7 +178,10 @@ fn follow_one(
             solver
                 .add_unloading_stiffness(&mut states)
                 .map_err(|error| Failure::new("cannot compute the stiffness on unloading", error))
-                .and_then(|()| PathFile::write_whole(&options.out, edge, conductions, &states)),
+                .and_then(|()| {
+                    let conductions = (conductions, job.layering());
+                    PathFile::write_whole(&options.out, edge, conductions, &states)
+                }),
         );
     }
     match fields::of(&mut solver) {

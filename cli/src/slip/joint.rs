@@ -1,6 +1,7 @@
 //! The joint that a command line asks for, and its curves.
 
 use asperity::bed::Bed;
+use asperity::kernel::Theory;
 use asperity::record::LoadingRecord;
 use asperity::slip::{Friction, PartialSlip, SlipCycle, SlipState};
 use asperity::{Boundary, Error, SlipError};
@@ -44,6 +45,7 @@ impl<'a> Joint<'a> {
         options: &Options,
     ) -> Result<Self, Failure> {
         let failed = |error| Failure::new("cannot shear the joint", error);
+        bed.history().layering().check(Theory::Slip).map_err(failed)?;
         let (friction, bodies) = friction(options, record)?;
         let load = options.load.unwrap_or(bed.last_load());
         if load == 0.0 {

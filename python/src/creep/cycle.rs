@@ -16,9 +16,10 @@ use crate::errors::{Failure, Fallible};
 use crate::increments::Increments;
 use crate::results::result;
 
-/// Cycle the load of viscoelastic bodies around a mean until each cycle costs as much energy as the one before.
+/// Cycle the load of viscoelastic bodies around a mean until the cycle is the steady one.
 ///
-/// The mean load is held first until nothing creeps any more.
+/// The mean load is held first until nothing creeps any more. Terms of the modulus that are much slower than the period go many
+/// cycles ahead at once.
 ///
 /// Parameters
 /// ----------
@@ -33,15 +34,16 @@ use crate::results::result;
 /// steps : int
 ///     Steps of a cycle, at least 8.
 /// tolerance : float
-///     Estimated distance of the energy lost from that of the steady cycle, over the product of amplitudes, at which a cycle is taken for it.
+///     Estimated distance from the steady cycle at which a cycle is taken for it: of the energy lost over the product of amplitudes,
+///     and of the amplitude of the approach over itself.
 /// most : int
-///     No more cycles than these.
+///     No more cycles than these: where they are not enough, ``ConvergenceError`` of the kind ``NotSteady`` says how near they came.
 ///
 /// Returns
 /// -------
 /// results.Cycle
 #[pyfunction]
-#[pyo3(signature = (path, prony, *, mean_load, amplitude, period, steps=96, tolerance=1e-5, most=1000))]
+#[pyo3(signature = (path, prony, *, mean_load, amplitude, period, steps=96, tolerance=1e-5, most=10_000))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn steady_cycle<'py>(
     py: Python<'py>,
@@ -74,7 +76,7 @@ fn steady_cycle<'py>(
 /// -------
 /// list of results.Cycle
 #[pyfunction]
-#[pyo3(signature = (path, prony, *, mean_load, amplitude, periods, steps=96, tolerance=1e-5, most=1000))]
+#[pyo3(signature = (path, prony, *, mean_load, amplitude, periods, steps=96, tolerance=1e-5, most=10_000))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn steady_cycles<'py>(
     py: Python<'py>,

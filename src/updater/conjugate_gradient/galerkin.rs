@@ -1,5 +1,8 @@
 //! Schur complements from local solutions.
 
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
 use super::local::Local;
 use super::tuning::{FAR, POINTS};
 use crate::kernel::KernelTable;
@@ -40,10 +43,34 @@ pub(super) fn schur(problem: &Problem, locals: &[Local], matrix: &mut [f64]) {
     let mut columns: Vec<(usize, &mut [f64])> =
         matrix.chunks_mut(size.max(1)).enumerate().collect();
     parallel::for_each(products, &mut columns, |(j, column)| {
+        let mut known = Displacements::default();
         for (i, source) in sources.iter().enumerate().skip(*j) {
-            column[i] = source.energy(&sources[*j], table);
+            column[i] = source.energy(&sources[*j], table, &mut known);
         }
     });
+}
+
+/// Displacements of places under one source. Where nodes beside each other are watched, as on a plateau, the places near one of them are near
+/// most of the others too.
+type Displacements = HashMap<usize, f64, BuildHasherDefault<OfPlace>>;
+
+/// Spreads places, which are no one's choice.
+#[derive(Default)]
+struct OfPlace(u64);
+
+impl Hasher for OfPlace {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_usize(usize::from(*byte)));
+    }
+
+    fn write_usize(&mut self, place: usize) {
+        // 2⁶⁴ over the golden ratio.
+        self.0 = (self.0 ^ place as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
 }
 
 /// Products, and look-ups that take as long, of a column: those of a source of `nodes` with itself, and with its neighbours among
@@ -118,8 +145,8 @@ impl Source {
         }
     }
 
-    /// Work of one source on the displacement that another one causes.
-    fn energy(&self, other: &Self, table: &KernelTable) -> f64 {
+    /// Work of one source on the displacement that another one causes, which is known at some places.
+    fn energy(&self, other: &Self, table: &KernelTable, known: &mut Displacements) -> f64 {
         let distance = distance(table.grid(), table.boundary(), self.centre, other.centre);
         if distance > FAR * (self.radius + other.radius) {
             return self
@@ -137,7 +164,9 @@ impl Source {
             let is_taken_away = (place != other.own || other.is_in_contact)
                 && answering.peek().is_some_and(|(other, _)| *other == place);
             if !is_taken_away {
-                work += pressure * displacement(table, place, &other.near);
+                let found = known.entry(place);
+                work +=
+                    pressure * *found.or_insert_with(|| displacement(table, place, &other.near));
             }
         }
         work
@@ -150,10 +179,18 @@ impl Source {
     }
 }
 
-/// Displacement of a place under some pressures.
+/// Displacement of a place under some pressures. Four sums side by side: one waits for each of its additions.
 fn displacement(table: &KernelTable, place: usize, pressures: &[(usize, f64)]) -> f64 {
-    let terms = pressures.iter().map(|&(other, p)| table.between(place, other) * p);
-    terms.sum()
+    let term = |&(other, pressure): &(usize, f64)| table.between(place, other) * pressure;
+    let fours = pressures.chunks_exact(4);
+    let rest: f64 = fours.remainder().iter().map(term).sum();
+    let mut sums = [0.0; 4];
+    for four in fours {
+        for (sum, pressure) in sums.iter_mut().zip(four) {
+            *sum += term(pressure);
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// How far two points are from each other, the shorter way round where the half-space repeats.

@@ -158,7 +158,8 @@ pub enum Error {
 
     /// An iteration did not reach its tolerance.
     #[error(
-        "no convergence: relative residual {residual} after {iterations} iterations, tolerance {tolerance}"
+        "no convergence: relative residual {residual} after {}, tolerance {tolerance}",
+        crate::number::counted(iterations, "iteration")
     )]
     NoConvergence {
         /// Smallest relative residual reached.

@@ -12,7 +12,7 @@ use super::measured::MeasuredSurface;
 use super::raw::Channel;
 use super::text::TextLayout;
 use super::unit::LengthUnit;
-use crate::number::quantity;
+use crate::number::{counted, quantity};
 use crate::{Error, FileError};
 
 /// Reads the heights in a file, in any of the [formats](super) that this crate knows.
@@ -204,7 +204,11 @@ impl ReadOptions {
             let nodes = channel.values.iter_mut().zip(&mask).filter(|(_, marked)| **marked);
             let marked = nodes.map(|(value, _)| *value = f64::NAN).count();
             if marked > 0 {
-                notes.push(format!("{marked} nodes that a mask marks are taken as missing"));
+                let are = if marked == 1 { "marks is" } else { "marks are" };
+                notes.push(format!(
+                    "{} that a mask {are} taken as missing",
+                    counted(marked, "node")
+                ));
             }
         }
         if let (Some(layout), true) = (self.layout, format != Format::Text) {
@@ -226,7 +230,7 @@ impl ReadOptions {
             || channel.values.iter().enumerate().filter(|(_, value)| value.is_infinite());
         if let Some((first, value)) = infinite().next() {
             notes.push(format!(
-                "{} {value} at node ({}, {}) and count as missing, as in files of several makers; a node that is never to touch \
+                "{} {value} at node ({}, {}), and taken as missing, as in files of several makers; a node that is never to touch \
                  needs a finite height far below the others",
                 match infinite().count() {
                     1 => "1 height is infinite,".to_string(),

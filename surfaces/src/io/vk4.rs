@@ -97,8 +97,10 @@ fn image(bytes: &mut Bytes, step: f64) -> Result<Channel, Fault> {
     let mut channel = Channel::in_metres((nx, ny), values, None);
     if zeros > 0 {
         channel.mask = Some(channel.values.iter().map(|value| *value == 0.0).collect());
-        channel.notes =
-            vec![format!("{zeros} nodes hold 0, and are marked: they may not have been measured")];
+        channel.notes = vec![match zeros {
+            1 => "1 node holds 0, and is marked: it may not have been measured".to_string(),
+            _ => format!("{zeros} nodes hold 0, and are marked: they may not have been measured"),
+        }];
     }
     Ok(channel)
 }

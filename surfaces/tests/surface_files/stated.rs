@@ -160,7 +160,17 @@ fn points_on_no_grid_are_called_so() {
 fn infinite_heights_are_named() {
     let found = read("punch_inf.npy", ReadOptions::new().side(1e-3));
     assert_eq!((found.missing, found.heights.len()), (336, 400));
-    note(&found, "336 heights are infinite, the first -inf");
+    note(
+        &found,
+        "336 heights are infinite, the first -inf at node (0, 0), and taken as missing, as",
+    );
+    let one =
+        std::env::temp_dir().join(format!("asperity-one-infinite-{}.asc", std::process::id()));
+    std::fs::write(&one, "1 2 3 4\n2 inf 4 5\n3 4 5 6\n").unwrap();
+    let options = ReadOptions::new().height_unit(LengthUnit::METRE).side(1e-3);
+    let alone = options.read(&one);
+    std::fs::remove_file(&one).unwrap();
+    note(&alone.unwrap(), "1 height is infinite, inf at node (1, 1), and taken as missing, as");
     let warning = Warning::of_filling(found.missing, found.heights.len());
     assert!(matches!(warning, Some(Warning::Filled { filled: 336, nodes: 400 })));
 }

@@ -104,9 +104,12 @@ impl Header {
         let lowest = self.height(least);
         let count = heights.iter().filter(|height| **height == lowest).count();
         (count > 0).then(|| {
+            let (holds, are) = match count {
+                1 => ("1 node holds".to_string(), "it is taken as a height"),
+                _ => (format!("{count} nodes hold"), "they are taken as heights"),
+            };
             format!(
-                "{count} nodes hold {least}, the marker of missing nodes in ISO files; in this BCR file it is {}, \
-                 and they are taken as heights",
+                "{holds} {least}, the marker of missing nodes in ISO files; in this BCR file the marker is {}, and {are}",
                 self.marker()
             )
         })
