@@ -30,6 +30,8 @@ pub enum Theory {
     Slip,
     /// One creep function for the whole body.
     Creep,
+    /// Stresses below the surface of a half-space.
+    Stress,
 }
 
 impl Layering {
@@ -59,6 +61,10 @@ impl Layering {
                 "creep",
                 "one relaxation function would let all materials creep alike, also an elastic base. Right is one for each material; here layers of one \
                  material on a rigid base, against a rigid body, may creep",
+            ),
+            Theory::Stress => (
+                "the stress below the surface",
+                "below layers it is not that of a half-space. Right is the stress by transfer matrices of the layers, which is not computed here",
             ),
         };
         let holds = match self {
@@ -141,8 +147,8 @@ mod tests {
 
     #[test]
     fn theories_hold_for_their_bodies() {
-        use Theory::{Conductance, Creep, Slip, TangentialStiffness};
-        for theory in [Conductance, TangentialStiffness, Slip, Creep] {
+        use Theory::{Conductance, Creep, Slip, Stress, TangentialStiffness};
+        for theory in [Conductance, TangentialStiffness, Slip, Creep, Stress] {
             assert!(Layering::Unknown.check(theory).is_ok());
             assert!(Layering::HalfSpace.check(theory).is_ok());
             assert_eq!(Layering::OneMaterial.check(theory).is_ok(), theory == Creep);

@@ -35,7 +35,7 @@ pub use layered::{Base, Layer, Layered, LayeredBody};
 pub use layering::{Layering, Theory};
 pub use mean::MeanDisplacement;
 pub use origin::KernelOrigin;
-pub(crate) use periodic::check_periodic_cells;
 pub use periodic::{PeriodicBoussinesq, SemiPeriodicBoussinesq, Spectral};
+pub(crate) use periodic::{check_periodic_cells, sinc};
 pub(crate) use table::Blocks;
 pub use table::KernelTable;
