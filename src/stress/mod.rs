@@ -8,6 +8,7 @@ mod load;
 mod rectangle;
 mod survey;
 mod tensor;
+mod volume;
 mod waves;
 mod yielding;
 

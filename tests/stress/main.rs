@@ -6,6 +6,7 @@ mod periodic;
 mod points;
 mod refusals;
 mod smooth;
+mod surveys;
 
 use asperity::Grid;
 use nalgebra::DMatrix;

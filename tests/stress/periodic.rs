@@ -147,8 +147,9 @@ fn one_side_that_repeats_is_a_sum_over_images() -> Result<(), Error> {
             for power in 1..counts.len() {
                 let ratio = 3.0_f64.powi(power as i32);
                 for k in 0..counts.len() - power {
-                    for c in 0..6 {
-                        sums[k][c] = (ratio * &sums[k + 1][c] - &sums[k][c]) / (ratio - 1.0);
+                    let finer = sums[k + 1].clone();
+                    for (coarse, fine) in sums[k].iter_mut().zip(&finer) {
+                        *coarse = (ratio * fine - &*coarse) / (ratio - 1.0);
                     }
                 }
             }

@@ -9,6 +9,9 @@ use nalgebra::DMatrix;
 /// xx, yy, zz, yz, xz, xy.
 type Tensor = [f64; 6];
 
+/// Under a force of 1, at (x, y, z) for Poisson's ratio ν.
+type Point = fn(f64, f64, f64, f64) -> Tensor;
+
 /// Boussinesq: a force of 1 into the body.
 fn normal(x: f64, y: f64, z: f64, nu: f64) -> Tensor {
     let (r2, rho) = (x * x + y * y, (x * x + y * y + z * z).sqrt());
@@ -45,12 +48,7 @@ fn along_y(x: f64, y: f64, z: f64, nu: f64) -> Tensor {
 }
 
 /// Over a rectangle about the origin, seen from (x, y, z): Gauss's rule of five points in parts of it.
-fn integrated(
-    point: fn(f64, f64, f64, f64) -> Tensor,
-    (dx, dy): (f64, f64),
-    (x, y, z): (f64, f64, f64),
-    nu: f64,
-) -> Tensor {
+fn integrated(point: Point, (dx, dy): (f64, f64), (x, y, z): (f64, f64, f64), nu: f64) -> Tensor {
     const RULE: [(f64, f64); 5] = [
         (0.0, 0.568_888_888_888_888_9),
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -88,7 +86,7 @@ fn rectangles_are_integrals_of_point_forces() -> Result<(), Error> {
         one[(2, 3)] = 1.0;
         let none = DMatrix::zeros(5, 6);
         for z in [0.3, 1.0, 7.0] {
-            let loads: [(fn(f64, f64, f64, f64) -> Tensor, [&DMatrix<f64>; 3]); 3] = [
+            let loads: [(Point, [&DMatrix<f64>; 3]); 3] = [
                 (normal, [&one, &none, &none]),
                 (along_x, [&none, &one, &none]),
                 (along_y, [&none, &none, &one]),
