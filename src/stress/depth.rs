@@ -1,7 +1,7 @@
 //! A depth, or what deeper ones say of it. Lengths are in long sides of a cell.
 
 /// Depths from which shallower ones are extrapolated, 1, 2, … long sides of a cell.
-const NODES: usize = 8;
+const NODES: usize = 10;
 
 /// A sum of responses at one or several depths.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ impl Depth {
     /// What responses at 1, 2, … let expect at the depth z.
     ///
     /// Far from a load its response varies with depth over as much as the distance is: at a distance of r the error is some
-    /// 8! × 10 / r¹⁰, and beyond [`REACH`](Self::REACH) nothing.
+    /// 10! × 10 / r¹², and beyond [`REACH`](Self::REACH) nothing.
     pub(super) fn extrapolated(z: f64) -> Self {
         let weights = std::array::from_fn(|k| {
             let own = (k + 1) as f64;
@@ -27,7 +27,7 @@ impl Depth {
     }
 
     /// All loads beyond it together err by 10⁻¹² of their mean.
-    pub(super) const REACH: f64 = 160.0;
+    pub(super) const REACH: f64 = 90.0;
 
     /// The least depth.
     pub(super) fn least(&self) -> f64 {

@@ -131,7 +131,8 @@ mod tests {
                 let q = qx.hypot(qy);
                 let at = |z: f64| {
                     let fades = (-q * z).exp();
-                    let values = Values::of_wave((qx / q, qy / q), (fades, q * z * fades));
+                    let mut values = Values::default();
+                    values.add_wave((qx / q, qy / q), (fades, q * z * fades));
                     response.of(&values)
                 };
                 let [_, _, zz, yz, xz, _] = at(0.0);

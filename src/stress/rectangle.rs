@@ -41,7 +41,7 @@ pub(super) enum Cosines {
 const COUNT: usize = 7;
 
 /// A value for each product: of what goes with $`e^{-q z}`$, and of what goes with $`q z\, e^{-q z}`$.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Values {
     plain: [f64; COUNT],
     deep: [f64; COUNT],
@@ -95,10 +95,13 @@ impl Values {
         Self { plain, deep }
     }
 
-    /// The products themselves for a wave along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q z\, e^{-q z}`$.
-    pub(super) fn of_wave((cx, cy): (f64, f64), (plain, deep): (f64, f64)) -> Self {
+    /// Adds the products themselves for a wave along (cx, cy), times the sums `plain` of $`e^{-q z}`$ and `deep` of $`q z\, e^{-q z}`$.
+    pub(super) fn add_wave(&mut self, (cx, cy): (f64, f64), (plain, deep): (f64, f64)) {
         let products = [1.0, cx, cy, cx * cx, cx * cy, cx * cy * cy, cx * cx * cy];
-        Self { plain: products.map(|c| c * plain), deep: products.map(|c| c * deep) }
+        for (place, c) in products.into_iter().enumerate() {
+            self.plain[place] += c * plain;
+            self.deep[place] += c * deep;
+        }
     }
 }
 

@@ -10,8 +10,8 @@ use crate::Grid;
 use crate::kernel::sinc;
 use crate::parallel::for_each_chunk;
 
-/// A wave has faded at this many times its reciprocal wave number: 10⁻¹⁶ of it.
-const FADED: f64 = 37.0;
+/// A wave has faded at this many times its reciprocal wave number: to 10⁻¹⁴, and all beyond it weigh little in a cell.
+const FADED: f64 = 32.0;
 
 /// What a load is between the nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +64,7 @@ impl Spectrum {
                     *value = response.uniform();
                     continue;
                 }
+                let mut sum = Values::default();
                 for &(qy, weight_y) in &along_y {
                     for &(qx, weight_x) in &along_x[kx] {
                         let q = (qx * qx + qy * qy).sqrt();
@@ -72,11 +73,10 @@ impl Spectrum {
                         }
                         let weight = weight_x * weight_y;
                         let (plain, deep) = depth.of_wave(q);
-                        let sums = (weight * plain, weight * deep);
-                        let found = response.of(&Values::of_wave((qx / q, qy / q), sums));
-                        super::cells::add(value, 1.0, &found);
+                        sum.add_wave((qx / q, qy / q), (weight * plain, weight * deep));
                     }
                 }
+                *value = response.of(&sum);
                 // The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
                 for (c, value) in value.iter_mut().enumerate() {
                     let (x, y) = response.signs(c);

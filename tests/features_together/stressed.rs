@@ -41,7 +41,7 @@ pub(super) fn stress(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let pressure = pressed.path.pressure_at(&state)?;
     let (most, total) = (pressure.max(), pressure.sum());
     let surface = body.at_depth(&pressure, 0.0)?;
-    // Sums over 300 cells, extrapolated ones with weights of up to 255.
+    // Sums over 300 cells, extrapolated ones with weights of up to 1023.
     assert!((&surface.zz + &pressure).amax() < 1e-11 * most, "{name}");
     let z = 3.0 * grid.dx().max(grid.dy());
     let field = body.at_depth(&pressure, z)?;

@@ -63,7 +63,7 @@ fn each_plane_carries_the_load() -> Result<(), Error> {
         let body = Subsurface::new(grid, boundary, 0.3)?.sliding(0.3, 0.8)?;
         let surface = body.at_depth(&load, 0.0)?;
         for (field, ratio) in [(&surface.zz, -1.0), (&surface.xz, -x), (&surface.yz, -y)] {
-            // Sums over 4096 cells, extrapolated ones with weights of up to 255.
+            // Sums over 4096 cells, extrapolated ones with weights of up to 1023.
             assert!((field - ratio * &load).amax() < 1e-11, "{boundary:?}");
         }
     }

@@ -93,7 +93,7 @@ fn cells_that_repeat_are_fourier_series() -> Result<(), Error> {
             let expected = series(&pressure, sides, z, nu);
             for (c, (found, expected)) in found.components().into_iter().zip(&expected).enumerate()
             {
-                // What is extrapolated errs by 10⁻¹², and its weights of up to 255 times roundings by some 10⁻¹³ for each of up to 400 terms.
+                // What is extrapolated errs by 10⁻¹², and its weights of up to 1023 times roundings by some 10⁻¹³ for each of up to 400 terms.
                 let error = (found - expected).amax();
                 assert!(error < 1e-11, "{shape:?} {nu} {z} {c}: {error:e}");
             }
@@ -183,7 +183,7 @@ fn the_other_side_that_repeats() -> Result<(), Error> {
             (&x.xz, &y.yz),
             (&x.xy, &y.xy),
         ] {
-            // Rounding of sums of thirty responses, extrapolated ones with weights of up to 255.
+            // Rounding of sums of thirty responses, extrapolated ones with weights of up to 1023.
             assert!((a.transpose() - b).amax() < 1e-12);
         }
     }

@@ -93,7 +93,6 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
             None => say!("  does not yield on this path: von Mises' stress stays below {strength}"),
         }
     }
-    say!();
 }
 
 /// What the figures do not say.
