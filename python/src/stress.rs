@@ -163,7 +163,7 @@ impl Stress {
         Ok(rows(py, self.pressure.clone())?.into_any())
     }
 
-    /// Poisson's ratio.
+    /// Poisson's ratio of the body.
     #[getter]
     fn poissons_ratio(&self) -> f64 {
         self.below.poissons_ratio()
