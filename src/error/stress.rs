@@ -11,4 +11,13 @@ pub enum StressError {
         "there is no stress to survey: nothing presses on the surface, or no depth is asked for"
     )]
     NoLoad,
+
+    /// A depth in a rigid base, which has no stress of its own.
+    #[error("a depth of {depth} m is in the rigid base, below layers of {thickness} m")]
+    InRigidBase {
+        /// The depth \[m\].
+        depth: f64,
+        /// Thickness of all layers \[m\].
+        thickness: f64,
+    },
 }

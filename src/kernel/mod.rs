@@ -31,6 +31,7 @@ pub use check::{KernelReport, check};
 pub(crate) use gauge::Gauge;
 pub use growth::ContactGrowth;
 pub use influence::InfluenceKernel;
+pub(crate) use layered::Below;
 pub use layered::{Base, Layer, Layered, LayeredBody};
 pub use layering::{Layering, Theory};
 pub use mean::MeanDisplacement;

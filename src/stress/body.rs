@@ -6,11 +6,11 @@ use super::kernel::{Domain, StressKernel};
 use super::load::{COMPONENTS, Load, Response};
 use super::tensor::StressField;
 use super::waves::Between;
-use crate::kernel::{KernelOrigin, Theory};
+use crate::kernel::{Below, KernelOrigin, LayeredBody, Theory};
 use crate::record::LoadingRecord;
-use crate::{Boundary, Error, Grid, InfluenceKernel};
+use crate::{Boundary, Error, Grid, InfluenceKernel, StressError};
 
-/// An elastic half-space under the cells of a grid, whose stresses under any pressure are asked for.
+/// An elastic half-space, or a [`LayeredBody`], under the cells of a grid, whose stresses under any pressure are asked for.
 ///
 /// ```
 /// use asperity::stress::{Measure, Subsurface};
@@ -31,7 +31,9 @@ use crate::{Boundary, Error, Grid, InfluenceKernel};
 #[derive(Debug, Clone)]
 pub struct Subsurface {
     domain: Domain,
+    /// Of a homogeneous body.
     poisson: f64,
+    layers: Option<LayeredBody>,
     /// Traction over pressure along x and along y.
     friction: (f64, f64),
 }
@@ -46,12 +48,12 @@ impl Subsurface {
         Self::with(Domain { grid, boundary, between: Between::Cells }, poissons_ratio)
     }
 
-    /// The body of a kernel, as far as it is a homogeneous half-space: its grid, its boundary, and what pressure is between the nodes. A
-    /// kernel of your own is taken for one with uniform pressure on each cell.
+    /// The body of a kernel: its grid, its boundary, its layers, and what pressure is between the nodes. Layers have Poisson's ratios of their
+    /// own, and the one given does not count. A kernel of your own is taken for a half-space with uniform pressure on each cell.
     ///
     /// # Errors
     ///
-    /// [`Error::NotHomogeneous`] for layers, and those of [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn of<K: InfluenceKernel + ?Sized>(kernel: &K, poissons_ratio: f64) -> Result<Self, Error> {
         Self::of_origin(kernel.grid(), kernel.boundary(), &kernel.origin(), poissons_ratio)
     }
@@ -72,19 +74,30 @@ impl Subsurface {
         origin: &KernelOrigin,
         poissons_ratio: f64,
     ) -> Result<Self, Error> {
-        origin.layering().check(Theory::Stress)?;
         let between = match origin {
             KernelOrigin::Spectral { .. } | KernelOrigin::SpectralLayered { .. } => Between::Waves,
             _ => Between::Cells,
         };
-        Self::with(Domain { grid, boundary, between }, poissons_ratio)
+        let layers = match origin {
+            KernelOrigin::Layered { body }
+            | KernelOrigin::PeriodicLayered { body }
+            | KernelOrigin::SpectralLayered { body } => Some(body.clone()),
+            _ => None,
+        };
+        // Layers have ratios of their own.
+        let ratio = match layers.as_ref().and_then(|body| body.layers().first()) {
+            Some(top) => top.poisson,
+            None => poissons_ratio,
+        };
+        let body = Self::with(Domain { grid, boundary, between }, ratio)?;
+        Ok(Self { layers, ..body })
     }
 
     fn with(domain: Domain, poissons_ratio: f64) -> Result<Self, Error> {
         let is_one = poissons_ratio > -1.0 && poissons_ratio <= 0.5;
         let expected = "above -1 and at most 1/2";
         let poisson = Error::require("Poisson's ratio", poissons_ratio, is_one, expected)?;
-        Ok(Self { domain, poisson, friction: (0.0, 0.0) })
+        Ok(Self { domain, poisson, layers: None, friction: (0.0, 0.0) })
     }
 
     /// The same while it slides: each cell carries a traction of `coefficient` times its pressure as well, in the direction at `angle`
@@ -94,7 +107,7 @@ impl Subsurface {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for what is not finite.
+    /// [`Error::OutOfRange`] for what is not finite, and [`Error::NotHomogeneous`] for layers.
     pub fn sliding(mut self, coefficient: f64, angle: f64) -> Result<Self, Error> {
         let coefficient = Error::require(
             "coefficient of friction",
@@ -104,7 +117,15 @@ impl Subsurface {
         )?;
         let angle = Error::require("angle of sliding", angle, angle.is_finite(), "finite")?;
         self.friction = (coefficient * libm::cos(angle), coefficient * libm::sin(angle));
+        if coefficient != 0.0 {
+            self.check_homogeneous()?;
+        }
         Ok(self)
+    }
+
+    fn check_homogeneous(&self) -> Result<(), Error> {
+        let layering = self.layers.as_ref().map(LayeredBody::layering);
+        layering.map_or(Ok(()), |layering| layering.check(Theory::Traction))
     }
 
     /// The grid.
@@ -119,17 +140,24 @@ impl Subsurface {
         self.domain.boundary
     }
 
-    /// Poisson's ratio.
+    /// The layers, if the body has any.
+    #[must_use]
+    pub fn layers(&self) -> Option<&LayeredBody> {
+        self.layers.as_ref()
+    }
+
+    /// Poisson's ratio, of layers that of the uppermost.
     #[must_use]
     pub fn poissons_ratio(&self) -> f64 {
         self.poisson
     }
 
-    /// Stresses at the centres of the cells, at a depth z ≥ 0 \[m\] under a pressure \[Pa\].
+    /// Stresses below the centres of the cells, on an interface of layers on its upper side, at a depth z ≥ 0 \[m\] under a pressure \[Pa\].
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a depth that is negative or not finite; [`Error::GridMismatch`] and [`Error::FieldNotFinite`] for the pressure.
+    /// [`Error::OutOfRange`] for a depth that is negative or not finite, and for layers or depths below them that are thinner than a fifth of a
+    /// cell where the grid repeats; [`StressError::InRigidBase`]; [`Error::GridMismatch`] and [`Error::FieldNotFinite`] for the pressure.
     pub fn at_depth(&self, pressure: &DMatrix<f64>, depth: f64) -> Result<StressField, Error> {
         let (along_x, along_y) = self.friction;
         let no = DMatrix::zeros(0, 0);
@@ -142,7 +170,7 @@ impl Subsurface {
     ///
     /// # Errors
     ///
-    /// As [`Self::at_depth`].
+    /// As [`Self::at_depth`], and [`Error::NotHomogeneous`] for tractions on layers.
     pub fn under_traction(
         &self,
         (pressure, depth): (&DMatrix<f64>, f64),
@@ -152,6 +180,19 @@ impl Subsurface {
             self.domain.grid.check_finite("traction", traction)?;
         }
         self.under_loads(depth, pressure, along_x, along_y)
+    }
+
+    fn kernel(&self, load: Load, depth: f64) -> Result<StressKernel, Error> {
+        if load != Load::Normal {
+            self.check_homogeneous()?;
+        }
+        match &self.layers {
+            Some(body) if load == Load::Normal => match Below::new(body, depth) {
+                Some(below) => StressKernel::of_layers(self.domain, &below, depth),
+                None => Err(StressError::InRigidBase { depth, thickness: body.thickness() }.into()),
+            },
+            _ => StressKernel::new(self.domain, Response::new(load, self.poisson), depth),
+        }
     }
 
     fn under_loads(
@@ -173,8 +214,7 @@ impl Subsurface {
             if field.iter().all(|value| *value == 0.0) {
                 continue;
             }
-            let response = Response::new(load, self.poisson);
-            let kernel = StressKernel::new(self.domain, response, depth)?;
+            let kernel = self.kernel(load, depth)?;
             for (component, sum) in sums.iter_mut().enumerate() {
                 kernel.convolution(component)?.apply(field.as_slice(), &mut found)?;
                 sum.iter_mut().zip(&found).for_each(|(sum, value)| *sum += value);

@@ -2,16 +2,20 @@
 
 use super::cells::{Stresses, rectangles, strips};
 use super::depth::Depth;
-use super::load::{COMPONENTS, Response, transposed};
+use super::load::{COMPONENTS, Load, Response, transposed};
 use super::waves::{Between, Spectrum};
 use crate::convolution::{Convolution, Parity};
+use crate::kernel::Below;
 use crate::{Boundary, Error, Grid};
 
 /// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made from: waves that vary
 /// along it fade as exp(−2π|y|/L).
 const APART: f64 = 5.0;
 
-/// Where the load is.
+/// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a grid that repeats.
+const THIN: f64 = 0.2;
+
+/// Where the load is, and how it is spread.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Domain {
     pub(super) grid: Grid,
@@ -40,6 +44,39 @@ enum Table {
 }
 
 impl StressKernel {
+    /// That of a pressure on layers, at a depth above zero that is not in a rigid base.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] if the depth and the layers are too thin for cells that repeat.
+    pub(super) fn of_layers(domain: Domain, below: &Below<'_>, z: f64) -> Result<Self, Error> {
+        let (grid, between) = (&domain.grid, domain.between);
+        let poisson = below.added_to();
+        let response = Response::new(Load::Normal, poisson.unwrap_or_default());
+        let half_space = poisson.map(|_| Self::new(domain, response, z)).transpose()?;
+        let table = if domain.boundary == Boundary::Free {
+            let mut values = below.cells(grid);
+            if let Some(Self { table: Table::Free(others), .. }) = &half_space {
+                let all = values.iter_mut().zip(others);
+                all.for_each(|(value, other)| super::cells::add(value, 1.0, other));
+            }
+            Table::Free(values)
+        } else {
+            let thin = below.scale() / grid.dx().max(grid.dy());
+            let quantity = "depth to which layers let waves fade over the long side of a cell";
+            let is_enough = between == Between::Waves || thin >= THIN;
+            Error::require(quantity, thin, is_enough, "at least 0.2 where the grid repeats")?;
+            let waves = Spectrum::of_layers(grid, between, below, &response);
+            match half_space {
+                Some(Self { table: Table::Periodic { cells, waves: others }, .. }) => {
+                    Table::Periodic { cells, waves: others.plus(&waves) }
+                }
+                _ => Table::Periodic { cells: None, waves },
+            }
+        };
+        Ok(Self { domain, response, table })
+    }
+
     pub(super) fn new(domain: Domain, response: Response, z: f64) -> Result<Self, Error> {
         // Responses have no unit: lengths in long sides of a cell.
         let unit = domain.grid.dx().max(domain.grid.dy());

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use super::body::Subsurface;
 use super::tensor::{Measure, StressField};
+use crate::kernel::{Base, LayeredBody};
 use crate::patches::{Connectivity, Patches};
 use crate::{Error, StressError};
 
@@ -88,7 +89,7 @@ const REFINED: usize = 3;
 
 impl Subsurface {
     /// Depths at which stresses under a pressure are worth looking at \[m\]: the surface, and from a tenth of a cell on by a factor of 1.25
-    /// to the diameter of a circle of the area of the largest patch.
+    /// to the diameter of a circle of the area of the largest patch; of layers their interfaces as well, from both sides.
     ///
     /// # Errors
     ///
@@ -110,7 +111,32 @@ impl Subsurface {
             depths.push(depth);
             depth *= RATIO;
         }
+        let end = self.end();
+        for interface in self.interfaces() {
+            depths.extend([interface, interface.next_up()]);
+        }
+        depths.retain(|depth| *depth <= end);
+        depths.sort_by(f64::total_cmp);
         Ok(depths)
+    }
+
+    /// Depths of the lower sides of layers \[m\].
+    fn interfaces(&self) -> Vec<f64> {
+        let layers = self.layers().map_or(&[][..], LayeredBody::layers);
+        let mut depth = 0.0;
+        layers
+            .iter()
+            .map(|layer| {
+                depth += layer.thickness;
+                depth
+            })
+            .collect()
+    }
+
+    /// The greatest depth at which the body has stresses \[m\].
+    fn end(&self) -> f64 {
+        let is_rigid = self.layers().is_some_and(|body| body.base() == Base::Rigid);
+        self.interfaces().last().copied().filter(|_| is_rigid).unwrap_or(f64::INFINITY)
     }
 
     /// The greatest stresses under a pressure at given depths \[m\], or, without any, at [those](Self::depths) that are worth it: as many
@@ -154,7 +180,7 @@ impl Subsurface {
         for measure in [Measure::VonMises, Measure::GreatestShear] {
             while survey.place(measure) + 1 == survey.depths.len() {
                 let deepest = survey.greatest(measure).depth;
-                if deepest > sides.0.max(sides.1) {
+                if deepest > sides.0.max(sides.1) || RATIO * deepest > self.end() {
                     break;
                 }
                 add(&mut survey, RATIO * deepest)?;

@@ -7,7 +7,7 @@ use super::depth::Depth;
 use super::load::{COMPONENTS, Response};
 use super::rectangle::Values;
 use crate::Grid;
-use crate::kernel::sinc;
+use crate::kernel::{Below, sinc};
 use crate::parallel::for_each_chunk;
 
 /// A wave has faded at this many times its reciprocal wave number: to 10⁻¹⁴, and all beyond it weigh little in a cell.
@@ -32,6 +32,9 @@ pub(super) struct Spectrum {
 /// A wave along one side: its wave number, and what it has of a load on the nodes.
 type Wave = (f64, f64);
 
+/// A wave vector, its length, and what the wave has of a load on the nodes.
+type Alike = ((f64, f64), f64, f64);
+
 /// The waves along a side that look like k of n on the grid, up to the wave number `most`.
 fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<Wave> {
     let turn = k as f64 / n as f64;
@@ -49,10 +52,52 @@ fn alike(k: usize, (n, side): (usize, f64), between: Between, most: f64) -> Vec<
 
 impl Spectrum {
     pub(super) fn new(grid: &Grid, between: Between, depth: &Depth, response: &Response) -> Self {
-        let shape = grid.shape();
-        let (nx, ny) = shape;
         // On the surface all waves count; it is never asked for of cells.
         let most = FADED / depth.least();
+        Self::summed((grid, between), most, response, response.uniform(), |waves| {
+            let mut sum = Values::default();
+            waves.for_each(|((qx, qy), q, weight)| {
+                let (plain, deep) = depth.of_wave(q);
+                sum.add_wave((qx / q, qy / q), (weight * plain, weight * deep));
+            });
+            response.of(&sum)
+        })
+    }
+
+    /// Of layers.
+    pub(super) fn of_layers(
+        grid: &Grid,
+        between: Between,
+        below: &Below<'_>,
+        response: &Response,
+    ) -> Self {
+        let most = FADED / below.scale();
+        Self::summed((grid, between), most, response, below.uniform(), |waves| {
+            let mut sum = [0.0; COMPONENTS];
+            waves.for_each(|((qx, qy), q, weight)| {
+                super::cells::add(&mut sum, weight, &below.of_wave(q, (qx / q, qy / q)));
+            });
+            sum
+        })
+    }
+
+    /// The sum of two.
+    pub(super) fn plus(mut self, other: &Self) -> Self {
+        let all = self.values.iter_mut().zip(&other.values);
+        all.for_each(|(value, other)| super::cells::add(value, 1.0, other));
+        self
+    }
+
+    /// From the waves that look like each wave of the grid, up to the wave number `most`.
+    fn summed(
+        (grid, between): (&Grid, Between),
+        most: f64,
+        response: &Response,
+        uniform: Stresses,
+        sum: impl Fn(&mut dyn Iterator<Item = Alike>) -> Stresses + Sync + Send,
+    ) -> Self {
+        let shape = grid.shape();
+        let (nx, ny) = shape;
         let along_x: Vec<Vec<Wave>> =
             (0..=nx / 2).map(|kx| alike(kx, (nx, grid.dx()), between, most)).collect();
         let width = along_x.len();
@@ -61,22 +106,16 @@ impl Spectrum {
             let along_y = alike(ky, (ny, grid.dy()), between, most);
             for (kx, value) in row.iter_mut().enumerate() {
                 if (kx, ky) == (0, 0) {
-                    *value = response.uniform();
+                    *value = uniform;
                     continue;
                 }
-                let mut sum = Values::default();
-                for &(qy, weight_y) in &along_y {
-                    for &(qx, weight_x) in &along_x[kx] {
-                        let q = (qx * qx + qy * qy).sqrt();
-                        if q >= most {
-                            continue;
-                        }
-                        let weight = weight_x * weight_y;
-                        let (plain, deep) = depth.of_wave(q);
-                        sum.add_wave((qx / q, qy / q), (weight * plain, weight * deep));
-                    }
-                }
-                *value = response.of(&sum);
+                let pairs = along_y.iter().flat_map(|y| along_x[kx].iter().map(move |x| (x, y)));
+                let mut waves = pairs.filter_map(|(&(qx, weight_x), &(qy, weight_y))| {
+                    let q = (qx * qx + qy * qy).sqrt();
+                    let counts = between == Between::Waves || q < most;
+                    counts.then_some(((qx, qy), q, weight_x * weight_y))
+                });
+                *value = sum(&mut waves);
                 // The shortest wave of an even number of nodes runs both ways: what depends on the way is nothing.
                 for (c, value) in value.iter_mut().enumerate() {
                     let (x, y) = response.signs(c);

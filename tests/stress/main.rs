@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod equilibrium;
+mod layers;
 mod periodic;
 mod points;
 mod refusals;

@@ -2,7 +2,7 @@
 
 use asperity::kernel::{Base, Layer, Layered, LayeredBody};
 use asperity::stress::Subsurface;
-use asperity::{Boundary, Error, Grid};
+use asperity::{Boundary, Error, Grid, StressError};
 use nalgebra::DMatrix;
 
 #[test]
@@ -29,11 +29,22 @@ fn what_makes_no_sense_is_refused() -> Result<(), Error> {
     Ok(())
 }
 
+/// Tractions on layers, depths in a rigid base, and layers far thinner than a cell of a grid that repeats.
 #[test]
-fn layers_are_refused() -> Result<(), Error> {
-    let coat = Layer { young: 400e9, poisson: 0.25, thickness: 1e-6 };
-    let body = LayeredBody::new(&[coat], Base::HalfSpace { young: 210e9, poisson: 0.3 })?;
-    let kernel = Layered::free(Grid::square(8, 1e-5)?, body)?;
-    assert!(matches!(Subsurface::of(&kernel, 0.3), Err(Error::NotHomogeneous { .. })));
+fn what_layers_do_not_have_is_refused() -> Result<(), Error> {
+    let grid = Grid::square(8, 8e-6)?;
+    let load = DMatrix::from_element(8, 8, 1.0);
+    let coat = |thickness| Layer { young: 400e9, poisson: 0.25, thickness };
+    let sheet = LayeredBody::new(&[coat(1e-6)], Base::Rigid)?;
+    let sheet = Subsurface::of(&Layered::free(grid, sheet)?, 0.3)?;
+    assert!(matches!(sheet.clone().sliding(0.1, 0.0), Err(Error::NotHomogeneous { .. })));
+    let pulled = sheet.under_traction((&load, 1e-7), [&load, &DMatrix::zeros(8, 8)]);
+    assert!(matches!(pulled, Err(Error::NotHomogeneous { .. })));
+    let deep = sheet.at_depth(&load, 1.1e-6);
+    assert!(matches!(deep, Err(Error::Stress(StressError::InRigidBase { .. }))), "{deep:?}");
+    assert!(sheet.survey(&load, None)?.depths.iter().all(|depth| depth.depth <= 1e-6));
+    let thin = LayeredBody::new(&[coat(1e-7)], Base::HalfSpace { young: 210e9, poisson: 0.3 })?;
+    let thin = Subsurface::of(&Layered::periodic(grid, thin)?, 0.3)?;
+    assert!(matches!(thin.at_depth(&load, 1e-7), Err(Error::OutOfRange { .. })));
     Ok(())
 }
