@@ -86,6 +86,25 @@ fn depths_may_be_given() -> Done {
     Ok(())
 }
 
+/// A coat has its own ratio, and its interface two sides.
+#[test]
+fn coats_have_stresses() -> Done {
+    let folder = Scratch::new("stress-coat")?;
+    let coat =
+        "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
+    run(&folder.0, coat)?;
+    let found = run(&folder.0, "stress coat.npz --yield-stress 1e9 --json --out seen")?;
+    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let body = &document["bodies"][0];
+    assert_eq!(body["poissons_ratio"].as_f64(), Some(0.25));
+    let depths = body["depths"].as_array().ok_or("no depths")?;
+    for depth in [2e-4, 2e-4_f64.next_up()] {
+        assert!(depths.iter().any(|other| other.as_f64() == Some(depth)), "{depths:?}");
+    }
+    assert!(!body["first_yield"].is_null() && folder.join("seen/section_x.png").exists());
+    Ok(())
+}
+
 #[test]
 fn what_has_no_answer_is_refused() -> Done {
     let folder = Scratch::new("stress-refused")?;
@@ -98,7 +117,8 @@ fn what_has_no_answer_is_refused() -> Done {
         ("stress path.npz --poisson 0.3 --load 1e9", &["the path has no state at"]),
         ("stress path.npz --poisson 0.3 --against-yield-stress 1e9", &["--against-yield-stress"]),
         ("stress path.npz --poisson 0.3 --volume 0", &["--volume"]),
-        ("stress coat.npz", &["layers"]),
+        ("stress coat.npz --friction 0.1", &["layers"]),
+        ("stress coat.npz --poisson 0.3", &["--poisson"]),
     ] {
         is_refused(&output(&folder.0, line)?, words);
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use asperity::Error;
 use asperity::nalgebra::DMatrix;
+use asperity::record::LoadingRecord;
 use asperity::stress::{Greatest, Measure, Subsurface};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -25,18 +26,18 @@ pub(crate) struct Stress {
     pressure: DMatrix<f64>,
 }
 
-/// The stresses below the surface at a state of a path, in a homogeneous half-space.
+/// The stresses below the surface at a state of a path: in a homogeneous half-space, or in layers.
 ///
 /// Parameters
 /// ----------
 /// path : LoadingPath
 /// poissons_ratio : float, optional
-///     Of the body; that of the first body of the path if it knows it.
+///     Of the body; that of the first body of the path if it knows it. Layers have their own.
 /// state : State, optional
 ///     One of the path so far, or one that `History.at` has read from it; the last one if not given.
 /// friction : float
 ///     Coefficient of friction of a contact that slides: tractions of so many times the pressure. On the other body they are
-///     opposite, with the other sign.
+///     opposite, with the other sign. Not on layers.
 /// angle : float
 ///     Direction of sliding in degrees from x towards y: that in which the other body moves over this one.
 ///
@@ -148,10 +149,15 @@ fn of_path(
     (friction, angle): (f64, f64),
 ) -> Fallible<Subsurface> {
     let known = || path.elastic_bodies(py).first().map(|(_, ratio)| *ratio);
-    let ratio = poissons_ratio.or_else(known).ok_or_else(|| {
+    let ratio = poissons_ratio.or_else(known);
+    // Layers have ratios of their own.
+    let of_record = |record: &LoadingRecord| match ratio {
+        None if record.kernel().origin.composite_modulus().is_some() => Ok(None),
+        _ => Subsurface::of_record(record, ratio.unwrap_or_default()).map(Some),
+    };
+    let below = path.with_record(py, |_, record| of_record(record))?.ok_or_else(|| {
         Failure::arguments("give poissons_ratio, unless the path knows its bodies")
     })?;
-    let below = path.with_record(py, |_, record| Subsurface::of_record(record, ratio))?;
     Ok(below.sliding(friction, angle.to_radians())?)
 }
 

@@ -90,7 +90,13 @@ def test_what_has_no_answer_is_refused() -> None:
     path = asp.load_path(asp.example_surface(nodes=16), layered, area_fraction=0.1, check=False)
     path.run(check=False)
     with pytest.raises(errors.AsperityError, match="layers"):
-        asp.stress(path, 0.3)
+        asp.stress(path, friction=0.1)
+    coated = asp.stress(path)
+    assert coated.poissons_ratio == 0.25
+    # The coat and what lies below it differ in what they bear along the interface alone.
+    upper, lower = coated.at_depth(1e-5), coated.at_depth(np.nextafter(1e-5, 1.0))
+    np.testing.assert_allclose(upper.zz, lower.zz, atol=1e-8 * coated.pressure.max())
+    assert upper.xx.max() > lower.xx.max()
     plain = asp.load_path(asp.example_surface(nodes=16), asp.HalfSpace(1e11, boundary="free"), area_fraction=0.1, check=False)
     plain.run(check=False)
     with pytest.raises(ValueError, match="poissons_ratio"):

@@ -34,7 +34,7 @@
 //! # Conventions
 //!
 //! Tension is positive. x and y run along the surface, z into the body; stresses are those below the centres of the cells. Pressure is
-//! uniform on each cell, unless the kernel is one of [waves](crate::Spectral). The page `docs/stress_below_the_surface.md` says what the
+//! uniform on each cell, unless the kernel is one of [waves](crate::Spectral). On the interface of two layers stresses are those of the upper. The page `docs/stress_below_the_surface.md` says what the
 //! stresses mean and what they were compared with.
 //!
 //! # References

@@ -43,6 +43,13 @@ pub(super) fn stress(pressed: &mut Pressed<'_>) -> Result<(), Error> {
     let surface = body.at_depth(&pressure, 0.0)?;
     // Sums over 300 cells, extrapolated ones with weights of up to 1023.
     assert!((&surface.zz + &pressure).amax() < 1e-11 * most, "{name}");
+    if let Some(layers) = body.layers() {
+        // The lower side of a layer carries what the surface does, as far as the grid reaches beyond the contact.
+        let field = body.at_depth(&pressure, 0.5 * layers.layers()[0].thickness)?;
+        let carried = -field.zz.sum() / total;
+        assert!((0.5..1.01).contains(&carried), "{name}: {carried}");
+        return Ok(());
+    }
     let z = 3.0 * grid.dx().max(grid.dy());
     let field = body.at_depth(&pressure, z)?;
     match body.boundary() {

@@ -101,8 +101,16 @@ impl<'a> Moment<'a> {
     }
 }
 
-/// Poisson's ratios of the body and of the other one, if that is not rigid.
+/// Poisson's ratios of the body and of the other one, if that is not rigid; layers have their own.
 fn ratios(record: &LoadingRecord, options: &Options) -> Result<Vec<f64>, Failure> {
+    if record.kernel().origin.composite_modulus().is_none() {
+        return match (options.poisson, options.material) {
+            (None, None) => Ok(vec![0.0]),
+            _ => Err(Failure::request(
+                "--poisson and --material are those of a homogeneous body, and this record is of layers, which it knows",
+            )),
+        };
+    }
     if let Some(ratio) = options.poisson {
         return Ok(vec![ratio]);
     }
@@ -111,11 +119,10 @@ fn ratios(record: &LoadingRecord, options: &Options) -> Result<Vec<f64>, Failure
         return Ok(both.into_iter().flatten().map(|body| body.nu).collect());
     }
     let ratios: Vec<f64> = record.bodies().iter().map(|(_, ratio)| *ratio).collect();
-    if ratios.is_empty() && record.kernel().origin.composite_modulus().is_some() {
+    if ratios.is_empty() {
         return Err(Failure::request(
             "the record does not know its bodies: give --poisson, or --material and --against",
         ));
     }
-    // Of layers, whose stresses are refused whatever the ratio is.
-    Ok(if ratios.is_empty() { vec![0.3] } else { ratios })
+    Ok(ratios)
 }

@@ -23,8 +23,8 @@ use body::Moment;
 
 /// Stress below the surface of a recorded contact: where it is greatest, maps and sections, and the load of first yield
 ///
-/// The body is a homogeneous elastic half-space under the pressures of a state of the path, and, with --friction, under tractions in
-/// proportion to them. Prints von Mises' and Tresca's equivalent stress, the greatest shear stress and the greatest tension with their
+/// The body is a homogeneous elastic half-space or has layers, under the pressures of a state of the path, and, with --friction on a
+/// homogeneous one, under tractions in proportion to them. Prints von Mises' and Tresca's equivalent stress, the greatest shear stress and the greatest tension with their
 /// places; with --yield-stress also the load of the path at which the body begins to yield.
 ///
 /// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises' stress and of the
@@ -41,7 +41,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
     load: Option<f64>,
 
-    /// Poisson's ratio of the body [default: both bodies of the record, if it knows them]
+    /// Poisson's ratio of the body [default: both bodies of the record, if it knows them; layers it knows]
     #[arg(long, value_name = "NU", allow_negative_numbers = true, value_parser = poisson)]
     poisson: Option<f64>,
 
@@ -53,7 +53,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME|E,NU", requires = "material")]
     against: Option<Material>,
 
-    /// Yield stress of the body: the load at which von Mises' stress reaches it is looked for along the path
+    /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for along the path
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
     yield_stress: Option<f64>,
 

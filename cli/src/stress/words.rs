@@ -65,7 +65,13 @@ pub(super) fn print(moment: &Moment, bodies: &[Body]) {
     }
     for body in bodies {
         let depths = counted(body.survey.depths.len(), "depth");
-        say!("{:<13} ν = {}, {depths}", body.name, body.below.poissons_ratio());
+        match body.below.layers() {
+            Some(layers) => {
+                let count = counted(layers.layers().len(), "layer");
+                say!("{:<13} {count}, {depths}", body.name);
+            }
+            None => say!("{:<13} ν = {}, {depths}", body.name, body.below.poissons_ratio()),
+        }
         for (measure, name) in [
             (Measure::VonMises, "von Mises"),
             (Measure::Tresca, "Tresca"),

@@ -186,15 +186,14 @@ impl Field {
     /// Up to a distance.
     fn new(below: &Below<'_>, reach: f64) -> Self {
         let across = |s: &InPlane| below.poisson * (s.along - s.pressure);
+        let first = first_variation(below.body).min(0.1 / below.scale);
+        let widest = 1.0 / (below.body.top_thickness() + below.z);
+        let end = FADED / below.scale;
         let table = |bessel: fn(f64) -> f64, of: &(dyn Fn(InPlane) -> f64 + Sync)| {
-            let spectrum = Spectrum {
-                g: |q: f64| q * of(below.in_plane(q)),
-                bessel,
-                first: first_variation(below.body).min(0.1 / below.scale),
-                widest: 1.0 / (below.body.top_thickness() + below.z),
-                settled: 0.0,
-                end: FADED / below.scale,
-            };
+            // Each wave number is asked for at many distances.
+            let response = Radial::of(|q| of(below.in_plane(q)), first, end, widest);
+            let g = |q: f64| q * response.at(q);
+            let spectrum = Spectrum { g, bessel, first, widest, settled: 0.0, end };
             Radial::new(&spectrum, below.scale, reach, f64::INFINITY)
         };
         Self {

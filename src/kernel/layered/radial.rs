@@ -119,6 +119,16 @@ impl Radial {
         reach: f64,
         widest: f64,
     ) -> Self {
+        Self::of(|r| spectrum.transform(r), scale, reach, widest)
+    }
+
+    /// Any function that is smooth over `scale` near the origin, and over what is left of the distance beyond.
+    pub(super) fn of(
+        function: impl Fn(f64) -> f64 + Sync,
+        scale: f64,
+        reach: f64,
+        widest: f64,
+    ) -> Self {
         let mut panels = Vec::new();
         let mut ends = Vec::new();
         let mut from = 0.0_f64;
@@ -134,7 +144,7 @@ impl Radial {
             for panel in panels {
                 panel.fill(|t| {
                     let r = scale * libm::sinh(t);
-                    spectrum.transform(r) * scale * libm::cosh(t)
+                    function(r) * scale * libm::cosh(t)
                 });
             }
         });
