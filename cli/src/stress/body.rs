@@ -9,6 +9,7 @@ use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
 use super::Options;
+use super::progress::Progress;
 
 /// A state of the record.
 pub(super) struct Moment<'a> {
@@ -89,7 +90,12 @@ impl<'a> Moment<'a> {
             .and_then(|below| below.sliding(sign * coefficient, angle.to_radians()))
             .map_err(failed)?;
         let depths = Some(&options.depth[..]).filter(|depths| !depths.is_empty());
-        let survey = below.survey(&self.pressure, depths).map_err(failed)?;
+        let progress = Progress::new();
+        let survey = below.survey_with(&self.pressure, depths, |field| {
+            progress.passed(field.depth);
+            Ok(())
+        });
+        let survey = survey.map_err(failed)?;
         let yielding = match strength {
             None => None,
             Some(stress) => {

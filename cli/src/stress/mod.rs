@@ -6,6 +6,7 @@
 mod body;
 mod charts;
 mod maps;
+mod progress;
 mod section;
 mod table;
 mod words;

@@ -10,6 +10,7 @@ use asperity_cli::outcome::Failure;
 use nalgebra::DMatrix;
 
 use super::body::{Body, Moment};
+use super::progress::Progress;
 
 /// Depths of a section.
 const DEPTHS: usize = 60;
@@ -61,9 +62,11 @@ pub(super) fn draw(
     let step = deep / depths.saturating_sub(1).max(1) as f64;
     let mut along_x = Section::new((ix, grid.nx()), grid.dx(), deep, depths);
     let mut along_y = Section::new((iy, grid.ny()), grid.dy(), deep, depths);
+    let progress = Progress::new();
     let mut seen = 0;
     let mut see = |field: &StressField| {
         seen += 1;
+        progress.passed(field.depth);
         let at = |ix: usize, iy: usize| {
             let stress = field.at(grid.index(ix, iy)).unwrap_or_default();
             stress.von_mises()
