@@ -40,6 +40,7 @@
 //! | the modulus of two bodies, typical materials | [`composite_modulus`], [`material`] |
 //! | shear a joint: partial slip, stiffness, dissipation | [`slip`] |
 //! | viscoelastic bodies: creep, relaxation, cycles | [`creep`] |
+//! | stress below the surface: where it is greatest, the load of first yield | [`stress`] |
 //! | superpose increments of a path | [`bed`] |
 //! | choose the half-space | [`Boussinesq`] for a body of finite size, whose edge is real; [`PeriodicBoussinesq`] for a piece of a larger surface, [`SemiPeriodicBoussinesq`] for one that repeats along one side; [`Spectral`] to compare with tamaas and ContactMechanics; [`Layered`] for coats, thin and graded bodies |
 //! | write a kernel | the trait [`InfluenceKernel`], and [`kernel::check()`] |
@@ -113,6 +114,7 @@ pub mod reference;
 #[cfg(test)]
 mod send_and_sync;
 pub mod slip;
+pub mod stress;
 #[cfg(test)]
 mod test_chain;
 pub mod updater;
@@ -127,7 +129,9 @@ pub use asperity_surfaces::{
 
 pub use contact::{Certificate, ContactState, ContactTarget};
 pub use elasticity::{composite_modulus, plane_strain_modulus};
-pub use error::{BedError, CreepError, Error, JointError, KernelError, SlipError, UpdaterError};
+pub use error::{
+    BedError, CreepError, Error, JointError, KernelError, SlipError, StressError, UpdaterError,
+};
 pub use fixed_load::{FixedLoadSolution, FixedLoadSolver};
 pub use kernel::{
     Boundary, Boussinesq, ContactGrowth, InfluenceKernel, KernelTable, Layered, MeanDisplacement,

@@ -40,7 +40,7 @@ impl Material {
     pub const STEEL: Self = Self::of("steel", 210e9, 0.3, Some(2.5e9));
 
     /// All that there are.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 21] = [
         Self::STEEL,
         Self::of("stainless-steel", 195e9, 0.29, Some(2.0e9)),
         Self::of("cast-iron", 110e9, 0.26, Some(2.0e9)),
@@ -59,6 +59,10 @@ impl Material {
         Self::of("polycarbonate", 2.4e9, 0.37, Some(0.15e9)),
         Self::of("ptfe", 0.5e9, 0.46, Some(0.03e9)),
         Self::of("rubber", 2e6, 0.5, None),
+        // Coats: diamond-like carbon, titanium nitride, chromium nitride.
+        Self::of("dlc", 200e9, 0.22, Some(20e9)),
+        Self::of("tin", 450e9, 0.25, Some(22e9)),
+        Self::of("crn", 300e9, 0.25, Some(18e9)),
     ];
 
     const fn of(

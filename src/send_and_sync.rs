@@ -31,13 +31,16 @@ use crate::reference::{
 use crate::slip::{
     Friction, JenkinsElement, PartialSlip, SlipCycle, SlipHistory, SlipState, SlipZone,
 };
+use crate::stress::{
+    DepthSurvey, FirstYield, Greatest, Measure, Stress, StressField, Subsurface, Survey,
+};
 use crate::surface::{HeightMap, SelfAffine, Topography};
 use crate::updater::{
     ConjugateGradient, Dense, Handover, RecursiveCholesky, Schur, Solution, UpdaterReport,
 };
 use crate::{
-    BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError, UpdaterError,
-    Warning,
+    BedError, Error, FileError, Grid, JointError, KernelError, Problem, SlipError, StressError,
+    UpdaterError, Warning,
 };
 
 /// Compiles for types that can be sent and shared.
@@ -48,7 +51,16 @@ macro_rules! send_and_sync {
 }
 
 send_and_sync!(Grid, Problem, Warning);
-send_and_sync!(Error, FileError, BedError, JointError, KernelError, SlipError, UpdaterError);
+send_and_sync!(
+    Error,
+    FileError,
+    BedError,
+    JointError,
+    KernelError,
+    SlipError,
+    StressError,
+    UpdaterError
+);
 send_and_sync!(Certificate, ContactSequence, ContactState, ContactTarget, Convolution);
 send_and_sync!(
     FixedLoadSolution,
@@ -142,3 +154,4 @@ send_and_sync!(
     Solution,
     UpdaterReport,
 );
+send_and_sync!(DepthSurvey, FirstYield, Greatest, Measure, Stress, StressField, Subsurface, Survey,);

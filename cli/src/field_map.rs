@@ -65,6 +65,27 @@ pub struct FieldMap<'a> {
 impl FieldMap<'_> {
     /// Draws the map with a line above it, and writes the picture.
     pub fn write(&self, name: &Path, caption: &str) -> Result<PathBuf, Failure> {
+        self.write_between(name, caption, [("x", 0.0), ("y", 0.0)])
+    }
+
+    /// The same of a vertical section, the middle of whose uppermost row is the surface, along an axis that begins at a value.
+    pub fn write_section(
+        &self,
+        name: &Path,
+        caption: &str,
+        along: (&str, f64),
+    ) -> Result<PathBuf, Failure> {
+        let lowest = 0.5 * self.grid.dy() - self.grid.sides().1;
+        self.write_between(name, caption, [along, ("height", lowest)])
+    }
+
+    /// The same with names of the axes and the values at which they begin.
+    fn write_between(
+        &self,
+        name: &Path,
+        caption: &str,
+        axes: [(&str, f64); 2],
+    ) -> Result<PathBuf, Failure> {
         let (width, height) = map_size(self.grid);
         let inner = (CAPTION - MARGIN.left - MARGIN.right).max(width);
         let size = (inner + MARGIN.left + MARGIN.right, height + MARGIN.top + MARGIN.bottom);
@@ -84,12 +105,17 @@ impl FieldMap<'_> {
             let middle = (middle, MARGIN.top / 2);
             let centred = anchor(HPos::Center, VPos::Center);
             panel.write(area, caption, middle, FONT + 2, centred)?;
-            self.draw(area, &panel)?;
+            self.draw(area, &panel, axes)?;
             area.present()
         })
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, panel: &Panel) -> Drawn<DB> {
+    fn draw<DB: DrawingBackend>(
+        &self,
+        area: &Area<DB>,
+        panel: &Panel,
+        [x, y]: [(&str, f64); 2],
+    ) -> Drawn<DB> {
         let (least, greatest) = self.range;
         let (label, unit) = self.label;
         let colours = match self.scale {
@@ -107,9 +133,9 @@ impl FieldMap<'_> {
         let (lx, ly) = self.grid.sides();
         // One unit for both axes, that of the longer side.
         let longer = lx.max(ly);
-        let [x, y] = [("x", lx), ("y", ly)].map(|(name, side)| {
+        let [x, y] = [(x, lx), (y, ly)].map(|((name, from), side)| {
             let excess = (longer - side) / longer;
-            let axis = Axis::linear(name, self.length_unit, 0.0, longer);
+            let axis = Axis::linear(name, self.length_unit, from, from + longer);
             axis.with_room(0.0, -excess)
         });
         self.lines(area, panel, (&x, &y), &colours)?;

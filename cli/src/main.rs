@@ -25,6 +25,7 @@ mod room;
 mod settings;
 mod shell;
 mod slip;
+mod stress;
 mod values;
 
 use std::process::ExitCode;
@@ -69,6 +70,7 @@ enum Command {
     Patches(patches::Options),
     Slip(slip::Options),
     Leak(leak::Options),
+    Stress(stress::Options),
     Creep(creep::Options),
     Completions(shell::Completions),
     Manual(shell::Manual),
@@ -102,6 +104,7 @@ fn main() -> ExitCode {
         Some(Command::Patches(options)) => patches::run(&options),
         Some(Command::Slip(options)) => slip::run(&options),
         Some(Command::Leak(options)) => leak::run(&options),
+        Some(Command::Stress(options)) => stress::run(&options),
         Some(Command::Creep(options)) => creep::run(&options),
         Some(Command::Completions(options)) => options.print(Arguments::command()),
         Some(Command::Manual(options)) => options.print(Arguments::command()),

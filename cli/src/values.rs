@@ -12,6 +12,26 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length or a coefficient that may be zero.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value >= 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("must be finite and not negative".to_string())
+    }
+}
+
+/// A Poisson's ratio.
+pub(crate) fn poisson(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > -1.0 && value <= 0.5 {
+        Ok(value)
+    } else {
+        Err("a Poisson's ratio must be above -1 and at most 1/2".to_string())
+    }
+}
+
 /// A number of bytes, which may be given as `2e9`.
 pub(crate) fn bytes(text: &str) -> Result<usize, String> {
     // Beyond all there are it is the greatest.

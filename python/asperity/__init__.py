@@ -29,6 +29,8 @@ Where to find it
     contact patches, percolation, activation
 ``Seal``
     leakage through the gap
+``stress``, ``stress_of``, ``first_yield``
+    stress below the surface
 ``shear``
     tangential loads: partial slip, stiffness, dissipation
 ``Prony``, ``creep``, ``steady_cycles``
@@ -70,6 +72,7 @@ from asperity._asperity import (
     Seal,
     Solution,
     State,
+    Stress,
     Surface,
     Unloading,
     __version__,
@@ -82,6 +85,7 @@ from asperity._asperity import (
     creep,
     cylinder,
     example_surface,
+    first_yield,
     formats,
     gap_distribution,
     hardness,
@@ -103,6 +107,8 @@ from asperity._asperity import (
     solve,
     steady_cycle,
     steady_cycles,
+    stress,
+    stress_of,
     sweep,
     threads,
     wave,
@@ -128,6 +134,7 @@ __all__ = [
     "Seal",
     "Solution",
     "State",
+    "Stress",
     "Surface",
     "Unloading",
     "__version__",
@@ -141,6 +148,7 @@ __all__ = [
     "cylinder",
     "errors",
     "example_surface",
+    "first_yield",
     "formats",
     "gap_distribution",
     "hardness",
@@ -163,6 +171,8 @@ __all__ = [
     "solve",
     "steady_cycle",
     "steady_cycles",
+    "stress",
+    "stress_of",
     "sweep",
     "threads",
     "wave",

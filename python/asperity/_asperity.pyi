@@ -25,6 +25,7 @@ __all__ = [
     "Seal",
     "Solution",
     "State",
+    "Stress",
     "Surface",
     "Unloading",
     "__version__",
@@ -44,6 +45,7 @@ __all__ = [
     "creep",
     "cylinder",
     "example_surface",
+    "first_yield",
     "formats",
     "gap_distribution",
     "hardness",
@@ -65,6 +67,8 @@ __all__ = [
     "solve",
     "steady_cycle",
     "steady_cycles",
+    "stress",
+    "stress_of",
     "sweep",
     "threads",
     "wave",
@@ -558,6 +562,16 @@ class Seal:
     ) -> results.LeakCurve: ...
 
 @final
+class Stress:
+    @property
+    def pressure(self) -> _Floats: ...
+    @property
+    def poissons_ratio(self) -> float: ...
+    def at_depth(self, depth: float) -> results.StressField: ...
+    def survey(self, depths: ArrayLike | None = None) -> results.StressSurvey: ...
+    def write_volume(self, file: _Path, step: float, count: int) -> None: ...
+
+@final
 class PartialSlip:
     @property
     def load(self) -> float: ...
@@ -640,6 +654,31 @@ class InterfaceTable:
     def text(self, program: Literal["abaqus", "calculix", "moose", "csv"]) -> str: ...
     def __len__(self) -> int: ...
 
+def stress(
+    path: LoadingPath,
+    poissons_ratio: float | None = None,
+    *,
+    state: State | None = None,
+    friction: float = 0.0,
+    angle: float = 0.0,
+) -> Stress: ...
+def stress_of(
+    pressure: ArrayLike,
+    size: _Lengths,
+    poissons_ratio: float,
+    *,
+    periodic: _Periodic,
+    friction: float = 0.0,
+    angle: float = 0.0,
+) -> Stress: ...
+def first_yield(
+    path: LoadingPath,
+    yield_stress: float,
+    poissons_ratio: float | None = None,
+    *,
+    friction: float = 0.0,
+    angle: float = 0.0,
+) -> results.FirstYield | None: ...
 def shear(
     path: LoadingPath | History,
     *,

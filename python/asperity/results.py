@@ -19,6 +19,8 @@ __all__ = [
     "Distribution",
     "Effort",
     "Estimate",
+    "FirstYield",
+    "GreatestStress",
     "KernelReport",
     "Leak",
     "LeakCurve",
@@ -29,6 +31,8 @@ __all__ = [
     "SlipCycle",
     "SlipState",
     "SpectralMoments",
+    "StressField",
+    "StressSurvey",
     "Trend",
 ]
 
@@ -396,6 +400,94 @@ class LeakCurve:
     constrictions: list[CriticalConstriction | None]
     imbalance: NDArray[np.float64] = field(compare=False)
     closing: State | None
+
+
+@dataclass(frozen=True)
+class GreatestStress:
+    """The greatest value of a measure of stress, and where it is.
+
+    Attributes
+    ----------
+    value : float
+        [Pa]
+    depth : float
+        Below the surface [m].
+    row, column : int
+        The node above it.
+    """
+
+    value: float
+    depth: float
+    row: int
+    column: int
+
+
+@dataclass(frozen=True)
+class StressField:
+    """The stresses at a depth; tension is positive, z points into the body.
+
+    Attributes
+    ----------
+    depth : float
+        [m]
+    xx, yy, zz, yz, xz, xy : ndarray of float, [row, column]
+        Components [Pa].
+    von_mises, tresca : ndarray of float, [row, column]
+        Equivalent stresses [Pa].
+    greatest_shear : ndarray of float, [row, column]
+        Half the difference of the greatest and the least principal stress [Pa].
+    greatest_tension : ndarray of float, [row, column]
+        The greatest principal stress [Pa].
+    """
+
+    depth: float
+    xx: NDArray[np.float64] = field(compare=False, repr=False)
+    yy: NDArray[np.float64] = field(compare=False, repr=False)
+    zz: NDArray[np.float64] = field(compare=False, repr=False)
+    yz: NDArray[np.float64] = field(compare=False, repr=False)
+    xz: NDArray[np.float64] = field(compare=False, repr=False)
+    xy: NDArray[np.float64] = field(compare=False, repr=False)
+    von_mises: NDArray[np.float64] = field(compare=False, repr=False)
+    tresca: NDArray[np.float64] = field(compare=False, repr=False)
+    greatest_shear: NDArray[np.float64] = field(compare=False, repr=False)
+    greatest_tension: NDArray[np.float64] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class StressSurvey:
+    """The greatest stresses at each depth, and over all.
+
+    Attributes
+    ----------
+    depth : ndarray of float
+        From the least to the greatest [m].
+    von_mises, tresca, greatest_shear, greatest_tension : ndarray of float
+        The greatest value at each depth [Pa].
+    greatest : dict of GreatestStress
+        Of each of these names over all depths.
+    """
+
+    depth: NDArray[np.float64] = field(compare=False)
+    von_mises: NDArray[np.float64] = field(compare=False)
+    tresca: NDArray[np.float64] = field(compare=False)
+    greatest_shear: NDArray[np.float64] = field(compare=False)
+    greatest_tension: NDArray[np.float64] = field(compare=False)
+    greatest: dict[str, GreatestStress]
+
+
+@dataclass(frozen=True)
+class FirstYield:
+    """The state of an elastic path at which a body begins to yield.
+
+    Attributes
+    ----------
+    state : State
+    greatest : GreatestStress
+        Von Mises' stress there, which is the yield stress within 1e-4.
+    """
+
+    state: State
+    greatest: GreatestStress
 
 
 @dataclass(frozen=True)

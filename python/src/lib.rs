@@ -22,6 +22,7 @@ mod report;
 mod results;
 mod slip;
 mod state;
+mod stress;
 mod surface;
 mod targets;
 mod warnings;
@@ -44,6 +45,7 @@ fn _asperity(module: &Bound<'_, PyModule>) -> PyResult<()> {
     fixed_load::register(module)?;
     patches::register(module)?;
     leak::register(module)?;
+    stress::register(module)?;
     slip::register(module)?;
     creep::register(module)?;
     joint::register(module)

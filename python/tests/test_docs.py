@@ -26,6 +26,7 @@ PAGES = {
     "docs/seals_that_leak.md": 1,
     "docs/joints.md": 1,
     "docs/joints_that_slip.md": 1,
+    "docs/stress_below_the_surface.md": 1,
     "docs/rubber_that_creeps.md": 1,
     "docs/coated_and_thin_bodies.md": 1,
     "docs/many_surfaces.md": 1,

@@ -29,9 +29,22 @@ struct Filter<T: Real> {
     grid: Grid,
     boundary: Boundary,
     transforms: Transforms<T>,
-    /// Real symbol, py values for each of the px / 2 + 1 columns, which are stored one by one.
+    parity: Parity,
+    /// Real symbol, or i times an imaginary one, py values for each of the px / 2 + 1 columns, which are stored one by one.
     symbol: Vec<T>,
 }
+
+/// What coefficients are at the opposite offset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// The same, as reciprocity has it of displacements under pressures: the symbol is real.
+    Even,
+    /// With the other sign: the symbol is imaginary.
+    Odd,
+}
+
+/// Coefficients by offset (di, dj), or parts of a symbol by wave (kx, ky).
+pub(crate) type Table<'a, I> = &'a (dyn Fn(I, I) -> f64 + Sync);
 
 /// Working memory.
 #[derive(Clone)]
@@ -63,15 +76,37 @@ impl Engine<f64> {
     ///
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
     pub(super) fn from_table(table: &KernelTable) -> Result<Self, Error> {
-        let (grid, boundary) = (table.grid(), table.boundary());
+        // Inside the grid there is always a coefficient.
+        let coefficient = |di, dj| table.coefficient(di, dj).unwrap_or(0.0);
+        let waves = None;
+        Self::new((table.grid(), table.boundary()), Parity::Even, &coefficient, waves)
+    }
+
+    /// Prepares the convolution with coefficients at offsets with 0 ≤ dj < ny, and |di| < nx, or 0 ≤ di < nx where x repeats. What `waves`
+    /// gives for 0 ≤ kx ≤ px / 2 and 0 ≤ ky < py is added to their symbol, or to its imaginary part.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
+    pub(super) fn new(
+        (grid, boundary): (Grid, Boundary),
+        parity: Parity,
+        coefficient: Table<'_, isize>,
+        waves: Option<Table<'_, usize>>,
+    ) -> Result<Self, Error> {
         let transforms = Transforms::<f64>::new(&grid, boundary);
         let mut spectra = Spectra::new(&grid, &transforms);
         spectra.fill_rows(&transforms, grid.ny(), |dj, spectrum, work| {
-            // Inside the grid there is always a coefficient.
-            let coefficient = |di| table.coefficient(di, dj as isize).unwrap_or(0.0);
-            transforms.forward_kernel_row(coefficient, spectrum, work);
+            transforms.forward_kernel_row(|di| coefficient(di, dj as isize), spectrum, work);
         });
-        let symbol = spectra.symbol(&transforms, grid.ny());
+        let mut symbol = spectra.symbol(&transforms, grid.ny(), parity);
+        if let Some(waves) = waves {
+            let (px, py) = transforms.padded();
+            let normalisation = 1.0 / (px as f64 * py as f64);
+            for (place, value) in symbol.iter_mut().enumerate() {
+                *value += waves(place / py, place % py) * normalisation;
+            }
+        }
         if let Some(&value) = symbol.iter().find(|value| !value.is_finite()) {
             return Err(Error::OutOfRange {
                 quantity: "the sum of the influence coefficients",
@@ -79,16 +114,16 @@ impl Engine<f64> {
                 expected: "finite",
             });
         }
-        Ok(Self::of(Filter { grid, boundary, transforms, symbol }, spectra))
+        Ok(Self::of(Filter { grid, boundary, transforms, parity, symbol }, spectra))
     }
 
     /// The same convolution in single precision, its symbol divided by `unit` and rounded once.
     pub(super) fn to_single(&self, unit: f64) -> Engine<f32> {
-        let Filter { grid, boundary, ref symbol, .. } = *self.filter;
+        let Filter { grid, boundary, parity, ref symbol, .. } = *self.filter;
         let transforms = Transforms::new(&grid, boundary);
         let spectra = Spectra::new(&grid, &transforms);
         let symbol = symbol.iter().map(|value| (value / unit) as f32).collect();
-        Engine::of(Filter { grid, boundary, transforms, symbol }, spectra)
+        Engine::of(Filter { grid, boundary, transforms, parity, symbol }, spectra)
     }
 
     /// The same convolution with another answer to uniform pressure: none.
@@ -218,7 +253,7 @@ impl<T: Real> Filter<T> {
         spectra.fill_rows(transforms, ny, |iy, spectrum, work| {
             transforms.forward_row(&pressure[iy * nx..][..nx], spectrum, work);
         });
-        spectra.filter_columns(transforms, ny, &self.symbol);
+        spectra.filter_columns(transforms, ny, (&self.symbol, self.parity));
         spectra.restore_rows(transforms, (nx, ny), displacement);
     }
 }
@@ -267,7 +302,7 @@ impl<T: Real> Spectra<T> {
     }
 
     /// The symbol from `rows`, filled with the spectra of kernel rows dj = 0, 1, …, ny − 1.
-    fn symbol(&mut self, transforms: &Transforms<T>, ny: usize) -> Vec<T> {
+    fn symbol(&mut self, transforms: &Transforms<T>, ny: usize, parity: Parity) -> Vec<T> {
         let (columns, py) = (transforms.columns(), transforms.padded().1);
         let pitch = pitch(ny);
         let rows = &self.rows;
@@ -277,14 +312,19 @@ impl<T: Real> Spectra<T> {
             gather(rows, columns, block, lines, pitch);
             let entries = lines.chunks(pitch);
             for (symbol, entries) in symbol.chunks_mut(py).zip(entries) {
-                transforms.symbol_column(&entries[..ny], symbol, &mut scratch.work);
+                transforms.symbol_column((&entries[..ny], parity), symbol, &mut scratch.work);
             }
         });
         symbol
     }
 
     /// From `rows` to `columns`, multiplied by the symbol.
-    fn filter_columns(&mut self, transforms: &Transforms<T>, ny: usize, symbol: &[T]) {
+    fn filter_columns(
+        &mut self,
+        transforms: &Transforms<T>,
+        ny: usize,
+        (symbol, parity): (&[T], Parity),
+    ) {
         let (columns, py) = (transforms.columns(), transforms.padded().1);
         let pitch = pitch(py);
         let rows = &self.rows;
@@ -297,7 +337,11 @@ impl<T: Real> Spectra<T> {
                 gather(rows, columns, block, lines, pitch);
                 let symbol = symbol[block * BLOCK * py..].chunks_exact(py);
                 for (column, symbol) in lines.chunks_mut(pitch).zip(symbol) {
-                    transforms.filter_column(&mut column[..py], symbol, &mut scratch.work);
+                    transforms.filter_column(
+                        &mut column[..py],
+                        (symbol, parity),
+                        &mut scratch.work,
+                    );
                 }
                 interleave(lines, pitch, target);
             },

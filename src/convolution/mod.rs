@@ -56,6 +56,7 @@ pub use direct::direct_sum;
 use crate::kernel::KernelTable;
 use crate::{Boundary, Error, Grid, InfluenceKernel};
 use engine::Engine;
+pub(crate) use engine::{Parity, Table};
 
 /// Displacement from pressure on a whole grid, by fast Fourier transform.
 ///
@@ -113,6 +114,21 @@ impl Convolution {
     /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
     pub fn from_table(table: &KernelTable) -> Result<Self, Error> {
         Ok(Self { engine: Engine::from_table(table)? })
+    }
+
+    /// Of any quantity that goes with the pressure, by its coefficients at offsets and what `waves` adds to their symbol: see
+    /// [`Engine::new`].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] if the coefficients are so large that their sum overflows.
+    pub(crate) fn of(
+        domain: (Grid, Boundary),
+        parity: Parity,
+        coefficient: Table<'_, isize>,
+        waves: Option<Table<'_, usize>>,
+    ) -> Result<Self, Error> {
+        Ok(Self { engine: Engine::new(domain, parity, coefficient, waves)? })
     }
 
     /// The grid of the fields.

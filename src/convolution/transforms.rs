@@ -5,6 +5,7 @@ use std::sync::Arc;
 use asperity_fft::{ComplexToReal, Fft, RealToComplex};
 use num_complex::Complex;
 
+use super::engine::Parity;
 use super::real::Real;
 use super::size::fast_size;
 use crate::parallel::vectorized;
@@ -155,7 +156,7 @@ impl<T: Real> Transforms<T> {
     pub(super) fn filter_column(
         &self,
         column: &mut [Complex<T>],
-        symbol: &[T],
+        (symbol, parity): (&[T], Parity),
         work: &mut Workspace<T>,
     ) {
         column[self.ny..].fill(T::ZERO);
@@ -167,8 +168,12 @@ impl<T: Real> Transforms<T> {
         vectorized(
             #[inline(always)]
             || {
-                for (value, &factor) in work.spectrum.iter_mut().zip(symbol) {
-                    *value = *value * factor;
+                let values = work.spectrum.iter_mut().zip(symbol);
+                match parity {
+                    Parity::Even => values.for_each(|(value, &factor)| *value = *value * factor),
+                    Parity::Odd => values.for_each(|(value, &factor)| {
+                        *value = Complex::new(-value.im * factor, value.re * factor);
+                    }),
                 }
             },
         );
@@ -182,19 +187,26 @@ impl<T: Real> Transforms<T> {
     /// One column of the symbol, given the spectra of kernel rows dj = 0, 1, …, ny − 1 there.
     ///
     /// Reciprocity, C(−di, −dj) = C(di, dj), makes the spectrum of row −dj the conjugate of that of
-    /// row dj, and the symbol real. Without padding row −dj is row ny − dj, which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
+    /// row dj, and the symbol real; with the other sign, minus that, and the symbol imaginary. Without padding row −dj is row ny − dj, which is there already. The symbol includes the 1 / (px py) of the inverse transforms.
     pub(super) fn symbol_column(
         &self,
-        entries: &[Complex<T>],
+        (entries, parity): (&[Complex<T>], Parity),
         symbol: &mut [T],
         work: &mut Workspace<T>,
     ) {
         let (inside, padding) = work.column.split_at_mut(self.ny);
         inside.copy_from_slice(entries);
-        inside[0].im = T::zero();
         padding.fill(T::ZERO);
-        for (opposite, entry) in padding.iter_mut().rev().zip(&entries[1..]) {
-            *opposite = entry.conj();
+        let opposites = padding.iter_mut().rev().zip(&entries[1..]);
+        match parity {
+            Parity::Even => {
+                inside[0].im = T::zero();
+                opposites.for_each(|(opposite, entry)| *opposite = entry.conj());
+            }
+            Parity::Odd => {
+                inside[0].re = T::zero();
+                opposites.for_each(|(opposite, entry)| *opposite = -entry.conj());
+            }
         }
         self.column_forward.process_outofplace_with_scratch(
             &mut work.column,
@@ -204,7 +216,11 @@ impl<T: Real> Transforms<T> {
         let (px, py) = self.padded();
         let normalisation = T::rounded(1.0 / (px as f64 * py as f64));
         for (value, spectrum) in symbol.iter_mut().zip(&work.spectrum) {
-            *value = spectrum.re * normalisation;
+            let part = match parity {
+                Parity::Even => spectrum.re,
+                Parity::Odd => spectrum.im,
+            };
+            *value = part * normalisation;
         }
     }
 }

@@ -5,6 +5,7 @@ mod creep;
 mod joint;
 mod kernel;
 mod slip;
+mod stress;
 mod updater;
 
 use asperity_surfaces::number::{counted, quantity};
@@ -16,6 +17,7 @@ pub use creep::CreepError;
 pub use joint::JointError;
 pub use kernel::KernelError;
 pub use slip::SlipError;
+pub use stress::StressError;
 pub use updater::UpdaterError;
 
 /// What went wrong, with the numbers that say so.
@@ -325,6 +327,10 @@ pub enum Error {
     /// A tangential load that friction does not bear.
     #[error(transparent)]
     Slip(#[from] SlipError),
+
+    /// Stresses below the surface that are not to be had.
+    #[error(transparent)]
+    Stress(#[from] StressError),
 
     /// A theory of homogeneous half-spaces on a body with layers.
     #[error("{asked} is asked for of a body with layers, and {reason}")]

@@ -32,6 +32,8 @@ pub enum Theory {
     Slip,
     /// One creep function for the whole body.
     Creep,
+    /// Stresses below the surface of a half-space under tractions along it.
+    Traction,
 }
 
 impl Layering {
@@ -61,6 +63,10 @@ impl Layering {
                 "creep",
                 "one relaxation function would let all materials creep alike, also an elastic base. Right is one for each material; here layers of one \
                  material on a rigid base, against a rigid body, may creep",
+            ),
+            Theory::Traction => (
+                "the stress below tractions",
+                "it is that of a half-space. Right is the stress by the transfer matrices of the layers, which is computed here for pressures alone",
             ),
         };
         let holds = match self {
@@ -143,8 +149,8 @@ mod tests {
 
     #[test]
     fn theories_hold_for_their_bodies() {
-        use Theory::{Conductance, Creep, Slip, TangentialStiffness};
-        for theory in [Conductance, TangentialStiffness, Slip, Creep] {
+        use Theory::{Conductance, Creep, Slip, TangentialStiffness, Traction};
+        for theory in [Conductance, TangentialStiffness, Slip, Creep, Traction] {
             assert!(Layering::Unknown.check(theory).is_ok());
             assert!(Layering::HalfSpace.check(theory).is_ok());
             assert!(Layering::SemiPeriodicHalfSpace.check(theory).is_ok());

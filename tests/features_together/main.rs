@@ -11,6 +11,7 @@ mod followed;
 mod kept;
 mod rows;
 mod solved;
+mod stressed;
 
 use std::path::Path;
 
@@ -25,7 +26,7 @@ use rows::{Pressed, Row};
 /// A column: `Ok` if its answer is right, the error if there is none, and a panic if it is wrong.
 type Check = fn(&mut Pressed<'_>) -> Result<(), Error>;
 
-const COLUMNS: [(&str, Check); 12] = [
+const COLUMNS: [(&str, Check); 13] = [
     ("fixed load", solved::fixed_load),
     ("sweep", solved::sweep),
     ("fields", solved::fields),
@@ -34,6 +35,7 @@ const COLUMNS: [(&str, Check); 12] = [
     ("resume", kept::resume),
     ("patches", followed::patches),
     ("leak", followed::leak),
+    ("stress", stressed::stress),
     ("slip", followed::slip),
     ("creep", followed::creep),
     ("conductance", followed::conductance),
@@ -120,6 +122,11 @@ fn patches() {
 #[test]
 fn leak() {
     column("leak");
+}
+
+#[test]
+fn stress() {
+    column("stress");
 }
 
 #[test]

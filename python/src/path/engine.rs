@@ -8,6 +8,7 @@ use asperity::loading::{History, LoadingEnd};
 use asperity::nalgebra::DMatrix;
 use asperity::record::LoadingRecord;
 use asperity::slip::{PartialSlip, SlipZone};
+use asperity::stress::{FirstYield, Subsurface};
 use asperity::surface::HeightMap;
 use asperity::updater::LinearUpdater;
 use asperity::{ContactTarget, Error, LoadingSolver, LoadingState, Problem};
@@ -56,6 +57,12 @@ pub(crate) trait Engine: Send + Sync {
         history: &History,
         states: usize,
     ) -> Result<LeakCurve, Error>;
+    fn first_yield(
+        &mut self,
+        below: &Subsurface,
+        history: &History,
+        yield_stress: f64,
+    ) -> Result<Option<FirstYield>, Error>;
 }
 
 /// Fields under a tangential load.
@@ -198,5 +205,14 @@ impl<U: LinearUpdater + Send + Sync> Engine for LoadingSolver<U> {
         states: usize,
     ) -> Result<LeakCurve, Error> {
         seal.curve(self, history, states)
+    }
+
+    fn first_yield(
+        &mut self,
+        below: &Subsurface,
+        history: &History,
+        yield_stress: f64,
+    ) -> Result<Option<FirstYield>, Error> {
+        below.first_yield(self, history, yield_stress)
     }
 }

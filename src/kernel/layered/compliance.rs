@@ -35,9 +35,18 @@ impl Material {
     pub(super) fn new(young: f64, poisson: f64) -> Self {
         Self { shear: 0.5 * young / (1.0 + poisson), poisson }
     }
+
+    /// Stress along a wave, from the displacement along it times 2q and the pressure on planes of constant depth.
+    pub(super) fn along(self, displacement: f64, pressure: f64) -> f64 {
+        (self.shear * displacement - self.poisson * pressure) / (1.0 - self.poisson)
+    }
 }
 
-type Block = [[f64; 2]; 2];
+pub(super) type Block = [[f64; 2]; 2];
+
+fn product(a: Block, b: Block) -> Block {
+    a.map(|[first, second]| [0, 1].map(|j| first * b[0][j] + second * b[1][j]))
+}
 
 /// The compliance matrix of a surface, times 2 q \[1/Pa\]: from pressure and shear traction to displacements.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +54,8 @@ pub(super) struct Compliance(Block);
 
 /// From this thickness on, in units of 1/q, nothing below a layer is felt: 10⁻¹⁹ of it.
 const DEEP: f64 = 26.0;
+/// From this thickness on nothing passes through a layer: 10⁻²⁶.
+const BLIND: f64 = 60.0;
 /// Greatest thickness that is passed at once: terms that grow with it cancel.
 const STEP: f64 = 4.0;
 
@@ -71,6 +82,27 @@ impl Compliance {
             own = transfer.applied(own);
         }
         own.scaled(1.0 / material.shear)
+    }
+
+    /// The same, with what `down` makes of tractions on what this is of made one of tractions on the layer.
+    pub(super) fn under_with(self, material: Material, x: f64, down: Block) -> (Self, Block) {
+        if x >= BLIND {
+            return (Self::half_space(material), [[0.0; 2]; 2]);
+        }
+        let steps = (x / STEP).ceil().max(1.0);
+        let transfer = Transfer::new(material.poisson, x / steps);
+        let (mut own, mut down) = (self.scaled(material.shear), down);
+        for _ in 0..steps as usize {
+            let (above, inverse) = transfer.with_traction(own);
+            own = above;
+            down = product(down, inverse);
+        }
+        (own.scaled(1.0 / material.shear), down)
+    }
+
+    /// Displacements times 2q, into the body and along it, under tractions.
+    pub(super) fn displacements(self, [pressure, shear]: [f64; 2]) -> [f64; 2] {
+        self.0.map(|[first, second]| first * pressure + second * shear)
     }
 
     /// q Ĉ(q) \[1/Pa\].
@@ -114,6 +146,11 @@ impl Transfer {
     }
 
     fn applied(&self, below: Compliance) -> Compliance {
+        self.with_traction(below).0
+    }
+
+    /// The same, with the matrix that leads from tractions above to those below.
+    fn with_traction(&self, below: Compliance) -> (Compliance, Block) {
         let [displacement, traction] =
             self.blocks.each_ref().map(|[from_displacement, from_traction]| {
                 let mut sum = *from_traction;
@@ -133,7 +170,8 @@ impl Transfer {
         let [[normal, other], [another, along]] = displacement.map(row);
         // Symmetric, as reciprocity has it.
         let mixed = 0.5 * (other + another);
-        Compliance([[normal, mixed], [mixed, along]])
+        let inverse = [[s / determinant, -q / determinant], [-r / determinant, p / determinant]];
+        (Compliance([[normal, mixed], [mixed, along]]), inverse)
     }
 }
 

@@ -107,9 +107,15 @@ pub(super) fn spectrum<G: Fn(f64) -> f64>(body: &LayeredBody, g: G) -> Spectrum<
     let top = body.top_thickness();
     Spectrum {
         g,
-        first: 0.1 * body.softest_over_stiffest().sqrt() / body.thickness(),
+        bessel: libm::j0,
+        first: first_variation(body),
         widest: 1.0 / top,
         settled: 0.0,
         end: DEEPEST / top,
     }
+}
+
+/// The wave number below which the compliance hardly varies.
+pub(super) fn first_variation(body: &LayeredBody) -> f64 {
+    0.1 * body.softest_over_stiffest().sqrt() / body.thickness()
 }

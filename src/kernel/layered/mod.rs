@@ -1,5 +1,6 @@
 //! Coated, thin and graded bodies.
 
+mod below;
 mod body;
 mod cell;
 mod compliance;
@@ -9,6 +10,7 @@ mod growth;
 mod periodic;
 mod radial;
 
+pub(crate) use below::Below;
 pub use body::{Base, Layer, LayeredBody};
 
 use super::gauge::of_coefficients;

@@ -8,11 +8,14 @@ use crate::parallel::for_each_chunk;
 /// q times the transform of a function of the distance, which is
 ///
 /// ```math
-/// f(r) = \frac{1}{2 \pi} \int_0^\infty g(q)\, J_0(q r)\, \mathrm dq .
+/// f(r) = \frac{1}{2 \pi} \int_0^\infty g(q)\, J_0(q r)\, \mathrm dq ,
 /// ```
+///
+/// or with another Bessel function, of what goes with cos θ or cos 2θ.
 #[derive(Debug)]
 pub(super) struct Spectrum<G> {
     pub(super) g: G,
+    pub(super) bessel: fn(f64) -> f64,
     /// Where g begins to vary. From here on it varies over wave numbers in proportion to themselves,
     pub(super) first: f64,
     /// or over this, if that is less.
@@ -75,7 +78,7 @@ impl<G: Fn(f64) -> f64> Spectrum<G> {
             let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
             for (node, weight) in FOURTEEN {
                 for q in [middle - half * node, middle + half * node] {
-                    sum += half * weight * (self.g)(q) * libm::j0(q * r);
+                    sum += half * weight * (self.g)(q) * (self.bessel)(q * r);
                 }
             }
             a = b;
@@ -116,6 +119,16 @@ impl Radial {
         reach: f64,
         widest: f64,
     ) -> Self {
+        Self::of(|r| spectrum.transform(r), scale, reach, widest)
+    }
+
+    /// Any function that is smooth over `scale` near the origin, and over what is left of the distance beyond.
+    pub(super) fn of(
+        function: impl Fn(f64) -> f64 + Sync,
+        scale: f64,
+        reach: f64,
+        widest: f64,
+    ) -> Self {
         let mut panels = Vec::new();
         let mut ends = Vec::new();
         let mut from = 0.0_f64;
@@ -131,7 +144,7 @@ impl Radial {
             for panel in panels {
                 panel.fill(|t| {
                     let r = scale * libm::sinh(t);
-                    spectrum.transform(r) * scale * libm::cosh(t)
+                    function(r) * scale * libm::cosh(t)
                 });
             }
         });
@@ -197,6 +210,7 @@ mod tests {
         for c in [1e-3, 1.0, 40.0] {
             let spectrum = Spectrum {
                 g: |q: f64| (1.0 + q) * libm::exp(-c * q),
+                bessel: libm::j0,
                 first: 0.1 / c.max(1.0),
                 widest: 2.0 / c,
                 settled: 0.0,

@@ -32,7 +32,7 @@ impl CosineSeries {
 }
 
 /// sin πx / πx.
-pub(in crate::kernel) fn sinc(x: f64) -> f64 {
+pub(crate) fn sinc(x: f64) -> f64 {
     let x = std::f64::consts::PI * x;
     if x == 0.0 { 1.0 } else { libm::sin(x) / x }
 }

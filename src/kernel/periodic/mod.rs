@@ -9,7 +9,8 @@ mod spectral;
 mod symmetric;
 
 pub(crate) use cells::check_periodic_cells;
-pub(super) use cosines::{CosineSeries, sinc};
+pub(super) use cosines::CosineSeries;
+pub(crate) use cosines::sinc;
 pub(super) use even::Even;
 pub use love::PeriodicBoussinesq;
 pub use semi::SemiPeriodicBoussinesq;

@@ -1,0 +1,134 @@
+//! The bodies whose stresses are asked for, and what is found of them.
+
+use asperity::record::LoadingRecord;
+use asperity::stress::{FirstYield, Subsurface, Survey};
+use asperity::updater::ConjugateGradient;
+use asperity::{LoadingSolver, LoadingState};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+use nalgebra::DMatrix;
+
+use super::Options;
+use super::progress::Progress;
+
+/// A state of the record.
+pub(super) struct Moment<'a> {
+    pub(super) record: &'a LoadingRecord,
+    path: LoadingSolver<ConjugateGradient>,
+    pub(super) state: LoadingState,
+    pub(super) pressure: DMatrix<f64>,
+    /// Coefficient of friction, and direction \[°\].
+    pub(super) friction: (f64, f64),
+}
+
+/// A body, with its stresses.
+pub(super) struct Body {
+    /// Which of two it is, in words.
+    pub(super) name: &'static str,
+    pub(super) below: Subsurface,
+    pub(super) survey: Survey,
+    pub(super) yielding: Option<Yielding>,
+}
+
+/// Its yield stress \[Pa\], and the state of the path at which it is reached.
+pub(super) struct Yielding {
+    pub(super) stress: f64,
+    pub(super) first: Option<FirstYield>,
+}
+
+impl<'a> Moment<'a> {
+    pub(super) fn new(record: &'a LoadingRecord, options: &Options) -> Result<Self, Failure> {
+        let failed = |error| Failure::new("cannot compute the pressure", error);
+        let Some(last) = record.states().last().copied() else {
+            return Err(Failure::request("the record holds no state"));
+        };
+        let state = match options.load {
+            None => last,
+            Some(load) => record.history().at_load(load).ok_or_else(|| {
+                Failure::request(format!(
+                    "the path has no state at {}: it ends at {}",
+                    quantity(load, "N", 6),
+                    quantity(last.contact.load, "N", 6)
+                ))
+            })?,
+        };
+        let mut path = record.replay().map_err(failed)?;
+        let pressure = path.pressure_at(&state).map_err(failed)?;
+        let friction = (options.friction, options.angle);
+        Ok(Self { record, path, state, pressure, friction })
+    }
+
+    /// The bodies that are asked for.
+    pub(super) fn bodies(&mut self, options: &Options) -> Result<Vec<Body>, Failure> {
+        let own = options.yield_stress;
+        let other = options.against_yield_stress;
+        let mut found = Vec::new();
+        // Tractions on the other body are opposite.
+        let sides = [("body", 1.0, own), ("other body", -1.0, other)];
+        for (ratio, (name, sign, strength)) in ratios(self.record, options)?.into_iter().zip(sides)
+        {
+            found.push(self.body(name, (ratio, sign), strength, options)?);
+        }
+        if other.is_some() && found.len() < 2 {
+            return Err(Failure::request(
+                "--against-yield-stress is that of a second body: give --material and --against",
+            ));
+        }
+        Ok(found)
+    }
+
+    fn body(
+        &mut self,
+        name: &'static str,
+        (ratio, sign): (f64, f64),
+        strength: Option<f64>,
+        options: &Options,
+    ) -> Result<Body, Failure> {
+        let failed = |error| Failure::new("cannot compute the stress below the surface", error);
+        let (coefficient, angle) = self.friction;
+        let below = Subsurface::of_record(self.record, ratio)
+            .and_then(|below| below.sliding(sign * coefficient, angle.to_radians()))
+            .map_err(failed)?;
+        let depths = Some(&options.depth[..]).filter(|depths| !depths.is_empty());
+        let progress = Progress::new();
+        let survey = below.survey_with(&self.pressure, depths, |field| {
+            progress.passed(field.depth);
+            Ok(())
+        });
+        let survey = survey.map_err(failed)?;
+        let yielding = match strength {
+            None => None,
+            Some(stress) => {
+                let first = below.first_yield(&mut self.path, self.record.history(), stress);
+                Some(Yielding { stress, first: first.map_err(failed)? })
+            }
+        };
+        Ok(Body { name, below, survey, yielding })
+    }
+}
+
+/// Poisson's ratios of the body and of the other one, if that is not rigid; layers have their own.
+fn ratios(record: &LoadingRecord, options: &Options) -> Result<Vec<f64>, Failure> {
+    if record.kernel().origin.composite_modulus().is_none() {
+        return match (options.poisson, options.material) {
+            (None, None) => Ok(vec![0.0]),
+            _ => Err(Failure::request(
+                "--poisson and --material are those of a homogeneous body, and this record is of layers, which it knows",
+            )),
+        };
+    }
+    if let Some(ratio) = options.poisson {
+        return Ok(vec![ratio]);
+    }
+    if let Some(first) = options.material {
+        let both = [Some(first), options.against];
+        return Ok(both.into_iter().flatten().map(|body| body.nu).collect());
+    }
+    let ratios: Vec<f64> = record.bodies().iter().map(|(_, ratio)| *ratio).collect();
+    if ratios.is_empty() {
+        return Err(Failure::request(
+            "the record does not know its bodies: give --poisson, or --material and --against",
+        ));
+    }
+    Ok(ratios)
+}

@@ -1,0 +1,129 @@
+//! `asperity stress`: the stress below the surface at a state of a record, and the load at which a body begins to yield.
+//!
+//! Prints where each measure of stress is greatest, and writes `stress.csv`, `stress.png`, `von_mises_map.png`, `shear_map.png`,
+//! `section_x.png` and `section_y.png`; with `--volume` also `stress.vti`.
+
+mod body;
+mod charts;
+mod maps;
+mod progress;
+mod section;
+mod table;
+mod words;
+
+use std::path::PathBuf;
+
+use asperity::record::LoadingRecord;
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::{answer, panel, speech};
+use clap::{ArgGroup, Args};
+
+use crate::material::Material;
+use crate::values::{not_negative, number, poisson, positive};
+use body::Moment;
+
+/// Stress below the surface of a recorded contact: where it is greatest, maps and sections, and the load of first yield
+///
+/// The body is a homogeneous elastic half-space or has layers, under the pressures of a state of the path, and, with --friction on a
+/// homogeneous one, under tractions in proportion to them. Prints von Mises' and Tresca's equivalent stress, the greatest shear stress and the greatest tension with their
+/// places; with --yield-stress also the load of the path at which the body begins to yield.
+///
+/// Writes stress.csv (the greatest value of each measure at each depth, for each body), stress.png, maps of von Mises' stress and of the
+/// greatest shear stress at the depths where they are greatest (von_mises_map.png, shear_map.png), and vertical sections of von Mises'
+/// stress through its greatest value (section_x.png, section_y.png); all but the first two of the body, or of the first of two.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("ratio").args(["poisson", "material"])))]
+pub(crate) struct Options {
+    /// File that `asperity path --record` has written
+    #[arg(value_name = "FILE.npz")]
+    record: PathBuf,
+
+    /// Load of the state whose stresses are computed [default: the last state]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    load: Option<f64>,
+
+    /// Poisson's ratio of the body [default: both bodies of the record, if it knows them; layers it knows]
+    #[arg(long, value_name = "NU", allow_negative_numbers = true, value_parser = poisson)]
+    poisson: Option<f64>,
+
+    /// The body: a name (steel, aluminium, ...) or Young's modulus in Pa and Poisson's ratio (210e9,0.3)
+    #[arg(long, value_name = "NAME|E,NU")]
+    material: Option<Material>,
+
+    /// The other body [default: rigid]
+    #[arg(long, value_name = "NAME|E,NU", requires = "material")]
+    against: Option<Material>,
+
+    /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for along the path
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    yield_stress: Option<f64>,
+
+    /// Yield stress of the other body
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    against_yield_stress: Option<f64>,
+
+    /// Coefficient of friction of a contact that slides: tractions of so many times the pressure
+    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = not_negative, default_value_t = 0.0)]
+    friction: f64,
+
+    /// Direction of sliding in degrees from x towards y: that in which the other body moves over this one
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = number, default_value_t = 0.0)]
+    angle: f64,
+
+    /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the largest patch, and
+    /// around the greatest stress]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = not_negative)]
+    depth: Vec<f64>,
+
+    /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the sections
+    #[arg(long, value_name = "DEPTHS")]
+    volume: Option<usize>,
+
+    /// Print one JSON object with load, mean_pressure, friction, angle, bodies and warnings, and write files only if --out is given. Each
+    /// body has poissons_ratio, von_mises, tresca, greatest_shear and greatest_tension (value, depth, node), depths, yield_stress and
+    /// first_yield (load, contact_nodes, von_mises; null if the path ends before); SI units
+    #[arg(long)]
+    json: bool,
+
+    /// Directory for the files, created if it does not exist [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Reads the record, says where stresses are greatest, and writes the files.
+pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.json {
+        speech::be_quiet();
+    }
+    if options.volume == Some(0) {
+        return Err(Failure::request("--volume takes at least 1 depth"));
+    }
+    let file = options.record.display();
+    let record = LoadingRecord::read_npz(&options.record)
+        .map_err(|error| Failure::new(format!("cannot read {file}"), error))?;
+    let mut moment = Moment::new(&record, options)?;
+    let bodies = moment.bodies(options)?;
+    let warnings = words::warnings(&moment, &bodies);
+    if options.json {
+        answer!("{}", words::object(&moment, &bodies, &warnings));
+    }
+    words::print(&moment, &bodies);
+    warnings.iter().for_each(speech::warn);
+    let directory = match (&options.out, options.json) {
+        (Some(directory), _) => directory.clone(),
+        (None, false) => PathBuf::from("out"),
+        (None, true) => return Ok(()),
+    };
+    panel::register_font()?;
+    std::fs::create_dir_all(&directory)
+        .map_err(|error| Failure::new(format!("cannot create {}", directory.display()), error))?;
+    let mut outcome = Outcome::default();
+    let place = |name: &str| directory.join(name);
+    outcome.written(table::write(&moment, &bodies, &place("stress.csv")));
+    outcome.written(charts::draw(&bodies, &place("stress.png")));
+    let Some(body) = bodies.first() else { return outcome.finish() };
+    outcome.all_written(maps::draw(&moment, body, &directory));
+    let volume = options.volume.map(|count| (place("stress.vti"), count));
+    outcome.all_written(section::draw(&moment, body, volume, &directory));
+    outcome.finish()
+}

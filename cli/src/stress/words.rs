@@ -1,0 +1,133 @@
+//! What is printed.
+
+use asperity::stress::{Greatest, Measure};
+use asperity_cli::number::{counted, quantity};
+use asperity_cli::say;
+use serde_json::{Value, json};
+
+use super::body::{Body, Moment};
+
+/// Nodes in contact below which a first yield is that of the grid.
+const FEW_NODES: usize = 50;
+
+/// One object for programs.
+pub(super) fn object(moment: &Moment, bodies: &[Body], warnings: &[String]) -> Value {
+    let (friction, angle) = moment.friction;
+    json!({
+        "load": moment.state.contact.load,
+        "mean_pressure": moment.state.contact.mean_pressure(),
+        "friction": friction,
+        "angle": angle,
+        "bodies": bodies.iter().map(of_body).collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
+}
+
+fn of_body(body: &Body) -> Value {
+    let mut value = json!({
+        "poissons_ratio": body.below.poissons_ratio(),
+        "depths": body.survey.depths.iter().map(|depth| depth.depth).collect::<Vec<_>>(),
+        "yield_stress": body.yielding.as_ref().map(|yielding| yielding.stress),
+        "first_yield": body.yielding.as_ref().and_then(|yielding| yielding.first).map(|first| json!({
+            "load": first.state.contact.load,
+            "contact_nodes": first.state.contact.contact_nodes,
+            "von_mises": place(first.greatest),
+        })),
+    });
+    for measure in Measure::ALL {
+        value[measure.name()] = place(body.survey.greatest(measure));
+    }
+    value
+}
+
+fn place(greatest: Greatest) -> Value {
+    json!({
+        "value": greatest.value,
+        "depth": greatest.depth,
+        "node": [greatest.node.0, greatest.node.1],
+    })
+}
+
+/// Lines for people.
+pub(super) fn print(moment: &Moment, bodies: &[Body]) {
+    let contact = &moment.state.contact;
+    let (nx, ny) = moment.record.grid().shape();
+    say!(
+        "state         W = {}, A/A0 = {:.2} %, mean pressure {}, greatest {}, on {nx} x {ny} nodes",
+        quantity(contact.load, "N", 4),
+        100.0 * contact.contact_area_fraction,
+        quantity(contact.mean_pressure(), "Pa", 4),
+        quantity(moment.pressure.max(), "Pa", 4)
+    );
+    let (friction, angle) = moment.friction;
+    if friction > 0.0 {
+        say!("friction      {friction} in a direction of {angle}° from x");
+    }
+    for body in bodies {
+        let depths = counted(body.survey.depths.len(), "depth");
+        match body.below.layers() {
+            Some(layers) => {
+                let count = counted(layers.layers().len(), "layer");
+                say!("{:<13} {count}, {depths}", body.name);
+            }
+            None => say!("{:<13} ν = {}, {depths}", body.name, body.below.poissons_ratio()),
+        }
+        for (measure, name) in [
+            (Measure::VonMises, "von Mises"),
+            (Measure::Tresca, "Tresca"),
+            (Measure::GreatestShear, "greatest shear"),
+            (Measure::GreatestTension, "greatest tension"),
+        ] {
+            let found = body.survey.greatest(measure);
+            say!(
+                "  {name:<17} {} at a depth of {}, below node ({}, {})",
+                quantity(found.value, "Pa", 4),
+                quantity(found.depth, "m", 4),
+                found.node.0,
+                found.node.1
+            );
+        }
+        let Some(yielding) = &body.yielding else { continue };
+        let strength = quantity(yielding.stress, "Pa", 4);
+        match yielding.first {
+            Some(first) => say!(
+                "  yields first at W = {}, where von Mises' stress is {strength} at a depth of {}, with {} in contact",
+                quantity(first.state.contact.load, "N", 4),
+                quantity(first.greatest.depth, "m", 4),
+                counted(first.state.contact.contact_nodes, "node")
+            ),
+            None => say!("  does not yield on this path: von Mises' stress stays below {strength}"),
+        }
+    }
+}
+
+/// What the figures do not say.
+pub(super) fn warnings(moment: &Moment, bodies: &[Body]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if moment.state.contact.plastic.is_some_and(|plastic| plastic.yielded_nodes > 0) {
+        warnings.push(
+            "nodes have yielded: these are the elastic stresses under the pressures, without the residual stresses that yielding leaves"
+                .to_string(),
+        );
+    }
+    let cell = moment.record.grid().cell_area().sqrt();
+    for body in bodies {
+        let greatest = body.survey.greatest(Measure::VonMises);
+        if greatest.depth > 0.0 && greatest.depth < 2.0 * cell {
+            warnings.push(format!(
+                "in the {} von Mises' stress is greatest {} below the surface, less than two cells: it is that of the grid. A finer one tells more",
+                body.name,
+                quantity(greatest.depth, "m", 3)
+            ));
+        }
+        let first = body.yielding.as_ref().and_then(|yielding| yielding.first);
+        if let Some(first) = first.filter(|first| first.state.contact.contact_nodes < FEW_NODES) {
+            warnings.push(format!(
+                "the {} yields with {} in contact: below some {FEW_NODES} of them the load of first yield is that of the grid",
+                body.name,
+                counted(first.state.contact.contact_nodes, "node")
+            ));
+        }
+    }
+    warnings
+}

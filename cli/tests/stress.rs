@@ -1,0 +1,130 @@
+//! `asperity stress` on the records of small paths.
+#![allow(clippy::float_cmp)]
+
+mod common;
+
+use std::error::Error;
+use std::fs;
+
+use asperity::record::LoadingRecord;
+use asperity::stress::{Measure, Subsurface};
+use common::{Scratch, is_refused, output, run};
+use serde_json::Value;
+
+type Done = Result<(), Box<dyn Error>>;
+
+/// Steel against glass: what is printed is what the library finds, for both bodies; tractions on the second are opposite.
+#[test]
+fn stresses_are_printed_and_drawn() -> Done {
+    let folder = Scratch::new("stress")?;
+    run(
+        &folder.0,
+        "path --nodes 32 --material steel --against glass --record path.npz --out path -q",
+    )?;
+    let record = LoadingRecord::read_npz(folder.join("path.npz"))?;
+    let load = 0.5 * record.states().last().ok_or("no state")?.contact.load;
+    let line = format!(
+        "stress path.npz --load {load:e} --friction 0.2 --angle 30 --yield-stress 1e9 --against-yield-stress 1e15 --volume 5 --out seen"
+    );
+    let words = String::from_utf8(run(&folder.0, &line)?.stdout)?;
+    for said in [
+        "body          ν = 0.3",
+        "other body    ν = 0.22",
+        "yields first at W = ",
+        "does not yield on this path",
+    ] {
+        assert!(words.contains(said), "{said}: {words}");
+    }
+    for picture in ["stress", "von_mises_map", "shear_map", "section_x", "section_y"] {
+        let bytes = fs::read(folder.join("seen").join(picture).with_extension("png"))?;
+        assert!(bytes.starts_with(b"\x89PNG"), "{picture}");
+    }
+    assert!(fs::read(folder.join("seen/stress.vti"))?.starts_with(b"<?xml"));
+
+    let json = line.replace("--volume 5 --out seen", "--json");
+    let document: Value = serde_json::from_slice(&run(&folder.0, &json)?.stdout)?;
+    let mut path = record.replay()?;
+    let state = record.history().at_load(load).ok_or("no state")?;
+    let pressure = path.pressure_at(&state)?;
+    let table = fs::read_to_string(folder.join("seen/stress.csv"))?;
+    for (place, (ratio, coefficient)) in [(0.3, 0.2), (0.22, -0.2)].into_iter().enumerate() {
+        let below = Subsurface::of_record(&record, ratio)?;
+        let survey = below.sliding(coefficient, 30_f64.to_radians())?.survey(&pressure, None)?;
+        let body = &document["bodies"][place];
+        for measure in Measure::ALL {
+            let expected = survey.greatest(measure);
+            let found = &body[measure.name()];
+            assert_eq!(found["value"].as_f64(), Some(expected.value));
+            assert_eq!(found["depth"].as_f64(), Some(expected.depth));
+            assert_eq!(found["node"][0].as_u64(), Some(expected.node.0 as u64));
+        }
+        let lines = table.lines().filter(|line| line.starts_with(&format!("{},", place + 1)));
+        let greatest: Vec<f64> = lines
+            .map(|line| line.split(',').nth(3).unwrap_or_default().parse())
+            .collect::<Result<_, _>>()?;
+        assert_eq!(greatest.len(), survey.depths.len());
+        let most = greatest.into_iter().fold(0.0, f64::max);
+        assert_eq!(most, survey.greatest(Measure::VonMises).value);
+        assert_eq!(body["first_yield"].is_null(), place == 1);
+    }
+    let first = &document["bodies"][0]["first_yield"];
+    let found = first["von_mises"]["value"].as_f64().ok_or("no stress")?;
+    assert!((found / 1e9 - 1.0).abs() < 1e-4 && first["load"].as_f64() < Some(load), "{first}");
+    Ok(())
+}
+
+/// Depths that are given are all there are, and one of them has no line.
+#[test]
+fn depths_may_be_given() -> Done {
+    let folder = Scratch::new("stress-depths")?;
+    run(&folder.0, "path --nodes 16 --e-star 1e11 --record path.npz --out path -q")?;
+    let found = run(&folder.0, "stress path.npz --poisson 0.3 --depth 1e-5 --json --out seen")?;
+    let document: Value = serde_json::from_slice(&found.stdout)?;
+    assert_eq!(document["bodies"][0]["depths"], serde_json::json!([1e-5]));
+    assert_eq!(document["bodies"][0]["von_mises"]["depth"].as_f64(), Some(1e-5));
+    assert!(folder.join("seen/stress.png").exists());
+    Ok(())
+}
+
+/// A coat has its own ratio, and its interface two sides.
+#[test]
+fn coats_have_stresses() -> Done {
+    let folder = Scratch::new("stress-coat")?;
+    let coat =
+        "path --nodes 16 --layer 400e9,0.25,2e-4 --base steel --record coat.npz --out path -q";
+    run(&folder.0, coat)?;
+    let found = run(&folder.0, "stress coat.npz --json --out seen")?;
+    let document: Value = serde_json::from_slice(&found.stdout)?;
+    let body = &document["bodies"][0];
+    assert_eq!(body["poissons_ratio"].as_f64(), Some(0.25));
+    let depths = body["depths"].as_array().ok_or("no depths")?;
+    for depth in [2e-4, 2e-4_f64.next_up()] {
+        assert!(depths.iter().any(|other| other.as_f64() == Some(depth)), "{depths:?}");
+    }
+    assert!(folder.join("seen/section_x.png").exists());
+    Ok(())
+}
+
+#[test]
+fn what_has_no_answer_is_refused() -> Done {
+    let folder = Scratch::new("stress-refused")?;
+    run(&folder.0, "path --nodes 16 --e-star 1e11 --record path.npz --out path -q")?;
+    let coat =
+        "path --nodes 16 --layer 400e9,0.25,1e-5 --base steel --record coat.npz --out path -q";
+    run(&folder.0, coat)?;
+    for (line, words) in [
+        ("stress path.npz", &["--poisson", "--material"][..]),
+        ("stress path.npz --poisson 0.3 --load 1e9", &["the path has no state at"]),
+        ("stress path.npz --poisson 0.3 --against-yield-stress 1e9", &["--against-yield-stress"]),
+        ("stress path.npz --poisson 0.3 --volume 0", &["--volume"]),
+        ("stress coat.npz --friction 0.1", &["layers"]),
+        ("stress coat.npz --poisson 0.3", &["--poisson"]),
+    ] {
+        is_refused(&output(&folder.0, line)?, words);
+    }
+    for line in ["--poisson 0.6", "--poisson 0.3 --depth -1", "--poisson 0.3 --friction -1"] {
+        let refused = output(&folder.0, &format!("stress path.npz {line}"))?;
+        assert_eq!(refused.status.code(), Some(2), "{line}");
+    }
+    Ok(())
+}

@@ -1,0 +1,23 @@
+//! Errors of stresses below the surface.
+
+use thiserror::Error;
+
+/// Stresses that are not to be had.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StressError {
+    /// Nothing presses on the surface, or no depth is asked for.
+    #[error(
+        "there is no stress to survey: nothing presses on the surface, or no depth is asked for"
+    )]
+    NoLoad,
+
+    /// A depth in a rigid base, which has no stress of its own.
+    #[error("a depth of {depth} m is in the rigid base, below layers of {thickness} m")]
+    InRigidBase {
+        /// The depth \[m\].
+        depth: f64,
+        /// Thickness of all layers \[m\].
+        thickness: f64,
+    },
+}

@@ -1,0 +1,260 @@
+//! The stress kernel of a depth: coefficients, or a symbol, for each surrounding of the grid.
+
+use super::cells::{Stresses, rectangles, strips};
+use super::depth::Depth;
+use super::load::{COMPONENTS, Load, Response, transposed};
+use super::waves::{Between, Spectrum};
+use crate::convolution::{Convolution, Parity};
+use crate::kernel::Below;
+use crate::{Boundary, Error, Grid};
+
+/// Periods between the grid and its image across, in the periodic kernel that one which repeats along a side is made from: waves that vary
+/// along it fade as exp(−2π|y|/L).
+const APART: f64 = 5.0;
+
+/// Where a layer, or a depth below it, is thinner than this, in long sides of a cell, too many waves look alike on a grid that repeats.
+const THIN: f64 = 0.2;
+
+/// Where the load is, and how it is spread.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Domain {
+    pub(super) grid: Grid,
+    pub(super) boundary: Boundary,
+    pub(super) between: Between,
+}
+
+/// The responses of all components to one load, at one depth.
+#[derive(Debug)]
+pub(super) struct StressKernel {
+    domain: Domain,
+    response: Response,
+    table: Table,
+}
+
+#[derive(Debug)]
+enum Table {
+    /// At offsets that are not negative, x fastest.
+    Free(Vec<Stresses>),
+    /// At all offsets of a period, and of waves.
+    Periodic { cells: Option<Vec<Stresses>>, waves: Spectrum },
+    /// At all offsets of a period along x, and at those that are not negative across.
+    AlongX(Vec<Stresses>),
+    /// The same with x and y exchanged.
+    AlongY(Vec<Stresses>),
+}
+
+impl StressKernel {
+    /// That of a pressure on layers, at a depth above zero that is not in a rigid base.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] if the depth and the layers are too thin for cells that repeat.
+    pub(super) fn of_layers(domain: Domain, below: &Below<'_>, z: f64) -> Result<Self, Error> {
+        let (grid, between) = (&domain.grid, domain.between);
+        let poisson = below.added_to();
+        let response = Response::new(Load::Normal, poisson.unwrap_or_default());
+        let half_space = poisson.map(|_| Self::new(domain, response, z)).transpose()?;
+        let table = if domain.boundary == Boundary::Free {
+            let mut values = below.cells(grid);
+            if let Some(Self { table: Table::Free(others), .. }) = &half_space {
+                let all = values.iter_mut().zip(others);
+                all.for_each(|(value, other)| super::cells::add(value, 1.0, other));
+            }
+            Table::Free(values)
+        } else {
+            let thin = below.scale() / grid.dx().max(grid.dy());
+            let quantity = "depth to which layers let waves fade over the long side of a cell";
+            let is_enough = between == Between::Waves || thin >= THIN;
+            Error::require(quantity, thin, is_enough, "at least 0.2 where the grid repeats")?;
+            let waves = Spectrum::of_layers(grid, between, below, &response);
+            match half_space {
+                Some(Self { table: Table::Periodic { cells, waves: others }, .. }) => {
+                    Table::Periodic { cells, waves: others.plus(&waves) }
+                }
+                _ => Table::Periodic { cells: None, waves },
+            }
+        };
+        Ok(Self { domain, response, table })
+    }
+
+    pub(super) fn new(domain: Domain, response: Response, z: f64) -> Result<Self, Error> {
+        // Responses have no unit: lengths in long sides of a cell.
+        let unit = domain.grid.dx().max(domain.grid.dy());
+        let sides = (domain.grid.dx() / unit, domain.grid.dy() / unit);
+        let (nx, ny) = domain.grid.shape();
+        let domain = Domain { grid: Grid::new(nx, ny, sides.0, sides.1)?, ..domain };
+        let (grid, z) = (&domain.grid, z / unit);
+        let table = match domain.boundary {
+            Boundary::Free => Table::Free(rectangles(grid.shape(), sides, &[(1.0, z)], &response)),
+            Boundary::Periodic => periodic(&domain, &response, z),
+            Boundary::PeriodicX => Table::AlongX(along_x(grid, &response, z)?),
+            Boundary::PeriodicY => {
+                Table::AlongY(along_x(&grid.transposed(), &response.transposed(), z)?)
+            }
+        };
+        Ok(Self { domain, response, table })
+    }
+
+    /// The convolution of one component.
+    pub(super) fn convolution(&self, component: usize) -> Result<Convolution, Error> {
+        let domain = (self.domain.grid, self.domain.boundary);
+        let parity = self.response.parity(component);
+        let (nx, ny) = self.domain.grid.shape();
+        let (of_x, _) = self.response.signs(component);
+        let sign = |offset: isize, sign: f64| if offset < 0 { sign } else { 1.0 };
+        match &self.table {
+            Table::Free(values) => {
+                let at = |di: isize, dj: isize| {
+                    sign(di, of_x) * values[di.unsigned_abs() + nx * dj.unsigned_abs()][component]
+                };
+                Convolution::of(domain, parity, &at, None)
+            }
+            Table::Periodic { cells, waves } => {
+                let at = |di: isize, dj: isize| match cells {
+                    Some(values) => values[di.unsigned_abs() + nx * dj.unsigned_abs()][component],
+                    None => 0.0,
+                };
+                let uniform = match cells {
+                    Some(values) => values.iter().map(|value| value[component]).sum(),
+                    None => 0.0,
+                };
+                let of_wave = |kx: usize, ky: usize| {
+                    let value = waves.at((kx, ky), component, &self.response);
+                    // What cells say of the uniform wave does not count.
+                    if (kx, ky) == (0, 0) && parity == Parity::Even {
+                        value - uniform
+                    } else {
+                        value
+                    }
+                };
+                Convolution::of(domain, parity, &at, Some(&of_wave))
+            }
+            Table::AlongX(values) => {
+                let at = |di: isize, dj: isize| {
+                    values[di.unsigned_abs() + nx * dj.unsigned_abs()][component]
+                };
+                Convolution::of(domain, parity, &at, None)
+            }
+            Table::AlongY(values) => {
+                let component = transposed(component);
+                let at = |di: isize, dj: isize| {
+                    let value = values[dj.unsigned_abs() + ny * di.unsigned_abs()][component];
+                    sign(di, of_x) * value
+                };
+                Convolution::of(domain, parity, &at, None)
+            }
+        }
+    }
+}
+
+/// From this depth on, in long sides of a cell, waves that look alike on the grid have soon faded.
+const DEEP: f64 = 1.0;
+
+/// Waves, and where they hardly fade what deeper ones say of them, with the difference on cells near the load.
+fn periodic(domain: &Domain, response: &Response, z: f64) -> Table {
+    let Domain { grid, between, .. } = domain;
+    let (depth, near) = split(grid, *between, response, z);
+    let waves = Spectrum::new(grid, *between, &depth, response);
+    let cells = near.map(|near| near.folded(grid.shape(), [true, true], response));
+    Table::Periodic { cells, waves }
+}
+
+/// The depth of waves, and the difference on cells if they are not of the depth itself.
+fn split(grid: &Grid, between: Between, response: &Response, z: f64) -> (Depth, Option<Near>) {
+    if between == Between::Waves || z >= DEEP {
+        return (Depth::At(z), None);
+    }
+    let depth = Depth::extrapolated(z);
+    (depth, Some(Near::new(grid, &depth, response, z)))
+}
+
+/// How the response at a depth differs from what is extrapolated: near the load alone.
+struct Near {
+    shape: (usize, usize),
+    values: Vec<Stresses>,
+}
+
+impl Near {
+    fn new(grid: &Grid, depth: &Depth, response: &Response, z: f64) -> Self {
+        let (dx, dy) = (grid.dx(), grid.dy());
+        let shape = ((Depth::REACH / dx) as usize + 1, (Depth::REACH / dy) as usize + 1);
+        let mut depths = vec![(1.0, z)];
+        depths.extend(depth.parts().into_iter().map(|(weight, z)| (-weight, z)));
+        let values = rectangles(shape, (dx, dy), &depths, response);
+        Self { shape, values }
+    }
+
+    /// With all images along the sides that repeat: at all offsets there, and at those that are not negative elsewhere.
+    fn folded(
+        &self,
+        (nx, ny): (usize, usize),
+        [x_repeats, y_repeats]: [bool; 2],
+        response: &Response,
+    ) -> Vec<Stresses> {
+        let (columns, rows) = self.shape;
+        let mut sums = vec![[0.0; COMPONENTS]; nx * ny];
+        let signs: [(f64, f64); COMPONENTS] = std::array::from_fn(|c| response.signs(c));
+        let place = |offset: usize, is_negative: bool, n: usize, repeats: bool| match (
+            repeats,
+            is_negative,
+        ) {
+            (true, false) => Some(offset % n),
+            (true, true) => Some((n - offset % n) % n),
+            (false, false) => Some(offset).filter(|offset| *offset < n),
+            (false, true) => None,
+        };
+        for (b, row) in self.values.chunks_exact(columns).enumerate().take(rows) {
+            for below in [false, true] {
+                let Some(j) = place(b, below, ny, y_repeats).filter(|_| b > 0 || !below) else {
+                    continue;
+                };
+                for (a, value) in row.iter().enumerate() {
+                    for left in [false, true] {
+                        let i = place(a, left, nx, x_repeats).filter(|_| a > 0 || !left);
+                        let Some(i) = i else { continue };
+                        let sum = &mut sums[i + nx * j];
+                        for ((sum, value), (x, y)) in sum.iter_mut().zip(value).zip(signs) {
+                            let x = if left { x } else { 1.0 };
+                            let y = if below { y } else { 1.0 };
+                            *sum += x * y * value;
+                        }
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// Of a grid that repeats along x alone, at offsets of a period along x and at those that are not negative across.
+///
+/// What varies along x fades across, and is that of a grid that repeats there too, at a distance. What does not is that of strips.
+fn along_x(grid: &Grid, response: &Response, z: f64) -> Result<Vec<Stresses>, Error> {
+    let (nx, ny) = grid.shape();
+    let (dx, dy) = (grid.dx(), grid.dy());
+    let apart = (APART * grid.sides().0 / dy).ceil() as usize;
+    let wide = Grid::new(nx, ny.saturating_add(apart), dx, dy)?;
+    let (depth, near) = split(grid, Between::Cells, response, z);
+    let waves = Spectrum::new(&wide, Between::Cells, &depth, response).without_mean_along_x();
+    let mut values = match near {
+        Some(near) => near.folded((nx, ny), [true, false], response),
+        None => vec![[0.0; COMPONENTS]; nx * ny],
+    };
+    let uniform = strips(ny, dy, &depth.parts(), response);
+    for (row, uniform) in values.chunks_exact_mut(nx).zip(&uniform) {
+        row.iter_mut().for_each(|value| super::cells::add(value, 1.0 / nx as f64, uniform));
+    }
+    // A load on one cell has all waves alike.
+    let mut one = vec![0.0; wide.nodes()];
+    one[0] = 1.0;
+    let mut found = vec![0.0; wide.nodes()];
+    for component in 0..COMPONENTS {
+        let of_wave = |kx: usize, ky: usize| waves.at((kx, ky), component, response);
+        let domain = (wide, Boundary::Periodic);
+        let parity = response.parity(component);
+        let mut convolution = Convolution::of(domain, parity, &|_, _| 0.0, Some(&of_wave))?;
+        convolution.apply(&one, &mut found)?;
+        values.iter_mut().zip(&found).for_each(|(value, found)| value[component] += found);
+    }
+    Ok(values)
+}

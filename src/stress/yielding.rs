@@ -1,0 +1,95 @@
+//! The load at which a body begins to yield.
+
+use super::body::Subsurface;
+use super::survey::Greatest;
+use super::tensor::Measure;
+use crate::loading::History;
+use crate::updater::LinearUpdater;
+use crate::{ContactTarget, Error, LoadingSolver, LoadingState};
+
+/// The state of an elastic path at which a body begins to yield.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct FirstYield {
+    /// The state.
+    pub state: LoadingState,
+    /// Von Mises' stress there, which is the yield stress within [`FirstYield::TOLERANCE`], and where it is.
+    pub greatest: Greatest,
+}
+
+impl FirstYield {
+    /// How far von Mises' stress may be from the yield stress, relative to it.
+    pub const TOLERANCE: f64 = 1e-4;
+}
+
+/// Loads that are tried at most: halves of logarithms from any load to any other.
+const TRIALS: usize = 60;
+
+impl Subsurface {
+    /// The first load at which von Mises' stress reaches `yield_stress` \[Pa\] anywhere in the body; `None` if the path ends before. `path` is
+    /// that of `history`.
+    ///
+    /// Found by interpolation between a load at which nothing yields and one at which something does, where the greatest stress goes with a
+    /// power of the load. Should it fall and rise again on the way, it is one of the loads at which it passes the yield stress.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] for the yield stress; those of [`Self::survey`] and
+    /// [`LoadingSolver::pressure_at`](LoadingSolver::pressure_at).
+    pub fn first_yield<U: LinearUpdater>(
+        &self,
+        path: &mut LoadingSolver<U>,
+        history: &History,
+        yield_stress: f64,
+    ) -> Result<Option<FirstYield>, Error> {
+        let yield_stress = Error::require_positive("yield stress", yield_stress)?;
+        let Some(last) = history.states().last() else { return Ok(None) };
+        let mut at = |load: f64| -> Result<FirstYield, Error> {
+            let state = history.at(ContactTarget::Load(load))?;
+            let pressure = path.pressure_at(&state)?;
+            let greatest = self.survey(&pressure, None)?.greatest(Measure::VonMises);
+            Ok(FirstYield { state, greatest })
+        };
+        if last.contact.load <= 0.0 {
+            return Ok(None);
+        }
+        let mut above = at(last.contact.load)?;
+        if above.greatest.value < yield_stress {
+            return Ok(None);
+        }
+        let mut below: Option<FirstYield> = None;
+        for _ in 0..TRIALS {
+            let over = above.greatest.value / yield_stress;
+            if over - 1.0 <= FirstYield::TOLERANCE {
+                break;
+            }
+            let high = above.state.contact.load;
+            let load = match &below {
+                // As of a sphere, with the cube of the stress.
+                None => high * over.powi(-3),
+                Some(below) => between(below, &above, yield_stress),
+            };
+            let found = at(load)?;
+            if found.greatest.value < yield_stress {
+                let is_there = found.greatest.value >= (1.0 - FirstYield::TOLERANCE) * yield_stress;
+                if is_there {
+                    return Ok(Some(found));
+                }
+                below = Some(found);
+            } else {
+                above = found;
+            }
+        }
+        Ok(Some(above))
+    }
+}
+
+/// A load between two, by a power law through both stresses, not closer to either than a tenth of their logarithms' distance.
+fn between(below: &FirstYield, above: &FirstYield, yield_stress: f64) -> f64 {
+    let [low, high] = [below, above].map(|found| libm::log(found.state.contact.load));
+    let [from, to] = [below, above].map(|found| libm::log(found.greatest.value));
+    let part = (libm::log(yield_stress) - from) / (to - from);
+    let part = if part.is_finite() { part.clamp(0.1, 0.9) } else { 0.5 };
+    libm::exp(low + part * (high - low))
+}

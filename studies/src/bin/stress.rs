@@ -1,0 +1,267 @@
+//! Stresses below the surface against closed forms, on finer and finer meshes.
+//!
+//! ```text
+//! cargo run --release -p asperity-studies --bin stress -- --report docs/validation.md
+//! ```
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use asperity::convolution::Convolution;
+use asperity::stress::{Measure, Stress, Subsurface};
+use asperity::{Boundary, Boussinesq, Error, Grid, PeriodicBoussinesq, Spectral};
+use asperity_cli::outcome::{Failure, Outcome};
+use asperity_studies::page::Section;
+use clap::Parser;
+use nalgebra::DMatrix;
+
+const POISSON: f64 = 0.3;
+/// Cells in the radius, or in half the width, of the contact.
+const CELLS: [usize; 4] = [8, 16, 32, 64];
+
+/// Stresses below the surface.
+#[derive(Debug, Parser)]
+#[command(name = "stress")]
+struct Options {
+    /// Also write the section of this page
+    #[arg(long, value_name = "FILE.md")]
+    report: Option<PathBuf>,
+
+    /// Nodes along each side of the grid that is timed
+    #[arg(long, value_name = "N", default_value_t = 512)]
+    nodes: usize,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let failed = |error: Error| Failure::new("cannot compute stresses", error);
+    let mut text = String::from(
+        "## Stress below the surface\n\nWritten by `cargo run --release -p asperity-studies --bin stress -- --report docs/validation.md`.\n",
+    );
+    meshes(&mut text).map_err(failed)?;
+    waves(&mut text).map_err(failed)?;
+    times(options.nodes, &mut text).map_err(failed)?;
+    println!("{text}");
+    let mut outcome = Outcome::default();
+    if let Some(page) = &options.report {
+        let section = Section { study: "stress", text: &text, pictures: &[] };
+        outcome.written(section.publish(page));
+    }
+    outcome.finish()
+}
+
+/// √(1 − x²) over a cell about x.
+fn of_line(x: f64, width: f64) -> f64 {
+    let integral = |x: f64| {
+        let x = x.clamp(-1.0, 1.0);
+        0.5 * (x * (1.0 - x * x).sqrt() + x.asin())
+    };
+    (integral(x + 0.5 * width) - integral(x - 0.5 * width)) / width
+}
+
+/// √(1 − x² − y²) over cells of the width 1/`cells`, `reach` of them on either side of the middle one.
+fn of_sphere(cells: usize, reach: usize) -> Result<(Grid, DMatrix<f64>), Error> {
+    const PARTS: usize = 32;
+    let (n, width) = (2 * reach + 1, 1.0 / cells as f64);
+    let pressure = DMatrix::from_fn(n, n, |ix, iy| {
+        let at = |i: usize| (i as f64 - reach as f64) * width;
+        // Exact along x, and midpoints along y.
+        let rows = (0..PARTS).map(|k| {
+            let y = at(iy) + ((k as f64 + 0.5) / PARTS as f64 - 0.5) * width;
+            let a = (1.0 - y * y).max(0.0).sqrt();
+            if a > 0.0 { a * of_line(at(ix) / a, width / a) } else { 0.0 }
+        });
+        rows.sum::<f64>() / PARTS as f64
+    });
+    Ok((Grid::new(n, n, width, width)?, pressure))
+}
+
+/// A row of a table: what is compared, with its errors on all meshes.
+struct Row {
+    what: &'static str,
+    errors: Vec<f64>,
+}
+
+fn meshes(text: &mut String) -> Result<(), Error> {
+    let mut rows = [
+        "sphere, axis at 0.48 a: σrr, σzz",
+        "sphere, greatest von Mises' stress, 0.6200 p₀",
+        "sphere, its depth, 0.481 a",
+        "sphere, greatest shear, 0.3100 p₀",
+        "tension at 1.25 a on the surface",
+        "sliding sphere, σxx at a/2 on the surface, over its traction",
+        "cylinder, 0.786 a below the middle: σxx, σzz",
+        "cylinder, greatest shear, 0.3003 p₀",
+        "cylinder, its depth, 0.786 a",
+    ]
+    .map(|what| Row { what, errors: Vec::new() });
+    for cells in CELLS {
+        let reach = cells + cells / 4;
+        let (grid, pressure) = of_sphere(cells, reach)?;
+        let body = Subsurface::new(grid, Boundary::Free, POISSON)?;
+        let middle = |stress: Option<Stress>| stress.unwrap_or_default();
+        let z = 0.48;
+        let axis = middle(body.at_depth(&pressure, z)?.at(grid.nodes() / 2));
+        let radial = -(1.0 + POISSON) * (1.0 - z * (1.0_f64 / z).atan()) + 0.5 / (1.0 + z * z);
+        let survey = body.survey(&pressure, None)?;
+        let von_mises = survey.greatest(Measure::VonMises);
+        let shear = survey.greatest(Measure::GreatestShear);
+        let surface = body.at_depth(&pressure, 0.0)?;
+        let outside = surface.xx[(reach + cells + cells / 4, reach)];
+        let none = DMatrix::zeros(grid.nx(), grid.ny());
+        let pulled = body.under_traction((&none, 0.0), [&pressure, &none])?;
+        let inside = pulled.xx[(reach + cells / 2, reach)];
+        let hamilton = -std::f64::consts::PI * (4.0 + POISSON) / 16.0;
+        let (exact, place) = sphere_maximum();
+
+        let n = 2 * reach + 1;
+        let line = Grid::new(n, 2, grid.dx(), grid.dx())?;
+        let width = grid.dx();
+        let load =
+            DMatrix::from_fn(n, 2, |ix, _| of_line((ix as f64 - reach as f64) * width, width));
+        let roller = Subsurface::new(line, Boundary::PeriodicY, POISSON)?;
+        let z: f64 = 0.786;
+        let below = middle(roller.at_depth(&load, z)?.at(reach));
+        let root = (1.0 + z * z).sqrt();
+        let (side, down) = (2.0 * z - (1.0 + 2.0 * z * z) / root, -1.0 / root);
+        let rolling = roller.survey(&load, None)?.greatest(Measure::GreatestShear);
+        let (line_exact, line_place) = line_maximum();
+        let found = [
+            (axis.xx - radial).hypot(axis.zz + 1.0 / (1.0 + 0.48 * 0.48)),
+            von_mises.value - exact,
+            von_mises.depth - place,
+            shear.value - 0.5 * exact,
+            outside - (1.0 - 2.0 * POISSON) / 3.0 / (1.25 * 1.25),
+            inside - hamilton,
+            (below.xx - side).hypot(below.zz - down),
+            rolling.value - line_exact,
+            rolling.depth - line_place,
+        ];
+        rows.iter_mut().zip(found).for_each(|(row, error)| row.errors.push(error.abs()));
+    }
+    text.push_str("\nErrors in units of p₀ and a, ν = 0.3, with so many cells in the radius or in half the width; pressures are averages over cells.\n\n|  |");
+    for cells in CELLS {
+        let _ = write!(text, " a/{cells} |");
+    }
+    text.push_str(" order |\n|---|---:|---:|---:|---:|---:|\n");
+    for Row { what, errors } in &rows {
+        let _ = write!(text, "| {what} |");
+        for error in errors {
+            let _ = write!(text, " {error:.1e} |");
+        }
+        let order = (errors[0] / errors[3]).log2() / 3.0;
+        let _ = writeln!(text, " {order:.1} |");
+    }
+    text.push_str("\nThe order is that from the first mesh to the last. Places of maxima scatter: a maximum is flat, and its place follows from its value with the root of the error.\n");
+    Ok(())
+}
+
+/// The greatest difference of σzz and σrr on the axis of a sphere, and its depth, by golden section on the closed form.
+fn sphere_maximum() -> (f64, f64) {
+    golden(|z| {
+        let radial = -(1.0 + POISSON) * (1.0 - z * (1.0 / z).atan()) + 0.5 / (1.0 + z * z);
+        radial + 1.0 / (1.0 + z * z)
+    })
+}
+
+/// Half of that of a cylinder.
+fn line_maximum() -> (f64, f64) {
+    golden(|z| {
+        let root = (1.0 + z * z).sqrt();
+        0.5 * (2.0 * z - (1.0 + 2.0 * z * z) / root + 1.0 / root)
+    })
+}
+
+fn golden(f: impl Fn(f64) -> f64) -> (f64, f64) {
+    let (mut a, mut b) = (0.2_f64, 1.5_f64);
+    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..60 {
+        let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
+        if f(c) > f(d) { b = d } else { a = c }
+    }
+    (f(0.5 * (a + b)), 0.5 * (a + b))
+}
+
+/// Waves of pressure on the waves of the grid, and on cells, whose pressures are steps.
+fn waves(text: &mut String) -> Result<(), Error> {
+    let (n, depth) = (64, 3.0);
+    let grid = Grid::square(n, n as f64)?;
+    let wave = Subsurface::of(&Spectral::new(grid, 1.0)?, POISSON)?;
+    let cell = Subsurface::new(grid, Boundary::Periodic, POISSON)?;
+    text.push_str("\nA wave of pressure against Westergaard's stresses, at a depth of three cells: greatest error of all components.\n\n| cells to a wave | waves of the grid | uniform cells |\n|---:|---:|---:|\n");
+    for k in [1, 2, 4, 8] {
+        let q = std::f64::consts::TAU * f64::from(k) / n as f64;
+        let load = DMatrix::from_fn(n, n, |ix, _| (q * ix as f64).cos());
+        let fades = (-q * depth).exp();
+        let error = |body: &Subsurface| -> Result<f64, Error> {
+            let field = body.at_depth(&load, depth)?;
+            let mut greatest = 0.0_f64;
+            for ix in 0..n {
+                let (cos, sin) = ((q * ix as f64).cos(), (q * ix as f64).sin());
+                for (found, expected) in [
+                    (field.xx[(ix, 0)], -(1.0 - q * depth) * fades * cos),
+                    (field.yy[(ix, 0)], -2.0 * POISSON * fades * cos),
+                    (field.zz[(ix, 0)], -(1.0 + q * depth) * fades * cos),
+                    (field.xz[(ix, 0)], -q * depth * fades * sin),
+                    (field.xy[(ix, 0)], 0.0),
+                    (field.yz[(ix, 0)], 0.0),
+                ] {
+                    greatest = greatest.max((found - expected).abs());
+                }
+            }
+            Ok(greatest)
+        };
+        let _ =
+            writeln!(text, "| {} | {:.0e} | {:.1e} |", n as i32 / k, error(&wave)?, error(&cell)?);
+    }
+    Ok(())
+}
+
+/// What a depth takes, in convolutions of displacements on the same grid.
+fn times(n: usize, text: &mut String) -> Result<(), Error> {
+    let grid = Grid::square(n, n as f64)?;
+    let pressure = DMatrix::from_fn(n, n, |ix, iy| {
+        let is_in = (ix / 7 + iy / 5) % 3 == 0;
+        if is_in { 1.0 + (0.01 * (ix * iy) as f64).sin() } else { 0.0 }
+    });
+    let _ = writeln!(
+        text,
+        "\nThe time of one depth, all components and measures, in convolutions of displacements on the same {n} × {n} nodes:\n\n| depth in cells | free | periodic |\n|---:|---:|---:|"
+    );
+    let one = |mut convolution: Convolution| -> Result<f64, Error> {
+        let mut displacement = vec![0.0; grid.nodes()];
+        let start = Instant::now();
+        for _ in 0..20 {
+            convolution.apply(pressure.as_slice(), &mut displacement)?;
+        }
+        Ok(start.elapsed().as_secs_f64() / 20.0)
+    };
+    let units = [
+        one(Convolution::new(&Boussinesq::new(grid, 1.0)?)?)?,
+        one(Convolution::new(&PeriodicBoussinesq::new(grid, 1.0)?)?)?,
+    ];
+    for depth in [0.1, 1.0, 3.0, 10.0, 50.0] {
+        let mut cells = Vec::new();
+        for (boundary, unit) in [Boundary::Free, Boundary::Periodic].into_iter().zip(units) {
+            let body = Subsurface::new(grid, boundary, POISSON)?;
+            let start = Instant::now();
+            let greatest = body.at_depth(&pressure, depth)?.greatest();
+            let taken = start.elapsed().as_secs_f64();
+            assert!(greatest[0].0 > 0.0, "there is a stress");
+            cells.push(format!("{:.0}", taken / unit));
+        }
+        let _ = writeln!(text, "| {depth} | {} |", cells.join(" | "));
+    }
+    Ok(())
+}
