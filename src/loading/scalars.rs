@@ -130,9 +130,10 @@ impl PathScalars {
     }
 
     /// Adds to load, mean gap and energy what they lack at the end of a window, in proportion to the way there,
-    /// for the energy to its square: `walked` got there from this one's window, `end` is exact.
-    pub(super) fn pin(&mut self, walked: &Self, end: &Self, way: f64) {
-        self.load += way * (end.load - walked.load);
+    /// for the energy to its square: `walked` got there from this one's window, `end` is exact. The way of the load begins where that was
+    /// known last.
+    pub(super) fn pin(&mut self, walked: &Self, end: &Self, [way_of_load, way]: [f64; 2]) {
+        self.load += way_of_load * (end.load - walked.load);
         self.mean_gap += way * (end.mean_gap - walked.mean_gap);
         self.energy += way * way * (end.energy - walked.energy);
     }
@@ -381,7 +382,7 @@ mod tests {
         assert_eq!(start.missing(&end), [0.125, 0.5]);
         (end.load, end.mean_gap, end.energy) = (1.5, 0.25, 3.0);
         let mut scalars = start;
-        scalars.pin(&walked, &end, 0.5);
+        scalars.pin(&walked, &end, [0.5; 2]);
         // Half of 0.5 and of −0.25, a quarter of 2.
         assert_eq!((scalars.load, scalars.mean_gap, scalars.energy), (0.25, 1.875, 0.5));
         Ok(())

@@ -275,12 +275,13 @@ impl Estimated {
         });
         let mut watched: Vec<Watched> = watched.collect();
         let horizon = candidates.horizon.min(self.beyond);
-        // Nodes that have yielded make those beside them give way faster than lines tell.
-        let trusted = if is_of_touches { horizon } else { TRUSTED * horizon };
-        let horizon = trusted.min(longest);
         if is_of_touches {
             Watched::leave_out_pressures(&mut watched, &schur, horizon);
         }
+        // Beside nodes that yield others come sooner than their lines tell.
+        let may_yield = watched.iter().any(|watched| watched.hardness.is_finite());
+        let trusted = if has_yielded || may_yield { TRUSTED * horizon } else { horizon };
+        let horizon = trusted.min(longest);
         let mut window = Window::default();
         *window.schur_mut() = schur;
         window.begin_both((approach, horizon), &watched, count);

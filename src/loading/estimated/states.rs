@@ -35,6 +35,11 @@ impl Open {
         }
     }
 
+    /// What has changed since then: nothing before it.
+    fn since(&self, then: &Self) -> Self {
+        Self(std::array::from_fn(|k| (self.0[k] - then.0[k]).max(0.0)))
+    }
+
     /// How much of all that changes this is: nothing if nothing does.
     fn parts_of(&self, all: &Self) -> [f64; 3] {
         std::array::from_fn(|k| {
@@ -118,13 +123,17 @@ pub(super) fn enqueue(
     let plastic = run.plastic.clone();
     let mut walk = Walk::new(plastic.as_deref(), before);
     let mut walked = start;
-    let mut open = Open::default();
+    let (mut open, mut plateau) = (Open::default(), Open::default());
     let mut along = Vec::with_capacity(events.len());
     for (event, rates) in events.iter().zip(&rates) {
         let elastic = walk.carried.nodes[0];
         open.advance(&mut walked, start.approach() + event.time, elastic);
         walk.pass(window.node(event.position), event.kind);
         walk.take(&mut walked, *rates);
+        if walk.carried.nodes[0] == 0 {
+            // The load of a plateau is known.
+            plateau = open;
+        }
         along.push((walked, open));
     }
     open.advance(&mut walked, run.scalars.approach(), walk.carried.nodes[0]);
@@ -142,7 +151,8 @@ pub(super) fn enqueue(
         let node = window.node(event.position);
         let bounds = walk.pass(node, event.kind);
         let [way, depth, work] = so_far.parts_of(&open);
-        scalars.pin(&walked, &own, way);
+        let [way_of_load, ..] = so_far.since(&plateau).parts_of(&open.since(&plateau));
+        scalars.pin(&walked, &own, [way_of_load, way]);
         scalars.pin_plastic(&walked, &own, [depth, work]);
         scalars.clamp_load(bounds);
         scalars.clamp_mean_gap();
