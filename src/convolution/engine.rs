@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 
 use super::real::Real;
-use super::transforms::{Transforms, Workspace};
+use super::transforms::{Parity, Transforms, Workspace};
 use super::transpose::{blocks, gather, interleave, pitch};
 use super::tuning::{BLOCK, PARALLEL_NODES, PARTS};
 use crate::kernel::KernelTable;
@@ -32,15 +32,6 @@ struct Filter<T: Real> {
     parity: Parity,
     /// Real symbol, or i times an imaginary one, py values for each of the px / 2 + 1 columns, which are stored one by one.
     symbol: Vec<T>,
-}
-
-/// What coefficients are at the opposite offset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Parity {
-    /// The same, as reciprocity has it of displacements under pressures: the symbol is real.
-    Even,
-    /// With the other sign: the symbol is imaginary.
-    Odd,
 }
 
 /// Coefficients by offset (di, dj), or parts of a symbol by wave (kx, ky).

@@ -56,7 +56,8 @@ pub use direct::direct_sum;
 use crate::kernel::KernelTable;
 use crate::{Boundary, Error, Grid, InfluenceKernel};
 use engine::Engine;
-pub(crate) use engine::{Parity, Table};
+pub(crate) use engine::Table;
+pub(crate) use transforms::Parity;
 
 /// Displacement from pressure on a whole grid, by fast Fourier transform.
 ///

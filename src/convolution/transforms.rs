@@ -5,11 +5,19 @@ use std::sync::Arc;
 use asperity_fft::{ComplexToReal, Fft, RealToComplex};
 use num_complex::Complex;
 
-use super::engine::Parity;
 use super::real::Real;
 use super::size::fast_size;
 use crate::parallel::vectorized;
 use crate::{Boundary, Grid};
+
+/// What coefficients are at the opposite offset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// The same, as reciprocity has it of displacements under pressures: the symbol is real.
+    Even,
+    /// With the other sign: the symbol is imaginary.
+    Odd,
+}
 
 /// Plans of all transforms of a grid, zero-padded in directions in which it does not repeat.
 #[derive(Clone)]

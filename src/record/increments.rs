@@ -6,6 +6,7 @@
 
 use nalgebra::DMatrix;
 
+use super::inconsistent;
 use super::stiffnesses::{SAME_STIFFNESS, Stiffnesses};
 use crate::contact::ContactState;
 use crate::kernel::KernelOrigin;
@@ -38,16 +39,6 @@ impl Found {
         }
         Err(inconsistent(state, quantity, [value, expected], reason))
     }
-}
-
-/// The error of a state whose quantity has a value in place of another one.
-pub(super) fn inconsistent(
-    state: &LoadingState,
-    quantity: &'static str,
-    [value, expected]: [f64; 2],
-    reason: &'static str,
-) -> Error {
-    Error::Inconsistent { step: state.step, quantity, value, expected, reason }
 }
 
 /// Checks the states of a path on a surface.

@@ -345,3 +345,13 @@ impl LoadingRecord {
         Ok(solver)
     }
 }
+
+/// The error of a state whose quantity has a value in place of another one.
+fn inconsistent(
+    state: &LoadingState,
+    quantity: &'static str,
+    [value, expected]: [f64; 2],
+    reason: &'static str,
+) -> Error {
+    Error::Inconsistent { step: state.step, quantity, value, expected, reason }
+}

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::increments::inconsistent;
+use super::inconsistent;
 use crate::contact::ContactState;
 use crate::kernel::{Boundary, KernelOrigin};
 use crate::loading::{ContactEvent, LoadingState};

@@ -280,7 +280,8 @@ fn two_nodes_by_hand() {
 /// A hardness that no node comes to leaves every bit of the elastic path as it is.
 #[test]
 fn an_unlimited_hardness_is_none() {
-    fn elastic_columns(state: &LoadingState) -> (ContactEvent, (usize, usize), usize, Vec<u64>) {
+    type ElasticColumns = (ContactEvent, (usize, usize), usize, Vec<u64>);
+    fn elastic_columns(state: &LoadingState) -> ElasticColumns {
         let contact = state.contact;
         let stiffness = [contact.contact_stiffness, contact.interfacial_stiffness];
         let numbers = [contact.approach, contact.load, contact.energy, contact.mean_gap];
@@ -290,7 +291,7 @@ fn an_unlimited_hardness_is_none() {
     fn columns<U: LinearUpdater>(
         builder: LoadingBuilder<'_, U>,
         window: Option<usize>,
-    ) -> Vec<(ContactEvent, (usize, usize), usize, Vec<u64>)> {
+    ) -> Vec<ElasticColumns> {
         let builder = match window {
             Some(size) => builder.window_size(size),
             None => builder,

@@ -11,6 +11,7 @@
 //! A list is known by names of its columns, by the extension `.xyz`, or by its coordinates; positions in the first row and column
 //! of a matrix by their even steps. Where numbers can be read in several ways, the user has to say which is meant.
 
+mod arrangement;
 mod axes;
 mod dialect;
 mod header;
@@ -27,9 +28,9 @@ mod zygo;
 
 use std::path::Path;
 
+use self::arrangement::{Found, List};
 use self::header::Header;
 pub use self::layout::TextLayout;
-use self::layout::{Found, List};
 use self::names::Columns;
 use self::table::Table;
 use super::fault::Fault;
@@ -78,7 +79,7 @@ fn generic(
     layout: Option<TextLayout>,
 ) -> Result<Channel, Fault> {
     ensure!(
-        layout.is_some() || !table.has_margins || table.rows() > layout::FEW_ROWS,
+        layout.is_some() || !table.has_margins || table.rows() > arrangement::FEW_ROWS,
         "all of its {} lines begin or end with an empty cell: whether that is a node without a height cannot be told from so few; \
          without such cells, or with `ReadOptions::layout`, it is read",
         table.rows()
@@ -105,8 +106,8 @@ fn generic(
     let is_list = is_xyz || header.lateral_unit.is_some();
     let is_asked = layout.is_some();
     let found = match layout {
-        None => layout::of(header, &table, is_list)?,
-        Some(TextLayout::Points) => Found::Points(layout::points(&table)?),
+        None => arrangement::of(header, &table, is_list)?,
+        Some(TextLayout::Points) => Found::Points(arrangement::points(&table)?),
         Some(matrix) => Found::Matrix(matrix),
     };
     let layout = match found {
