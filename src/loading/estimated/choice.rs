@@ -70,7 +70,9 @@ pub(super) fn cut(
         let last = events[events_kept - 1].time;
         match events.get(events_kept) {
             Some(event) => event.time,
-            None if is_last => horizon.max(last).min(1.05 * last + 1e-12 * tolerances.length),
+            None if is_last || horizon == f64::INFINITY => {
+                horizon.max(last).min(1.05 * last + 1e-12 * tolerances.length)
+            }
             None => horizon.max(last),
         }
     };

@@ -4,7 +4,7 @@
 
 use std::path::PathBuf;
 
-use asperity_surfaces::io::{LengthUnit, MeasuredSurface, ReadOptions};
+use asperity_surfaces::io::{LengthUnit, MeasuredSurface, ReadOptions, TextLayout};
 use asperity_surfaces::surface::Warning;
 
 use super::own;
@@ -168,6 +168,7 @@ fn infinite_heights_are_named() {
         std::env::temp_dir().join(format!("asperity-one-infinite-{}.asc", std::process::id()));
     std::fs::write(&one, "1 2 3 4\n2 inf 4 5\n3 4 5 6\n").unwrap();
     let options = ReadOptions::new().height_unit(LengthUnit::METRE).side(1e-3);
+    let options = options.layout(TextLayout::Matrix);
     let alone = options.read(&one);
     std::fs::remove_file(&one).unwrap();
     note(&alone.unwrap(), "1 height is infinite, inf at node (1, 1), and taken as missing, as");
