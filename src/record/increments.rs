@@ -64,9 +64,13 @@ pub(super) fn check(
     .at(first)?;
     let mean_gap = -heights.matrix().mean();
     first_touch(first, mean_gap)?;
-    // On a flat surface nothing is left of lengths but the rounding of displacements, which are those of strains below 1.
+    // On a flat surface nothing is left of lengths but the rounding of displacements: of what the load displaces on average, or those of
+    // strains below 1.
+    let stiffnesses = Stiffnesses::new(grid, origin);
     let (lx, ly) = grid.sides();
-    let displaced = 4.0 * f64::EPSILON * lx.max(ly) / ROUNDING;
+    let displaced = lx.max(ly).max(stiffnesses.displaced(last.contact.load));
+    // A sum over all nodes.
+    let displaced = grid.nodes() as f64 * f64::EPSILON * displaced / ROUNDING;
     let length = mean_gap.abs() + last.contact.approach.abs() + displaced;
     for state in states {
         areas(grid, state)?;
@@ -77,7 +81,6 @@ pub(super) fn check(
             return Err(inconsistent(state, quantity, [state.approach_error, most], reason));
         }
     }
-    let stiffnesses = Stiffnesses::new(grid, origin);
     stiffnesses.check(None, first)?;
     if let Some(hardness) = hardness {
         for state in states {

@@ -150,6 +150,14 @@ impl Stiffnesses {
         Self { half_space: HalfSpace::new(grid, origin) }
     }
 
+    /// What a load displaces of the surface, in the gauge of the kernel or at most \[m\]; 0 where that is not known.
+    pub(super) fn displaced(&self, load: f64) -> f64 {
+        let under = self.half_space.as_ref().map_or(0.0, |half_space| match half_space.mean {
+            Mean::Gauge(mean) | Mean::Between(_, mean) => mean,
+        });
+        under * load
+    }
+
     /// A node that touches makes a contact stiffer, one that leaves or yields softer; both stiffnesses are positive on a half-space, and
     /// 0 on a plateau alone. There one node makes so much of a difference, and one stiffness follows from the other but for some per cent.
     pub(super) fn check(
