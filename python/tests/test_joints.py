@@ -31,8 +31,8 @@ def test_conductance(path: asp.LoadingPath) -> None:
     # Of a row the approach is counted from where one likes: as on a periodic half-space, also from a pickle.
     row = asp.load_path(asp.example_surface(nodes=32), asp.HalfSpace(115e9, boundary="x"), area_fraction=0.2)
     row.run(check=False)
-    for of in (row, pickle.loads(pickle.dumps(row.history)), row.history[::2]):
-        stiffness = row.history.interfacial_stiffness[:: 2 if len(of) < len(row.history) else 1]
+    for of, step in ((row, 1), (pickle.loads(pickle.dumps(row.history)), 1), (row.history[::2], 2)):
+        stiffness = row.history.interfacial_stiffness[::step]
         found_of_row = asp.conductance(of, 0.05, e_star=115e9)
         np.testing.assert_allclose(found_of_row, 2.0 * stiffness / (0.05 * 115e9), rtol=1e-14)
     alone = asp.conductance(free, 0.05, interface=True)
