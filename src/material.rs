@@ -1,5 +1,7 @@
 //! Typical values of materials, and hardness numbers as pressures.
 
+use crate::Error;
+
 /// Typical values of a material at room temperature. Those of an alloy or a polymer vary: for results that matter they are
 /// given as numbers.
 ///
@@ -28,12 +30,76 @@ pub struct Material {
     pub hardness: Option<f64>,
 }
 
-/// Mean pressure \[Pa\] under a ball per Brinell number: kilograms-force per square millimetre of the surface of the
-/// indentation, of which 0.964 lies in the plane at its usual width of 0.375 diameters.
-pub const BRINELL: f64 = 9.80665e6 / 0.9635;
+/// A scale of hardness numbers.
+///
+/// ```
+/// use asperity::material::HardnessScale;
+///
+/// # fn main() -> Result<(), asperity::Error> {
+/// let ball = HardnessScale::Brinell.pascals(250.0)?;
+/// assert!((ball / 2.545e9 - 1.0).abs() < 1e-3);
+/// assert_eq!(HardnessScale::named("HRC"), Some(HardnessScale::RockwellC));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HardnessScale {
+    /// HB, HBW: a ball.
+    Brinell,
+    /// HV: a pyramid.
+    Vickers,
+    /// HRC, of steel: by the depth of a cone. As Vickers number it is `(223 HRC + 14500) / (100 − HRC)`, within 1.5 % of
+    /// the table of ASTM E140 for carbon and alloy steels between 20 and 68.
+    RockwellC,
+}
 
-/// The same per Vickers number: under a pyramid, whose faces stand 68° from its axis.
-pub const VICKERS: f64 = 9.80665e6 / 0.92718;
+/// Kilograms-force per square millimetre \[Pa\].
+const KILOGRAMS_FORCE: f64 = 9.80665e6;
+/// The circle of a Brinell indentation over its cap, on which the number counts the force, at the usual width of 0.375
+/// diameters of the ball.
+const BALL: f64 = 0.9635;
+/// The square of a Vickers indentation over its faces, which stand 68° from the axis.
+const PYRAMID: f64 = 0.92718;
+/// Numbers between which Rockwell's are compared with others.
+const ROCKWELL_C: std::ops::RangeInclusive<f64> = 20.0..=68.0;
+
+impl HardnessScale {
+    /// The scale of this symbol, in any case.
+    #[must_use]
+    pub fn named(symbol: &str) -> Option<Self> {
+        match symbol.to_ascii_uppercase().as_str() {
+            "HB" | "HBW" => Some(Self::Brinell),
+            "HV" => Some(Self::Vickers),
+            "HRC" => Some(Self::RockwellC),
+            _ => None,
+        }
+    }
+
+    /// The mean pressure under the indenter \[Pa\] of a hardness number.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPositive`] if the number is not positive and finite, [`Error::OutOfRange`] for Rockwell's below 20 and
+    /// above 68, for which there is no comparison.
+    pub fn pascals(self, number: f64) -> Result<f64, Error> {
+        if !(number > 0.0 && number.is_finite()) {
+            return Err(Error::NotPositive { quantity: "hardness", value: number });
+        }
+        let vickers = |number: f64| number * KILOGRAMS_FORCE / PYRAMID;
+        match self {
+            Self::Brinell => Ok(number * KILOGRAMS_FORCE / BALL),
+            Self::Vickers => Ok(vickers(number)),
+            Self::RockwellC if ROCKWELL_C.contains(&number) => {
+                Ok(vickers((223.0 * number + 14500.0) / (100.0 - number)))
+            }
+            Self::RockwellC => Err(Error::OutOfRange {
+                quantity: "hardness HRC",
+                value: number,
+                expected: "between 20 and 68, where it can be compared with HV",
+            }),
+        }
+    }
+}
 
 impl Material {
     /// Steel, which stands for metals where nothing is said.
@@ -74,10 +140,12 @@ impl Material {
         Self { name, youngs_modulus, poissons_ratio, hardness }
     }
 
-    /// The material of this name.
+    /// The material of this name, in any case, with spaces for hyphens; aluminum is aluminium.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         const ALL: &[Material] = &Material::ALL;
+        let name = name.trim().to_lowercase().replace(' ', "-");
+        let name = if name == "aluminum" { "aluminium" } else { &name };
         ALL.iter().find(|material| material.name == name)
     }
 }
@@ -97,6 +165,52 @@ mod tests {
             assert!(Material::ALL[..k].iter().all(|other| other.name != material.name));
         }
         assert_eq!(Material::named("stone"), None);
+        for (name, known) in [
+            ("Steel", "steel"),
+            ("PTFE", "ptfe"),
+            (" Stainless Steel", "stainless-steel"),
+            ("Aluminum", "aluminium"),
+        ] {
+            assert_eq!(Material::named(name).map(|material| material.name), Some(known));
+        }
+        Ok(())
+    }
+
+    /// A ball that has sunk in 0.375 of its diameter wide: the cap has the area `2 (1 − √(1 − x²)) / x²` times its circle. Rockwell
+    /// numbers beside Vickers numbers from ASTM E140, Table 1, within 1.5 %.
+    #[test]
+    fn hardness_is_a_pressure() -> Result<(), Error> {
+        let x: f64 = 0.375;
+        let cap = 2.0 * (1.0 - (1.0 - x * x).sqrt()) / (x * x);
+        let close = |found: f64, expected: f64, tolerance: f64| {
+            assert!((found / expected - 1.0).abs() < tolerance, "{found:e} {expected:e}");
+        };
+        close(HardnessScale::Brinell.pascals(250.0)?, 250.0 * 9.80665e6 * cap, 1e-3);
+        let pyramid = 68_f64.to_radians().sin();
+        close(HardnessScale::Vickers.pascals(250.0)?, 250.0 * 9.80665e6 / pyramid, 1e-3);
+        for (rockwell, vickers) in [
+            (20.0, 238.0),
+            (30.0, 302.0),
+            (40.0, 392.0),
+            (45.0, 446.0),
+            (50.0, 513.0),
+            (55.0, 595.0),
+            (60.0, 697.0),
+            (65.0, 832.0),
+            (68.0, 940.0),
+        ] {
+            let found = HardnessScale::RockwellC.pascals(rockwell)?;
+            close(found, HardnessScale::Vickers.pascals(vickers)?, 0.015);
+        }
+        for bad in [19.9, 68.1, f64::NAN] {
+            assert!(HardnessScale::RockwellC.pascals(bad).is_err(), "{bad}");
+        }
+        for bad in [0.0, -1.0, f64::INFINITY] {
+            assert!(HardnessScale::Vickers.pascals(bad).is_err(), "{bad}");
+        }
+        let named = ["hbw", "HB", "hv", "HRC", "Mohs"].map(HardnessScale::named);
+        let (ball, pyramid) = (Some(HardnessScale::Brinell), Some(HardnessScale::Vickers));
+        assert_eq!(named, [ball, ball, pyramid, Some(HardnessScale::RockwellC), None]);
         Ok(())
     }
 }

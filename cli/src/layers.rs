@@ -6,8 +6,9 @@ use asperity::kernel::{Base, Layer, LayeredBody};
 use asperity_cli::number::quantity;
 
 use crate::material::Material;
+use crate::values::LENGTH;
 
-/// A layer: `210e9,0.3,20e-6` or `gold,2e-6`.
+/// A layer: `210GPa,0.3,20um` or `gold,2e-6`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LayerArgument {
     pub(crate) material: Material,
@@ -27,9 +28,8 @@ impl FromStr for LayerArgument {
     fn from_str(text: &str) -> Result<Self, String> {
         let expected = "neither 'E,NU,H' nor 'NAME,H', with the thickness H in metres";
         let (material, thickness) = text.rsplit_once(',').ok_or(expected)?;
-        let thickness: f64 = thickness.trim().parse().map_err(|_| expected)?;
-        let material = material.parse::<Material>().map_err(|_| expected)?;
-        Ok(Self { material, thickness })
+        let material = material.parse().map_err(|error| format!("{expected}: {error}"))?;
+        Ok(Self { material, thickness: LENGTH.positive()(thickness)? })
     }
 }
 
@@ -41,7 +41,7 @@ impl FromStr for BaseArgument {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "rigid" {
+        if text.eq_ignore_ascii_case("rigid") {
             return Ok(Self(Base::Rigid));
         }
         let material =
@@ -79,12 +79,22 @@ mod tests {
         let layer = |text: &str| text.parse::<LayerArgument>().map(|found| found.layer());
         let expected = Layer { young: 210e9, poisson: 0.3, thickness: 20e-6 };
         assert_eq!(layer("210e9,0.3,20e-6"), Ok(expected));
-        assert_eq!(layer("steel, 20e-6"), Ok(expected));
-        for bad in ["", "steel", "210e9,0.3", "stone,1e-6", "210e9,0.3,thick", "1,2,3,4"] {
+        assert_eq!(layer("Steel, 20 µm"), Ok(expected));
+        assert_eq!(layer("210GPa,0.3,0.02mm"), Ok(expected));
+        for bad in [
+            "",
+            "steel",
+            "210e9,0.3",
+            "stone,1e-6",
+            "210e9,0.3,thick",
+            "1,2,3,4",
+            "steel,0",
+            "steel,1Pa",
+        ] {
             assert!(layer(bad).is_err(), "{bad}");
         }
         let base = |text: &str| text.parse::<BaseArgument>().map(|found| found.0);
-        assert_eq!(base("rigid"), Ok(Base::Rigid));
+        assert_eq!(base("Rigid"), Ok(Base::Rigid));
         assert_eq!(base("steel"), Ok(Base::HalfSpace { young: 210e9, poisson: 0.3 }));
         assert!(base("soft").is_err());
     }

@@ -21,7 +21,7 @@ use crate::hardness::Hardness;
 use crate::reading::Reading;
 use crate::resolution::Resolution;
 use crate::room;
-use crate::values::{bytes, positive};
+use crate::values::{FORCE, PRESSURE, bytes};
 
 /// The contact of a measured surface under given loads or mean pressures, each solved by itself
 ///
@@ -80,11 +80,11 @@ pub(crate) struct Options {
 #[group(required = true, multiple = true)]
 struct Loads {
     /// Load; may be given several times
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.any())]
     load: Vec<f64>,
 
     /// Load over nominal area; may be given several times, and is solved after the loads
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     mean_pressure: Vec<f64>,
 }
 
@@ -110,7 +110,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         note!("hardness   {hardness}");
     }
     let warnings = Warning::of_surface(&surface).into_iter();
-    for warning in warnings.chain(bodies.warnings(surface.grid())) {
+    let soft = hardness.and_then(|h| Warning::of_hardness(h.pascals, bodies.e_star));
+    for warning in warnings.chain(bodies.warnings(surface.grid())).chain(soft) {
         eprintln!("warning: {}", advice::told(&warning));
     }
     let grid = *surface.grid();

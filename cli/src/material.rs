@@ -6,6 +6,8 @@ use std::str::FromStr;
 use asperity::material::Material as Known;
 use asperity_cli::number::quantity;
 
+use crate::values::{PRESSURE, number};
+
 /// A body, with its name if it was given by name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Material {
@@ -54,13 +56,10 @@ impl FromStr for Material {
         if let Some(known) = Known::named(text) {
             return Ok(Self::named(known));
         }
-        let number = |text: &str| text.trim().parse::<f64>().ok();
-        match text.split_once(',').map(|(e, nu)| (number(e), number(nu))) {
-            Some((Some(e), Some(nu))) => Ok(Self { name: None, e, nu, hardness: None }),
-            _ => {
-                let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
-                Err(format!("neither 'E,NU' nor one of {}", names.join(", ")))
-            }
-        }
+        let Some((e, nu)) = text.split_once(',') else {
+            let names: Vec<&str> = Known::ALL.iter().map(|known| known.name).collect();
+            return Err(format!("neither 'E,NU' nor one of {}", names.join(", ")));
+        };
+        Ok(Self { name: None, e: PRESSURE.positive()(e)?, nu: number(nu)?, hardness: None })
     }
 }

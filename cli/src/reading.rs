@@ -11,17 +11,17 @@ use asperity_cli::outcome::Failure;
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value};
 
-use crate::values::{layout, positive, unit};
+use crate::values::{LENGTH, layout, unit};
 
 /// What a file does not say of itself, and how its surface is prepared.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Reading {
     /// Side of the surface along x, in place of that in the file
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     pub(crate) side: Option<f64>,
 
     /// Side along y [default: that of square cells]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "side")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "side")]
     pub(crate) side_y: Option<f64>,
 
     /// Unit of the heights, in place of that in the file: m, mm, um, nm, ...

@@ -1,76 +1,244 @@
-//! Numbers on the command line, refused where they make no sense.
+//! Numbers on the command line, with or without a unit, refused where they make no sense.
 
-use asperity::material::{BRINELL, VICKERS};
+use asperity::SurfaceError;
+use asperity::io::{LengthUnit, TextLayout};
+use asperity::material::HardnessScale;
 
-/// A length or a modulus.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err("must be positive and finite".to_string())
+/// What is measured, and the units in which a command line may give it. A bare number is in SI units.
+pub(crate) struct Dimension {
+    name: &'static str,
+    /// Each unit as [`plain`] leaves it, in SI units; the first one is that of the SI.
+    units: &'static [(&'static str, f64)],
+}
+
+/// A length: these, and all that a file may have.
+pub(crate) const LENGTH: Dimension =
+    Dimension { name: "length", units: &[("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)] };
+/// A pressure, a modulus, a stress.
+pub(crate) const PRESSURE: Dimension = Dimension {
+    name: "pressure",
+    units: &[
+        ("Pa", 1.0),
+        ("mPa", 1e-3),
+        ("kPa", 1e3),
+        ("MPa", 1e6),
+        ("GPa", 1e9),
+        ("N/m2", 1.0),
+        ("N/mm2", 1e6),
+        ("kN/mm2", 1e9),
+        ("mbar", 1e2),
+        ("bar", 1e5),
+        ("psi", PSI),
+        ("ksi", 1e3 * PSI),
+    ],
+};
+/// A force.
+pub(crate) const FORCE: Dimension = Dimension {
+    name: "force",
+    units: &[
+        ("N", 1.0),
+        ("nN", 1e-9),
+        ("µN", 1e-6),
+        ("mN", 1e-3),
+        ("kN", 1e3),
+        ("MN", 1e6),
+        ("kgf", KILOGRAM_FORCE),
+        ("lbf", POUND_FORCE),
+    ],
+};
+/// A time.
+pub(crate) const TIME: Dimension = Dimension {
+    name: "time",
+    units: &[
+        ("s", 1.0),
+        ("µs", 1e-6),
+        ("ms", 1e-3),
+        ("min", 60.0),
+        ("h", 3600.0),
+        ("d", 86400.0),
+        ("years", 31_557_600.0),
+    ],
+};
+/// A dynamic viscosity.
+pub(crate) const VISCOSITY: Dimension =
+    Dimension { name: "viscosity", units: &[("Pas", 1.0), ("mPas", 1e-3), ("cP", 1e-3)] };
+/// An electrical resistivity.
+pub(crate) const RESISTIVITY: Dimension = Dimension {
+    name: "resistivity",
+    units: &[("Ohmm", 1.0), ("µOhmm", 1e-6), ("nOhmm", 1e-9), ("µOhmcm", 1e-8)],
+};
+/// A thermal conductivity.
+pub(crate) const CONDUCTIVITY: Dimension = Dimension {
+    name: "thermal conductivity",
+    units: &[("W/mK", 1.0), ("mW/mK", 1e-3), ("W/m/K", 1.0), ("mW/mmK", 1.0)],
+};
+/// An angle \[°\].
+pub(crate) const ANGLE: Dimension = Dimension {
+    name: "angle",
+    units: &[("°", 1.0), ("deg", 1.0), ("rad", 180.0 / std::f64::consts::PI)],
+};
+/// A part of a whole.
+const SHARE: Dimension = Dimension { name: "fraction", units: &[("%", 1e-2)] };
+/// Memory in bytes.
+const MEMORY: Dimension = Dimension {
+    name: "memory",
+    units: &[
+        ("B", 1.0),
+        ("kB", 1e3),
+        ("MB", 1e6),
+        ("GB", 1e9),
+        ("TB", 1e12),
+        ("MiB", 1_048_576.0),
+        ("GiB", 1_073_741_824.0),
+    ],
+};
+
+/// Of a pound and a kilogram, by definition.
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
+const KILOGRAM_FORCE: f64 = 9.806_65;
+const PSI: f64 = POUND_FORCE / (0.0254 * 0.0254);
+
+impl Dimension {
+    /// A number above zero.
+    pub(crate) fn positive(&'static self) -> impl Parser {
+        |text| checked(self.read(text)?, |value| value > 0.0, "must be positive and finite")
+    }
+
+    /// A number that may be zero.
+    pub(crate) fn not_negative(&'static self) -> impl Parser {
+        |text| checked(self.read(text)?, |value| value >= 0.0, "must be finite and not negative")
+    }
+
+    /// A number of any sign.
+    pub(crate) fn any(&'static self) -> impl Parser {
+        |text| checked(self.read(text)?, |_| true, "must be finite")
+    }
+
+    /// In SI units.
+    fn read(&self, text: &str) -> Result<f64, String> {
+        let (number, unit) = split(text)?;
+        let factor = self.factor(unit).ok_or_else(|| {
+            let units: Vec<&str> = self.units.iter().map(|(name, _)| *name).collect();
+            format!("'{unit}' is no unit of {}, as are {}", self.name, units.join(", "))
+        })?;
+        scaled(number, factor)
+    }
+
+    /// A unit in SI units, `None` if it is none. Case decides between two, as mN and MN.
+    fn factor(&self, unit: &str) -> Option<f64> {
+        if unit.is_empty() {
+            return Some(1.0);
+        }
+        if self.name == LENGTH.name {
+            return unit.parse().ok().map(LengthUnit::metres);
+        }
+        let unit = plain(unit);
+        let found = |is: &dyn Fn(&str) -> bool| {
+            let mut found = self.units.iter().filter(|(name, _)| is(name));
+            found.next().filter(|_| found.next().is_none())
+        };
+        found(&|name| name == unit)
+            .or_else(|| found(&|name| name.eq_ignore_ascii_case(&unit)))
+            .map(|(_, factor)| *factor)
     }
 }
 
-/// A length or a coefficient that may be zero.
-pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value >= 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err("must be finite and not negative".to_string())
+/// A function that clap reads a value with.
+pub(crate) trait Parser:
+    Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static
+{
+}
+
+impl<F: Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static> Parser for F {}
+
+fn checked(value: f64, is: fn(f64) -> bool, otherwise: &str) -> Result<f64, String> {
+    if value.is_finite() && is(value) { Ok(value) } else { Err(otherwise.to_string()) }
+}
+
+/// The number that a text begins with, and what is left.
+fn split(text: &str) -> Result<(&str, &str), String> {
+    let text = text.trim();
+    let ends = text.char_indices().map(|(at, _)| at).chain([text.len()]);
+    let end = ends.rev().find(|end| text[..*end].trim_end().parse::<f64>().is_ok());
+    let (number, unit) = text.split_at(end.ok_or("not a number")?);
+    Ok((number.trim_end(), unit.trim_start()))
+}
+
+/// A unit without what it may be written with: `Pa·s` and `Pa s` are `Pas`, `W/(m K)` is `W/mK`, `uN` is `µN`.
+fn plain(unit: &str) -> String {
+    let mut plain = String::new();
+    for (k, c) in unit.chars().filter(|c| !" ·*()_".contains(*c)).enumerate() {
+        match c {
+            'u' | '\u{3bc}' if k == 0 => plain.push('µ'),
+            'Ω' | '\u{2126}' => plain.push_str("Ohm"),
+            '²' => plain.push('2'),
+            _ => plain.push(c),
+        }
     }
+    plain
+}
+
+/// A number in a unit. A power of ten moves the point and does not round: 1.024 mm are the number that is written 1.024e-3.
+fn scaled(number: &str, unit: f64) -> Result<f64, String> {
+    let not_a_number = |_| "not a number".to_string();
+    let power = unit.log10().round() as i32;
+    if 10_f64.powi(power) != unit {
+        return number.parse().map(|value: f64| value * unit).map_err(|_| not_a_number(()));
+    }
+    let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    let exponent: i32 = exponent.parse().map_err(|_| not_a_number(()))?;
+    format!("{digits}e{}", exponent.saturating_add(power)).parse().map_err(|_| not_a_number(()))
+}
+
+/// A hardness \[Pa\], as a pressure or as a number of Brinell, Vickers or Rockwell. Numbers of the test are passed over: 700HV10.
+pub(crate) fn hardness(text: &str) -> Result<f64, String> {
+    let (number, unit) = split(text)?;
+    let symbol = unit.trim_end_matches(|c: char| c.is_ascii_digit() || "./ ".contains(c));
+    match HardnessScale::named(symbol) {
+        Some(scale) => scale.pascals(scaled(number, 1.0)?).map_err(|error| error.to_string()),
+        None => PRESSURE.positive()(text),
+    }
+}
+
+/// A number without a unit, above zero.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    checked(number(text)?, |value| value > 0.0, "must be positive and finite")
+}
+
+/// A number without a unit, or zero.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    checked(number(text)?, |value| value >= 0.0, "must be finite and not negative")
 }
 
 /// A Poisson's ratio.
 pub(crate) fn poisson(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value > -1.0 && value <= 0.5 {
-        Ok(value)
-    } else {
-        Err("a Poisson's ratio must be above -1 and at most 1/2".to_string())
-    }
+    let is = |value| value > -1.0 && value <= 0.5;
+    checked(number(text)?, is, "a Poisson's ratio must be above -1 and at most 1/2")
 }
 
-/// A number of bytes, which may be given as `2e9`.
+/// A number of bytes.
 pub(crate) fn bytes(text: &str) -> Result<usize, String> {
     // Beyond all there are it is the greatest.
-    positive(text).map(|bytes| bytes as usize)
+    MEMORY.positive()(text).map(|bytes| bytes as usize)
 }
 
 /// A part of an area.
 pub(crate) fn fraction(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value > 0.0 && value <= 1.0 {
-        Ok(value)
-    } else {
-        Err("a fraction must be above 0 and at most 1 (10 % is 0.1)".to_string())
-    }
-}
-
-/// A hardness \[Pa\], as a pressure or as a Brinell or Vickers number.
-pub(crate) fn hardness(text: &str) -> Result<f64, String> {
-    let scaled = |number: &str, pascals: f64| positive(number.trim()).map(|value| value * pascals);
-    if let Some(number) = text.strip_suffix("HB") {
-        scaled(number, BRINELL)
-    } else if let Some(number) = text.strip_suffix("HV") {
-        scaled(number, VICKERS)
-    } else {
-        positive(text)
-    }
+    let is = |value| value > 0.0 && value <= 1.0;
+    checked(SHARE.read(text)?, is, "a fraction must be above 0 and at most 1 (10% is 0.1)")
 }
 
 pub(crate) fn number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "not a number".to_string())
+    text.trim().parse().map_err(|_| "not a number".to_string())
 }
 
 /// How the numbers of a text are arranged.
-pub(crate) fn layout(text: &str) -> Result<asperity::io::TextLayout, asperity::SurfaceError> {
+pub(crate) fn layout(text: &str) -> Result<TextLayout, SurfaceError> {
     text.parse()
 }
 
 /// A unit of length.
-pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::SurfaceError> {
+pub(crate) fn unit(text: &str) -> Result<LengthUnit, SurfaceError> {
     text.parse()
 }
 
@@ -78,20 +246,93 @@ pub(crate) fn unit(text: &str) -> Result<asperity::io::LengthUnit, asperity::Sur
 mod tests {
     use super::*;
 
-    /// A ball that has sunk in 0.375 of its diameter wide: the cap has the area `2 (1 − √(1 − x²)) / x²` times its circle.
+    /// Each unit by itself, as it is written by hand, and exactly: the numbers are those that Rust reads.
     #[test]
-    fn hardness_is_a_pressure() {
-        let x: f64 = 0.375;
-        let cap = 2.0 * (1.0 - (1.0 - x * x).sqrt()) / (x * x);
-        for (text, pascals) in [
-            ("2.5e9", 2.5e9),
-            ("250HB", 250.0 * 9.80665e6 * cap),
-            ("250 HV", 250.0 * 9.80665e6 / 68_f64.to_radians().sin()),
-        ] {
-            let found = hardness(text).unwrap_or_default();
-            assert!((found / pascals - 1.0).abs() < 1e-3, "{text}: {found:e} {pascals:e}");
+    fn numbers_may_have_units() {
+        let cases: [(&'static Dimension, &[(&str, f64)]); 9] = [
+            (
+                &LENGTH,
+                &[
+                    ("1.024e-3", 1.024e-3),
+                    ("1.024mm", 1.024e-3),
+                    ("0.3 um", 0.3e-6),
+                    ("0.3\u{3bc}m", 0.3e-6),
+                    ("3 micrometer", 3e-6),
+                    ("1in", 0.0254),
+                    ("7e3 nm", 7e-6),
+                ],
+            ),
+            (
+                &PRESSURE,
+                &[
+                    ("5e6", 5e6),
+                    ("5MPa", 5e6),
+                    ("5 mPa", 5e-3),
+                    ("2.3GPA", 2.3e9),
+                    ("1 N/mm²", 1e6),
+                    ("1bar", 1e5),
+                    ("1psi", 6894.757_293_168_361),
+                ],
+            ),
+            (&FORCE, &[("1.5kN", 1500.0), ("3 mN", 3e-3), ("3MN", 3e6), ("2uN", 2e-6)]),
+            (&TIME, &[("2h", 7200.0), ("90 min", 5400.0), ("0.1s", 0.1), ("5ms", 5e-3)]),
+            (&VISCOSITY, &[("1e-3", 1e-3), ("1 mPa·s", 1e-3), ("1 mPa s", 1e-3), ("0.1Pa*s", 0.1)]),
+            (&RESISTIVITY, &[("1.7 uOhm cm", 1.7e-8), ("17nΩ·m", 17e-9)]),
+            (&CONDUCTIVITY, &[("50 W/(m K)", 50.0), ("26mW/mK", 0.026)]),
+            (&ANGLE, &[("30", 30.0), ("30°", 30.0), ("3.141592653589793rad", 180.0)]),
+            (&SHARE, &[("0.1", 0.1), ("10%", 0.1), ("12.5 %", 0.125)]),
+        ];
+        for (dimension, texts) in cases {
+            for (text, value) in texts {
+                assert_eq!(dimension.positive()(text), Ok(*value), "{text}");
+            }
         }
-        for text in ["", "HB", "0", "-1HV", "60HRC", "NaN", "infHB"] {
+        assert_eq!(bytes("2GB"), Ok(2_000_000_000));
+        assert_eq!(bytes("1e30"), Ok(usize::MAX));
+    }
+
+    /// What is no number, no unit of this kind, or not decided by its case.
+    #[test]
+    fn other_units_are_refused() {
+        let refused: [(&'static Dimension, &[&str]); 3] = [
+            (
+                &PRESSURE,
+                &["", "MPa", "5mm", "5mpa", "5 Pa s", "0Pa", "-1MPa", "nan", "infPa", "1e999"],
+            ),
+            (&LENGTH, &["5MPa", "1A/m", "1,5mm", "--1", "1e-3e", "µm"]),
+            (&FORCE, &["5mn", "5Pa"]),
+        ];
+        for (dimension, texts) in refused {
+            for text in texts {
+                assert!(dimension.positive()(text).is_err(), "{text}");
+            }
+        }
+        assert_eq!(PRESSURE.not_negative()("0"), Ok(0.0));
+        assert_eq!(ANGLE.any()("-45°"), Ok(-45.0));
+        assert!(ANGLE.any()("inf").is_err());
+        for (text, words) in
+            [("5mm", "'mm' is no unit of pressure, as are Pa, "), ("x", "not a number")]
+        {
+            let error = PRESSURE.positive()(text).err().unwrap_or_default();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+
+    #[test]
+    fn hardness_is_a_pressure_or_a_number() {
+        let number =
+            |scale: HardnessScale, number| scale.pascals(number).map_err(|e| e.to_string());
+        for (text, pascals) in [
+            ("2.5e9", Ok(2.5e9)),
+            ("2.5GPa", Ok(2.5e9)),
+            ("250hb", number(HardnessScale::Brinell, 250.0)),
+            ("250 HBW 10/3000", number(HardnessScale::Brinell, 250.0)),
+            ("700HV10", number(HardnessScale::Vickers, 700.0)),
+            ("60HRC", number(HardnessScale::RockwellC, 60.0)),
+        ] {
+            assert_eq!(hardness(text), pascals, "{text}");
+        }
+        for text in ["", "HB", "0", "-1HV", "70HRC", "NaN", "infHB", "60HRB"] {
             assert!(hardness(text).is_err(), "{text}");
         }
     }

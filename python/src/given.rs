@@ -26,11 +26,19 @@ impl Hardness {
     }
 }
 
-/// Warns of what looks wrong with a surface on a half-space.
-pub(crate) fn warn_of(py: Python<'_>, surface: &Surface, body: &HalfSpace) -> Fallible<()> {
+/// Warns of what looks wrong with a surface on a half-space, and with a hardness that is one number.
+pub(crate) fn warn_of(
+    py: Python<'_>,
+    surface: &Surface,
+    body: &HalfSpace,
+    hardness: Option<&Bound<'_, PyAny>>,
+) -> Fallible<()> {
     let topography = surface.topography()?;
     warn_all(py, detached(py, || Warning::of_surface(topography))?)?;
     warn_all(py, body.warnings(surface.grid()))?;
+    let hardness = hardness.and_then(|hardness| hardness.extract::<f64>().ok());
+    let pair = hardness.zip(body.modulus());
+    warn_all(py, pair.and_then(|(hardness, e_star)| Warning::of_hardness(hardness, e_star)))?;
     if surface.periodic() == Some(true) && body.surroundings() == Boundary::Free {
         warn(
             py,

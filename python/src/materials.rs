@@ -1,8 +1,8 @@
 //! Moduli and hardnesses of bodies.
 
-use asperity::material::{BRINELL, Material, VICKERS};
+use asperity::material::{HardnessScale, Material};
 use asperity::slip::Friction;
-use asperity::{Error, composite_modulus as composite, plane_strain_modulus as plane_strain};
+use asperity::{composite_modulus as composite, plane_strain_modulus as plane_strain};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -111,12 +111,13 @@ fn materials(py: Python<'_>) -> Fallible<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// A hardness [Pa] from a number of Brinell or Vickers.
+/// A hardness [Pa] from a number of Brinell, Vickers or, between 20 and 68, Rockwell C.
 ///
 /// Parameters
 /// ----------
 /// number : float
-/// scale : {"HB", "HV"}
+/// scale : {"HB", "HV", "HRC"}
+///     HRC by ASTM E140 for carbon and alloy steels, within 1.5 %.
 ///
 /// Returns
 /// -------
@@ -125,12 +126,12 @@ fn materials(py: Python<'_>) -> Fallible<Bound<'_, PyDict>> {
 #[pyfunction]
 #[pyo3(signature = (number, scale))]
 fn hardness(number: f64, scale: &str) -> Fallible<f64> {
-    let pascals = crate::choice::choose("scale", scale, &[("HB", BRINELL), ("HV", VICKERS)])?;
-    if number > 0.0 && number.is_finite() {
-        Ok(number * pascals)
-    } else {
-        Err(Error::NotPositive { quantity: "hardness", value: number }.into())
-    }
+    const SCALES: [(&str, HardnessScale); 3] = [
+        ("HB", HardnessScale::Brinell),
+        ("HV", HardnessScale::Vickers),
+        ("HRC", HardnessScale::RockwellC),
+    ];
+    Ok(crate::choice::choose("scale", scale, &SCALES)?.pascals(number)?)
 }
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {

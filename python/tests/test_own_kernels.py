@@ -180,5 +180,9 @@ def test_materials() -> None:
     assert refused.value.value == 0.7
     # 250 kgf/mm² of the surface of the indentation, 0.9635 of it in the plane.
     assert asp.hardness(250, "HB") == pytest.approx(250 * 9.80665e6 / 0.9635, rel=1e-15)
-    with pytest.raises(asp.AsperityError):
-        asp.hardness(60, "HRC")
+    # ASTM E140: 60 HRC are 697 HV.
+    assert asp.hardness(60, "HRC") == pytest.approx(asp.hardness(697, "HV"), rel=0.015)
+    with pytest.raises(asp.AsperityError) as refused:
+        asp.hardness(70, "HRC")
+    assert refused.value.value == 70
+    assert asp.composite_modulus("Aluminum", "PTFE") == asp.composite_modulus("aluminium", "ptfe")

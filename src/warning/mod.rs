@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::kernel::{Base, LayeredBody};
 use crate::number::{counted, quantity, significant};
-use crate::patches::ContactEdge;
+use crate::patches::{Connectivity, ContactEdge, Patches};
 use crate::surface::{self, Topography};
 use crate::{Boundary, Error, Grid};
 
@@ -41,6 +41,13 @@ pub enum Warning {
         /// Composite modulus \[Pa\].
         e_star: f64,
     },
+    /// A hardness that no solid of this modulus has.
+    Hardness {
+        /// The hardness \[Pa\].
+        hardness: f64,
+        /// Composite modulus \[Pa\].
+        e_star: f64,
+    },
     /// Cells wider than the coat of a body is thick.
     WideCells {
         /// The longer side of a cell \[m\].
@@ -72,6 +79,8 @@ pub enum Warning {
 /// between the nodes the counted area was 21 % too large on average, and up to 42 %, with 12 to 15 nodes in contact; 13 % and
 /// 32 % with 16 to 23; 8 % and 17 % with 32 to 47.
 const EXCESS: f64 = 0.15;
+/// Nodes that a single patch has at least: the greatest pressure of a ball whose contact had 32 to 47 was up to 10 % off.
+const FEW_NODES: usize = 50;
 /// Pressure over composite modulus: metals yield at a hardness of some 0.01 to 0.03, and polymers at 0.047 (PTFE) to 0.072 (PMMA).
 const METALS: f64 = 0.02;
 const POLYMERS: f64 = 0.05;
@@ -81,6 +90,8 @@ const SOFTEST_METAL: f64 = 1e10;
 const SOFTEST_POLYMER: f64 = 1e8;
 /// A layer is like another if its modulus is at most so many times as large, and at least so many times as small.
 const LIKE: f64 = 2.0;
+/// The hardness of solids over their composite modulus, from annealed metals to polymers and ceramics, with a wide margin below.
+const HARDNESSES: std::ops::RangeInclusive<f64> = 1e-5..=0.3;
 /// Moduli of solids lie between that of soft rubber and that of diamond \[Pa\].
 const SOLIDS: std::ops::RangeInclusive<f64> = 1e6..=2e12;
 /// Pressure drop over mean pressure. Half of the drop, its mean, takes load off the contact. Leak rates fall as the second power
@@ -114,7 +125,9 @@ impl Warning {
             return Ok(vec![Self::NoLoad { contact_nodes }]);
         }
         let excess = contact_nodes as f64 * grid.cell_area() / edge.corrected_area() - 1.0;
-        let small = (excess > EXCESS).then_some(Self::SmallPatches { contact_nodes, excess });
+        let is_small =
+            excess > EXCESS || (contact_nodes < FEW_NODES && is_one_patch(contact_map, on)?);
+        let small = is_small.then_some(Self::SmallPatches { contact_nodes, excess });
         Ok(small.into_iter().chain(Self::of_edge(pressure, boundary)).collect())
     }
 
@@ -143,6 +156,12 @@ impl Warning {
     #[must_use]
     pub fn of_modulus(e_star: f64) -> Option<Self> {
         (!SOLIDS.contains(&e_star)).then_some(Self::Modulus { e_star })
+    }
+
+    /// Warnings about a hardness of bodies of a composite modulus. What is harder than they can be does not yield.
+    #[must_use]
+    pub fn of_hardness(hardness: f64, e_star: f64) -> Option<Self> {
+        (hardness < HARDNESSES.start() * e_star).then_some(Self::Hardness { hardness, e_star })
     }
 
     /// Warnings about the layers of a body on a grid whose cells are wider than the coat is thick: down to where the modulus is twice
@@ -226,15 +245,27 @@ impl fmt::Display for Warning {
             ),
             Self::Modulus { e_star } => {
                 write!(f, "E* = {} is softer than rubber", pascals(e_star))?;
-                let units = [(1e9, "GPa"), (1e6, "MPa")];
-                let fits = |(factor, _): &&(f64, &str)| SOLIDS.contains(&(e_star * factor));
-                match units.iter().find(fits) {
-                    Some((factor, unit)) => write!(
-                        f,
-                        ": if the modulus was given in {unit}, it is {}",
-                        pascals(factor * e_star)
-                    ),
+                match in_larger_unit(e_star, SOLIDS) {
+                    Some((value, unit)) => {
+                        write!(f, ": if the modulus was given in {unit}, it is {}", pascals(value))
+                    }
                     None => write!(f, ": is the modulus in Pa?"),
+                }
+            }
+            Self::Hardness { hardness, e_star } => {
+                write!(
+                    f,
+                    "a hardness of {} is {} of E* = {}: no solid is so soft",
+                    pascals(hardness),
+                    significant(hardness / e_star, 2),
+                    pascals(e_star)
+                )?;
+                let solids = HARDNESSES.start() * e_star..=HARDNESSES.end() * e_star;
+                match in_larger_unit(hardness, solids) {
+                    Some((value, unit)) => {
+                        write!(f, ". If it was given in {unit}, it is {}", pascals(value))
+                    }
+                    None => write!(f, ". Is it in Pa?"),
                 }
             }
             Self::WideCells { cell, thickness } => write!(
@@ -281,6 +312,24 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// Whether nodes in contact are one patch.
+fn is_one_patch(
+    contact_map: &DMatrix<bool>,
+    (grid, boundary): (&Grid, Boundary),
+) -> Result<bool, Error> {
+    let patches = Patches::new(contact_map, grid, boundary, Connectivity::Eight)?;
+    Ok(patches.patches().len() == 1)
+}
+
+/// A pressure that was given in GPa or MPa if it is one of these then, and the unit.
+fn in_larger_unit(
+    value: f64,
+    plausible: std::ops::RangeInclusive<f64>,
+) -> Option<(f64, &'static str)> {
+    let units = [(1e9, "GPa"), (1e6, "MPa")].map(|(factor, unit)| (factor * value, unit));
+    units.into_iter().find(|(value, _)| plausible.contains(value))
 }
 
 /// A pressure in the unit in which it is read easily.

@@ -41,6 +41,8 @@ fn a_warning_that_does_not_fit_is_an_error() {
         Warning::Modulus { e_star },
         Warning::Modulus { e_star: 1e-9 },
         Warning::Modulus { e_star: 1e13 },
+        Warning::Hardness { hardness: 2.5, e_star: 230e9 },
+        Warning::Hardness { hardness: 2.5e-9, e_star: 230e9 },
         Warning::HighPressure { pressure, e_star, hardness: None },
         Warning::HighPressure { pressure, e_star: 1e9, hardness: None },
         Warning::HighPressure { pressure, e_star, hardness: Some(1.0) },
@@ -260,5 +262,50 @@ fn contacts_of_few_nodes_are_noticed() -> Result<(), Error> {
     let mean = |excesses: &[f64]| excesses.iter().sum::<f64>() / excesses.len() as f64;
     assert!(mean(&of_few) > EXCESS, "{of_few:?}");
     assert!(mean(&unnoticed) < EXCESS, "{unnoticed:?}");
+    Ok(())
+}
+
+/// 2.5 for 2.5 GPa, 250 for 250 MPa, and what no unit makes a hardness.
+#[test]
+fn a_hardness_without_its_unit_is_noticed() {
+    let of =
+        |hardness: f64| Warning::of_hardness(hardness, 230.8e9).map(|warning| warning.to_string());
+    assert_eq!(of(2.5e9), None);
+    assert_eq!(of(1e7), None);
+    for (hardness, words) in [
+        (
+            2.5,
+            "a hardness of 2.5 Pa is 1.1e-11 of E* = 230.8 GPa: no solid is so soft. If it was given in GPa, it is 2.5 GPa",
+        ),
+        (250.0, "If it was given in MPa, it is 250 MPa"),
+        (2.5e-6, "Is it in Pa?"),
+    ] {
+        let told = of(hardness).unwrap_or_default();
+        assert!(told.contains(words), "{told}");
+    }
+}
+
+/// A ball whose contact has 25 nodes is not resolved; as many nodes apart from each other are not called one patch.
+#[test]
+fn a_single_patch_of_few_nodes_is_noticed() -> Result<(), Error> {
+    let grid = Grid::square(32, 1e-3)?;
+    let block = |side: usize| {
+        DMatrix::from_fn(32, 32, |ix, iy| {
+            (10..10 + side).contains(&ix) && (10..10 + side).contains(&iy)
+        })
+    };
+    let warned = |map: &DMatrix<bool>| {
+        let pressure = map.map(|is_in| if is_in { 1.0 } else { 0.0 });
+        Warning::of_contact(&pressure, map, (&grid, Boundary::Periodic))
+    };
+    let found = warned(&block(6))?;
+    assert!(matches!(found[..], [Warning::SmallPatches { contact_nodes: 36, .. }]), "{found:?}");
+    assert_eq!(warned(&block(8))?, []);
+    let mut two = block(8);
+    two.view_mut((10, 10), (8, 8)).fill(false);
+    two.view_mut((2, 2), (6, 4)).fill(true);
+    two.view_mut((20, 20), (6, 4)).fill(true);
+    assert!(two.iter().filter(|is_in| **is_in).count() < 50);
+    assert_eq!(warned(&two)?, []);
     Ok(())
 }

@@ -6,7 +6,7 @@ use asperity::patches::Connectivity;
 use clap::Args;
 
 use crate::path::fields::Format;
-use crate::values::{number, positive};
+use crate::values::{FORCE, LENGTH, TIME, number};
 
 /// Contact of viscoelastic bodies over time, from a recorded path: creep under a load, relaxation at an approach, any history
 ///
@@ -28,11 +28,11 @@ pub(crate) struct Options {
     pub(super) prony: Vec<(f64, f64)>,
 
     /// Load put on at t = 0 and held
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, conflicts_with_all = ["approach", "history"], required_unless_present_any = ["approach", "history"])]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), conflicts_with_all = ["approach", "history"], required_unless_present_any = ["approach", "history"])]
     pub(super) load: Option<f64>,
 
     /// Approach from first touch, taken at t = 0 and held: the load relaxes
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, conflicts_with = "history")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "history")]
     pub(super) approach: Option<f64>,
 
     /// Load or approach over time: a CSV file of two columns with the header `time,load` or `time,approach`, linear between its lines; a
@@ -41,11 +41,11 @@ pub(crate) struct Options {
     pub(super) history: Option<PathBuf>,
 
     /// Time in which --load or --approach is put on [default: at once]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive, conflicts_with = "history")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = TIME.positive(), conflicts_with = "history")]
     pub(super) ramp: Option<f64>,
 
     /// Time of the last state [default: the last line of --history, or 100 times the longest time of --prony]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = TIME.positive())]
     pub(super) time: Option<f64>,
 
     /// Least number of steps from one corner of the history to the next, and of lines in creep.csv
@@ -53,7 +53,7 @@ pub(crate) struct Options {
     pub(super) steps: u32,
 
     /// Amplitude of the load cycles around --load whose lost energy is drawn against frequency [default: a fifth of --load]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, requires = "load")]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), requires = "load")]
     pub(super) cycle_amplitude: Option<f64>,
 
     /// Nodes that share only a corner belong to one patch too; channels pass through sides of cells either way
@@ -88,7 +88,7 @@ impl Options {
 /// A term of the series.
 fn term(text: &str) -> Result<(f64, f64), String> {
     let (time, share) = text.split_once(',').ok_or("a term is TAU,G: a time and a part")?;
-    let (time, share) = (positive(time.trim())?, number(share.trim())?);
+    let (time, share) = (TIME.positive()(time)?, number(share)?);
     if (0.0..=1.0).contains(&share) {
         Ok((time, share))
     } else {
@@ -104,6 +104,7 @@ mod tests {
     fn a_term_is_a_time_and_a_part() {
         assert_eq!(term("0.1,0.5"), Ok((0.1, 0.5)));
         assert_eq!(term("1e3, 1"), Ok((1e3, 1.0)));
+        assert_eq!(term("2h,0.5"), Ok((7200.0, 0.5)));
         for bad in
             ["", "1", "1;2", "0,0.5", "-1,0.5", "1,-0.1", "1,1.1", "1,nan", "inf,0.5", "1,2,3"]
         {

@@ -21,7 +21,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::{Args, ValueEnum};
 
 use crate::advice;
-use crate::values::positive;
+use crate::values::{FORCE, PRESSURE, VISCOSITY};
 
 /// Leak rate through the gap along a recorded path: Reynolds' equation on the gap, contact closed
 ///
@@ -38,11 +38,11 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Viscosity of the fluid in Pa s: water 1e-3, air 1.8e-5, oils 1e-2 to 1
-    #[arg(long, value_name = "PA_S", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "PA_S", allow_negative_numbers = true, value_parser = VISCOSITY.positive())]
     viscosity: f64,
 
     /// Pressure drop of the fluid from edge to edge
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     pressure_drop: f64,
 
     /// Direction in which the fluid is pressed
@@ -50,7 +50,7 @@ pub(crate) struct Options {
     along: Along,
 
     /// Load of a state of which fluid pressure and flux are drawn; may be given several times [default: the last state that leaks]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     load: Vec<f64>,
 
     /// Number of states at which the leak rate along the path is computed; 0 for none but those of --load

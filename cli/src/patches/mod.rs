@@ -24,7 +24,7 @@ use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
 use clap::Args;
 
-use crate::values::{fraction, positive};
+use crate::values::{FORCE, fraction};
 use followed::Followed;
 use moment::Moment;
 
@@ -41,7 +41,7 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Load of the state that is described [default: the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive, conflicts_with = "at_area_fraction")]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), conflicts_with = "at_area_fraction")]
     at_load: Option<f64>,
 
     /// Contact area over nominal area of the state that is described

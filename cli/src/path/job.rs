@@ -279,6 +279,8 @@ impl Job {
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Warning::of_surface(&self.surface);
         warnings.extend(self.bodies.warnings(self.surface.grid()));
+        let softest = self.hardness.as_ref().map(DMatrix::min);
+        warnings.extend(softest.and_then(|h| Warning::of_hardness(h, self.bodies.e_star)));
         warnings
     }
 

@@ -10,7 +10,7 @@ use asperity::loading::History;
 use asperity_cli::outcome::{self, Failure};
 use clap::{Args, ValueEnum};
 
-use crate::values::positive;
+use crate::values::{CONDUCTIVITY, LENGTH, RESISTIVITY, positive};
 
 /// The bodies of a joint.
 pub(super) struct Pair<'a> {
@@ -27,24 +27,24 @@ pub(super) struct Pair<'a> {
 pub(super) struct Joint {
     /// Add the electrical conductance of the contact to path.csv: resistivities of both bodies, or of one if the other conducts
     /// perfectly
-    #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "OHM_M", value_delimiter = ',', allow_negative_numbers = true, value_parser = RESISTIVITY.positive())]
     resistivity: Vec<f64>,
 
     /// Add the thermal conductance of the contact to path.csv: thermal conductivities of both bodies in W/(m K), or of one if the other
     /// conducts perfectly
-    #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "W_M_K", value_delimiter = ',', allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive())]
     conductivity: Vec<f64>,
 
     /// Thermal conductivity in W/(m K) of what fills the gap, in parallel to the contact: air 0.026
-    #[arg(long, value_name = "W_M_K", allow_negative_numbers = true, value_parser = positive, requires = "conductivity")]
+    #[arg(long, value_name = "W_M_K", allow_negative_numbers = true, value_parser = CONDUCTIVITY.positive(), requires = "conductivity")]
     gap_conductivity: Option<f64>,
 
     /// Temperature jump distance of a gas in the gap, the sum of both surfaces: air about 3.7e-7 [default: 0]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, requires = "gap_conductivity")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "gap_conductivity")]
     jump_distance: Option<f64>,
 
     /// Write conductance.csv, with bounds for a surface that has more roughness than the grid, of at most this height from valley to peak
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     unresolved_roughness: Option<f64>,
 
     /// Write the laws of the interface for finite elements, per nominal area: pressure over overclosure (what the mean gap closes); over the

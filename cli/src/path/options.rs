@@ -15,7 +15,7 @@ use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::hardness::{GreatestPressure, Hardness};
 use crate::reading::Reading;
-use crate::values::{bytes, fraction, positive};
+use crate::values::{FORCE, LENGTH, PRESSURE, bytes, fraction};
 
 /// An option whose help says what a generated surface has without it.
 fn generated(arg: Arg, value: &str) -> Arg {
@@ -81,7 +81,7 @@ pub(crate) struct Options {
     pub(super) seed: Option<u64>,
 
     /// Shortest wavelength of the generated surface [default: eight cells, but not less than 78.125 µm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
     pub(super) short_cutoff: Option<f64>,
 
     /// Save the path in this file; numpy.load opens it, and --resume continues the path from it
@@ -138,19 +138,19 @@ pub(crate) struct Options {
 #[derive(Debug, Clone, Args)]
 struct Ends {
     /// End the path at exactly this load over nominal area
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive, conflicts_with = "max_load")]
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive(), conflicts_with = "max_load")]
     mean_pressure: Option<f64>,
 
     /// End the path at exactly this load
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     max_load: Option<f64>,
 
     /// End the path at exactly this approach
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     max_approach: Option<f64>,
 
     /// End the path at exactly this mean gap
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
     min_mean_gap: Option<f64>,
 
     /// End the path at this contact area over nominal area [default: 0.1 if no other end is given]

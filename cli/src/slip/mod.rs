@@ -19,7 +19,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
 use crate::material::Material;
-use crate::values::positive;
+use crate::values::{FORCE, positive};
 use history::Sheared;
 use joint::Joint;
 
@@ -46,11 +46,11 @@ pub(crate) struct Options {
     friction: f64,
 
     /// Load that presses the joint [default: that of the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     load: Option<f64>,
 
     /// Tangential load T, and amplitude of the cycle [default: half of what friction bears]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     amplitude: Option<f64>,
 
     /// Ratio of the tangential to the normal compliance of the bodies, E*/G*: (2 - ν)/(2 (1 - ν)) of one material

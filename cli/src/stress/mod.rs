@@ -19,7 +19,7 @@ use asperity_cli::{answer, panel, speech};
 use clap::{ArgGroup, Args};
 
 use crate::material::Material;
-use crate::values::{not_negative, number, poisson, positive};
+use crate::values::{ANGLE, FORCE, LENGTH, PRESSURE, not_negative, poisson};
 use body::Moment;
 
 /// Stress below the surface of a recorded contact: where it is greatest, maps and sections, and the load of first yield
@@ -39,7 +39,7 @@ pub(crate) struct Options {
     record: PathBuf,
 
     /// Load of the state whose stresses are computed [default: the last state]
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
     load: Option<f64>,
 
     /// Poisson's ratio of the body [default: both bodies of the record, if it knows them; layers it knows]
@@ -55,11 +55,11 @@ pub(crate) struct Options {
     against: Option<Material>,
 
     /// Yield stress of the body, of layers one for all: the load at which von Mises' stress reaches it is looked for along the path
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     yield_stress: Option<f64>,
 
     /// Yield stress of the other body
-    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     against_yield_stress: Option<f64>,
 
     /// Coefficient of friction of a contact that slides: tractions of so many times the pressure
@@ -67,12 +67,12 @@ pub(crate) struct Options {
     friction: f64,
 
     /// Direction of sliding in degrees from x towards y: that in which the other body moves over this one
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = number, default_value_t = 0.0)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = ANGLE.any(), default_value_t = 0.0)]
     angle: f64,
 
     /// Depth at which stresses are computed; may be given several times [default: from the surface to the size of the largest patch, and
     /// around the greatest stress]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.not_negative())]
     depth: Vec<f64>,
 
     /// Write stress.vti, which ParaView opens: the stress tensor and its measures at so many depths, as deep as the sections

@@ -116,7 +116,7 @@ fn solve(
     let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap };
     let target = targets.only(&grid)?;
     if check {
-        warn_of(py, &surface, &half_space)?;
+        warn_of(py, &surface, &half_space, hardness)?;
     }
     let settings = Settings { tolerance, max_iterations, stiffness, memory_budget };
     let mut solver = solver(py, &surface, &half_space, hardness, &settings)?;

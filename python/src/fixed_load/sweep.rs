@@ -192,7 +192,7 @@ fn sweep(
     });
     let targets: Vec<ContactTarget> = targets.collect::<Fallible<_>>()?;
     if check {
-        warn_of(py, &surface, &half_space)?;
+        warn_of(py, &surface, &half_space, hardness)?;
     }
     let settings = Settings { tolerance, max_iterations, stiffness, memory_budget };
     let mut solver = solver(py, &surface, &half_space, hardness, &settings)?;

@@ -87,11 +87,11 @@ fn load_path(
     let targets = Targets { load, mean_pressure, approach, area_fraction, mean_gap }.on(&grid)?;
     let updater = choose("updater", updater, &Updater::WORDS)?;
     let rule = choose("rule", rule, &RULES)?;
-    let hardness = hardness.map(|hardness| Hardness::of(hardness, &grid)).transpose()?;
     LoadingSolver::check_room(&grid, half_space.surroundings(), memory_budget)?;
     if check {
-        warn_of(py, &surface, &half_space)?;
+        warn_of(py, &surface, &half_space, hardness)?;
     }
+    let hardness = hardness.map(|hardness| Hardness::of(hardness, &grid)).transpose()?;
     let kernel = half_space.kernel(py, grid)?;
     let solver = detached(py, move || {
         let mut builder =
