@@ -14,11 +14,11 @@ use clap::Args;
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Ensemble {
     /// Follow a path for each seed from A to B, in DIR/seed_N; folders that are there are skipped
-    #[arg(long, value_name = "A..B", conflicts_with_all = ["surface", "seed", "resume", "record"])]
+    #[arg(long, value_name = "A..B", conflicts_with_all = ["surface", "seed", "resume", "record"], help_heading = "Many surfaces")]
     pub(crate) seeds: Option<Seeds>,
 
     /// Only the K-th of N equal shares of the seeds, for job arrays; K counts from 0 or from 1
-    #[arg(long, value_name = "K/N", requires = "seeds")]
+    #[arg(long, value_name = "K/N", requires = "seeds", help_heading = "Many surfaces")]
     task: Option<Task>,
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct Hardness {
     hardness: Option<f64>,
 
     /// The same with a typical hardness of the --material, of the softer one of two
-    #[arg(long = "yield", conflicts_with = "hardness")]
+    #[arg(long = "yield", conflicts_with = "hardness", help_heading = "Bodies")]
     typical: bool,
 }
 

@@ -6,28 +6,30 @@ use std::time::Instant;
 
 use asperity::fixed_load::FixedLoadSolution;
 use asperity::io::write_npy;
-use asperity::{FixedLoadSolver, Grid, InfluenceKernel, Warning};
+use asperity::{ContactTarget, FixedLoadSolver, Grid, InfluenceKernel, Warning};
 use asperity_cli::half_space::Periodic;
 use asperity_cli::number::{counted, quantity};
 use asperity_cli::outcome::{self, Failure, Outcome};
-use asperity_cli::{answer, note, panel, speech};
+use asperity_cli::{answer, note, panel, say, speech};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::advice;
+use crate::at::At;
 use crate::contact_map::draw as draw_map;
 use crate::elasticity::Elasticity;
 use crate::hardness::Hardness;
 use crate::reading::Reading;
 use crate::resolution::Resolution;
 use crate::room;
+use crate::state_table::{self, Row};
 use crate::values::{FORCE, PRESSURE, bytes};
 
-/// The contact of a measured surface under given loads or mean pressures, each solved by itself
+/// The contact of a measured surface under given pressures or loads, each solved by itself
 ///
-/// Prints one line for each load on stdout, for programs, and a description on stderr. Writes load.csv and
-/// contact_map_K.png, where K counts the loads from 0. The model is that of `asperity path`: elastic up to the hardness if there is
-/// one, without friction and adhesion, with small slopes. Memory is proportional to the grid, whatever the contact.
+/// Prints a table of the states, and writes load.csv and, for each state, contact_map_5MPa.png, named after what it was asked for. The
+/// model is that of `asperity path`: elastic up to the hardness if there is one, without friction and adhesion, with small slopes.
+/// Memory is proportional to the grid, whatever the contact.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
     /// File with heights, positive towards the half-space (`asperity formats` lists what is read): the rows of
@@ -54,11 +56,17 @@ pub(crate) struct Options {
     periodic: Option<Periodic>,
 
     /// Greatest error of the gaps, relative to the approach
-    #[arg(long, value_name = "T", allow_negative_numbers = true, default_value_t = 1e-8)]
+    #[arg(
+        long,
+        value_name = "T",
+        allow_negative_numbers = true,
+        default_value_t = 1e-8,
+        help_heading = "Solver"
+    )]
     tolerance: f64,
 
     /// Greatest memory in bytes, for example 2e9 [default: three quarters of the memory]
-    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    #[arg(long, value_name = "BYTES", value_parser = bytes, help_heading = "Solver")]
     memory_budget: Option<usize>,
 
     /// Print one JSON object instead: states, one for each load that was solved for, with the columns of load.csv, iterations and
@@ -66,7 +74,7 @@ pub(crate) struct Options {
     #[arg(long)]
     json: bool,
 
-    /// Directory for pressure_K.npy and gap_K.npy, where K counts the loads from 0
+    /// Directory for pressure and gap of each state: pressure_5MPa.npy, gap_5MPa.npy
     #[arg(long, value_name = "DIR")]
     save: Option<PathBuf>,
 
@@ -79,21 +87,27 @@ pub(crate) struct Options {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 struct Loads {
+    /// Load over nominal area, load, or contact area: 5MPa,50MPa or 10N or 2mm2 or 10%; a bare number is a mean pressure in Pa
+    #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
+    at: Vec<At>,
+
     /// Load; may be given several times
     #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.any())]
     load: Vec<f64>,
 
-    /// Load over nominal area; may be given several times, and is solved after the loads
+    /// Load over nominal area; may be given several times
     #[arg(long, value_name = "PA", allow_negative_numbers = true, value_parser = PRESSURE.positive())]
     mean_pressure: Vec<f64>,
 }
 
 impl Loads {
-    /// All of them \[N\], on a nominal area.
-    fn on(&self, nominal_area: f64) -> Vec<f64> {
-        let pressures = self.mean_pressure.iter();
-        let given = self.load.iter().copied();
-        given.chain(pressures.map(|pressure| pressure * nominal_area)).collect()
+    /// All of them: loads, pressures, and others.
+    fn all(&self) -> Result<Vec<At>, Failure> {
+        let pressures = self.mean_pressure.iter().copied().map(At::MeanPressure);
+        let loads = self.load.iter().copied().map(At::Load);
+        let all: Vec<At> = loads.chain(pressures).chain(self.at.iter().copied()).collect();
+        At::check(&all, false)?;
+        Ok(all)
     }
 }
 
@@ -102,6 +116,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         speech::be_quiet();
     }
+    let asked = options.loads.all()?;
     let bodies = options.elasticity.required()?;
     let surface = options.reading.surface(&options.surface)?;
     let hardness = options.hardness.of(&bodies)?;
@@ -146,39 +161,32 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Failure::new(format!("cannot create {}", directory.display()), error)
         })?;
     }
-    let loads = options.loads.on(grid.nominal_area());
     let mut outcome = Outcome::default();
     let mut table = format!("{}\n", COLUMNS.join(","));
-    let mut states = Vec::new();
-    for (k, &load) in loads.iter().enumerate() {
-        note!("load {} of {}: {}", k + 1, loads.len(), quantity(load, "N", 6));
-        let solved = solve(&mut solver, load).and_then(|(solution, effort)| {
+    let (mut rows, mut states, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    for &at in &asked {
+        let solved = solve(&mut solver, at, &grid).and_then(|(solution, seconds)| {
             let resolution = Resolution::of(&solution.contact_map, &grid, half_space.boundary());
             let resolution = resolution
                 .map_err(|error| Failure::new("cannot find the contact patches", error))?;
             let numbers = numbers(&solution, &resolution, &grid);
             // Writing to a text cannot fail.
             let _ = writeln!(table, "{}", numbers.join(","));
-            let answer = answer(&numbers, &solution, effort.0);
-            if options.json {
-                states.push(object(&answer));
-            } else {
-                answer!("{}", line(&answer));
-            }
-            print_words(&solution, &resolution, effort.1);
+            states.push(object(&numbers, &solution, seconds.0));
+            rows.push(row(&solution, &resolution, &grid));
+            print_words(at, &solution, &resolution, seconds);
             let on = (&grid, half_space.boundary());
-            let warnings = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
+            let of_contact = Warning::of_contact(&solution.pressure, &solution.contact_map, on)
                 .map_err(|error| Failure::new("cannot look at the contact", error))?;
             let yields = solution.plastic.is_some();
             let high = bodies.warning_of(solution.max_pressure()).filter(|_| !yields);
-            for warning in warnings.iter().chain(&high) {
-                eprintln!("warning: {}", advice::told(warning));
-            }
+            let told = of_contact.iter().chain(&high).map(advice::told);
+            warnings.extend(told.map(|told| format!("at {at}: {told}")));
             Ok(solution)
         });
         match solved {
             Ok(solution) => {
-                let picture = options.out.join(format!("contact_map_{k}.png"));
+                let picture = options.out.join(format!("contact_map_{}.png", at.name()));
                 let FixedLoadSolution { state, pressure, contact_map, .. } = &solution;
                 outcome.written(draw_map(
                     &grid,
@@ -189,7 +197,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
                     &picture,
                 ));
                 if let Some(directory) = &options.save {
-                    outcome.all_written(save(directory, &solution, k));
+                    outcome.all_written(save(directory, &solution, at));
                 }
                 outcome.note(verify(&solution, options.tolerance));
             }
@@ -197,32 +205,49 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
             Err(failure) => outcome.note(Err(failure)),
         }
     }
-    if table.lines().count() > 1 {
+    if !rows.is_empty() {
         outcome.written(outcome::write(&options.out.join("load.csv"), table));
+        say!();
+        state_table::print(&rows, grid.nominal_area(), options.periodic);
     }
+    warnings.iter().for_each(speech::warn);
     if options.json {
         answer!("{}", json!({ "states": states }));
     }
-    outcome.finish_on_stderr()
+    outcome.finish()
 }
 
 /// A solution with its stiffnesses, and the seconds that it and they took.
 fn solve(
     solver: &mut FixedLoadSolver,
-    load: f64,
+    at: At,
+    grid: &Grid,
 ) -> Result<(FixedLoadSolution, (f64, f64)), Failure> {
+    let target = at.target(grid.nominal_area());
     let failed = |error| {
-        Failure::new(
-            format!("cannot solve for the contact under {}", quantity(load, "N", 6)),
-            error,
-        )
+        let asked = match target {
+            ContactTarget::Load(load) => quantity(load, "N", 6),
+            _ => at.to_string(),
+        };
+        Failure::new(format!("cannot solve for the contact under {asked}"), error)
     };
     let start = Instant::now();
-    let mut solution = solver.solve(load).map_err(failed)?;
+    let mut solution = solver.solve_target(target).map_err(failed)?;
     let seconds = start.elapsed().as_secs_f64();
     solver.add_stiffness(&mut solution).map_err(failed)?;
     let seconds_more = start.elapsed().as_secs_f64() - seconds;
     Ok((solution, (seconds, seconds_more)))
+}
+
+/// What people read of it.
+fn row(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -> Row {
+    let plastic = solution.plastic.as_ref();
+    Row {
+        contact: solution.state,
+        greatest: solution.max_pressure(),
+        corrected_area: resolution.corrected_area,
+        yielded: plastic.map(|plastic| plastic.area / grid.nominal_area()),
+    }
 }
 
 /// The columns of load.csv, in SI units.
@@ -264,74 +289,43 @@ fn numbers(solution: &FixedLoadSolution, resolution: &Resolution, grid: &Grid) -
     ]
 }
 
-/// Names and numbers for programs.
-fn answer(
-    numbers: &[String; 13],
-    solution: &FixedLoadSolution,
-    seconds: f64,
-) -> Vec<(&'static str, String)> {
-    let effort = [
-        ("iterations", solution.effort.iterations.to_string()),
-        ("seconds", format!("{seconds:.6}")),
-    ];
-    COLUMNS.into_iter().zip(numbers.iter().cloned()).chain(effort).collect()
-}
-
-/// As a line.
-fn line(answer: &[(&str, String)]) -> String {
-    let named = answer.iter().map(|(name, number)| format!("{name}={number}"));
-    named.collect::<Vec<_>>().join(" ")
-}
-
-/// As an object; what is no number is null.
-fn object(answer: &[(&str, String)]) -> Value {
-    let named = answer.iter().map(|(name, number)| {
+/// The same for programs, and the effort; what is no number is null.
+fn object(numbers: &[String; 13], solution: &FixedLoadSolution, seconds: f64) -> Value {
+    let named = COLUMNS.iter().zip(numbers).map(|(name, number)| {
         // Counts are integers.
         let count = number.parse().map(|count: u64| json!(count));
         let value = count.or_else(|_| number.parse().map(|number: f64| json!(number)));
         ((*name).to_string(), value.unwrap_or(Value::Null))
     });
-    Value::Object(named.collect::<Map<_, _>>())
+    let mut object: Map<String, Value> = named.collect();
+    object.insert("iterations".to_string(), json!(solution.effort.iterations));
+    object.insert("seconds".to_string(), json!(seconds));
+    Value::Object(object)
 }
 
-/// The lines for people.
-fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_more: f64) {
-    let state = solution.state;
-    let greatest = solution.max_pressure();
+/// How a state was found, and what the table does not have.
+fn print_words(
+    at: At,
+    solution: &FixedLoadSolution,
+    resolution: &Resolution,
+    (seconds, seconds_more): (f64, f64),
+) {
+    let certificate = &solution.certificate;
+    let gap = |relative: f64| quantity(relative * certificate.length, "m", 2);
+    note!("at {at}: {resolution}");
     note!(
-        "  contact {:.4} % of the nominal area, {resolution}",
-        100.0 * state.contact_area_fraction
-    );
-    note!(
-        "  mean pressure {}, greatest pressure {}, mean gap {}, approach {}",
-        quantity(state.mean_pressure(), "Pa", 4),
-        quantity(greatest, "Pa", 4),
-        quantity(state.mean_gap, "m", 4),
-        quantity(state.approach, "m", 4)
-    );
-    for (name, stiffness) in [
-        ("contact stiffness", state.contact_stiffness),
-        ("interfacial stiffness", state.interfacial_stiffness),
-    ] {
-        if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.is_finite()) {
-            note!("  {name} {}", quantity(stiffness, "N/m", 4));
-        }
-    }
-    let gap = |relative: f64| quantity(relative * solution.certificate.length, "m", 2);
-    let least = solution.certificate.least_gap;
-    note!(
-        "  residuals: gap in contact {}{}",
-        gap(solution.certificate.greatest_contact_gap),
-        // There is none in full contact.
-        match least.is_finite() {
-            true => format!(", least gap out of contact {}", gap(least)),
-            false => String::new(),
-        }
-    );
-    note!(
-        "  {} convolutions and {:.1} on coarser grids, {seconds_more:.3} s more for the stiffness",
+        "  {} convolutions and {:.1} on coarser grids in {seconds:.3} s, {seconds_more:.3} s more for the stiffness",
         solution.effort.convolutions,
         solution.effort.coarse_convolutions,
+    );
+    note!(
+        "  residuals: gap in contact {}{}",
+        gap(certificate.greatest_contact_gap),
+        // There is none in full contact.
+        match certificate.least_gap.is_finite() {
+            true => format!(", least gap out of contact {}", gap(certificate.least_gap)),
+            false => String::new(),
+        }
     );
     if let Some(plastic) = &solution.plastic {
         note!(
@@ -341,16 +335,16 @@ fn print_words(solution: &FixedLoadSolution, resolution: &Resolution, seconds_mo
             quantity(plastic.work, "J", 4)
         );
     }
-    if state.contact_area_fraction == 1.0 {
+    if solution.state.contact_area_fraction == 1.0 {
         note!("note: the contact is full; beyond full contact only the pressure changes");
     }
 }
 
-/// Writes the fields of the K-th load.
-fn save(directory: &Path, solution: &FixedLoadSolution, k: usize) -> Result<Vec<PathBuf>, Failure> {
+/// Writes the fields of a state.
+fn save(directory: &Path, solution: &FixedLoadSolution, at: At) -> Result<Vec<PathBuf>, Failure> {
     let fields = [("pressure", &solution.pressure), ("gap", &solution.gap)];
     let written = fields.map(|(name, field)| {
-        let file = directory.join(format!("{name}_{k}.npy"));
+        let file = directory.join(format!("{name}_{}.npy", at.name()));
         match write_npy(&file, field) {
             Ok(()) => Ok(file),
             Err(error) => Err(Failure::writing(&file, error)),

@@ -1,6 +1,7 @@
 //! The program `asperity`: contacts of rough surfaces on the command line.
 
 mod advice;
+mod at;
 mod columns;
 mod contact_map;
 mod creep;
@@ -25,6 +26,7 @@ mod room;
 mod settings;
 mod shell;
 mod slip;
+mod state_table;
 mod stress;
 mod values;
 

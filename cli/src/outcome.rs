@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::io::write_whole;
 
-use crate::{note, say};
+use crate::say;
 
 /// An error with what could not be done because of it.
 pub struct Failure {
@@ -165,14 +165,6 @@ impl Outcome {
         let (pages, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_page);
         for file in pages.into_iter().chain(others) {
             say!("wrote {}", file.display());
-        }
-        self.finish_quietly()
-    }
-
-    /// The same where stdout is for programs.
-    pub fn finish_on_stderr(self) -> Result<(), Failure> {
-        for file in &self.files {
-            note!("wrote {}", file.display());
         }
         self.finish_quietly()
     }

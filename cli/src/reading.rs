@@ -21,40 +21,40 @@ pub(crate) struct Reading {
     pub(crate) side: Option<f64>,
 
     /// Side along y [default: that of square cells]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "side")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), requires = "side", help_heading = "Reading the file")]
     pub(crate) side_y: Option<f64>,
 
     /// Unit of the heights, in place of that in the file: m, mm, um, nm, ...
-    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    #[arg(long, value_name = "UNIT", value_parser = unit, help_heading = "Reading the file")]
     height_unit: Option<LengthUnit>,
 
     /// Unit of the lengths along x and y, in place of that in the file
-    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    #[arg(long, value_name = "UNIT", value_parser = unit, help_heading = "Reading the file")]
     lateral_unit: Option<LengthUnit>,
 
     /// Name of the map, if the file contains several
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = "Reading the file")]
     channel: Option<String>,
 
     /// How the numbers of a text are arranged, where it does not say: matrix (heights only), x-row (positions along x in the
     /// first row), y-column (positions along y in the first column), axes (both), points (x, y, z in each line)
-    #[arg(long, value_name = "LAYOUT", value_parser = layout)]
+    #[arg(long, value_name = "LAYOUT", value_parser = layout, help_heading = "Reading the file")]
     layout: Option<TextLayout>,
 
     /// Use heights that a mask in the file marks as missing
-    #[arg(long)]
+    #[arg(long, help_heading = "Reading the file")]
     ignore_mask: bool,
 
     /// Interpolate missing nodes from the nodes around them
-    #[arg(long)]
+    #[arg(long, help_heading = "Reading the file")]
     fill: bool,
 
     /// Remove a trend from the heights, by least squares
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Reading the file")]
     level: Option<Level>,
 
     /// Turn peaks into valleys, for the replica of a surface
-    #[arg(long)]
+    #[arg(long, help_heading = "Reading the file")]
     invert: bool,
 }
 

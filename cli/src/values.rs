@@ -77,8 +77,13 @@ pub(crate) const ANGLE: Dimension = Dimension {
     name: "angle",
     units: &[("°", 1.0), ("deg", 1.0), ("rad", 180.0 / std::f64::consts::PI)],
 };
+/// An area.
+pub(crate) const AREA: Dimension = Dimension {
+    name: "area",
+    units: &[("m2", 1.0), ("cm2", 1e-4), ("mm2", 1e-6), ("µm2", 1e-12), ("nm2", 1e-18)],
+};
 /// A part of a whole.
-const SHARE: Dimension = Dimension { name: "fraction", units: &[("%", 1e-2)] };
+pub(crate) const SHARE: Dimension = Dimension { name: "fraction", units: &[("%", 1e-2)] };
 /// Memory in bytes.
 const MEMORY: Dimension = Dimension {
     name: "memory",
@@ -141,6 +146,20 @@ impl Dimension {
             .or_else(|| found(&|name| name.eq_ignore_ascii_case(&unit)))
             .map(|(_, factor)| *factor)
     }
+}
+
+/// A number above zero of any of these dimensions; without a unit, of the first.
+pub(crate) fn any_of<T>(
+    text: &str,
+    kinds: &[(&'static Dimension, fn(f64) -> T)],
+) -> Result<T, String> {
+    let (_, unit) = split(text)?;
+    let found = kinds.iter().find(|(dimension, _)| dimension.factor(unit).is_some());
+    let (dimension, made) = found.ok_or_else(|| {
+        let names: Vec<&str> = kinds.iter().map(|(dimension, _)| dimension.name).collect();
+        format!("'{unit}' is no unit of {}", names.join(", "))
+    })?;
+    dimension.positive()(text).map(made)
 }
 
 /// A function that clap reads a value with.

@@ -68,7 +68,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         let found = followed.fields(&record, &bed, options.pieces);
         match found {
             Ok(found) => {
-                outcome.all_written(fields::write(&found, &record.grid(), format, &directory));
+                outcome.all_written(fields::write(
+                    &found,
+                    &record.grid(),
+                    format,
+                    (&directory, ""),
+                ));
             }
             Err(failure) => outcome.note(Err(failure)),
         }

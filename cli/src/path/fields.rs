@@ -1,9 +1,9 @@
-//! Fields of the last state, for other programs.
+//! Fields of a state, for other programs.
 
 use std::path::{Path, PathBuf};
 
 use asperity::io::{write_gsf, write_npy, write_vti};
-use asperity::{Grid, SurfaceError};
+use asperity::{Grid, LoadingState, SurfaceError};
 use clap::ValueEnum;
 use nalgebra::DMatrix;
 
@@ -37,18 +37,29 @@ pub(crate) fn of(solver: &mut Solver) -> Result<Fields, Failure> {
     Ok(fields)
 }
 
-/// Writes fields into a directory; returns the names of the files.
+/// Those of another state of the path.
+pub(super) fn at(solver: &mut Solver, state: &LoadingState) -> Result<Fields, Failure> {
+    let failed = |error| Failure::new("cannot compute the fields of a state", error);
+    let (pressure, gap) = solver.pressure_and_gap_at(state).map_err(failed)?;
+    let mut fields = vec![("pressure", pressure), ("gap", gap)];
+    if solver.hardness_map().is_some() {
+        fields.push(("plastic_depth", solver.plastic_depth_at(state).map_err(failed)?));
+    }
+    Ok(fields)
+}
+
+/// Writes fields into a directory, with an ending of their names; returns the names of the files.
 pub(crate) fn write(
     fields: &Fields,
     grid: &Grid,
     format: Format,
-    directory: &Path,
+    (directory, ending): (&Path, &str),
 ) -> Result<Vec<PathBuf>, Failure> {
     let named = |name: PathBuf, written: Result<(), SurfaceError>| {
         written.map(|()| name.clone()).map_err(|error| Failure::writing(&name, error))
     };
     if let Format::Vti = format {
-        let name = directory.join("fields.vti");
+        let name = directory.join(format!("fields{ending}.vti"));
         let all: Vec<_> = fields.iter().map(|(name, field)| (*name, field)).collect();
         let written = write_vti(&name, grid, &all);
         return named(name, written).map(|name| vec![name]);
@@ -56,13 +67,13 @@ pub(crate) fn write(
     let one = |(field, values): &(&str, DMatrix<f64>)| {
         let (name, written) = match format {
             Format::Gsf => {
-                let name = directory.join(format!("{field}.gsf"));
+                let name = directory.join(format!("{field}{ending}.gsf"));
                 let unit = if *field == "pressure" { "Pa" } else { "m" };
                 let written = write_gsf(&name, grid, values, unit);
                 (name, written)
             }
             _ => {
-                let name = directory.join(format!("{field}.npy"));
+                let name = directory.join(format!("{field}{ending}.npy"));
                 let written = write_npy(&name, values);
                 (name, written)
             }

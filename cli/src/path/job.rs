@@ -21,6 +21,7 @@ use super::parts::Parts;
 use super::progress::Progress;
 use super::source::{Generated, fingerprint, generate, read, source_of};
 use super::updater::{Updater, no_room};
+use crate::at::At;
 use crate::elasticity::Bodies;
 use crate::settings::Settings;
 use asperity_cli::half_space::{Periodic, boundary};
@@ -46,6 +47,8 @@ pub(super) struct Job {
     memory_budget: Option<usize>,
     /// Where the path ends, whichever comes first.
     targets: Vec<ContactTarget>,
+    /// States of which there is to be more.
+    at: Vec<At>,
     /// What there is of the path already.
     begun: Option<History>,
     /// Where its record goes.
@@ -83,6 +86,7 @@ impl Job {
             updater: options.updater,
             memory_budget: options.memory_budget,
             targets: targets(options, &grid),
+            at: options.at.clone(),
             begun: None,
             record: options.record.clone(),
             settings: settings(options, (&bodies, &grid), source)?,
@@ -152,6 +156,7 @@ impl Job {
             updater: options.updater,
             memory_budget: options.memory_budget,
             targets,
+            at: options.at.clone(),
             bodies,
             hardness,
             surface,
@@ -222,6 +227,11 @@ impl Job {
 
     pub(super) fn targets(&self) -> &[ContactTarget] {
         &self.targets
+    }
+
+    /// The states that are asked for.
+    pub(super) fn at(&self) -> &[At] {
+        &self.at
     }
 
     pub(super) fn updater(&self) -> Updater {

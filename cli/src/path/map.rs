@@ -1,26 +1,25 @@
-//! `contact_map.png`: the last state of a path.
+//! `contact_map.png`: a state of a path.
 
 use std::path::{Path, PathBuf};
+
+use asperity::LoadingState;
 
 use super::Solver;
 use super::job::Job;
 use crate::contact_map;
 use asperity_cli::outcome::Failure;
 
-/// Draws the present state of a path into a directory.
-pub(super) fn draw(job: &Job, solver: &mut Solver, directory: &Path) -> Result<PathBuf, Failure> {
-    let pressure = solver
-        .pressure()
-        .map_err(|error| Failure::new("cannot compute the pressure for the map", error))?;
-    let Some(state) = solver.state() else {
-        return Err(Failure::request("there is no state to draw a map of"));
-    };
-    contact_map::draw(
-        &job.grid(),
-        &state.contact,
-        &pressure,
-        &solver.contact_map(),
-        job.has_hardness().then(|| solver.yielded_map()).as_ref(),
-        &directory.join("contact_map.png"),
-    )
+/// Draws a state of a path.
+pub(super) fn draw(
+    job: &Job,
+    solver: &mut Solver,
+    state: &LoadingState,
+    name: &Path,
+) -> Result<PathBuf, Failure> {
+    let failed = |error| Failure::new("cannot compute the pressure for the map", error);
+    let pressure = solver.pressure_at(state).map_err(failed)?;
+    let contact_map = solver.contact_map_at(state).map_err(failed)?;
+    let yielded = job.has_hardness().then(|| solver.yielded_map_at(state));
+    let yielded = yielded.transpose().map_err(failed)?;
+    contact_map::draw(&job.grid(), &state.contact, &pressure, &contact_map, yielded.as_ref(), name)
 }

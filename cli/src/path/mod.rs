@@ -14,6 +14,7 @@ mod interrupt;
 mod job;
 mod joint;
 mod map;
+mod moments;
 mod object;
 mod options;
 mod parts;
@@ -101,6 +102,7 @@ pub(crate) fn run(options: &Options, given: &ArgMatches) -> Result<(), Failure> 
 
 /// The job, and the conductances that it is asked for, with what looks wrong.
 fn prepare(options: &Options) -> Result<(Job, Vec<Named>), Failure> {
+    options.check()?;
     let job = Job::new(options)?;
     if options.unload && !job.has_hardness() {
         return Err(Failure::request(
@@ -190,7 +192,7 @@ fn follow_one(
                 kept = Some(save(name, &job, &solver, &states, &fields));
             }
             if let Some(format) = options.fields {
-                let written = fields::write(&fields, &job.grid(), format, &options.out);
+                let written = fields::write(&fields, &job.grid(), format, (&options.out, ""));
                 outcome.all_written(written);
             }
         }
@@ -211,7 +213,16 @@ fn follow_one(
     }
     outcome.all_written(options.joint.write(&job.pair(), &states, &options.out));
     outcome.written(curves::draw(&job, &states, &options.out));
-    outcome.written(map::draw(&job, &mut solver, &options.out));
+    if let Some(last) = states.last() {
+        let name = options.out.join("contact_map.png");
+        outcome.written(map::draw(&job, &mut solver, last, &name));
+    }
+    let (moments, missed) = moments::reached(&job, &states);
+    for moment in &moments {
+        let written = moments::write(&job, &mut solver, moment, (&options.out, options.fields));
+        outcome.all_written(written);
+    }
+    outcome.note(missed);
     Ok(outcome)
 }
 

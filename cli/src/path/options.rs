@@ -11,6 +11,7 @@ use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 use super::fields::Format;
 use super::joint::Joint;
 use super::updater::{Updater, no_room};
+use crate::at::At;
 use crate::elasticity::{Bodies, Elasticity};
 use crate::ensemble::{Ensemble, Member};
 use crate::hardness::{GreatestPressure, Hardness};
@@ -61,31 +62,36 @@ pub(crate) struct Options {
     #[arg(long, value_enum)]
     pub(super) periodic: Option<Periodic>,
 
+    /// States of which table, maps (contact_map_5MPa.png) and --fields are: a load over nominal area, a load, or a contact area, as in
+    /// 5MPa,50MPa or 10N or 2mm2 or 10%. A bare number is a mean pressure in Pa. Without another end the path ends at the last of them
+    #[arg(long, value_name = "STATE,...", value_delimiter = ',', allow_negative_numbers = true)]
+    pub(super) at: Vec<At>,
+
     #[command(flatten)]
     ends: Ends,
 
     /// Rule that chooses the node that touches next
-    #[arg(long, value_enum, default_value_t = Rule::FirstContact)]
+    #[arg(long, value_enum, default_value_t = Rule::FirstContact, help_heading = "Solver")]
     pub(super) rule: Rule,
 
     /// Solver of the linear systems; the order of events is the same
-    #[arg(long, value_enum, default_value_t = Updater::Auto)]
+    #[arg(long, value_enum, default_value_t = Updater::Auto, help_heading = "Solver")]
     pub(super) updater: Updater,
 
     /// Nodes along each side of the generated surface [default: 256]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Generated surface")]
     pub(super) nodes: Option<usize>,
 
     /// Seed of the generated surface [default: 1]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", help_heading = "Generated surface")]
     pub(super) seed: Option<u64>,
 
     /// Shortest wavelength of the generated surface [default: eight cells, but not less than 78.125 µm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface", help_heading = "Generated surface")]
     pub(super) short_cutoff: Option<f64>,
 
     /// Save the path in this file; numpy.load opens it, and --resume continues the path from it
-    #[arg(long, value_name = "FILE.npz", group = "kept")]
+    #[arg(long, value_name = "FILE.npz", group = "kept", help_heading = "Records and files")]
     pub(super) record: Option<PathBuf>,
 
     /// Write report.html: the contact at every state under a slider, charts and tables, in one page for a browser
@@ -93,25 +99,25 @@ pub(crate) struct Options {
     pub(super) report: bool,
 
     /// Write pressure and gap of the last state
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Records and files")]
     pub(super) fields: Option<Format>,
 
     /// Unload from the last state of a path with a hardness: write unloading.csv, and the surface that is left as
     /// residual_surface.npy and .x3p
-    #[arg(long)]
+    #[arg(long, help_heading = "Records and files")]
     pub(super) unload: bool,
 
     /// Save the record each time that many states have been added, and not only at the end
-    #[arg(long, value_name = "STATES", requires = "kept")]
+    #[arg(long, value_name = "STATES", requires = "kept", help_heading = "Records and files")]
     pub(super) save_every: Option<NonZeroUsize>,
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"])]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
-    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    #[arg(long, value_name = "BYTES", value_parser = bytes, help_heading = "Solver")]
     pub(super) memory_budget: Option<usize>,
 
     #[command(flatten)]
@@ -121,12 +127,12 @@ pub(crate) struct Options {
     pub(super) ensemble: Ensemble,
 
     /// Print about how much time and memory the path takes, or each path of --seeds, and stop; no file is written
-    #[arg(long)]
+    #[arg(long, help_heading = "Solver")]
     pub(super) dry_run: bool,
 
-    /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure and
-    /// warnings (SI units; null where there is no number); one line for each seed
-    #[arg(long)]
+    /// Print one JSON object instead of the table: states, ended_by, seconds, the scalars of the last state, max_pressure, warnings, and
+    /// in `at` the scalars of each state of --at (SI units; null where there is no number); one line for each seed
+    #[arg(long, help_heading = "Records and files")]
     pub(super) json: bool,
 
     /// Directory for the files, created if it does not exist
@@ -142,23 +148,36 @@ struct Ends {
     mean_pressure: Option<f64>,
 
     /// End the path at exactly this load
-    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive())]
+    #[arg(long, value_name = "NEWTONS", allow_negative_numbers = true, value_parser = FORCE.positive(), help_heading = "Where the path ends")]
     max_load: Option<f64>,
 
     /// End the path at exactly this approach
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
     max_approach: Option<f64>,
 
     /// End the path at exactly this mean gap
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive())]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), help_heading = "Where the path ends")]
     min_mean_gap: Option<f64>,
 
     /// End the path at this contact area over nominal area [default: 0.1 if no other end is given]
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = fraction, help_heading = "Where the path ends")]
     max_area_fraction: Option<f64>,
 }
 
+impl Ends {
+    /// Whether nobody says where.
+    fn are_open(&self) -> bool {
+        let loads = self.mean_pressure.or(self.max_load);
+        loads.or(self.max_approach).or(self.min_mean_gap).or(self.max_area_fraction).is_none()
+    }
+}
+
 impl Options {
+    /// `Ok` if the states that are asked for make sense together.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        At::check(&self.at, self.ends.are_open())
+    }
+
     /// Those of one path of many.
     pub(super) fn of(&self, member: &Member) -> Self {
         Self {
@@ -204,6 +223,9 @@ impl Options {
             ends.max_area_fraction.map(ContactTarget::AreaFraction),
         ];
         let mut targets: Vec<ContactTarget> = given.into_iter().flatten().collect();
+        if targets.is_empty() {
+            targets.extend(At::furthest(&self.at, grid.nominal_area()));
+        }
         if targets.is_empty() {
             targets.extend(otherwise);
         }

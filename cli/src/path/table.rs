@@ -6,9 +6,9 @@ use asperity::{Certificate, Error, LoadingState, Warning};
 
 use super::Solver;
 use super::job::Job;
-use crate::columns::{Column, print as print_columns};
+use super::moments;
 use crate::resolution::Resolution;
-use asperity_cli::half_space::is_of_mean_planes;
+use crate::state_table::{self, Row};
 use asperity_cli::number::{counted, quantity, scientific};
 use asperity_cli::outcome::Failure;
 use asperity_cli::{say, speech};
@@ -38,19 +38,23 @@ pub(super) fn print(
     say!();
     let corrected = corrected_areas(job, states)
         .map_err(|error| Failure::new("cannot compute the corrected contact area", error))?;
-    let rows = rows(states, last);
     let mut failed = Ok(());
-    let mut greatest = Vec::new();
-    for state in &rows {
-        greatest.push(match solver.pressure_at(state) {
-            Ok(pressure) => pressure.iter().copied().fold(0.0, f64::max),
-            Err(error) => {
+    let shown = rows(job, states, last).into_iter().map(|state| Row {
+        contact: state.contact,
+        greatest: solver.pressure_at(&state).map_or_else(
+            |error| {
                 failed = Err(Failure::new("cannot compute a pressure for the table", error));
                 f64::NAN
-            }
-        });
-    }
-    table(job, &rows, &greatest, &corrected);
+            },
+            |pressure| pressure.iter().copied().fold(0.0, f64::max),
+        ),
+        corrected_area: corrected.get(state.step - 1).copied().unwrap_or(f64::NAN),
+        yielded: job
+            .has_hardness()
+            .then(|| state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction)),
+    });
+    let shown: Vec<Row> = shown.collect();
+    state_table::print(&shown, job.grid().nominal_area(), job.periodic());
     failed?;
     let resolution = Resolution::of(&solver.contact_map(), &job.grid(), job.boundary())
         .map_err(|error| Failure::new("cannot find the patches of the last state", error))?;
@@ -77,54 +81,6 @@ pub(super) fn corrected_areas(job: &Job, states: &[LoadingState]) -> Result<Vec<
         Ok(edge.corrected_area())
     });
     events.collect()
-}
-
-/// Rows with the greatest pressure of each, and the legend.
-fn table(job: &Job, rows: &[LoadingState], greatest: &[f64], corrected: &[f64]) {
-    let nominal = job.grid().nominal_area();
-    let column =
-        |name: &'static str, unit: &'static str, quantity: &dyn Fn(&LoadingState) -> f64| {
-            Column::new(name, unit, rows.iter().map(quantity))
-        };
-    let area =
-        |state: &LoadingState| corrected.get(state.step - 1).map_or(f64::NAN, |a| a / nominal);
-    let stiffness = |stiffness: Option<f64>| stiffness.unwrap_or(f64::NAN);
-    let mut columns = vec![
-        column("load", "N", &|state| state.contact.load),
-        column("pressure", "Pa", &|state| state.contact.mean_pressure()),
-        Column::new("greatest", "Pa", greatest.iter().copied()),
-        Column::area("area", rows.iter().map(|state| state.contact.contact_area)),
-        Column::percent("area", rows.iter().map(|state| state.contact.contact_area_fraction)),
-        Column::percent("corrected", rows.iter().map(area)),
-        column("approach", "m", &|state| state.contact.approach),
-        column("mean gap", "m", &|state| state.contact.mean_gap),
-        column("K", "N/m", &|state| stiffness(state.contact.contact_stiffness)),
-        column("K_i", "N/m", &|state| stiffness(state.contact.interfacial_stiffness)),
-    ];
-    if job.has_hardness() {
-        let yielded = |state: &LoadingState| {
-            state.contact.plastic.map_or(0.0, |plastic| plastic.yielded_area_fraction)
-        };
-        columns.insert(6, Column::percent("yielded", rows.iter().map(yielded)));
-    }
-    // A periodic half-space has no contact stiffness.
-    let has_k = rows.iter().any(|state| state.contact.contact_stiffness.is_some());
-    columns.retain(|column| has_k || column.name() != "K");
-    print_columns(&columns);
-    say!();
-    say!("pressure: load over nominal area; greatest: the greatest pressure of a cell");
-    say!(
-        "area: cells in contact; corrected: without the excess of whole cells along the edges of patches (somewhat too small)"
-    );
-    match is_of_mean_planes(job.periodic()) {
-        false => say!("approach: from first touch; K: contact stiffness, d load/d approach"),
-        true => say!("approach: of the mean planes, from first touch"),
-    }
-    if job.has_hardness() {
-        say!("yielded: cells at the hardness; they count as contact");
-    }
-    say!("K_i: interfacial stiffness, -d load/d mean gap");
-    say!();
 }
 
 /// How well the last state solves its equations.
@@ -183,9 +139,12 @@ pub(super) fn warnings(job: &Job, solver: &mut Solver) -> Result<Vec<String>, Fa
     Ok(warnings)
 }
 
-/// States at given loads.
-fn rows(states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
+/// Those that are asked for and reached, otherwise some at loads spread over the path.
+fn rows(job: &Job, states: &[LoadingState], last: &LoadingState) -> Vec<LoadingState> {
     let history: History = states.iter().copied().collect();
+    if !job.at().is_empty() {
+        return moments::reached(job, states).0.into_iter().map(|(_, state)| state).collect();
+    }
     let mut rows: Vec<LoadingState> = Vec::new();
     for load in LOADS.map(|fraction| fraction * last.contact.load) {
         rows.extend(history.at_load(load).filter(|state| rows.last() != Some(state)));

@@ -1,0 +1,164 @@
+//! States that a command line asks for by what is known of them: `--at 5MPa,50N,10%`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use asperity::ContactTarget;
+use asperity_cli::number::{area, quantity};
+use asperity_cli::outcome::Failure;
+
+use crate::values::{AREA, FORCE, PRESSURE, SHARE, any_of};
+
+/// Significant digits by which states are told apart.
+const DIGITS: usize = 9;
+
+/// A state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum At {
+    /// Under a load \[N\].
+    Load(f64),
+    /// Under a load over nominal area \[Pa\].
+    MeanPressure(f64),
+    /// With a contact area \[m²\].
+    Area(f64),
+    /// With a contact area over nominal area.
+    AreaFraction(f64),
+}
+
+impl At {
+    /// What a path or a single load reaches there.
+    pub(crate) fn target(self, nominal_area: f64) -> ContactTarget {
+        match self {
+            Self::Load(load) => ContactTarget::Load(load),
+            Self::MeanPressure(pressure) => ContactTarget::Load(pressure * nominal_area),
+            Self::Area(area) => ContactTarget::AreaFraction(area / nominal_area),
+            Self::AreaFraction(fraction) => ContactTarget::AreaFraction(fraction),
+        }
+    }
+
+    /// Part of the name of a file: `5MPa`.
+    pub(crate) fn name(self) -> String {
+        let ascii = |c: char| match c {
+            'µ' => 'u',
+            '²' => '2',
+            other => other,
+        };
+        let name: String = self.to_string().chars().filter(|c| *c != ' ').map(ascii).collect();
+        // Beyond all prefixes there is a power of ten.
+        match (name.is_ascii(), self) {
+            (true, _) => name,
+            (false, Self::Load(value)) => format!("{value:e}N"),
+            (false, Self::MeanPressure(value)) => format!("{value:e}Pa"),
+            (false, Self::Area(value)) => format!("{value:e}m2"),
+            (false, Self::AreaFraction(value)) => format!("{value:e}"),
+        }
+    }
+
+    /// The furthest of states along a path, whose end it is.
+    pub(crate) fn furthest(all: &[Self], nominal_area: f64) -> Option<ContactTarget> {
+        let size = |target: &ContactTarget| match *target {
+            ContactTarget::Load(value) | ContactTarget::AreaFraction(value) => value,
+            _ => 0.0,
+        };
+        let targets = all.iter().map(|at| at.target(nominal_area));
+        targets.max_by(|one, other| size(one).total_cmp(&size(other)))
+    }
+
+    /// Whether it is a contact area.
+    fn is_area(self) -> bool {
+        matches!(self, Self::Area(_) | Self::AreaFraction(_))
+    }
+
+    /// `Ok` if no two states have one name, and if one of them is surely the furthest where `ends_there`.
+    pub(crate) fn check(all: &[Self], ends_there: bool) -> Result<(), Failure> {
+        let twice = all.iter().enumerate().find(|(k, at)| {
+            let earlier = &all[..*k];
+            earlier.iter().any(|other| other.name() == at.name())
+        });
+        if let Some((_, at)) = twice {
+            return Err(Failure::request(format!("the state at {at} is asked for twice")));
+        }
+        let areas = all.iter().filter(|at| at.is_area()).count();
+        if ends_there && (1..all.len()).contains(&areas) {
+            return Err(Failure::request(
+                "--at has loads and areas: say where the path ends, with --mean-pressure, --max-area-fraction or another end",
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for At {
+    type Err = String;
+
+    /// A bare number is a mean pressure.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = any_of(
+            text,
+            &[
+                (&PRESSURE, Self::MeanPressure as fn(f64) -> Self),
+                (&FORCE, Self::Load),
+                (&AREA, Self::Area),
+                (&SHARE, Self::AreaFraction),
+            ],
+        )?;
+        match found {
+            Self::AreaFraction(fraction) if fraction > 1.0 => {
+                Err("the contact area is at most 100% of the nominal area".to_string())
+            }
+            _ => Ok(found),
+        }
+    }
+}
+
+/// `5 MPa`.
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = match *self {
+            Self::Load(load) => quantity(load, "N", DIGITS),
+            Self::MeanPressure(pressure) => quantity(pressure, "Pa", DIGITS),
+            Self::Area(value) => area(value, DIGITS),
+            Self::AreaFraction(fraction) => {
+                // As many digits as there are, and no more: 7 % is not 7.000000000000001 %.
+                let percent = format!("{:.*e}", DIGITS - 1, 100.0 * fraction);
+                format!("{} %", percent.parse::<f64>().unwrap_or(100.0 * fraction))
+            }
+        };
+        f.write_str(&text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_are_pressures_loads_and_areas() {
+        for (text, at, name) in [
+            ("5MPa", At::MeanPressure(5e6), "5MPa"),
+            ("2e6", At::MeanPressure(2e6), "2MPa"),
+            ("0.5 N/mm²", At::MeanPressure(5e5), "500kPa"),
+            ("1.5kN", At::Load(1500.0), "1.5kN"),
+            ("3uN", At::Load(3e-6), "3uN"),
+            ("2mm2", At::Area(2e-6), "2mm2"),
+            ("7%", At::AreaFraction(0.07), "7%"),
+            ("1e99N", At::Load(1e99), "1e99N"),
+        ] {
+            assert_eq!(text.parse(), Ok(at), "{text}");
+            assert_eq!(at.name(), name);
+        }
+        for bad in ["", "5", "-5MPa", "0N", "101%", "5mm", "5µm", "10 K"] {
+            assert_eq!(bad.parse::<At>().is_err(), bad != "5", "{bad}");
+        }
+    }
+
+    #[test]
+    fn the_furthest_is_the_end() {
+        let [a, b, c] = [At::MeanPressure(5e6), At::Load(100.0), At::AreaFraction(0.1)];
+        assert_eq!(At::furthest(&[a, b], 1e-4), Some(ContactTarget::Load(500.0)));
+        assert_eq!(At::furthest(&[c], 1e-4), Some(ContactTarget::AreaFraction(0.1)));
+        assert_eq!(At::furthest(&[], 1e-4), None);
+        assert!(At::check(&[a, b], true).is_ok() && At::check(&[a, c], false).is_ok());
+        assert!(At::check(&[a, c], true).is_err() && At::check(&[a, b, a], false).is_err());
+    }
+}
