@@ -1,6 +1,7 @@
 //! An axis: a quantity with its unit, a scale, and ticks.
 
-use crate::number::{power_of_ten, prefixed, scientific};
+use crate::number::{power_of_ten, scientific};
+use crate::units;
 
 /// A tick: its place along the axis from 0 to 1, and its label if it has one.
 pub(crate) struct Tick {
@@ -19,9 +20,9 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A linear axis, in an SI prefix that suits it.
+    /// A linear axis, in the [unit](units::of) that suits it.
     pub fn linear(quantity: &str, si_unit: &str, from: f64, to: f64) -> Self {
-        let (unit, name) = prefixed(si_unit, from.abs().max(to.abs()));
+        let (unit, name) = units::of(si_unit, from.abs().max(to.abs()));
         let (from, to) = (from / unit, to / unit);
         Self {
             label: format!("{quantity} [{name}]"),
@@ -31,14 +32,21 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis in the SI unit itself, between positive ends.
+    /// A logarithmic axis in the [unit](units::of) that suits its upper end, between positive ends.
     pub fn logarithmic(quantity: &str, si_unit: &str, from: f64, to: f64) -> Self {
+        let (unit, name) = units::of(si_unit, to);
+        let axis = Self::plain_logarithmic(&format!("{quantity} [{name}]"), from / unit, to / unit);
+        Self { unit, ..axis }
+    }
+
+    /// A logarithmic axis of a quantity without unit, or whose label has it, between positive ends.
+    pub fn plain_logarithmic(label: &str, from: f64, to: f64) -> Self {
         let (from, to) = (from.log10(), to.log10());
         // At least half a decade, so that there is something to label.
         let middle = 0.5 * (from + to);
         let half = (0.5 * (to - from)).max(0.25);
         Self {
-            label: format!("{quantity} [{si_unit}]"),
+            label: label.to_string(),
             logarithmic: true,
             ends: (middle - half, middle + half),
             unit: 1.0,
@@ -48,11 +56,6 @@ impl Axis {
     /// A linear axis of a quantity without unit, or whose label has it.
     pub fn plain(label: &str, from: f64, to: f64) -> Self {
         Self { label: label.to_string(), logarithmic: false, ends: (from, to), unit: 1.0 }
-    }
-
-    /// A logarithmic axis of a quantity without unit, or whose label has it, between positive ends.
-    pub fn plain_logarithmic(label: &str, from: f64, to: f64) -> Self {
-        Self { label: label.to_string(), ..Self::logarithmic("", "", from, to) }
     }
 
     /// The same axis with some room at both ends, given as fractions of its length.

@@ -1,7 +1,7 @@
 //! Columns of numbers, each in the unit that suits it.
 
-use asperity_cli::number::{area_unit, prefixed, significant};
-use asperity_cli::say;
+use asperity_cli::number::significant;
+use asperity_cli::{say, units};
 
 /// Significant digits.
 const DIGITS: usize = 4;
@@ -16,28 +16,13 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// In an SI prefix that suits the greatest value.
+    /// In the [unit](units::of) that suits the greatest value.
     pub(crate) fn new(
         name: &'static str,
         unit: &str,
         values: impl Iterator<Item = f64> + Clone,
     ) -> Self {
-        Self::made(name, prefixed(unit, greatest(values.clone())), values)
-    }
-
-    /// An area.
-    pub(crate) fn area(name: &'static str, values: impl Iterator<Item = f64> + Clone) -> Self {
-        let (scale, unit) = area_unit(greatest(values.clone()));
-        Self::made(name, (scale, unit.to_string()), values)
-    }
-
-    /// In the unit itself, whatever the powers of ten: for what spans many decades.
-    pub(crate) fn plain(
-        name: &'static str,
-        unit: &str,
-        values: impl Iterator<Item = f64> + Clone,
-    ) -> Self {
-        Self::made(name, (1.0, unit.to_string()), values)
+        Self::made(name, units::of(unit, greatest(values.clone())), values)
     }
 
     /// A fraction.

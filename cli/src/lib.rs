@@ -12,6 +12,7 @@ pub mod outcome;
 pub mod panel;
 pub mod picture;
 pub mod speech;
+pub mod units;
 
 /// Prints a line for people on stdout, see [`speech`].
 #[macro_export]

@@ -28,11 +28,13 @@ mod shell;
 mod slip;
 mod state_table;
 mod stress;
+mod tips;
 mod values;
 
 use std::process::ExitCode;
 
 use asperity_cli::outcome::Failure;
+use asperity_cli::units::{self, Units};
 use asperity_cli::{say, speech};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -45,13 +47,27 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 ///
 /// Without a command the program follows the path of a generated surface to 10 % contact, in seconds, as an example. For your
 /// own surface: `asperity info FILE`, then `asperity path --surface FILE --material steel`. `asperity path --help` lists
-/// the options of that command; the other commands have such a list too. All numbers are in SI units.
+/// the options of that command; the other commands have such a list too.
+///
+/// Numbers are in SI units, or have a unit: 5MPa, 1.024mm, 250N, 2h, 10%, 60HRC.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, disable_help_subcommand = true, after_help = EXIT_CODES)]
 struct Arguments {
     /// Leave out descriptions, tables and progress
     #[arg(short, long, global = true)]
     quiet: bool,
+
+    /// Units of tables, charts and --fe-table; files for programs and --json are in SI units
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        ignore_case = true,
+        default_value_t,
+        hide_possible_values = true,
+        value_name = "SI|mm-N-MPa"
+    )]
+    units: Units,
 
     #[command(subcommand)]
     command: Option<Command>,
@@ -84,7 +100,7 @@ fn main() -> ExitCode {
         Ok((given, arguments))
     });
     let (given, arguments) = parsed.unwrap_or_else(|error| {
-        if let Some(sentence) = physics::left_out(&error) {
+        if let Some(sentence) = physics::left_out(&error).or_else(|| tips::of(&error)) {
             eprint!("{sentence}");
             std::process::exit(2);
         }
@@ -93,6 +109,7 @@ fn main() -> ExitCode {
     if arguments.quiet {
         speech::be_quiet();
     }
+    units::choose(arguments.units);
     let done = match arguments.command {
         None => example(&given),
         Some(Command::Path(options)) => {

@@ -29,7 +29,7 @@ pub(crate) fn print(rows: &[Row], nominal_area: f64, periodic: Option<Periodic>)
         column("load", "N", &|row| row.contact.load),
         column("pressure", "Pa", &|row| row.contact.mean_pressure()),
         column("greatest", "Pa", &|row| row.greatest),
-        Column::area("area", rows.iter().map(|row| row.contact.contact_area)),
+        column("area", "m²", &|row| row.contact.contact_area),
         Column::percent("area", rows.iter().map(|row| row.contact.contact_area_fraction)),
         Column::percent("corrected", rows.iter().map(|row| row.corrected_area / nominal_area)),
         column("approach", "m", &|row| row.contact.approach),

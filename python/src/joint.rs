@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use asperity::joint::{self, Carrier, Conduction, FeProgram, InterfaceRow};
+use asperity::joint::{self, Carrier, Conduction, FeProgram, FeUnits, InterfaceRow};
 use asperity::kernel::Theory;
 use asperity::{ContactState, Error};
 use numpy::PyArray1;
@@ -225,23 +225,28 @@ impl InterfaceTable {
         Ok(columns)
     }
 
-    /// The table in the words of a program, in SI units.
+    /// The table in the words of a program.
     ///
     /// Parameters
     /// ----------
     /// program : {"abaqus", "calculix", "moose", "csv"}
+    /// units : {"SI", "mm-N-MPa"}
+    ///     The second are mm, N, MPa, t, s and A, in which power is in mW and voltage in mV.
     ///
     /// Returns
     /// -------
     /// str
-    fn text(&self, program: &str) -> Fallible<String> {
+    #[pyo3(signature = (program, units="SI"))]
+    fn text(&self, program: &str, units: &str) -> Fallible<String> {
+        let systems = [("SI", FeUnits::Si), ("mm-N-MPa", FeUnits::Millimetres)];
+        let units = choose("units", units, &systems)?;
         let programs = [
             ("abaqus", FeProgram::Abaqus),
             ("calculix", FeProgram::CalculiX),
             ("moose", FeProgram::Moose),
             ("csv", FeProgram::Csv),
         ];
-        Ok(self.table.text(choose("program", program, &programs)?))
+        Ok(self.table.text_in(choose("program", program, &programs)?, units))
     }
 
     fn __len__(&self) -> usize {

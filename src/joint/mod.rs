@@ -32,4 +32,4 @@ mod text;
 pub use bounds::ConductanceBounds;
 pub use conduction::{Carrier, Conduction};
 pub use table::{InterfaceRow, InterfaceTable, InterfaceTableBuilder};
-pub use text::FeProgram;
+pub use text::{FeProgram, FeUnits};

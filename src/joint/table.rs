@@ -230,6 +230,11 @@ impl Points {
 }
 
 impl InterfaceTable {
+    /// The same table with other rows.
+    pub(super) fn map_rows(&self, map: impl Fn(&InterfaceRow) -> InterfaceRow) -> Self {
+        Self { rows: self.rows.iter().map(map).collect(), ..*self }
+    }
+
     /// A table of the states of a path from first touch on.
     pub fn builder(history: &History) -> InterfaceTableBuilder<'_> {
         InterfaceTableBuilder { history, conduction: None, friction: None, tolerance: 0.01 }

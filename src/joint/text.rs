@@ -17,6 +17,44 @@ pub enum FeProgram {
     Csv,
 }
 
+/// The units of such a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FeUnits {
+    /// m, N, Pa, W, A.
+    #[default]
+    Si,
+    /// mm, N, MPa, t, s, A, in which power is in mW and voltage in mV.
+    Millimetres,
+}
+
+impl FeUnits {
+    /// How a table names them.
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Si => "SI units",
+            Self::Millimetres => "mm, N, MPa, t, s, A (power in mW, voltage in mV)",
+        }
+    }
+
+    /// A row in these units.
+    fn of(self, row: &InterfaceRow, carrier: Option<Carrier>) -> InterfaceRow {
+        let Self::Millimetres = self else { return *row };
+        let conductance = match carrier {
+            // mW/(mm² K).
+            Some(Carrier::Heat) | None => 1e-3,
+            // A/(mV mm²).
+            Some(Carrier::Current) => 1e-9,
+        };
+        InterfaceRow {
+            pressure: 1e-6 * row.pressure,
+            overclosure: 1e3 * row.overclosure,
+            conductance: row.conductance.map(|value| conductance * value),
+            tangential_stiffness: row.tangential_stiffness.map(|value| 1e-9 * value),
+            slip_limit: row.slip_limit.map(|value| 1e-6 * value),
+        }
+    }
+}
+
 /// The name of the interaction.
 const NAME: &str = "ROUGH_INTERFACE";
 
@@ -31,17 +69,28 @@ impl InterfaceTable {
     /// * *CSV*: all columns.
     #[must_use]
     pub fn text(&self, program: FeProgram) -> String {
+        self.text_in(program, FeUnits::Si)
+    }
+
+    /// The same in other units; only the names of CSV do not tell which.
+    #[must_use]
+    pub fn text_in(&self, program: FeProgram, units: FeUnits) -> String {
+        let table = self.map_rows(|row| units.of(row, self.carrier()));
         match program {
-            FeProgram::Abaqus | FeProgram::CalculiX => self.keywords(program),
-            FeProgram::Moose => self.functions(),
-            FeProgram::Csv => self.columns(),
+            FeProgram::Abaqus | FeProgram::CalculiX => table.keywords(program, units),
+            FeProgram::Moose => table.functions(units),
+            FeProgram::Csv => table.columns(),
         }
     }
 
     /// What the table is, line by line.
-    fn about(&self) -> [String; 3] {
+    fn about(&self, units: FeUnits) -> [String; 3] {
         [
-            format!("interface law of a rough surface by asperity {}, in SI units", env!("CARGO_PKG_VERSION")),
+            format!(
+                "interface law of a rough surface by asperity {}, in {}",
+                env!("CARGO_PKG_VERSION"),
+                units.in_words()
+            ),
             "overclosure: what the mean gap has closed since first touch; all quantities per nominal area".to_string(),
             format!(
                 "{} rows; pressures between them err by at most {:e} of their value, or of a thousandth of the greatest one below that; other quantities by as much of theirs",
@@ -51,9 +100,9 @@ impl InterfaceTable {
         ]
     }
 
-    fn keywords(&self, program: FeProgram) -> String {
+    fn keywords(&self, program: FeProgram, units: FeUnits) -> String {
         let mut text = String::new();
-        for line in self.about() {
+        for line in self.about(units) {
             let _ = writeln!(text, "** {line}");
         }
         let _ = writeln!(text, "*SURFACE INTERACTION, NAME={NAME}");
@@ -102,9 +151,9 @@ impl InterfaceTable {
         text
     }
 
-    fn functions(&self) -> String {
+    fn functions(&self, units: FeUnits) -> String {
         let mut text = String::new();
-        for line in self.about() {
+        for line in self.about(units) {
             let _ = writeln!(text, "# {line}");
         }
         let values = |quantity: &dyn Fn(&InterfaceRow) -> f64| {

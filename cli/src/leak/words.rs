@@ -59,8 +59,8 @@ pub(super) fn print_curve(curve: &LeakCurve, record: &LoadingRecord) {
         Column::percent("area", of(|point| point.state.contact.contact_area_fraction)),
         Column::new("mean gap", "m", of(|point| point.state.contact.mean_gap)),
         Column::new("narrowest", "m", of(narrowest)),
-        Column::plain("leak rate", "m³/s", of(|point| point.leak_rate)),
-        Column::plain("mean field", "m³/s", of(|point| point.mean_field_leak_rate)),
+        Column::new("leak rate", "m³/s", of(|point| point.leak_rate)),
+        Column::new("mean field", "m³/s", of(|point| point.mean_field_leak_rate)),
         Column::percent(
             "drop there",
             of(|point| point.constriction.map_or(f64::NAN, |c| c.pressure_drop)),

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::LoadingState;
-use asperity::joint::{Conduction, FeProgram, InterfaceTable};
+use asperity::joint::{Conduction, FeProgram, FeUnits, InterfaceTable};
 use asperity::kernel::{Layering, Theory};
 use asperity::loading::History;
 use asperity_cli::outcome::{self, Failure};
+use asperity_cli::units::{self, Units};
 use clap::{Args, ValueEnum};
 
 use crate::values::{CONDUCTIVITY, LENGTH, RESISTIVITY, positive};
@@ -200,9 +201,17 @@ impl Joint {
                 builder = builder.friction(friction, ratio);
             }
             let table = builder.build().map_err(|error| Failure::writing(&name, error))?;
-            files.push(outcome::write(&name, table.text(program))?);
+            files.push(outcome::write(&name, table.text_in(program, fe_units()))?);
         }
         Ok(files)
+    }
+}
+
+/// Those of tables and charts.
+fn fe_units() -> FeUnits {
+    match units::chosen() {
+        Units::Si => FeUnits::Si,
+        Units::Millimetres => FeUnits::Millimetres,
     }
 }
 

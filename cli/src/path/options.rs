@@ -26,8 +26,8 @@ fn generated(arg: Arg, value: &str) -> Arg {
 
 /// The loading path of a rough surface: area, load, approach, gap and stiffness at each node that touches, in exact order
 ///
-/// Prints a table of states at loads spread over the path, and the residuals of the last state. Writes path.csv (one
-/// line for each state), loading_curve.svg and contact_map.png.
+/// Prints a table of states at loads spread over the path, or of those of --at, and the residuals of the last state. Writes path.csv (one
+/// line for each state), loading_curve.svg and contact_map.png. Numbers are in SI units, or have a unit: 5MPa, 1.024mm, 250N, 10%, 60HRC.
 ///
 /// The model is a rigid rough surface with small slopes on an elastic half-space, without friction and adhesion. If both bodies
 /// are elastic, E* contains both. With --layer and --base one body has layers. With --hardness cells yield at that pressure: it does not harden, and volume is lost. The problem with one pressure for each cell of the grid is solved to rounding; on long paths
@@ -37,7 +37,7 @@ fn generated(arg: Arg, value: &str) -> Arg {
 ///
 /// Without --surface the program generates a self-affine surface: 256 x 256 nodes on 10 mm x 10 mm, rms height 50 µm, Hurst
 /// exponent 0.8, roll-off at 2.5 mm, as in Zhang, Zhang & Jin, Friction 8 (2020) 970, Table 1, but with a shortest wavelength
-/// that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff 78.125e-6.
+/// that the grid resolves. Their mesh and their shortest wavelength are --nodes 512 --short-cutoff 78.125um.
 #[derive(Debug, Clone, Parser)]
 #[command(group(ArgGroup::new("kept").multiple(true)))]
 #[command(mut_arg("side", |arg| generated(arg, "1e-2")), mut_arg("material", |arg| generated(arg, "steel")))]
@@ -98,6 +98,10 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(super) report: bool,
 
+    /// Directory for the files, created if it does not exist
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub(super) out: PathBuf,
+
     /// Write pressure and gap of the last state
     #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Records and files")]
     pub(super) fields: Option<Format>,
@@ -134,10 +138,6 @@ pub(crate) struct Options {
     /// in `at` the scalars of each state of --at (SI units; null where there is no number); one line for each seed
     #[arg(long, help_heading = "Records and files")]
     pub(super) json: bool,
-
-    /// Directory for the files, created if it does not exist
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub(super) out: PathBuf,
 }
 
 /// Where the path ends.

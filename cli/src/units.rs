@@ -1,0 +1,95 @@
+//! In which units people read tables and charts. Files for programs are in SI units, whatever is chosen.
+
+use std::sync::OnceLock;
+
+use clap::ValueEnum;
+
+use crate::number::{area_unit, prefixed};
+
+/// A system of units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Units {
+    /// SI units with prefixes: kN, µm, MPa
+    #[default]
+    #[value(name = "SI")]
+    Si,
+    /// Millimetres, newtons and megapascals, as in most models of finite elements
+    #[value(name = "mm-N-MPa")]
+    Millimetres,
+}
+
+/// What has been chosen.
+static CHOSEN: OnceLock<Units> = OnceLock::new();
+
+/// SI units, what they are in mm, N, MPa and s, and the name there.
+const MILLIMETRES: [(&str, f64, &str); 12] = [
+    ("m", 1e-3, "mm"),
+    ("N", 1.0, "N"),
+    ("Pa", 1e6, "MPa"),
+    ("m²", 1e-6, "mm²"),
+    ("m³", 1e-9, "mm³"),
+    ("m⁴", 1e-12, "mm⁴"),
+    ("N/m", 1e3, "N/mm"),
+    ("N/m²", 1e6, "MPa"),
+    ("J", 1e-3, "mJ"),
+    ("m²/s", 1e-6, "mm²/s"),
+    ("m³/s", 1e-9, "mm³/s"),
+    ("rad/m", 1e3, "rad/mm"),
+];
+
+/// From here on tables and charts are in these units.
+pub fn choose(units: Units) {
+    // Only the first choice counts: there is one command line.
+    let _ = CHOSEN.set(units);
+}
+
+/// Which these are.
+pub fn chosen() -> Units {
+    CHOSEN.get().copied().unwrap_or_default()
+}
+
+/// The unit in which values up to `greatest` of an SI unit are shown, and its name.
+pub fn of(si_unit: &str, greatest: f64) -> (f64, String) {
+    shown(chosen(), si_unit, greatest)
+}
+
+fn shown(units: Units, si_unit: &str, greatest: f64) -> (f64, String) {
+    let known = MILLIMETRES.iter().find(|(name, ..)| *name == si_unit);
+    match (units, known) {
+        (Units::Millimetres, Some((_, unit, name))) => (*unit, (*name).to_string()),
+        (Units::Si, _) if si_unit == "m²" => {
+            let (unit, name) = area_unit(greatest);
+            (unit, name.to_string())
+        }
+        // Powers of a unit have no prefix that is easily read.
+        _ if ["m²", "m³", "m⁴"].iter().any(|power| si_unit.starts_with(power)) => {
+            (1.0, si_unit.to_string())
+        }
+        _ => prefixed(si_unit, greatest),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quantity has one unit, whoever shows it.
+    #[test]
+    fn units_are_those_of_the_reader() {
+        for (si, greatest, prefixed, plain) in [
+            ("m", 2e-5, (1e-6, "µm"), (1e-3, "mm")),
+            ("N", 2e4, (1e3, "kN"), (1.0, "N")),
+            ("Pa", 2e9, (1e9, "GPa"), (1e6, "MPa")),
+            ("m²", 1e-5, (1e-6, "mm²"), (1e-6, "mm²")),
+            ("m³/s", 1e-12, (1.0, "m³/s"), (1e-9, "mm³/s")),
+            ("N/m", 3e9, (1e9, "GN/m"), (1e3, "N/mm")),
+            ("Hz", 3e3, (1e3, "kHz"), (1e3, "kHz")),
+        ] {
+            for (units, expected) in [(Units::Si, prefixed), (Units::Millimetres, plain)] {
+                let (unit, name) = shown(units, si, greatest);
+                assert!((unit / expected.0 - 1.0).abs() < 1e-12, "{si}: {unit:e}");
+                assert_eq!(name, expected.1);
+            }
+        }
+    }
+}
