@@ -73,13 +73,14 @@ impl Failure {
 /// Words of the library in those of the command line.
 #[must_use]
 pub fn of_program(text: &str) -> String {
-    const WORDS: [(&str, &str); 7] = [
+    const WORDS: [(&str, &str); 8] = [
         ("`surface::fill_missing`", "`--fill`"),
         ("`ReadOptions::height_unit`", "`--height-unit`"),
         ("`ReadOptions::lateral_unit`", "`--lateral-unit`"),
         ("`ReadOptions::side`", "`--side`"),
         ("`ReadOptions::channel`", "`--channel`"),
         ("`ReadOptions::layout`", "`--layout`"),
+        ("`ReadOptions::rows_are_y`", "`--rows-are-y`"),
         ("`Topography::level`", "`--level plane`"),
     ];
     WORDS.iter().fold(text.to_string(), |text, (rust, option)| text.replace(rust, option))

@@ -7,7 +7,7 @@ use asperity::io::{LengthUnit, MeasuredSurface, ReadOptions, TextLayout};
 use asperity::surface::{Topography, Trend, Warning};
 use asperity_cli::note;
 use asperity_cli::number::{counted, quantity};
-use asperity_cli::outcome::Failure;
+use asperity_cli::outcome::{Failure, of_program};
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value};
 
@@ -40,6 +40,10 @@ pub(crate) struct Reading {
     /// first row), y-column (positions along y in the first column), axes (both), points (x, y, z in each line)
     #[arg(long, value_name = "LAYOUT", value_parser = layout, help_heading = "Reading the file")]
     layout: Option<TextLayout>,
+
+    /// Take a NumPy array as an image, [row, column], whose rows are y; without it is [ix, iy]. Rows of all other formats are y
+    #[arg(long, help_heading = "Reading the file")]
+    rows_are_y: bool,
 
     /// Use heights that a mask in the file marks as missing
     #[arg(long, help_heading = "Reading the file")]
@@ -87,6 +91,7 @@ impl Reading {
             ("lateral-unit", text(self.lateral_unit.map(|unit| unit.to_string()))),
             ("channel", text(self.channel.clone())),
             ("layout", text(self.layout.map(|layout| layout.to_string()))),
+            ("rows-are-y", flag(self.rows_are_y)),
             ("ignore-mask", flag(self.ignore_mask)),
             ("fill", flag(self.fill)),
             ("level", text(level.map(|level| level.get_name().to_string()))),
@@ -127,6 +132,9 @@ impl Reading {
         if let Some(layout) = self.layout {
             options = options.layout(layout);
         }
+        if self.rows_are_y {
+            options = options.rows_are_y();
+        }
         if self.ignore_mask {
             options = options.ignore_mask();
         }
@@ -144,7 +152,7 @@ impl Reading {
             note!("understood {}", measured.understood);
         }
         for note in &measured.notes {
-            note!("note: {note}");
+            note!("note: {}", of_program(note));
         }
         if measured.missing > 0 && self.fill {
             let missing = measured.missing;

@@ -159,7 +159,7 @@ fn a_typical_hardness_is_said() -> Done {
     ] {
         is_refused(&output(&folder.0, line)?, &[word]);
     }
-    for line in ["path --hardness 60HRC", "path --hardness 0", "path --hardness 1e9 --yield"] {
+    for line in ["path --hardness 70HRC", "path --hardness 0", "path --hardness 1e9 --yield"] {
         assert_eq!(output(&folder.0, line)?.status.code(), Some(2), "{line}");
     }
     Ok(())

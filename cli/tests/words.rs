@@ -9,7 +9,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use common::{Scratch, asperity, data, is_refused, run, said};
+use common::{Scratch, asperity, data, is_refused, output, run, said};
+use serde_json::Value;
 
 type Done = Result<(), Box<dyn Error>>;
 
@@ -143,30 +144,134 @@ fn assumed_units_and_sides_are_said() -> Done {
     Ok(())
 }
 
-/// A mean pressure is a load, and the table has what the lines for programs have.
+/// A mean pressure is a load, with a unit or without. People read a table of all states, and programs a file and an object.
 #[test]
 fn loads_are_given_as_mean_pressures_too() -> Done {
     let folder = with_surface("mean-pressure")?;
-    let line = "load --surface rough.npy --side 1e-2 --e-star 1 --load 1e-7 --mean-pressure 1e-3";
-    let done = run(&folder.0, line)?;
-    let lines = printed(&done);
-    assert_eq!(lines.lines().count(), 2);
-    let file = folder.join("out/load.csv");
-    for (name, place) in [("load", 0), ("contact_area", 0), ("corrected_contact_area", 1)] {
-        let value = column(&file, name)?[place];
-        let line = lines.lines().nth(place).ok_or("no line")?;
-        assert!(line.contains(&format!("{name}={value:e} ")), "{line}");
+    let line = "load --surface rough.npy --side 1cm --e-star 1 --load 1e-7 --mean-pressure 1e-3 --at 2mPa,20%";
+    let words = printed(&run(&folder.0, line)?);
+    let table: Vec<&str> = words.lines().skip_while(|line| !line.contains("mean gap")).collect();
+    assert!(table[0].trim_start().starts_with("load  pressure"), "{words}");
+    for (row, begin) in table[2..6].iter().zip(["100.0", "100.0", "200.0", ""]) {
+        assert!(row.trim_start().starts_with(begin), "{words}");
     }
-    for (found, expected) in column(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4]) {
+    assert!(words.contains("wrote out/load.csv"), "{words}");
+    let file = folder.join("out/load.csv");
+    for (found, expected) in column(&file, "load")?.iter().zip([1e-7, 1e-3 * 1e-4, 2e-7]) {
         assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
     }
     let fractions = column(&file, "contact_area_fraction")?;
     let areas = column(&file, "contact_area")?;
     assert!((fractions[1] * 1e-4 / areas[1] - 1.0).abs() < 1e-12);
-    for k in 0..2 {
-        assert!(
-            fs::read(folder.join(&format!("out/contact_map_{k}.png")))?.starts_with(b"\x89PNG")
-        );
+    assert!((fractions[3] - 0.2).abs() < 1e-3, "{}", fractions[3]);
+    for name in ["100nN", "1mPa", "2mPa", "20%"] {
+        let picture = fs::read(folder.join(&format!("out/contact_map_{name}.png")))?;
+        assert!(picture.starts_with(b"\x89PNG"));
+    }
+    let object: Value =
+        serde_json::from_str(&printed(&run(&folder.0, &format!("{line} --json"))?))?;
+    let found = object["states"].as_array().ok_or("no states")?;
+    for (place, state) in found.iter().enumerate() {
+        assert_eq!(state["load"].as_f64(), Some(column(&file, "load")?[place]));
+        assert!(state["contact_nodes"].is_u64() && state["seconds"].is_f64());
+    }
+    assert_eq!(found.len(), 4);
+    let twice = "load --surface rough.npy --side 1cm --e-star 1 --at 1mPa --mean-pressure 1e-3";
+    is_refused(&output(&folder.0, twice)?, &["the state at 1 mPa is asked for twice"]);
+    Ok(())
+}
+
+/// Rows, maps and fields of the states that are asked for, all of one path that ends at the last of them, and no row but theirs.
+#[test]
+fn states_are_asked_for() -> Done {
+    let folder = Scratch::new("at")?;
+    let path = "path --nodes 32 --fields npy --at";
+    let object = |line: &str| -> Result<Value, Box<dyn Error>> {
+        Ok(serde_json::from_str(&printed(&run(&folder.0, &format!("{line} --json"))?))?)
+    };
+    let words = printed(&run(&folder.0, &format!("{path} 5MPa,2kN,50MPa"))?);
+    let rows = words.lines().skip_while(|line| !line.contains("mean gap")).skip(2);
+    let rows: Vec<&str> = rows.take_while(|line| !line.is_empty()).collect();
+    assert_eq!(rows.len(), 3, "{words}");
+    let found = object(&format!("{path} 5MPa,2kN,50MPa"))?;
+    let (states, end) = (&found["at"], &found["load"]);
+    for (place, (name, load)) in
+        [("5MPa", 500.0), ("2kN", 2000.0), ("50MPa", 5000.0)].into_iter().enumerate()
+    {
+        let state = &states[place];
+        assert_eq!(state["load"].as_f64(), Some(load), "{state}");
+        for file in [format!("contact_map_{name}.png"), format!("gap_{name}.npy")] {
+            assert!(folder.join("out").join(&file).exists(), "{file}");
+        }
+        let pressure = asperity::io::read_npy(folder.join(&format!("out/pressure_{name}.npy")))?;
+        let sum = pressure.sum() * 1e-4 / 1024.0;
+        assert!((sum / load - 1.0).abs() < 1e-12, "{sum}");
+        assert_eq!(Some(pressure.max()), state["max_pressure"].as_f64());
+    }
+    assert_eq!(end.as_f64(), Some(5000.0));
+    // Areas too, with an end of the path that lies beyond them.
+    let found = object(&format!("{path} 10%,5MPa --max-area-fraction 20%"))?;
+    assert_eq!(found["at"][0]["contact_area_fraction"].as_f64(), Some(102.0 / 1024.0));
+    assert_eq!(found["at"][1]["load"].as_f64(), Some(500.0));
+    is_refused(&output(&folder.0, &format!("{path} 10%,5MPa"))?, &["say where the path ends"]);
+    let beyond = format!("{path} 5MPa,500MPa --mean-pressure 50MPa --out beyond");
+    is_refused(&output(&folder.0, &beyond)?, &["the path has no state at 500 MPa"]);
+    assert!(folder.join("beyond/contact_map_5MPa.png").exists());
+    Ok(())
+}
+
+/// Units in options are those of the SI by other names, and tables may be in millimetres.
+#[test]
+fn units_are_understood_and_chosen() -> Done {
+    let folder = Scratch::new("units")?;
+    let path = "path --nodes 16 --out";
+    run(
+        &folder.0,
+        &format!("{path} si --side 2e-2 --material 70e9,0.33 --hardness 2.5e9 --mean-pressure 5e6"),
+    )?;
+    run(
+        &folder.0,
+        &format!(
+            "{path} mm --side 20mm --material 70GPa,0.33 --hardness 2.5GPa --mean-pressure 5MPa"
+        ),
+    )?;
+    let table = |name: &str| fs::read(folder.join(name).join("path.csv"));
+    assert_eq!(table("si")?, table("mm")?);
+    let line = format!("{path} units --mean-pressure 5MPa --fe-table csv");
+    run(&folder.0, &line)?;
+    let file = folder.join("units/interface.csv");
+    let (pressure, overclosure) = (column(&file, "pressure")?, column(&file, "overclosure")?);
+    let words = printed(&run(&folder.0, &format!("{line} --units mm-n-mpa"))?);
+    let header: Vec<&str> = words
+        .lines()
+        .skip_while(|line| !line.contains("mean gap"))
+        .nth(1)
+        .map(|line| line.split_whitespace().collect())
+        .unwrap_or_default();
+    assert_eq!(header, ["N", "MPa", "MPa", "mm²", "%", "%", "mm", "mm", "N/mm", "N/mm"]);
+    for (name, values, unit) in [("pressure", pressure, 1e-6), ("overclosure", overclosure, 1e3)] {
+        for (found, value) in column(&file, name)?.iter().zip(values) {
+            assert!((found - unit * value).abs() <= 1e-12 * found, "{name}: {found} {value}");
+        }
+    }
+    let hint = said(&run(&folder.0, "path --nodes 16 --hardness 2.5 --at 1mPa")?);
+    assert!(hint.contains("If it was given in GPa, it is 2.5 GPa"), "{hint}");
+    Ok(())
+}
+
+/// A file or an option where a command is expected.
+#[test]
+fn a_command_line_without_a_command_gets_a_tip() -> Done {
+    let folder = with_surface("tips")?;
+    for (line, tip) in [
+        ("rough.npy", "`asperity info rough.npy`"),
+        ("--out there", "`asperity path --out ...`"),
+        ("path --mean-pressure 5mm", "'mm' is no unit of pressure, as are Pa"),
+        ("path --hardness 70HRC", "between 20 and 68"),
+    ] {
+        let done = output(&folder.0, line)?;
+        assert_eq!(done.status.code(), Some(2));
+        assert!(said(&done).contains(tip), "{}", said(&done));
     }
     Ok(())
 }

@@ -756,6 +756,7 @@ def read(
     height_unit: str | None = None,
     lateral_unit: str | None = None,
     layout: Literal["matrix", "x-row", "y-column", "axes", "points"] | None = None,
+    rows_are_y: bool = False,
     ignore_mask: bool = False,
     name: _Path | None = None,
 ) -> Surface: ...

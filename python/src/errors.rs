@@ -125,13 +125,14 @@ fn raise(
 
 /// Words of the library in those of this package.
 pub(crate) fn in_python(text: &str) -> String {
-    const WORDS: [(&str, &str); 11] = [
+    const WORDS: [(&str, &str); 12] = [
         ("`surface::fill_missing`", "`Surface.fill_missing()`"),
         ("`ReadOptions::height_unit`", "`height_unit=`"),
         ("`ReadOptions::lateral_unit`", "`lateral_unit=`"),
         ("`ReadOptions::side`", "`size=`"),
         ("`ReadOptions::channel`", "`channel=`"),
         ("`ReadOptions::layout`", "`layout=`"),
+        ("`ReadOptions::rows_are_y`", "`rows_are_y=True`"),
         ("`Topography::level`", "`Surface.level(\"plane\")`"),
         ("`kernel::check`", "`check_half_space`"),
         ("The model is elastic", "The model is elastic unless a `hardness=` is given"),

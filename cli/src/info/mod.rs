@@ -11,7 +11,7 @@ use asperity::Warning;
 use asperity::io::MeasuredSurface;
 use asperity::surface::{self, Estimate, HeightMap, Topography, Trend, Window};
 use asperity_cli::number::{counted, quantity};
-use asperity_cli::outcome::{Failure, Outcome};
+use asperity_cli::outcome::{Failure, Outcome, of_program};
 use asperity_cli::panel;
 use asperity_cli::{answer, say, speech};
 use clap::Args;
@@ -104,7 +104,7 @@ fn object(measured: &MeasuredSurface, whole: &Whole) -> Value {
         "sq": map.rms_height(),
         "sz": map.peak_to_valley(),
         "rms_gradient": whole.rms_gradient(),
-        "notes": measured.notes,
+        "notes": measured.notes.iter().map(|note| of_program(note)).collect::<Vec<_>>(),
         "warnings": warnings(measured, whole),
     })
 }
@@ -124,7 +124,7 @@ fn print(options: &Options, measured: &MeasuredSurface, whole: &Whole) -> Result
         say!("title         {}", measured.title);
     }
     for note in &measured.notes {
-        say!("note          {note}");
+        say!("note          {}", of_program(note));
     }
     if measured.missing > 0 {
         say!(

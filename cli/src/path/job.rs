@@ -15,11 +15,12 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use super::Solver;
+use super::generated::{Generated, generate};
 use super::joint::Pair;
 use super::options::Options;
 use super::parts::Parts;
 use super::progress::Progress;
-use super::source::{Generated, fingerprint, generate, read, source_of};
+use super::source::{fingerprint, read};
 use super::updater::{Updater, no_room};
 use crate::at::At;
 use crate::elasticity::Bodies;
@@ -98,8 +99,8 @@ impl Job {
 
     /// What the path of a generated surface is of, without the surface.
     pub(super) fn expected_settings(options: &Options) -> Result<Settings, Failure> {
-        let Generated { spectrum, grid } = Generated::new(options)?;
-        settings(options, (&options.bodies()?, &grid), source_of(&spectrum))
+        let generated = Generated::new(options)?;
+        settings(options, (&options.bodies()?, &generated.grid), generated.source())
     }
 
     /// The path of a record.

@@ -10,6 +10,7 @@ mod curves;
 mod expected;
 pub(crate) mod fields;
 mod follow;
+mod generated;
 mod interrupt;
 mod job;
 mod joint;

@@ -9,6 +9,7 @@ use asperity_cli::outcome::Failure;
 use clap::{Arg, ArgGroup, Args, Parser, ValueEnum};
 
 use super::fields::Format;
+use super::generated::Roughness;
 use super::joint::Joint;
 use super::updater::{Updater, no_room};
 use crate::at::At;
@@ -47,6 +48,15 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["nodes", "seed"])]
     pub(super) surface: Option<PathBuf>,
 
+    /// File with the heights of the other body, if both are rough: on the same grid, seen from outside like the first. It is turned over
+    /// about y, so that both face each other; --fill, --level and what else is said of a file is done to both
+    #[arg(long, value_name = "FILE", requires = "surface", help_heading = "Bodies")]
+    pub(super) against_surface: Option<PathBuf>,
+
+    /// Turn that surface by 180° in its plane
+    #[arg(long, requires = "against_surface", help_heading = "Bodies")]
+    pub(super) against_turned: bool,
+
     #[command(flatten)]
     pub(super) reading: Reading,
 
@@ -78,18 +88,6 @@ pub(crate) struct Options {
     #[arg(long, value_enum, default_value_t = Updater::Auto, help_heading = "Solver")]
     pub(super) updater: Updater,
 
-    /// Nodes along each side of the generated surface [default: 256]
-    #[arg(long, value_name = "N", help_heading = "Generated surface")]
-    pub(super) nodes: Option<usize>,
-
-    /// Seed of the generated surface [default: 1]
-    #[arg(long, value_name = "S", help_heading = "Generated surface")]
-    pub(super) seed: Option<u64>,
-
-    /// Shortest wavelength of the generated surface [default: eight cells, but not less than 78.125 µm]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface", help_heading = "Generated surface")]
-    pub(super) short_cutoff: Option<f64>,
-
     /// Save the path in this file; numpy.load opens it, and --resume continues the path from it
     #[arg(long, value_name = "FILE.npz", group = "kept", help_heading = "Records and files")]
     pub(super) record: Option<PathBuf>,
@@ -117,7 +115,7 @@ pub(crate) struct Options {
 
     /// Continue the path of a record, to its own target unless another one is given, and extend the record, unless --record
     /// names another file. A target before the end of the record is read from it
-    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "nodes", "seed", "short_cutoff", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"], help_heading = "Records and files")]
+    #[arg(long, value_name = "FILE.npz", group = "kept", conflicts_with_all = ["surface", "against_surface", "against_turned", "nodes", "seed", "sq", "rms_gradient", "hurst", "rolloff", "short_cutoff", "anisotropy", "side", "side_y", "height_unit", "lateral_unit", "channel", "layout", "rows_are_y", "ignore_mask", "fill", "level", "invert", "e_star", "material", "against", "layer", "base", "hardness", "typical", "periodic", "rule"], help_heading = "Records and files")]
     pub(super) resume: Option<PathBuf>,
 
     /// Greatest memory of the path in bytes, for example 2e9 [default: three quarters of the memory]
@@ -126,6 +124,9 @@ pub(crate) struct Options {
 
     #[command(flatten)]
     pub(super) joint: Joint,
+
+    #[command(flatten)]
+    pub(super) roughness: Roughness,
 
     #[command(flatten)]
     pub(super) ensemble: Ensemble,
@@ -181,7 +182,7 @@ impl Options {
     /// Those of one path of many.
     pub(super) fn of(&self, member: &Member) -> Self {
         Self {
-            seed: Some(member.seed),
+            roughness: self.roughness.with_seed(member.seed),
             out: member.unfinished(),
             ensemble: Ensemble::default(),
             ..self.clone()

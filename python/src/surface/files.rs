@@ -32,6 +32,8 @@ use crate::warnings::warn;
 /// layout : {"matrix", "x-row", "y-column", "axes", "points"}, optional
 ///     How the numbers of a text are arranged, where it does not say: heights only, with positions along x in the first
 ///     row, along y in the first column, or both, or a point x, y, z in each line.
+/// rows_are_y : bool
+///     Take the array of a ``.npy`` file as an image, ``[row, column]``, as `numpy.save` writes ``z``.
 /// ignore_mask : bool
 ///     Keep the heights of nodes that a mask in the file marks.
 /// name : str, optional
@@ -50,9 +52,9 @@ use crate::warnings::warn;
 /// Notes
 /// -----
 /// The rows of a file are those of an image. Only a ``.npy`` file holds ``[ix, iy]``, as the program and the Rust library
-/// have it: an image has to be saved by ``numpy.save(name, z.T)``, or by `Surface.save`.
+/// have it and `Surface.save` writes it; an image that was saved by ``numpy.save(name, z)`` needs ``rows_are_y=True``.
 #[pyfunction]
-#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, layout=None, ignore_mask=false, name=None))]
+#[pyo3(signature = (source, channel=None, *, size=None, height_unit=None, lateral_unit=None, layout=None, rows_are_y=false, ignore_mask=false, name=None))]
 #[allow(clippy::too_many_arguments)] // each is a keyword
 fn read(
     py: Python<'_>,
@@ -62,6 +64,7 @@ fn read(
     height_unit: Option<&str>,
     lateral_unit: Option<&str>,
     layout: Option<&str>,
+    rows_are_y: bool,
     ignore_mask: bool,
     name: Option<PathBuf>,
 ) -> Fallible<Surface> {
@@ -84,6 +87,9 @@ fn read(
     }
     if let Some(layout) = layout {
         options = options.layout(layout.parse::<TextLayout>()?);
+    }
+    if rows_are_y {
+        options = options.rows_are_y();
     }
     if ignore_mask {
         options = options.ignore_mask();

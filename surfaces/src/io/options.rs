@@ -71,6 +71,7 @@ pub struct ReadOptions {
     lateral_unit: Option<LengthUnit>,
     ignore_mask: bool,
     layout: Option<TextLayout>,
+    rows_are_y: bool,
 }
 
 impl ReadOptions {
@@ -119,6 +120,12 @@ impl ReadOptions {
     /// How the numbers of a text are arranged, where it can be read in several ways, or in place of what it says.
     pub fn layout(mut self, layout: TextLayout) -> Self {
         self.layout = Some(layout);
+        self
+    }
+
+    /// Takes a NumPy array as an image, `[row, column]`: its first index is y. The rows of all other formats are y anyway.
+    pub fn rows_are_y(mut self) -> Self {
+        self.rows_are_y = true;
         self
     }
 
@@ -184,6 +191,9 @@ impl ReadOptions {
         let (format, channels) = parse(bytes, path, self.layout)?;
         let names = names(&channels);
         let mut channel = self.choose(channels, path)?;
+        if self.rows_are_y && format == Format::Npy {
+            channel = channel.transposed();
+        }
         let unit = channel.height_unit.take();
         let mut replaced = Vec::new();
         // NumPy's metre is an assumption, see below.
@@ -216,7 +226,15 @@ impl ReadOptions {
         }
         // What neither the file nor the options say, in words.
         if format == Format::Npy && self.height_unit.is_none() {
-            notes.push("a NumPy array has no unit: its heights are assumed to be in m".to_string());
+            let of_axes = match self.rows_are_y {
+                true => "",
+                false => {
+                    "; its first index is taken for x (`ReadOptions::rows_are_y` takes an image, whose rows are y)"
+                }
+            };
+            notes.push(format!(
+                "a NumPy array has no unit: its heights are assumed to be in m{of_axes}"
+            ));
         }
         let (nx, ny) = channel.shape;
         if let (Some((_, dy)), Some(_), None) = (cell, self.side, self.side_y) {

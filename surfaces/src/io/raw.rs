@@ -1,5 +1,7 @@
 //! What a reader finds in a file, before units and options are applied.
 
+use nalgebra::DMatrix;
+
 use super::fault::Fault;
 
 /// One map of a file, in the file's own units.
@@ -47,6 +49,13 @@ impl Channel {
 }
 
 impl Channel {
+    /// The map of an array whose first index is y, which has neither cell nor mask.
+    pub(super) fn transposed(self) -> Self {
+        let (nx, ny) = self.shape;
+        let values = DMatrix::from_vec(nx, ny, self.values).transpose();
+        Self { shape: (ny, nx), values: values.data.into(), ..self }
+    }
+
     /// The map of a file whose first row is the lowest of the image.
     pub(super) fn turned(mut self) -> Self {
         let (nx, ny) = self.shape;

@@ -5,8 +5,8 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use asperity_surfaces::io::{
-    LengthUnit, ReadOptions, channels, read_npy, read_surface, write_gsf, write_npy, write_vti,
-    write_x3p,
+    LengthUnit, ReadOptions, TextLayout, channels, read_npy, read_surface, write_gsf, write_npy,
+    write_vti, write_x3p,
 };
 use asperity_surfaces::{Error, FileError, Grid};
 use nalgebra::DMatrix;
@@ -124,13 +124,30 @@ fn what_is_assumed_is_noted() {
     assert_eq!(
         side,
         [
-            "a NumPy array has no unit: its heights are assumed to be in m",
+            "a NumPy array has no unit: its heights are assumed to be in m; its first index is taken for x \
+             (`ReadOptions::rows_are_y` takes an image, whose rows are y)",
             "cells are assumed to be square: the side along y is 500 µm"
         ]
     );
     let both = ReadOptions::new().side(1e-3).side_y(1e-3);
     let unit: LengthUnit = "um".parse().unwrap();
     assert!(notes(both.height_unit(unit)).is_empty());
+}
+
+/// An image is the transposed array, with the side along x that of its rows; files of other formats are as they were.
+#[test]
+fn an_array_may_be_an_image() {
+    let file = Scratch::new("image.npy");
+    let image = DMatrix::from_fn(2, 4, |row, column| (10 * row + column) as f64);
+    write_npy(&file.0, &image).unwrap();
+    let options = ReadOptions::new().side(8e-3).rows_are_y();
+    let measured = options.read(&file.0).unwrap();
+    assert_eq!(measured.heights, image.transpose());
+    assert_eq!(measured.cell, Some((2e-3, 2e-3)));
+    assert_eq!(measured.notes[0], "a NumPy array has no unit: its heights are assumed to be in m");
+    let text = "0 1 2 3\n10 11 12 13\n";
+    let options = options.height_unit(LengthUnit::METRE).layout(TextLayout::Matrix);
+    assert_eq!(options.read_bytes(text, "text").unwrap().heights, image.transpose());
 }
 
 /// A side may be a number that its cells are not.

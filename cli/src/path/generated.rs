@@ -1,0 +1,192 @@
+//! A generated surface, with the roughness that a command line asks for.
+
+use asperity::surface::{Amplitude, SelfAffine, Topography};
+use asperity::{Grid, LoadingSolver, SurfaceError};
+use asperity_cli::number::quantity;
+use asperity_cli::outcome::Failure;
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::options::Options;
+use super::source::Made;
+use crate::values::{LENGTH, fraction, positive};
+
+/// Side \[m\] and nodes a side of the generated surface, its seed, and cells of its shortest wave, if not given.
+const SIDE: f64 = 1e-2;
+const NODES: usize = 256;
+const SEED: u64 = 1;
+const CELLS_OF_SHORTEST_WAVE: f64 = 8.0;
+
+/// Its roughness: that of Zhang et al. (2020), Table 1, but for what is given.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Generated surface")]
+pub(super) struct Roughness {
+    /// Nodes along each side [default: 256]
+    #[arg(long, value_name = "N")]
+    nodes: Option<usize>,
+
+    /// Seed [default: 1]
+    #[arg(long, value_name = "S")]
+    pub(super) seed: Option<u64>,
+
+    /// Root mean square height [default: 50 µm, unless --rms-gradient is given]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with_all = ["surface", "rms_gradient"])]
+    sq: Option<f64>,
+
+    /// Root mean square gradient, in place of --sq
+    #[arg(long, value_name = "G", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    rms_gradient: Option<f64>,
+
+    /// Hurst exponent [default: 0.8]
+    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = fraction, conflicts_with = "surface")]
+    hurst: Option<f64>,
+
+    /// Roll-off: the wavelength above which the spectrum is flat [default: 2.5 mm]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
+    rolloff: Option<f64>,
+
+    /// Shortest wavelength [default: eight cells, and without --rolloff not less than 78.125 µm]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = LENGTH.positive(), conflicts_with = "surface")]
+    short_cutoff: Option<f64>,
+
+    /// Waves are so many times as long along x as they are along y; the other lengths are those along y [default: 1]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = positive, conflicts_with = "surface")]
+    anisotropy: Option<f64>,
+}
+
+impl Roughness {
+    /// That of another seed.
+    pub(super) fn with_seed(&self, seed: u64) -> Self {
+        Self { seed: Some(seed), ..self.clone() }
+    }
+
+    /// Whether nothing but nodes and a seed is given.
+    fn is_example(&self) -> bool {
+        let lengths = self.sq.or(self.rolloff).or(self.short_cutoff);
+        lengths.or(self.rms_gradient).or(self.hurst).or(self.anisotropy).is_none()
+    }
+
+    /// Height or gradient; of waves that are stretched, so that the gradient is that of the surface then.
+    fn amplitude(&self, default: Amplitude, stretch: f64) -> Amplitude {
+        match (self.sq, self.rms_gradient) {
+            (Some(height), _) => Amplitude::RmsHeight(height),
+            // Half of the mean square is along x, and falls with the square of the stretch.
+            (None, Some(gradient)) => {
+                Amplitude::RmsGradient(gradient / (0.5 + 0.5 / (stretch * stretch)).sqrt())
+            }
+            (None, None) => default,
+        }
+    }
+}
+
+/// A surface before it is made.
+pub(super) struct Generated {
+    spectrum: SelfAffine,
+    pub(super) grid: Grid,
+    /// How many times as long waves are along x.
+    stretch: f64,
+    is_example: bool,
+}
+
+impl Generated {
+    /// Its shortest wave has so many cells that the grid resolves it, unless another one is asked for.
+    pub(super) fn new(options: &Options) -> Result<Self, Failure> {
+        options.reading.only_sides()?;
+        let roughness = &options.roughness;
+        let nodes = roughness.nodes.unwrap_or(NODES);
+        let seed = roughness.seed.unwrap_or(SEED);
+        let stretch = roughness.anisotropy.unwrap_or(1.0);
+        let side = options.reading.side.unwrap_or(SIDE);
+        let side_y = options.reading.side_y.unwrap_or(side);
+        let failed = |error: SurfaceError| no_surface(options, nodes, error.into());
+        let grid = Grid::with_sides(nodes, nodes, side, side_y).map_err(failed)?;
+        let squeezed = squeezed(&grid, stretch).map_err(failed)?;
+        let paper = SelfAffine::zhang2020(seed);
+        let cell = squeezed.dx().max(squeezed.dy());
+        let rolloff = roughness.rolloff.unwrap_or(paper.rolloff_wavelength());
+        if 2.0 * cell > rolloff {
+            return Err(Failure::request(format!(
+                "{nodes} nodes a side are too few for the roll-off wavelength of {}: two cells are {}",
+                quantity(rolloff, "m", 5),
+                quantity(2.0 * cell, "m", 5)
+            )));
+        }
+        let least = match roughness.rolloff {
+            Some(_) => 0.0,
+            None => paper.short_cutoff_wavelength(),
+        };
+        let resolved = (CELLS_OF_SHORTEST_WAVE * cell).max(least).min(rolloff);
+        let shortest = roughness.short_cutoff.unwrap_or(resolved);
+        let hurst = roughness.hurst.unwrap_or(paper.hurst());
+        let amplitude = roughness.amplitude(paper.amplitude(), stretch);
+        let spectrum = SelfAffine::new(hurst, rolloff, shortest, amplitude, seed);
+        let spectrum = spectrum.map_err(failed)?;
+        Ok(Self { spectrum, grid, stretch, is_example: roughness.is_example() })
+    }
+
+    /// What it is from.
+    pub(super) fn source(&self) -> Value {
+        let (rms_height, rms_gradient) = match self.spectrum.amplitude() {
+            Amplitude::RmsHeight(height) => (Some(height), None),
+            Amplitude::RmsGradient(gradient) => (None, Some(gradient)),
+            _ => (None, None),
+        };
+        json!({
+            "generator": "self-affine",
+            "seed": self.spectrum.seed(),
+            "hurst": self.spectrum.hurst(),
+            "rolloff_wavelength": self.spectrum.rolloff_wavelength(),
+            "short_cutoff_wavelength": self.spectrum.short_cutoff_wavelength(),
+            "rms_height": rms_height,
+            "rms_gradient_before_stretch": rms_gradient,
+            "anisotropy": self.stretch,
+        })
+    }
+
+    /// In words.
+    fn name(&self) -> Result<String, SurfaceError> {
+        let spectrum = &self.spectrum;
+        let squeezed = squeezed(&self.grid, self.stretch)?;
+        let shortest = spectrum.short_cutoff_wavelength();
+        let cells = shortest / squeezed.dx().max(squeezed.dy());
+        let stretched = match self.stretch {
+            1.0 => String::new(),
+            ratio => format!(" along y, waves {ratio} times as long along x"),
+        };
+        Ok(format!(
+            "generated{}: self-affine, Hurst exponent {}, shortest wavelength {} ({}), roll-off at {}{stretched}, seed {}",
+            if self.is_example { " as an example" } else { "" },
+            spectrum.hurst(),
+            quantity(shortest, "m", 4),
+            quantity(cells, "cells", 4),
+            quantity(spectrum.rolloff_wavelength(), "m", 4),
+            spectrum.seed()
+        ))
+    }
+}
+
+/// The generated surface.
+pub(super) fn generate(options: &Options) -> Result<Made, Failure> {
+    let generated = Generated::new(options)?;
+    let grid = generated.grid;
+    let failed = |error| no_surface(options, grid.nx(), error);
+    LoadingSolver::check_room(&grid, options.boundary(), options.memory_budget).map_err(failed)?;
+    let made = squeezed(&grid, generated.stretch).and_then(|squeezed| {
+        let isotropic = Topography::sample(&generated.spectrum, squeezed)?;
+        let stretched = Topography::new(grid, isotropic.map().matrix().clone())?;
+        Ok((stretched, generated.name()?))
+    });
+    let (heights, name) = made.map_err(|error: SurfaceError| failed(error.into()))?;
+    Ok((heights, name, generated.source()))
+}
+
+/// The grid on which waves are as long along x as along y.
+fn squeezed(grid: &Grid, stretch: f64) -> Result<Grid, SurfaceError> {
+    let (lx, ly) = grid.sides();
+    Grid::with_sides(grid.nx(), grid.ny(), lx / stretch, ly)
+}
+
+fn no_surface(options: &Options, nodes: usize, error: asperity::Error) -> Failure {
+    let what = format!("cannot generate the surface on {nodes} x {nodes} nodes");
+    options.no_room(what, error)
+}
